@@ -1,0 +1,1 @@
+"""What runs on the microcontrollers: one package per board."""

@@ -1,0 +1,1 @@
+"""What runs on the PC: link, telescope client, sky and logs."""

@@ -1,0 +1,1 @@
+"""What the motors turn and the encoders see."""

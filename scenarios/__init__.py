@@ -1,0 +1,1 @@
+"""Scenario files, their schema, the wiring, the runner and the command line."""
