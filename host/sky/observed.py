@@ -1,0 +1,121 @@
+"""From the catalogue to the sky as the telescope sees it: observed hour angle, declination and their rates.
+
+ERFA's `atco13` does precession and nutation (IAU 2006/2000A), aberration, light deflection, parallax, Earth
+rotation and refraction in one go, so none of it is written here.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+import warnings
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import erfa
+import numpy as np
+import numpy.typing as npt
+
+from host.sky.angles import ARCSEC_PER_RAD, wrap_pi
+from host.sky.catalogue import Star
+from host.sky.site import Site
+
+_MAS_PER_RAD = ARCSEC_PER_RAD * 1000
+_SECONDS_PER_DAY = 86400.0
+_RATE_STEP_S = 1.0
+"""Rates are central differences over ±1 s: what the third derivative adds is below 1e-9 ″/s."""
+
+
+class Observed(NamedTuple):
+    """An observed place, refraction included, in radians: hour angle positive west, azimuth N through E."""
+
+    hour_angle_rad: float
+    declination_rad: float
+    altitude_rad: float
+    azimuth_rad: float
+
+
+class Rates(NamedTuple):
+    """How fast the observed place moves, in arcsec of each axis per second."""
+
+    hour_angle_arcsec_s: float
+    declination_arcsec_s: float
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Simulated time against UTC: nanosecond 0 of a run is this instant."""
+
+    start_utc: dt.datetime
+
+    def __post_init__(self) -> None:
+        if self.start_utc.tzinfo is None:
+            raise ValueError("start_utc has no time zone; write it like 2026-02-10T14:00:00Z")
+
+    def julian(self, t_s: float) -> tuple[float, float]:
+        """UTC as ERFA's two-part quasi Julian date."""
+        start = self.start_utc.astimezone(dt.UTC)
+        with warnings.catch_warnings():
+            # Dates past the leap-second table are only "dubious": no leap second has been announced for them.
+            warnings.simplefilter("ignore", erfa.ErfaWarning)
+            day, fraction = erfa.dtf2d(
+                "UTC", start.year, start.month, start.day, start.hour, start.minute,
+                start.second + start.microsecond / 1e6,
+            )  # fmt: skip
+        return float(day), float(fraction) + t_s / _SECONDS_PER_DAY
+
+    def iso(self, t_s: float) -> str:
+        """UTC of a simulated time as text, to the millisecond."""
+        when = self.start_utc.astimezone(dt.UTC) + dt.timedelta(microseconds=round(t_s * 1e6))
+        return when.strftime("%Y-%m-%dT%H:%M:%S.") + f"{when.microsecond // 1000:03d}Z"
+
+
+def observe(star: Star, site: Site, clock: Clock, t_s: float) -> Observed:
+    """Observed place of a star at a simulated time."""
+    track = observe_many(star, site, clock, np.array([t_s]))
+    return Observed(*(float(column[0]) for column in track))
+
+
+def observe_many(
+    star: Star, site: Site, clock: Clock, t_s: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], ...]:
+    """Observed places for an array of times: hour angle (−π..π), declination, altitude and azimuth."""
+    day, fraction = clock.julian(0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        azimuth, zenith, hour_angle, declination, _, _ = erfa.atco13(
+            star.right_ascension_rad,
+            star.declination_rad,
+            star.pm_ra_mas_yr / _MAS_PER_RAD / math.cos(star.declination_rad),
+            star.pm_dec_mas_yr / _MAS_PER_RAD,
+            star.parallax_mas / 1000,
+            0.0,  # radial velocity: perspective acceleration is below 0.01″ per century for all stars listed
+            day,
+            fraction + np.asarray(t_s) / _SECONDS_PER_DAY,
+            site.ut1_minus_utc_s,
+            site.longitude_rad,
+            site.latitude_rad,
+            site.height_m,
+            site.polar_motion_x_rad,
+            site.polar_motion_y_rad,
+            site.pressure_hpa,
+            site.temperature_c,
+            site.humidity,
+            site.wavelength_um,
+        )
+    return (
+        np.remainder(hour_angle + np.pi, 2 * np.pi) - np.pi,
+        np.asarray(declination),
+        np.pi / 2 - zenith,
+        np.asarray(azimuth),
+    )
+
+
+def rates(star: Star, site: Site, clock: Clock, t_s: float) -> Rates:
+    """Rates of hour angle and declination with refraction, by central difference."""
+    step = _RATE_STEP_S
+    hour_angle, declination, _, _ = observe_many(star, site, clock, np.array([t_s - step, t_s + step]))
+    scale = ARCSEC_PER_RAD / (2 * step)
+    return Rates(
+        wrap_pi(float(hour_angle[1] - hour_angle[0])) * scale, float(declination[1] - declination[0]) * scale
+    )

@@ -1,0 +1,58 @@
+"""Is a target within reach, now and until the end of what is planned? Asked before anything moves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from host.sky.angles import format_degrees
+from host.sky.catalogue import Star
+from host.sky.mount import Mount
+from host.sky.observed import Clock, observe_many
+from host.sky.site import Site
+
+HORIZON_RAD = math.radians(15.0)
+"""ASSUMPTION: below 15° the dome's slit and the air mass make observing pointless; scenarios may lower it."""
+_STEP_S = 10.0
+
+
+class Unreachable(ValueError):
+    """A target the telescope must not be sent to; the message says why and when."""
+
+
+def check_reachable(
+    star: Star,
+    site: Site,
+    clock: Clock,
+    mount: Mount,
+    t_s: float,
+    stay_s: float = 0.0,
+    horizon_rad: float = HORIZON_RAD,
+) -> None:
+    """Raise `Unreachable` unless the target stays above the horizon and inside the soft limits."""
+    times = t_s + np.linspace(0.0, stay_s, 2 + int(stay_s // _STEP_S))
+    hour_angle, declination, altitude, _ = observe_many(star, site, clock, times)
+    low = np.flatnonzero(altitude < horizon_rad)
+    if low.size:
+        index = int(low[0])
+        raise Unreachable(
+            f"{star.name} is at altitude {format_degrees(altitude[index])} {_when(index, times, clock)}, "
+            f"below the horizon limit of {math.degrees(horizon_rad):g}°"
+        )
+    axes = (("hour angle", mount.ra, hour_angle), ("declination", mount.dec, declination))
+    for name, scale, angles in axes:
+        outside = [index for index, angle in enumerate(angles) if not scale.within(float(angle))]
+        if outside:
+            index = outside[0]
+            low_deg = math.degrees(scale.angle_rad(scale.low_steps))
+            high_deg = math.degrees(scale.angle_rad(scale.high_steps))
+            raise Unreachable(
+                f"{star.name} is at {name} {format_degrees(angles[index])} {_when(index, times, clock)}, "
+                f"beyond the soft limits {low_deg:.1f}°..{high_deg:.1f}°"
+            )
+
+
+def _when(index: int, times: np.ndarray[tuple[int, ...], np.dtype[np.float64]], clock: Clock) -> str:
+    moment = "when it is to be reached" if index == 0 else "before the track ends"
+    return f"{moment} ({clock.iso(float(times[index]))[:19]}Z)"
