@@ -1,0 +1,47 @@
+"""Error counters by ISO 11898-1 (fault confinement): what every outcome adds and takes."""
+
+from collections.abc import Iterable
+
+from bus.can.port import Port
+
+BUS_OFF_ABOVE = 255
+PASSIVE_ABOVE = 127
+RECOVERY_RUNS = 128
+"""Bus-off recovery: this many runs of eleven recessive bits."""
+RECOVERY_RUN_BITS = 11
+SUSPEND_BITS = 8
+"""A passive node waits this long after its own frame before it may send again."""
+_REC_AFTER_PASSIVE_OK = 127
+"""A good reception takes a passive REC back to 119..127; the standard leaves the choice (ASSUMPTION: 127)."""
+_REC_MAX = 255
+"""REC registers are 8 bits wide and do not wrap (MCP2515 register 1Dh)."""
+
+
+def sent(port: Port) -> None:
+    """A frame went out well."""
+    if port.tec:
+        port.tec -= 1
+
+
+def received(ports: Iterable[Port]) -> None:
+    """A frame came in well."""
+    for port in ports:
+        if port.rec:
+            port.rec = _REC_AFTER_PASSIVE_OK if port.rec > PASSIVE_ABOVE else port.rec - 1
+
+
+def send_failed(port: Port, *, acknowledge: bool) -> bool:
+    """The sender saw an error; True when that takes it off the bus.
+
+    A passive sender that misses only the acknowledge does not count: a lone node stays at 128 for ever.
+    """
+    if not (acknowledge and port.state == "passive"):
+        port.tec += 8
+    return port.tec > BUS_OFF_ABOVE
+
+
+def receive_failed(ports: Iterable[Port], first: Port | None = None) -> None:
+    """Receivers saw an error; `first` was alone in seeing it and then sees the others' flags after its
+    own."""
+    for port in ports:
+        port.rec = min(port.rec + (9 if port is first and port.state == "active" else 1), _REC_MAX)

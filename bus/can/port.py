@@ -1,0 +1,126 @@
+"""One node's connection to a wire: what its CAN controller drives."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from bus.can.frame import Frame, arbitration_key
+from bus.can.length import frame_bits
+
+if TYPE_CHECKING:
+    from bus.can.wire import Wire
+
+TX_BUFFERS = 3
+"""Transmit buffers of a controller (MCP2515, DS20001801 section 3)."""
+
+State = Literal["active", "passive", "bus_off"]
+Receive = Callable[[int, Frame], None]
+
+
+class Offer(NamedTuple):
+    """A frame in a transmit buffer; sorts as the wire decides: arbitration field, then first come."""
+
+    key: int
+    ticket: int
+    ready_ns: int
+    port: "Port"
+    frame: Frame
+    bits: int
+
+
+class Port:
+    """A node on a wire; made by `Wire.attach`.
+
+    Among the buffers of one node the lowest identifier goes first, equal identifiers in the order sent:
+    firmware is taken to set the MCP2515's TXP priorities that way. (ASSUMPTION: the paper does not say;
+    with all TXP equal the chip would take the highest buffer number.)
+    A node that is off keeps nothing: its buffers are emptied and its error counters start from zero when
+    it returns.
+    """
+
+    __slots__ = (
+        "_bus_off",
+        "_filters",
+        "_free",
+        "_on_receive",
+        "_online",
+        "_quiet_ns",
+        "_routes",
+        "_wire",
+        "name",
+        "on_sent",
+        "rec",
+        "tec",
+    )
+
+    def __init__(self, wire: "Wire", name: str) -> None:
+        self.name = name
+        self.tec = 0
+        self.rec = 0
+        self.on_sent: Receive | None = None
+        self._wire = wire
+        self._online = True
+        self._bus_off = False
+        self._free = TX_BUFFERS
+        self._quiet_ns = 0
+        self._filters: tuple[tuple[int, int], ...] | None = None
+        self._on_receive: Receive | None = None
+        self._routes: dict[int, tuple[Receive, ...]] = {}
+
+    @property
+    def state(self) -> State:
+        """Error state by ISO 11898-1: passive beyond 127 in either counter, bus off beyond 255 in TEC."""
+        if self._bus_off:
+            return "bus_off"
+        return "passive" if self.tec > 127 or self.rec > 127 else "active"
+
+    @property
+    def on_receive(self) -> Receive | None:
+        """Called as `(t_ns, frame)` at the end of every good frame from another node that passes the
+        filters."""
+        return self._on_receive
+
+    @on_receive.setter
+    def on_receive(self, call: Receive | None) -> None:
+        self._on_receive = call
+        self._wire._forget_routes()
+
+    @property
+    def online(self) -> bool:
+        """False: the node is off. It neither sends, receives nor acknowledges."""
+        return self._online
+
+    @online.setter
+    def online(self, on: bool) -> None:
+        if on != self._online:
+            self._online = on
+            self._wire._switched(self)
+
+    def accept(self, filters: Sequence[tuple[int, int]] | None) -> None:
+        """Let through identifiers with `identifier & mask == code & mask` for any (mask, code); None:
+        everything."""
+        self._filters = None if filters is None else tuple((mask, code & mask) for mask, code in filters)
+        self._wire._forget_routes()
+
+    def passes(self, identifier: int) -> bool:
+        """Whether a frame with `identifier` gets through the acceptance filters."""
+        return self._filters is None or any(identifier & mask == code for mask, code in self._filters)
+
+    @property
+    def free_buffers(self) -> int:
+        """Transmit buffers that are empty (0 while the node is off)."""
+        return self._free
+
+    def send(self, frame: Frame, ready_ns: int) -> bool:
+        """Put `frame` into a transmit buffer at `ready_ns` (may be in the future); False: none is free,
+        or off.
+
+        Raises FrameError when CAN cannot carry the frame. Whoever gets False decides what to do with the
+        frame.
+        """
+        if not self._free:
+            return False
+        bits = frame_bits(frame)
+        self._free -= 1
+        key = arbitration_key(frame) if frame[2] or frame[3] else frame[0] << 21
+        self._wire._offer(key, ready_ns, self, frame, bits)
+        return True

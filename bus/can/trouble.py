@@ -1,0 +1,242 @@
+"""What can go wrong on a wire: missing acknowledge, disturbed bits, collisions, nodes going off, bus-off
+recovery.
+
+Kept apart from the wire so that a healthy bus pays one flag test per frame.
+"""
+
+from collections import Counter
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from bus.can import confinement
+from bus.can.bits import INTERMISSION_BITS, wire_bits
+from bus.can.disturbance import (
+    ERROR_DELIMITER_BITS,
+    ERROR_FLAG_BITS,
+    ErrorKind,
+    Flip,
+    Verdict,
+    first_difference,
+    seen_by_all,
+    seen_by_receiver,
+)
+from bus.can.frame import Frame
+from bus.can.port import Offer, Port, Receive
+from bus.can.recovery import Recovery
+
+if TYPE_CHECKING:
+    from bus.can.wire import Wire
+
+_NEVER = 1 << 62
+_RECESSIVE_TAIL_BITS = 1 + 7
+"""ACK delimiter and EOF: already recessive when a frame ends."""
+
+
+class Trouble:
+    """Error handling of one wire. `near` is True while anything but plain sailing is possible."""
+
+    def __init__(self, wire: "Wire") -> None:
+        self.near = True
+        self.disturb: Callable[[int, Frame, str], Flip | None] | None = None
+        self.errors: Counter[str] = Counter()
+        self._wire = wire
+        self._excluded: list[Port] = []
+        self._twins: list[Offer] = []
+        self._recovery = Recovery(wire)
+
+    def check(self) -> None:
+        """Look again whether trouble is near."""
+        live = [port for port in self._wire.ports if port.online and not port._bus_off]
+        self.near = bool(
+            self.disturb
+            or len(live) < 2
+            or self._recovery.pending
+            or any(port.tec or port.rec for port in live)
+        )
+
+    def listeners(self, sender: Port) -> list[Port]:
+        """Nodes that hear (and acknowledge) what `sender` sends."""
+        return [
+            port
+            for port in self._wire.ports
+            if port.online and not port._bus_off and port is not sender and port not in self._excluded
+        ]
+
+    def same_key(self, ready: list[Offer], winner: Offer) -> bool:
+        """Whether another node sends the very same arbitration field."""
+        return any(offer.key == winner.key and offer.port is not winner.port for offer in ready)
+
+    def decide(self, sof_ns: int) -> None:
+        """Arbitration and outcome of the frame that starts at `sof_ns`, with everything that can befall
+        it."""
+        wire = self._wire
+        ready = [
+            offer
+            for offer in wire._waiting
+            if max(offer.ready_ns, offer.port._quiet_ns) <= sof_ns + wire.bit_ns and not offer.port._bus_off
+        ]
+        starts = [
+            max(offer.ready_ns, offer.port._quiet_ns) for offer in wire._waiting if not offer.port._bus_off
+        ]
+        if not ready or min(starts) > sof_ns:
+            if starts:
+                wire._call_decide(max(wire._free_ns, min(starts)))
+            return
+        self._recovery.frame_starts(sof_ns)
+        winner = min(ready)
+        rivals: dict[Port, Offer] = {}
+        for offer in sorted(ready):
+            if offer.key == winner.key and offer.port is not winner.port:
+                rivals.setdefault(offer.port, offer)
+        self._twins, self._excluded = [], []
+        for rival in rivals.values():
+            winner = self._collide(winner, rival, sof_ns)
+            if wire._free_ns > sof_ns:
+                return  # it ended in an error frame
+        self._judge(winner, sof_ns)
+
+    def _collide(self, one: Offer, other: Offer, sof_ns: int) -> Offer:
+        """Two nodes send one identifier: whoever sends the first recessive bit that differs has a bit
+        error."""
+        parted = first_difference(wire_bits(one.frame), wire_bits(other.frame))
+        if parted is None:
+            self._twins.append(other)
+            self._excluded.append(other.port)
+            return one
+        index, one_is_recessive = parted
+        loser, winner = (one, other) if one_is_recessive else (other, one)
+        if loser.port.state == "passive":
+            # Its recessive flag disturbs nobody: the other frame goes on.
+            self.errors["bit"] += 1
+            self._sender_failed(loser.port, "bit")
+            loser.port._quiet_ns = sof_ns + (winner.bits + confinement.SUSPEND_BITS) * self._wire.bit_ns
+            return winner
+        self._fail(winner, Verdict("bit", index), sof_ns, also=loser.port)
+        return winner
+
+    def _judge(self, offer: Offer, sof_ns: int) -> None:
+        wire = self._wire
+        listeners = self.listeners(offer.port)
+        flip = self.disturb(sof_ns, offer.frame, offer.port.name) if self.disturb else None
+        if flip is not None:
+            everyone = flip.seen_by is None or flip.seen_by == offer.port.name
+            verdict = (seen_by_all if everyone else seen_by_receiver)(offer.frame, flip.bit)
+            first = next((port for port in listeners if port.name == flip.seen_by), None)
+            if first is None and not everyone:
+                verdict = None  # that node is off, or not here
+            if verdict is not None and first is not None and first.state == "passive":
+                # Its recessive flag disturbs nobody: it just misses the frame.
+                self.errors[verdict.kind] += 1
+                confinement.receive_failed([first])
+                self._excluded.append(first)
+                verdict = None
+            if verdict is not None:
+                self._fail(offer, verdict, sof_ns, first=first)
+                return
+        if not listeners:
+            self._fail(
+                offer, Verdict("ack", offer.bits - INTERMISSION_BITS - _RECESSIVE_TAIL_BITS - 1), sof_ns
+            )
+            return
+        wire._waiting.remove(offer)
+        wire._begin(offer, sof_ns)
+
+    def _fail(
+        self,
+        offer: Offer,
+        verdict: Verdict,
+        sof_ns: int,
+        *,
+        first: Port | None = None,
+        also: Port | None = None,
+    ) -> None:
+        """An error frame ends the frame that started at `sof_ns`; it stays in its buffer and is sent
+        again."""
+        wire = self._wire
+        # Seen by one node only, the flag is answered by the others' flags once six equal bits have gone by.
+        flag_bits = ERROR_FLAG_BITS * (2 if first is not None else 1)
+        bits = verdict.detected_bit + 1 + flag_bits + ERROR_DELIMITER_BITS + INTERMISSION_BITS
+        wire._free_ns = sof_ns + bits * wire.bit_ns
+        wire.bits += bits
+        wire._end_ns = wire._free_ns - wire._eof_ns
+        self._recovery.quiet_since_ns = wire._end_ns - ERROR_DELIMITER_BITS * wire.bit_ns
+        senders = [port for port in (offer.port, also) if port is not None]
+
+        def end(t_ns: int) -> None:
+            if t_ns == wire._end_ns:
+                wire._end_ns = _NEVER
+                self._account(offer, senders, verdict, first, t_ns)
+
+        wire.queue.at(wire._end_ns, end)
+
+    def _account(
+        self, offer: Offer, senders: list[Port], verdict: Verdict, first: Port | None, t_ns: int
+    ) -> None:
+        wire = self._wire
+        self.errors[verdict.kind] += 1
+        receivers = [port for port in self.listeners(offer.port) if port not in senders]
+        if verdict.spares_sender:
+            confinement.receive_failed([*receivers, *senders])
+        else:
+            confinement.receive_failed(receivers, first)
+            for port in senders:
+                self._sender_failed(port, verdict.kind)
+        for port in senders:
+            if port.state == "passive":
+                port._quiet_ns = wire._free_ns + confinement.SUSPEND_BITS * wire.bit_ns
+        self.check()
+        wire._await_ready()
+        if verdict.received:
+            for call in wire._calls(receivers, offer.frame):
+                call(t_ns, offer.frame)
+
+    def _sender_failed(self, port: Port, kind: ErrorKind) -> None:
+        if port.online and confinement.send_failed(port, acknowledge=kind == "ack"):
+            port._bus_off = True
+            self._wire._forget_routes()
+            self._recovery.add(port)
+
+    def delivered(self, offer: Offer, t_ns: int) -> tuple[Receive, ...]:
+        """A good frame ended: counters go down. Returns who gets it."""
+        wire = self._wire
+        self._recovery.quiet_since_ns = t_ns - _RECESSIVE_TAIL_BITS * wire.bit_ns
+        senders = [offer.port]
+        for twin in self._twins:
+            wire._waiting.remove(twin)
+            twin.port._free += 1
+            senders.append(twin.port)
+            if twin.port.on_sent is not None:
+                twin.port.on_sent(t_ns, twin.frame)
+        for port in senders:
+            confinement.sent(port)
+            if port.state == "passive":
+                port._quiet_ns = wire._free_ns + confinement.SUSPEND_BITS * wire.bit_ns
+        listeners = self.listeners(offer.port)
+        confinement.received(listeners)
+        self._twins, self._excluded = [], []
+        self.check()
+        return wire._calls(listeners, offer.frame)
+
+    def cut(self, t_ns: int) -> None:
+        """The sender went off in the middle of its frame: six recessive bits later everyone else objects."""
+        wire = self._wire
+        offer, wire._sending = wire._sending, None
+        assert offer is not None
+        begun_ns = wire._free_ns - offer.bits * wire.bit_ns
+        bits = 6 + ERROR_FLAG_BITS + ERROR_DELIMITER_BITS + INTERMISSION_BITS
+        wire._free_ns = t_ns + bits * wire.bit_ns
+        wire.bits += bits + (t_ns - begun_ns) // wire.bit_ns
+        wire._end_ns = _NEVER
+        wire._decide_ns = _NEVER
+        self._recovery.quiet_since_ns = wire._free_ns
+        self.errors["stuff"] += 1
+        confinement.receive_failed(self.listeners(offer.port))
+        self._twins, self._excluded = [], []
+        wire._await_ready()
+
+    def restart(self, port: Port) -> None:
+        """`port` was switched: counters start from zero."""
+        port.tec = port.rec = 0
+        port._bus_off = False
+        self._recovery.drop(port)
+        self.check()

@@ -1,0 +1,179 @@
+"""One CAN bus: arbitration by identifier, exact frame times, delivery. What goes wrong is in `trouble.py`."""
+
+from collections.abc import Callable
+
+from bus.can.bits import INTERMISSION_BITS
+from bus.can.disturbance import Flip
+from bus.can.frame import Frame
+from bus.can.port import TX_BUFFERS, Offer, Port, Receive
+from bus.can.trouble import Trouble
+from bus.time import EventQueue
+
+Tap = Callable[[int, Frame, str], None]
+Disturb = Callable[[int, Frame, str], Flip | None]
+_NEVER = 1 << 62
+_NS_PER_S = 1_000_000_000
+MAX_BITRATE = 1_000_000
+"""bit/s; CAN 2.0."""
+
+
+class BitrateError(ValueError):
+    """A bit rate CAN 2.0 does not have."""
+
+
+class Wire:
+    """One CAN bus of `bitrate` bit/s (bit times are whole nanoseconds).
+
+    Whoever is ready by the end of the start-of-frame bit takes part in the arbitration; the lowest
+    arbitration field wins, at equal fields the first come (two nodes with one identifier collide, see
+    `trouble.py`). A frame reaches its receivers at the end of EOF; the next may start after the three
+    bits of intermission.
+    """
+
+    def __init__(self, queue: EventQueue, bitrate: int = MAX_BITRATE) -> None:
+        if not 0 < bitrate <= MAX_BITRATE:
+            raise BitrateError(f"bit rate {bitrate} bit/s: CAN 2.0 has 1..{MAX_BITRATE} bit/s")
+        self.queue = queue
+        self.bitrate = bitrate
+        self.bit_ns = round(_NS_PER_S / bitrate)
+        self.frames = 0
+        self.bits = 0
+        self.ports: list[Port] = []
+        self._waiting: list[Offer] = []
+        self._taps: list[Tap] = []
+        self._tickets = 0
+        self._free_ns = 0
+        self._decide_ns = _NEVER
+        self._end_ns = _NEVER
+        self._sending: Offer | None = None
+        self._eof_ns = INTERMISSION_BITS * self.bit_ns
+        self._trouble = Trouble(self)
+
+    def attach(self, name: str) -> Port:
+        """A new node on this wire, online, accepting every frame."""
+        port = Port(self, name)
+        self.ports.append(port)
+        self._trouble.check()
+        self._forget_routes()
+        return port
+
+    def tap(self, call: Tap) -> None:
+        """Have `call(t_end_ns, frame, sender)` made for every good frame; a tap does not acknowledge."""
+        self._taps.append(call)
+
+    def disturb(self, call: Disturb | None) -> None:
+        """Ask `call(t_sof_ns, frame, sender)` at the start of every frame for a bit to invert; None:
+        quiet again."""
+        self._trouble.disturb = call
+        self._trouble.check()
+
+    @property
+    def load(self) -> float:
+        """Share of the time so far in which the bus carried frames (intermission counted) or error
+        frames, 0..1."""
+        return self.bits * self.bit_ns / self.queue.now_ns if self.queue.now_ns else 0.0
+
+    @property
+    def errors(self) -> dict[str, int]:
+        """Error frames so far by cause: bit, stuff, form, crc, ack."""
+        return dict(self._trouble.errors)
+
+    def _offer(self, key: int, ready_ns: int, port: Port, frame: Frame, bits: int) -> None:
+        now = self.queue.now_ns
+        if ready_ns < now:
+            ready_ns = now
+        self._tickets = ticket = self._tickets + 1
+        self._waiting.append(Offer(key, ticket, ready_ns, port, frame, bits))
+        self._call_decide(ready_ns if ready_ns > self._free_ns else self._free_ns)
+
+    def _call_decide(self, sof_ns: int) -> None:
+        """Have the arbitration of a frame that starts at `sof_ns` decided once its first bit is over."""
+        t_ns = sof_ns + self.bit_ns
+        if t_ns < self._decide_ns:
+            self._decide_ns = t_ns
+            self.queue.at(t_ns, self._decide)
+
+    def _decide(self, t_ns: int) -> None:
+        if t_ns != self._decide_ns:
+            return  # overtaken by an earlier start
+        self._decide_ns = _NEVER
+        waiting = self._waiting
+        sof_ns = t_ns - self.bit_ns
+        if self._trouble.near:
+            self._trouble.decide(sof_ns)
+            return
+        if len(waiting) == 1:
+            winner = waiting[0]
+            if winner[2] > sof_ns:
+                self._call_decide(winner[2])
+                return
+            waiting.clear()
+        else:
+            ready = [offer for offer in waiting if offer[2] <= t_ns]
+            if not ready or min(offer[2] for offer in ready) > sof_ns:
+                self._await_ready()
+                return
+            winner = min(ready)
+            if len(ready) > 1 and self._trouble.same_key(ready, winner):
+                self._trouble.decide(sof_ns)
+                return
+            waiting.remove(winner)
+        self._begin(winner, sof_ns)
+
+    def _await_ready(self) -> None:
+        if self._waiting:
+            earliest_ns = min(offer.ready_ns for offer in self._waiting)
+            self._call_decide(max(self._free_ns, self.queue.now_ns, earliest_ns))
+
+    def _begin(self, winner: Offer, sof_ns: int) -> None:
+        self._sending = winner
+        self._free_ns = free_ns = sof_ns + winner[5] * self.bit_ns
+        self._end_ns = end_ns = free_ns - self._eof_ns
+        self.queue.at(end_ns, self._deliver)
+
+    def _deliver(self, t_ns: int) -> None:
+        if t_ns != self._end_ns:
+            return  # the sender went off in the middle
+        self._end_ns = _NEVER
+        offer = self._sending
+        assert offer is not None
+        self._sending = None
+        key, _, _, port, frame, bits = offer
+        self.frames += 1
+        self.bits += bits
+        port._free += 1
+        if self._waiting:
+            self._call_decide(self._free_ns)
+        calls = port._routes.get(key)
+        if self._trouble.near:
+            calls = self._trouble.delivered(offer, t_ns)
+        elif calls is None:
+            # Found once and kept until filters or nodes change.
+            calls = port._routes[key] = self._calls(self._trouble.listeners(port), frame)
+        for tap in self._taps:
+            tap(t_ns, frame, port.name)
+        for call in calls:
+            call(t_ns, frame)
+        if port.on_sent is not None:
+            port.on_sent(t_ns, frame)
+
+    def _calls(self, listeners: list[Port], frame: Frame) -> tuple[Receive, ...]:
+        """Receivers of one identifier among `listeners`."""
+        return tuple(
+            port.on_receive
+            for port in listeners
+            if port.on_receive is not None and port.passes(frame.identifier)
+        )
+
+    def _forget_routes(self) -> None:
+        for port in self.ports:
+            port._routes.clear()
+
+    def _switched(self, port: Port) -> None:
+        """`port` was switched on or off."""
+        self._waiting = [offer for offer in self._waiting if offer.port is not port]
+        if self._sending is not None and self._sending.port is port:
+            self._trouble.cut(self.queue.now_ns)
+        port._free = TX_BUFFERS if port.online else 0
+        self._trouble.restart(port)
+        self._forget_routes()
