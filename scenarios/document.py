@@ -1,0 +1,89 @@
+"""YAML documents that remember where each value stood, so that an error can say file and line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+Path_ = tuple[str | int, ...]
+
+
+class ScenarioError(ValueError):
+    """Unusable input; the message names file, line, field and what would be right."""
+
+
+@dataclass(frozen=True)
+class Document:
+    """A parsed YAML file: its plain data and the line of every value and key (1-based), by path."""
+
+    file: Path
+    data: Any
+    lines: dict[Path_, int]
+
+    def where(self, path: Path_) -> str:
+        """`file:line` of the value at a path, or of the nearest one above it."""
+        while path not in self.lines and path:
+            path = path[:-1]
+        return f"{self.file}:{self.lines.get(path, 1)}"
+
+
+def read(file: Path) -> Document:
+    """Parse a YAML file; raise `ScenarioError` for a missing file, broken YAML, or a key given twice."""
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ScenarioError(f"{file}: no such file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{file}: cannot be read: {_reason(error)}") from None
+    return parse(text, file)
+
+
+def parse(text: str, file: Path) -> Document:
+    """Parse YAML text that came from `file`."""
+    loader = yaml.SafeLoader(text)
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            raise ScenarioError(f"{file}:1: the file is empty")
+        lines: dict[Path_, int] = {}
+        _walk(node, (), lines, file, depth=0)
+        data = loader.construct_document(node)
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        raise ScenarioError(f"{file}:{line}: not YAML: {error.problem}") from None
+    except (yaml.YAMLError, ValueError) as error:
+        if isinstance(error, ScenarioError):
+            raise
+        raise ScenarioError(f"{file}:1: not YAML: {_reason(error)}") from None
+    finally:
+        loader.dispose()
+    return Document(file, data, lines)
+
+
+def _walk(node: yaml.Node, path: Path_, lines: dict[Path_, int], file: Path, depth: int) -> None:
+    if depth > 50:
+        raise ScenarioError(
+            f"{file}:{node.start_mark.line + 1}: nested too deeply (an alias that holds itself?)"
+        )
+    lines.setdefault(path, node.start_mark.line + 1)
+    if isinstance(node, yaml.MappingNode):
+        seen: set[str] = set()
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, yaml.ScalarNode):
+                raise ScenarioError(f"{file}:{line}: a field name must be a word")
+            if key.value in seen:
+                raise ScenarioError(f"{file}:{line}: field {key.value!r} is given twice")
+            seen.add(key.value)
+            lines[(*path, key.value)] = line
+            _walk(value, (*path, key.value), lines, file, depth + 1)
+    elif isinstance(node, yaml.SequenceNode):
+        for index, value in enumerate(node.value):
+            _walk(value, (*path, index), lines, file, depth + 1)
+
+
+def _reason(error: Exception) -> str:
+    return " ".join(str(error).split())

@@ -1,0 +1,126 @@
+"""A document against the published schema; errors name file, line, field and the nearest valid word."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from scenarios.document import Document, Path_, ScenarioError
+from scenarios.units import UnitError, parse
+
+SCHEMA_FILE = Path(__file__).with_name("scenario.schema.json")
+
+_TYPES = {
+    "object": "a block of fields",
+    "array": "a list",
+    "string": "text",
+    "integer": "a whole number",
+    "number": "a number",
+    "boolean": "true or false",
+    "null": "nothing",
+}
+
+
+@cache
+def schema() -> dict[str, Any]:
+    """The published JSON schema of the scenario language."""
+    loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+    return loaded
+
+
+def check(document: Document) -> None:
+    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow."""
+    from jsonschema import Draft202012Validator
+    from jsonschema.validators import extend
+
+    def quantity(_: object, kind: str, value: object, __: object) -> Iterable[Exception]:
+        from jsonschema import ValidationError
+
+        try:
+            parse(value, kind)
+        except UnitError as error:
+            yield ValidationError(str(error))
+
+    validator = extend(Draft202012Validator, {"x-quantity": quantity})(schema())  # type: ignore[no-untyped-call]
+    problems = sorted({_describe(document, error) for error in validator.iter_errors(_plain(document.data))})
+    if problems:
+        message = problems[0][2]
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise ScenarioError(message + more)
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """A hint that names the nearest valid word, or all of them when none is near."""
+    known = list(words)
+    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.5)
+    if near:
+        return f"did you mean {next(k for k in known if k.lower() == near[0])!r}?"
+    return "use one of " + ", ".join(known) if known else "none is allowed here"
+
+
+def _describe(document: Document, error: Any) -> tuple[int, int, str]:
+    path: Path_ = tuple(error.absolute_path)
+    field = ".".join(str(part) for part in path) or "the file"
+    kind, expected = error.validator, error.validator_value
+    if kind == "additionalProperties":
+        known = list(error.schema.get("properties", {}))
+        wrong = next(key for key in error.instance if key not in known)
+        path = (*path, wrong)
+        inside = f" in {field}" if error.absolute_path else ""
+        text = f"unknown field {str(wrong)!r}{inside}; {nearest(str(wrong), known)}"
+    elif kind == "enum":
+        text = f"{field}: {error.instance!r} is not known; {nearest(str(error.instance), map(str, expected))}"
+    elif kind == "type":
+        names = [expected] if isinstance(expected, str) else expected
+        wanted = " or ".join(_TYPES[name] for name in names)
+        text = f"{field}: expected {wanted}, found {_found(error.instance)}"
+    elif kind == "required":
+        missing = [name for name in expected if name not in error.instance]
+        text = f"{field}: field {missing[0]!r} is missing"
+    elif kind == "oneOf":
+        text = _choice(field, error)
+    elif kind == "x-quantity":
+        text = f"{field}: {error.message}"
+    elif kind in ("minimum", "maximum", "exclusiveMinimum"):
+        bound = {"minimum": "at least", "maximum": "at most", "exclusiveMinimum": "more than"}[kind]
+        text = f"{field}: {error.instance} is out of range; it must be {bound} {expected}"
+    else:
+        text = f"{field}: {error.message}"
+    location = document.where(path)
+    rank = 0 if kind == "additionalProperties" else 1  # a misspelt field explains the missing one
+    return int(location.rsplit(":", 1)[1]), rank, f"{location}: {text}"
+
+
+def _choice(field: str, error: Any) -> str:
+    """Steps, faults and expectations hold exactly one of several keys."""
+    keys = [each["required"][0] for each in error.validator_value if "required" in each]
+    if keys and isinstance(error.instance, Mapping):
+        given = [key for key in keys if key in error.instance]
+        if not given:
+            return f"{field}: says nothing to do; use one of {', '.join(keys)}"
+        return f"{field}: holds {' and '.join(given)}, but only one is allowed"
+    forms = [each.get("title", each.get("type", "?")) for each in error.validator_value]
+    return f"{field}: {error.instance!r} is neither {' nor '.join(map(str, forms))}"
+
+
+def _found(value: object) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, Mapping):
+        return "a block of fields"
+    return f"a list of {len(value)}" if isinstance(value, list) else repr(value)
+
+
+def _plain(value: object) -> object:
+    """YAML's time stamps and odd keys as text, so that the schema sees JSON's types only."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)
