@@ -46,7 +46,8 @@ def check(document: Document) -> None:
             yield ValidationError(str(error))
 
     validator = extend(Draft202012Validator, {"x-quantity": quantity})(schema())  # type: ignore[no-untyped-call]
-    problems = sorted({_describe(document, error) for error in validator.iter_errors(_plain(document.data))})
+    found = (_describe(document, error) for error in validator.iter_errors(_plain(document.data)))
+    problems = sorted({problem for problem in found if problem is not None})
     if problems:
         message = problems[0][2]
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
@@ -62,7 +63,7 @@ def nearest(word: str, words: Iterable[str]) -> str:
     return "use one of " + ", ".join(known) if known else "none is allowed here"
 
 
-def _describe(document: Document, error: Any) -> tuple[int, int, str]:
+def _describe(document: Document, error: Any) -> tuple[int, int, str] | None:
     path: Path_ = tuple(error.absolute_path)
     field = ".".join(str(part) for part in path) or "the file"
     kind, expected = error.validator, error.validator_value
@@ -83,6 +84,8 @@ def _describe(document: Document, error: Any) -> tuple[int, int, str]:
         text = f"{field}: field {missing[0]!r} is missing"
     elif kind == "oneOf":
         text = _choice(field, error)
+        if not text:
+            return None
     elif kind == "x-quantity":
         text = f"{field}: {error.message}"
     elif kind in ("minimum", "maximum", "exclusiveMinimum"):
@@ -101,6 +104,8 @@ def _choice(field: str, error: Any) -> str:
     if keys and isinstance(error.instance, Mapping):
         given = [key for key in keys if key in error.instance]
         if not given:
+            if set(error.instance) - set(error.schema.get("properties", {})):
+                return ""  # the unknown field is reported already
             return f"{field}: says nothing to do; use one of {', '.join(keys)}"
         return f"{field}: holds {' and '.join(given)}, but only one is allowed"
     forms = [each.get("title", each.get("type", "?")) for each in error.validator_value]

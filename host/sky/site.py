@@ -10,9 +10,9 @@ from dataclasses import dataclass
 class Site:
     """A place on the ground with its weather and the Earth's orientation.
 
-    Latitude and longitude are geodetic (WGS84), positive north and east. UT1 − UTC and polar motion are zero
-    unless given: the first is at most 0.9 s by definition (13.5″ of hour angle, common to every star, hence part of
-    the zero point that the alignment console removes), the second at most 0.6″.
+    Latitude and longitude are geodetic (WGS84), positive north and east. UT1 − UTC and polar motion are
+    zero unless given: the first is at most 0.9 s by definition (13.5″ of hour angle, the same for every star
+    and so part of the zero point that the alignment console removes), the second at most 0.6″.
     """
 
     latitude_rad: float

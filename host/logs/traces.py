@@ -1,0 +1,88 @@
+"""Traces as Parquet: columns of floats, streamed in row groups so that a night never sits in memory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from host.logs.files import LogError
+
+_ROWS_PER_GROUP = 1 << 15
+
+
+class Trace:
+    """One Parquet file of float64 columns.
+
+    The file gets its footer at `close`, also when a run is interrupted. Pieces are joined to row groups of
+    about 32 000 rows before they are written.
+    """
+
+    def __init__(self, path: Path, columns: tuple[str, ...], units: dict[str, str]) -> None:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        self.path = path
+        self.columns = columns
+        self._pieces: list[npt.NDArray[np.float64]] = []
+        self._rows = 0
+        self._schema = pa.schema(
+            [pa.field(name, pa.float64(), metadata={"unit": units.get(name, "")}) for name in columns]
+        )
+        try:
+            self._writer: Any = pq.ParquetWriter(path, self._schema, compression="zstd")
+        except OSError as error:
+            raise LogError(f"{path}: cannot be written: {error.strerror}") from None
+
+    def append(self, rows: npt.NDArray[np.float64]) -> None:
+        """Add rows, shape (n, number of columns)."""
+        if rows.shape[1:] != (len(self.columns),):
+            raise ValueError(f"{self.path.name}: {rows.shape[1:]} columns for {len(self.columns)}")
+        self._pieces.append(rows)
+        self._rows += len(rows)
+        if self._rows >= _ROWS_PER_GROUP:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is waiting as one row group."""
+        if not self._pieces or self._writer is None:
+            return
+        import pyarrow as pa
+
+        rows = np.concatenate(self._pieces)
+        self._pieces.clear()
+        self._rows = 0
+        try:
+            self._writer.write_table(pa.table([pa.array(column) for column in rows.T], schema=self._schema))
+        except OSError as error:
+            raise LogError(f"{self.path}: {_reason(error)}") from None
+
+    def close(self) -> None:
+        """Write the rest and the footer; a second close does nothing."""
+        if self._writer is None:
+            return
+        try:
+            self.flush()
+        finally:
+            writer, self._writer = self._writer, None
+            try:
+                writer.close()
+            except OSError as error:
+                raise LogError(f"{self.path}: {_reason(error)}") from None
+
+
+def read(
+    path: Path, columns: tuple[str, ...], low_s: float, high_s: float
+) -> dict[str, npt.NDArray[np.float64]]:
+    """Columns of the rows with `low_s <= t_s <= high_s`, read without loading the rest of the file."""
+    import pyarrow.parquet as pq
+
+    wanted = list(dict.fromkeys(("t_s", *columns)))
+    table = pq.read_table(path, columns=wanted, filters=[("t_s", ">=", low_s), ("t_s", "<=", high_s)])
+    return {name: table[name].to_numpy() for name in wanted}
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or str(error)).splitlines()[0].lower()
