@@ -1,0 +1,58 @@
+"""MOTION: an axis board's measurement frame, every 10 ms."""
+
+from enum import IntFlag
+from typing import NamedTuple
+
+from bus.protocol.signed import SIGN_13, SIGN_15
+
+
+class MotionFlag(IntFlag):
+    """Flag nibble of MOTION."""
+
+    MOVING = 1
+    SOFT_LIMIT = 2
+    FAULT = 4
+    POWERED = 8
+
+
+class Motion(NamedTuple):
+    """velocity: counts in the last 5 ms; effort: 1/3000 of the supply; adc_a, adc_b: 10-bit counts."""
+
+    device: int
+    mode: int
+    flags: int
+    velocity: int
+    effort: int
+    adc_a: int
+    adc_b: int
+
+
+def pack_motion(
+    device: int, mode: int, flags: int, velocity: int, effort: int, adc_a: int, adc_b: int
+) -> bytes:
+    """Eight bytes; velocity is cut to 15 bits and effort to 13, as the firmware's shifts do."""
+    return (
+        device
+        | mode << 8
+        | flags << 12
+        | (velocity & 0x7FFF) << 16
+        | (effort & 0x1FFF) << 31
+        | adc_a << 44
+        | adc_b << 54
+    ).to_bytes(8, "little")
+
+
+def unpack_motion(data: bytes) -> Motion:
+    """The signals of eight bytes."""
+    word = int.from_bytes(data, "little")
+    velocity = word >> 16 & 0x7FFF
+    effort = word >> 31 & 0x1FFF
+    return Motion(
+        word & 0xFF,
+        word >> 8 & 0xF,
+        word >> 12 & 0xF,
+        (velocity ^ SIGN_15) - SIGN_15,
+        (effort ^ SIGN_13) - SIGN_13,
+        word >> 44 & 0x3FF,
+        word >> 54,
+    )

@@ -1,0 +1,128 @@
+"""Numbers of the protocol by name: device types, identifiers, opcodes, results. A test holds them to
+schmidt.dbc."""
+
+from enum import IntEnum, IntFlag
+
+COMMAND_BASE = 0x080
+"""Identifier of a device's COMMAND is this plus its device type; likewise below."""
+REPLY_BASE = 0x100
+MEASUREMENT_BASE = 0x200
+"""MOTION, POSITION, TACH and FOCUS: the frames of the 64-byte HID report."""
+SUMMARY_BASE = 0x300
+"""TARGET and SUMMARY, 250 ms."""
+HEARTBEAT_BASE = 0x700
+SUMMARY_KIND = 0xF3
+"""Byte 1 of TARGET and SUMMARY."""
+HEARTBEAT_KIND = 0xF7
+"""Byte 1 of HEARTBEAT."""
+FRAME_BYTES = 8
+"""Length of every documented frame."""
+
+
+class Device(IntEnum):
+    """Byte 0 of every frame: who it comes from, or in a COMMAND whom it is for."""
+
+    AXIS_RA = 0x11
+    AXIS_DEC = 0x12
+    POSITION_RA = 0x21
+    POSITION_DEC = 0x22
+    MOTOR_RA_A = 0x31
+    MOTOR_RA_B = 0x32
+    MOTOR_DEC_A = 0x33
+    MOTOR_DEC_B = 0x34
+    FOCUS = 0x41
+    DISPLAY = 0x51
+    GATEWAY = 0x61
+
+
+class Opcode(IntEnum):
+    """Byte 1 of a COMMAND, repeated in byte 1 of its REPLY."""
+
+    PING = 0x01
+    GET_PARAMETER = 0x02
+    SET_PARAMETER = 0x03
+    POWER = 0x10
+    STOP = 0x11
+    SET_RATE = 0x12
+    SET_CLASS = 0x13
+    MOVE_TO = 0x14
+    TRACK_RATE = 0x15
+    OPEN_LOOP = 0x16
+    NUDGE = 0x17
+    FOCUS_STEP = 0x20
+    FOCUS_MOVE_TO = 0x21
+    FOCUS_HOLD = 0x22
+    FOCUS_FREE = 0x23
+    FOCUS_REFERENCE = 0x24
+    BRIGHTNESS = 0x30
+
+
+class Result(IntEnum):
+    """Byte 2 of a REPLY."""
+
+    OK = 0
+    UNKNOWN_OPCODE = 1
+    WRONG_LENGTH = 2
+    OUT_OF_RANGE = 3
+    NOT_ALLOWED = 4
+    WRONG_DEVICE_TYPE = 5
+
+
+class Health(IntFlag):
+    """Value of the REPLY to PING; 0 is healthy. ASSUMPTION: the paper says "health check" and no more."""
+
+    SENSOR = 0x01
+    STALE = 0x02
+    BUS = 0x04
+    OVERRUN = 0x08
+    DROPPED = 0x10
+    LIMIT = 0x20
+    FAULT = 0x40
+
+
+class State(IntEnum):
+    """State byte of a HEARTBEAT."""
+
+    BOOT = 0
+    READY = 1
+    ACTIVE = 2
+    FAULT = 3
+
+
+class AxisMode(IntEnum):
+    """Mode nibble of MOTION."""
+
+    OFF = 0
+    STOP = 1
+    RATE = 2
+    CLASS = 3
+    MOVE = 4
+    TRACK = 5
+    OPEN_LOOP = 6
+
+
+class SpeedClass(IntEnum):
+    """Speed classes of the axes (paper: slew, set, guide, fine; track for RA)."""
+
+    NONE = 0
+    SLEW = 1
+    SET = 2
+    GUIDE = 3
+    FINE = 4
+    TRACK = 5
+
+
+class AxisParameter(IntEnum):
+    """Parameters of an axis board."""
+
+    COUNTER_SPLIT_PERCENT = 1
+    KP_Q12 = 2
+    KI_Q12 = 3
+    LIMIT_LOW_STEPS = 4
+    LIMIT_HIGH_STEPS = 5
+    ACCELERATION = 6
+    RATE_SLEW_Q16 = 7
+    RATE_SET_Q16 = 8
+    RATE_GUIDE_Q16 = 9
+    RATE_FINE_Q16 = 10
+    RATE_TRACK_Q16 = 11

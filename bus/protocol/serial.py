@@ -1,0 +1,159 @@
+"""RS232 packets: every 250 ms a board sends its last 25 samples, taken at 10 ms.
+
+    sync AA 55 | device type u8 | sequence u8 | time stamp u32 | 25 samples | CRC-16 u16      (little endian)
+
+The time stamp is the board's own clock at the first sample, units of 100 µs, modulo 2**32 (five days).
+CRC-16: polynomial 0x1021, initial 0xFFFF, not reflected, no final XOR ("CCITT-FALSE"), over everything
+between sync and CRC. Layouts and CRC are ASSUMPTIONS; the paper gives the period, the 25 samples and the
+quantities (row L3).
+"""
+
+from binascii import crc_hqx
+from collections.abc import Sequence
+from struct import Struct
+from typing import NamedTuple
+
+from bus.protocol.names import Device
+
+SYNC = b"\xaa\x55"
+STAMP_UNIT_NS = 100_000
+SAMPLE_NS = 10_000_000
+PACKET_NS = 250_000_000
+SAMPLES = 25
+NO_SETPOINT = -(1 << 31)
+"""Set point of an axis in open loop: there is none."""
+_CRC_START = 0xFFFF
+_head = Struct("<BBI")
+_crc = Struct("<H")
+
+
+class AxisSample(NamedTuple):
+    """One 10 ms sample of an axis board.
+
+    effort: 1/3000 of the supply; position: steps, 29 bit; velocity: counts in the last 5 ms; adc_a,
+    adc_b: 10-bit counts; tach_a, tach_b: counts in the last 10 ms; aux: counts, 17 bit; setpoint: Q16
+    counts per 5 ms.
+    """
+
+    effort: int
+    position: int
+    velocity: int
+    adc_a: int
+    adc_b: int
+    tach_a: int
+    tach_b: int
+    aux: int
+    setpoint: int
+
+
+class PositionSample(NamedTuple):
+    """position: steps, 29 bit."""
+
+    position: int
+
+
+class FocusSample(NamedTuple):
+    """half_steps: commanded; encoder: counts; lvdt: 10-bit counts."""
+
+    half_steps: int
+    encoder: int
+    lvdt: int
+
+
+Sample = AxisSample | PositionSample | FocusSample
+_AXIS = (Struct("<hIhHHhhIi"), AxisSample)
+_POSITION = (Struct("<I"), PositionSample)
+_LAYOUTS: dict[int, tuple[Struct, type[Sample]]] = {
+    Device.AXIS_RA: _AXIS,
+    Device.AXIS_DEC: _AXIS,
+    Device.POSITION_RA: _POSITION,
+    Device.POSITION_DEC: _POSITION,
+    Device.FOCUS: (Struct("<hhH"), FocusSample),
+}
+"""The five boards with a serial line."""
+
+
+class SerialError(ValueError):
+    """A packet that cannot be built."""
+
+
+class Packet(NamedTuple):
+    """stamp: board clock at the first sample, 100 µs units, modulo 2**32; samples: 25, 10 ms apart."""
+
+    device: int
+    sequence: int
+    stamp: int
+    samples: tuple[Sample, ...]
+
+
+def packet_bytes(device: int) -> int:
+    """Length of a packet of `device`, sync and CRC included."""
+    return len(SYNC) + _head.size + SAMPLES * _LAYOUTS[device][0].size + _crc.size
+
+
+def pack_packet(device: int, sequence: int, stamp: int, samples: Sequence[Sequence[int]]) -> bytes:
+    """A packet; sequence and stamp are taken modulo their width. Raises SerialError."""
+    if device not in _LAYOUTS:
+        raise SerialError(f"device type {device:#04x} has no serial line")
+    if len(samples) != SAMPLES:
+        raise SerialError(f"a packet holds {SAMPLES} samples, got {len(samples)}")
+    pack = _LAYOUTS[device][0].pack
+    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + b"".join(
+        [pack(*row) for row in samples]
+    )
+    return SYNC + body + _crc.pack(crc_hqx(body, _CRC_START))
+
+
+class PacketDecoder:
+    """Finds packets in a byte stream, however it is cut.
+
+    A wrong CRC or unknown device type costs the sync it started with; the search goes on one byte later.
+    """
+
+    def __init__(self) -> None:
+        self.crc_errors = 0
+        self.skipped_bytes = 0
+        self._buffer = bytearray()
+
+    def feed(self, data: bytes) -> list[Packet]:
+        """Take more of the stream; returns the packets completed by it."""
+        buffer = self._buffer
+        buffer += data
+        packets: list[Packet] = []
+        while self._seek() and len(buffer) > len(SYNC):
+            device = buffer[len(SYNC)]
+            if device not in _LAYOUTS:
+                self._skip(1)
+                continue
+            length = packet_bytes(device)
+            if len(buffer) < length:
+                break
+            body = bytes(buffer[len(SYNC) : length - _crc.size])
+            if _crc.unpack_from(buffer, length - _crc.size)[0] != crc_hqx(body, _CRC_START):
+                self.crc_errors += 1
+                self._skip(1)
+                continue
+            packets.append(_decode(body))
+            del buffer[:length]
+        return packets
+
+    def _seek(self) -> bool:
+        """Drop everything before the next sync; False when it is not (all) there yet."""
+        start = self._buffer.find(SYNC)
+        if start < 0:
+            start = len(self._buffer) - self._buffer.endswith(SYNC[:1])
+            self._skip(start)
+            return False
+        self._skip(start)
+        return True
+
+    def _skip(self, count: int) -> None:
+        self.skipped_bytes += count
+        del self._buffer[:count]
+
+
+def _decode(body: bytes) -> Packet:
+    device, sequence, stamp = _head.unpack_from(body)
+    layout, kind = _LAYOUTS[device]
+    rows = layout.iter_unpack(body[_head.size :])
+    return Packet(device, sequence, stamp, tuple(kind(*row) for row in rows))

@@ -1,0 +1,26 @@
+"""TACH: a motor velocity board's measurement frame, every 10 ms."""
+
+from struct import Struct
+from typing import NamedTuple
+
+_tach = Struct("<BBih")
+
+
+class Tach(NamedTuple):
+    """counts: free running, 4096 per motor turn, wraps at 32 bit; delta: counts in 10 ms; flags: none
+    defined yet."""
+
+    device: int
+    flags: int
+    counts: int
+    delta: int
+
+
+def pack_tach(device: int, flags: int, counts: int, delta: int) -> bytes:
+    """Eight bytes; `counts` is cut to 32 bits (it runs free), `delta` must fit 16."""
+    return _tach.pack(device, flags, ((counts + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000, delta)
+
+
+def unpack_tach(data: bytes) -> Tach:
+    """The signals of eight bytes."""
+    return Tach._make(_tach.unpack(data))
