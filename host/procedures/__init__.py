@@ -1,0 +1,1 @@
+"""What the observer makes the telescope do, one generator per procedure."""

@@ -1,0 +1,58 @@
+"""Power up with a health check, stop, power down (H2)."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from bus.protocol import Device, Health, MotionFlag, Opcode
+from host.client import Client, ClientError, Procedure
+
+AXES = (Device.AXIS_RA, Device.AXIS_DEC)
+_HEALTH_PATIENCE_S = 5.0
+"""Boards may report stale data until the first frames of the others have come in. ASSUMPTION."""
+_POWER_S = 2.0
+
+
+def health_check(client: Client) -> Procedure:
+    """Ask every board for its health bits until all are zero; raises `ClientError` naming the others."""
+    end_ns = client.now_ns + round(_HEALTH_PATIENCE_S * 1e9)
+    ill = list(client.devices)
+    bits: dict[Device, int] = {}
+    while ill:
+        for device in ill:
+            reply = yield from client.ask(device, Opcode.PING)
+            bits[device] = reply.value
+        ill = [device for device in ill if bits[device]]
+        if ill and client.now_ns > end_ns:
+            words = "; ".join(f"{device.name} reports {_words(bits[device])}" for device in ill)
+            raise ClientError(f"health check: {words}")
+        yield
+    client.logs.status(client.now_ns, "HOST", f"health check passed, {len(client.devices)} boards")
+
+
+def power_on(client: Client, check: bool = True) -> Procedure:
+    """Health check, then switch both axes on and wait until they say so."""
+    if check:
+        yield from health_check(client)
+    for axis in AXES:
+        yield from client.ask(axis, Opcode.POWER, 1)
+    for axis in AXES:
+        yield from client.until(f"{axis.name}: powered", partial(powered, client, axis), _POWER_S)
+
+
+def power_off(client: Client) -> Procedure:
+    """Stop and switch both axes off."""
+    for axis in AXES:
+        yield from client.ask(axis, Opcode.STOP)
+    for axis in AXES:
+        yield from client.ask(axis, Opcode.POWER, 0)
+
+
+def powered(client: Client, axis: Device) -> bool:
+    """Whether an axis board says that its outputs are on."""
+    motion = client.motion(axis)
+    return motion is not None and bool(motion.flags & MotionFlag.POWERED)
+
+
+def _words(bits: int) -> str:
+    return ", ".join(flag.name.lower() for flag in Health if bits & flag and flag.name) or hex(bits)

@@ -1,0 +1,44 @@
+"""A star's place as the client needs it: cheap at every tick, exact every few seconds."""
+
+from __future__ import annotations
+
+from host.sky.catalogue import Star
+from host.sky.mount import Mount
+from host.sky.observed import Clock, Observed, Rates, observe, rates
+from host.sky.site import Site
+
+_REFRESH_S = 5.0
+"""Between two exact places the rates carry the place on: below 0.001″ of error at altitude 20°."""
+_RAD_PER_ARCSEC = 4.84813681109536e-06
+
+
+class StarTrack:
+    """Observed place and rates of one star, and where the axes have to be for it."""
+
+    def __init__(self, star: Star, site: Site, clock: Clock, mount: Mount) -> None:
+        self.star = star
+        self._site, self._clock, self._mount = site, clock, mount
+        self._at_s = -1e9
+        self._place = Observed(0.0, 0.0, 0.0, 0.0)
+        self._rates = Rates(0.0, 0.0)
+
+    def rates(self, t_s: float) -> Rates:
+        """Rates of the axes at a time, ″/s."""
+        self._renew(t_s)
+        return self._rates
+
+    def steps(self, t_s: float) -> tuple[int, int]:
+        """Encoder readings of both axes on which the star is at a time."""
+        self._renew(t_s)
+        since = (t_s - self._at_s) * _RAD_PER_ARCSEC
+        return (
+            self._mount.ra.steps(self._place.hour_angle_rad + since * self._rates.hour_angle_arcsec_s),
+            self._mount.dec.steps(self._place.declination_rad + since * self._rates.declination_arcsec_s),
+        )
+
+    def _renew(self, t_s: float) -> None:
+        if abs(t_s - self._at_s) > _REFRESH_S / 2:
+            # Half a period ahead, so that the exact place lies in the middle of its use.
+            self._at_s = t_s + _REFRESH_S / 2
+            self._place = observe(self.star, self._site, self._clock, self._at_s)
+            self._rates = rates(self.star, self._site, self._clock, self._at_s)
