@@ -14,6 +14,8 @@ DBC_PATH = Path(__file__).with_name("schmidt.dbc")
 def database() -> "Database":
     """The protocol as a cantools database; `database().decode_message(identifier, data)` decodes any
     frame of a run."""
-    from cantools.database import load_file
+    from cantools.database import Database, load_file
 
-    return load_file(DBC_PATH, strict=True)
+    loaded = load_file(DBC_PATH, strict=True)
+    assert isinstance(loaded, Database)
+    return loaded

@@ -61,7 +61,8 @@ def _message(message: Any, devices: list[str]) -> Iterator[str]:
     yield f"\n### {_family(message.name)} {_suffix(message.name)}: {base:#05x} + device type, {period}\n"
     yield f"{message.comment} Devices: {', '.join(devices)}.\n"
     yield "| opcode | signal | bits | type | range | unit | meaning |\n|---|---|---|---|---|---|---|"
-    yield from (_row(signal) for signal in message.signals)
+    by_opcode = sorted(message.signals, key=lambda signal: (signal.multiplexer_ids or [-1], signal.start))
+    yield from (_row(signal) for signal in by_opcode)
 
 
 def page() -> str:
