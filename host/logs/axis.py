@@ -1,0 +1,66 @@
+"""The axis log, version 1: what an axis board sends over RS232, one row per 10 ms sample."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from bus.protocol.serial import NO_SETPOINT, SAMPLE_NS, STAMP_UNIT_NS, AxisSample, Packet
+from host.logs.files import LineFile
+from host.rates import COUNT_ARCSEC, LOOP_S
+
+COLUMNS = ("t", "setpoint", "effort", "position", "velocity", "adc_a", "adc_b", "tach_a", "tach_b", "aux")
+REQUIRED = ("axis", "session", "loop", "start_utc")
+OPTIONAL = ("preload", "counter_torque", "supply_V", "temperature_C", "note")
+_SETPOINT_ARCSEC_S = COUNT_ARCSEC / LOOP_S / 65536
+_STAMP_S = STAMP_UNIT_NS * 1e-9
+_SAMPLE_S = SAMPLE_NS * 1e-9
+_WRAP = 1 << 32
+
+Row = tuple[float, AxisSample]
+"""Board time in seconds and its sample."""
+Distortion = Callable[[list[Row]], list[Row]]
+"""What a log effect makes of the rows of one packet."""
+
+
+class AxisLog:
+    """One axis' log file. header: values of the format's keys; unknown keys and missing ones are refused."""
+
+    def __init__(self, path: Path, header: dict[str, str], distort: Distortion | None = None) -> None:
+        missing = [key for key in REQUIRED if key not in header]
+        unknown = [key for key in header if key not in (*REQUIRED, *OPTIONAL)]
+        if missing or unknown:
+            raise ValueError(f"axis log header: missing {missing}, unknown {unknown}")
+        self.rows = 0
+        self.file = LineFile(path)
+        self._distort = distort
+        self._turns = 0
+        self._last_stamp = -1
+        lines = ["# format: axis-log 1", f"# axis: {header['axis']}", "# sample_period_s: 0.010"]
+        lines += [f"# {key}: {header[key]}" for key in (*REQUIRED[1:], *OPTIONAL) if key in header]
+        self.file.write("\n".join([*lines, ",".join(COLUMNS), ""]))
+
+    def packet(self, _t_ns: int, packet: Packet) -> None:
+        """Append the 25 samples of a packet; the board's stamp is carried over its wrap."""
+        if packet.stamp < self._last_stamp - _WRAP // 2:
+            self._turns += 1
+        self._last_stamp = packet.stamp
+        start = (packet.stamp + self._turns * _WRAP) * _STAMP_S
+        rows: list[Row] = [
+            (start + index * _SAMPLE_S, sample)
+            for index, sample in enumerate(packet.samples)
+            if isinstance(sample, AxisSample)
+        ]
+        if self._distort is not None:
+            rows = self._distort(rows)
+        self.rows += len(rows)
+        if rows:
+            self.file.write("".join([_line(t, *sample) for t, sample in rows]))
+
+
+def _line(
+    t: float, effort: int, position: int, velocity: int, adc_a: int, adc_b: int, tach_a: int, tach_b: int,
+    aux: int, setpoint: int,
+) -> str:  # fmt: skip
+    wanted = "" if setpoint == NO_SETPOINT else f"{setpoint * _SETPOINT_ARCSEC_S:.6f}"
+    return f"{t:.6f},{wanted},{effort},{position},{velocity},{adc_a},{adc_b},{tach_a},{tach_b},{aux}\n"
