@@ -1,0 +1,65 @@
+"""What is set when the axis board is programmed: gains, rates, limits. All integers as the firmware keeps
+them."""
+
+from dataclasses import dataclass, field
+
+COUNTS_PER_TURN = 112_896_000
+"""Incremental encoder: 4.608e6 counts x 735/30 (paper, sections 2.2 and 3.2; hardware.md 2.1)."""
+STEPS_PER_TURN = 1 << 29
+"""Absolute encoder RCN 829 (paper, section 3.2)."""
+TICK_NS = 5_000_000
+"""Sampling time of the controller (paper, section 3.3)."""
+_ARCSEC_PER_TURN = 1_296_000
+_TICKS_PER_S = 200
+
+
+def rate_q16(arcsec_per_s: float) -> int:
+    """A rate in arcsec/s as counts per 5 ms in Q16: 15 becomes 6.53333."""
+    return round(arcsec_per_s * COUNTS_PER_TURN / _ARCSEC_PER_TURN / _TICKS_PER_S * 65536)
+
+
+def steps(arcsec: float) -> int:
+    """An angle in arcsec as steps of the absolute encoder."""
+    return round(arcsec * STEPS_PER_TURN / _ARCSEC_PER_TURN)
+
+
+def _classes() -> tuple[int, ...]:
+    # Slew: Table 1, 12.583 rad/s at the motor. Track: sidereal. Set, guide and fine have no figures in the
+    # paper:
+    # ASSUMPTION, the speeds at which it shows results (600, 100 and 15 arcsec/s).
+    return tuple(rate_q16(rate) for rate in (7200.0, 600.0, 100.0, 15.0, 15.041))
+
+
+@dataclass(frozen=True, slots=True)
+class AxisConfig:
+    """Settings of one axis board.
+
+    kp, ki: PWM steps per count/5 ms, and per count (ASSUMPTION; fitted to the paper's rows by plant file).
+    counter_split: share of the effort the lagging motor gets, percent, 10..25 (paper, section 3.3).
+    split_fade_counts: speed, counts/5 ms, at which that share has fallen to nothing; 0: it never falls
+        (hardware.md 2.3: 25 % is not compatible with 24 V at slew for some motor constants).
+    pwm_steps, pwm_hz: resolution and frequency of the motor PWM.
+    position_gain: 1/s, of the position loop around the velocity loop (ASSUMPTION).
+    correction: largest rate the position loop adds, Q16 counts/5 ms.
+    lag_steps: following error at which the profile waits for the axis.
+    acceleration: Q16 counts/5 ms per 5 ms (Table 1: 12.583 rad/s2 at the motor = 2 deg/s2).
+    classes: rates of slew, set, guide, fine, track, Q16 counts/5 ms.
+    low, high: soft limits, steps. settle_steps: distance to the target that counts as settled.
+    frame_ns: time a full frame takes on the bus, for the age of received measurements.
+    """
+
+    kp: float = 3.4
+    ki: float = 0.037
+    counter_split: int = 10
+    split_fade_counts: int = 0
+    pwm_steps: int = 3000
+    pwm_hz: int = 20_000
+    position_gain: float = 2.0
+    correction: int = rate_q16(300.0)
+    lag_steps: int = steps(900.0)
+    acceleration: int = rate_q16(7200.0) // _TICKS_PER_S
+    classes: tuple[int, ...] = field(default_factory=_classes)
+    low: int = 0
+    high: int = STEPS_PER_TURN - 1
+    settle_steps: int = steps(5.0)
+    frame_ns: int = 120_000

@@ -1,0 +1,234 @@
+"""Firmware of the axis board: the 5 ms interrupt, telemetry every 10 ms, packets every 250 ms."""
+
+from boards.axis.commands import axis_commands, axis_parameters
+from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.interrupts import FCY_HZ, TABLE
+from boards.axis.limits import SoftLimits
+from boards.axis.motion import POINTING, STALE_NS, Motion
+from boards.axis.pi import IncrementalPi
+from boards.axis.pins import AxisPins
+from boards.axis.profile import UNITS_PER_STEP
+from boards.axis.tachometer import RemoteTachometer
+from boards.core import PeriodicBoard
+from boards.silicon.adc import CurrentAdc
+from boards.silicon.can import FULL_MASK
+from boards.silicon.pwm import MotorPwm
+from boards.silicon.qei import Qei
+from boards.silicon.uart import Uart
+from bus.can import Frame, Wire
+from bus.protocol import (
+    COMMAND_BASE,
+    MEASUREMENT_BASE,
+    SUMMARY_BASE,
+    AxisMode,
+    Health,
+    MotionFlag,
+    State,
+    pack_motion,
+    pack_target,
+)
+from bus.protocol.serial import NO_SETPOINT, SAMPLES, STAMP_UNIT_NS, pack_packet
+from bus.time import EventQueue, Oscillator
+
+_EFFORT_SCALE = 3000
+"""Effort on the wire and in the logs is in 1/3000 of the supply, whatever the PWM's own resolution."""
+_TARGET_TICKS = 50
+_HEARTBEAT_TICKS = 200
+_frame = tuple.__new__
+_POWERED, _MOVING, _LIMIT, _FAULT = map(
+    int, (MotionFlag.POWERED, MotionFlag.MOVING, MotionFlag.SOFT_LIMIT, MotionFlag.FAULT)
+)
+
+
+class AxisBoard(PeriodicBoard):
+    """dsPIC30F3011 + MCP2515, one per axis.
+
+    position_type, motor_types: device types of the boards it listens to: its EnDat board, its motors A
+        and B.
+    """
+
+    __slots__ = ("_counter", "_identifier", "adc", "config", "effort", "effort_command", "fault", "limits",
+                 "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence", "split", "stamp_ns",
+                 "tach_a", "tach_b", "uart", "velocity")  # fmt: skip
+
+    def __init__(
+        self, name: str, device_type: int, queue: EventQueue, wire: Wire, pins: AxisPins, oscillator:
+            Oscillator,
+        config: AxisConfig, position_type: int, motor_types: tuple[int, int],
+    ) -> None:  # fmt: skip
+        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+        self.config = config
+        self.qei = Qei(pins.encoder)
+        self.pwm = MotorPwm(pins.drive, config.pwm_steps, config.pwm_hz)
+        self.adc = CurrentAdc(pins.current)
+        self.uart = Uart(queue)
+        self.motion = Motion(config)
+        self.limits = SoftLimits(self.motion)
+        self.pi = IncrementalPi(round(config.kp * 4096), round(config.ki * 4096), config.pwm_steps)
+        self.tach_a = RemoteTachometer(config.frame_ns)
+        self.tach_b = RemoteTachometer(config.frame_ns)
+        self.set_split(config.counter_split)
+        self.velocity = 0
+        self.poscnt = 0
+        self.effort = 0
+        self.effort_command: int | None = 0
+        self.samples: list[tuple[int, ...]] = []
+        self.stamp_ns = 0
+        self.sequence = 0
+        self.fault = False
+        self._identifier = MEASUREMENT_BASE + device_type
+        remote = (
+            MEASUREMENT_BASE + position_type,
+            MEASUREMENT_BASE + motor_types[0],
+            MEASUREMENT_BASE + motor_types[1],
+        )
+        calls = (self.motion.take_position, self.tach_a.take, self.tach_b.take)
+        self.mail.update(zip(remote, calls, strict=True))
+        self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]), (FULL_MASK, remote))
+        self.commands = self.common_commands() | axis_commands(self)
+        self.set_parameters(axis_parameters(self))
+
+    def reset(self) -> None:
+        """After power-up: off."""
+        self.motion.off()
+        self.pi.start(0, 0, 0)
+        self.effort = 0
+        self.effort_command = 0
+        self.velocity = 0
+        self.fault = False
+        self.poscnt = self.qei.poscnt(self.queue.now_ns)
+        self.samples = []
+
+    def unpowered(self, t_ns: int) -> None:
+        """The gates fall without supply."""
+        self.pwm.write(t_ns, 0, 0)
+
+    def routine(self, t_ns: int) -> None:
+        """Timer interrupt, every 5 ms."""
+        end = self.enter(t_ns)
+        if not end:
+            return
+        poscnt = self.qei.pin(t_ns) & 0xFFFF
+        self.velocity = velocity = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
+        self.poscnt = poscnt
+        motion = self.motion
+        setpoint = motion.setpoint(t_ns, velocity)
+        effort = self.effort_command
+        if effort is None:
+            effort = self.pi.step(setpoint, velocity)
+        if effort != self.effort:
+            self.effort = effort
+            if effort >= 0:
+                self.pwm.write(end, effort, self._lag(effort, velocity))
+            else:
+                self.pwm.write(end, self._lag(-effort, velocity), -effort)
+        if self.ticks & 1:
+            self._slow(t_ns, end)
+        else:
+            self._telemetry(t_ns, end, setpoint)
+
+    def _lag(self, effort: int, velocity: int) -> int:
+        """Duty register of the lagging motor for |effort|."""
+        counter = self._counter[effort]
+        fade = self.config.split_fade_counts
+        if fade:
+            return counter * max(0, fade - abs(velocity)) // fade
+        return counter
+
+    def set_split(self, percent: int) -> None:
+        """Share of the effort that the lagging motor gets."""
+        self.split = percent
+        self._counter = [(effort * percent + 50) // 100 for effort in range(self.config.pwm_steps + 1)]
+
+    def command_effort(self, effort: int | None) -> None:
+        """Fixed effort in PWM steps, or None: the loop decides."""
+        if effort is None and self.effort_command is not None:
+            self.pi.start(self.effort_command, self.motion.setpoint_q16, self.velocity)
+        self.effort_command = effort
+
+    def powered(self) -> bool:
+        """Whether the motors are under control."""
+        return self.motion.mode is not AxisMode.OFF
+
+    def _telemetry(self, t_ns: int, end_ns: int, setpoint: int) -> None:
+        """Every 10 ms: MOTION frame and a sample of the packet."""
+        motion = self.motion
+        velocity = self.velocity
+        limits = self.limits
+        if limits.hit(velocity) or (motion.mode in POINTING and t_ns - motion.good_ns > STALE_NS):
+            self.stop()
+        mode = motion.mode
+        flags = _POWERED if mode else 0
+        if velocity:
+            flags |= _MOVING
+        if limits.reached:
+            flags |= _LIMIT
+        if self.fault:
+            flags |= _FAULT
+        effort = self.effort * _EFFORT_SCALE // self.pwm.steps
+        adc_a = self.adc.read(t_ns, 0)
+        adc_b = self.adc.read(t_ns, 1)
+        data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b)
+        if not self.send(_frame(Frame, (self._identifier, data, False, False)), end_ns):
+            self.dropped += 1
+        if mode == AxisMode.OPEN_LOOP:
+            setpoint = NO_SETPOINT
+        position = motion.measured(t_ns, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF
+        tach_a, tach_b = self.tach_a.sample(t_ns), self.tach_b.sample(t_ns)
+        if not self.samples:
+            self.stamp_ns = t_ns
+        self.samples.append((effort, position, velocity, adc_a, adc_b, tach_a, tach_b, 0, setpoint))
+        if len(self.samples) == SAMPLES:
+            self._packet(end_ns)
+
+    def _packet(self, end_ns: int) -> None:
+        samples, self.samples = self.samples, []
+        stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
+        self.uart.send(end_ns, pack_packet(self.device_type, self.sequence, stamp, samples))
+        self.sequence += 1
+
+    def _slow(self, t_ns: int, end_ns: int) -> None:
+        """The ticks between: TARGET every 250 ms, heartbeat every second, spread so that three buffers do."""
+        ticks = self.ticks
+        if ticks % _TARGET_TICKS == 1:
+            motion = self.motion
+            distance = motion.distance_steps(t_ns, self.velocity)
+            data = pack_target(self.device_type, motion.selected, motion.settled, distance)
+            self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
+        elif ticks % _HEARTBEAT_TICKS == 3:
+            self.heartbeat(end_ns)
+
+    def stop(self) -> None:
+        """Brake to rest and stay there, in the velocity loop."""
+        if self.powered():
+            self.command_effort(None)
+            self.motion.run(AxisMode.STOP, 0)
+            self.motion.selected = 0
+
+    def switch(self, on: bool) -> None:
+        """Motors on, at rest in the velocity loop, or off."""
+        if not on:
+            self.motion.off()
+            self.command_effort(0)
+        elif not self.powered():
+            self.fault = False
+            self.command_effort(None)
+            self.motion.setpoint_q16 = 0
+            self.motion.run(AxisMode.STOP, 0)
+
+    def state(self) -> State:
+        """State byte of the heartbeat."""
+        if self.fault:
+            return State.FAULT
+        return State.ACTIVE if self.powered() else State.READY
+
+    def health(self) -> Health:
+        """Adds position data, soft limit and fault to the common bits."""
+        bits = super().health()
+        if not self.motion.fresh(self.queue.now_ns):
+            bits |= Health.STALE
+        if self.limits.reached:
+            bits |= Health.LIMIT
+        if self.fault:
+            bits |= Health.FAULT
+        return bits

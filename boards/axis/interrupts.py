@@ -1,0 +1,20 @@
+"""Interrupt table of the axis board, dsPIC30F3011 at 30 MIPS. Cycles are ASSUMPTIONS, estimated from
+instruction counts.
+
+The PWM-triggered ADC and the UART FIFO take their cycles inside the figures below instead of rows of
+their own: 20 000 ADC interrupts a second would tell nothing that the last conversion before the tick
+does not.
+"""
+
+from boards.core import Source
+
+FCY_HZ = 30_000_000
+
+TABLE = (
+    Source(
+        "control", priority=6, latency_cycles=9, cost_cycles=1200
+    ),  # 40 us: QEI, PI in 32 bit, PWM, SPI load of a frame
+    Source(
+        "can", priority=4, latency_cycles=9, cost_cycles=900, level=True
+    ),  # 30 us: SPI read, dispatch, SPI load
+)

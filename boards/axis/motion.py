@@ -1,0 +1,199 @@
+"""Modes of the axis and where the set point of the velocity loop comes from in each."""
+
+from collections.abc import Callable
+
+from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
+from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
+
+_RATE_TO_UNIT = 2
+"""Q16 rate to Q18 unit, as a shift."""
+_TICKS_PER_S = 1_000_000_000 // TICK_NS
+_NS_TO_UNIT = round((1 << UNIT_SHIFT) / TICK_NS * (1 << 20))
+"""counts per tick x ns, Q20 -> Q18 counts."""
+_POSITION_MASK = 0x1FFFFFFF
+STALE_NS = 50_000_000
+"""Ten missed position frames: the position is gone. ASSUMPTION."""
+_SETTLE_TICKS = 100
+"""The axis is settled when it has been near its target for this long, 0.5 s. ASSUMPTION."""
+_BAD_POSITION = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
+"""Position flags that make a reading worthless: alarm, CRC error."""
+POINTING = (AxisMode.MOVE, AxisMode.TRACK)
+"""Modes with the position loop closed. A finished move without tracking rate stays in MOVE and holds its
+target."""
+
+
+class Motion:
+    """Set point generator. `setpoint(t_ns, velocity)` is replaced when the mode changes; Q16 counts/tick."""
+
+    __slots__ = (
+        "_correction", "_frame_ns", "_gain", "_lag", "_settle", "acceleration", "classes", "good_ns",
+        "high", "latch_ns", "low", "mode", "near_ticks", "position", "profile", "rate", "selected",
+        "setpoint", "setpoint_q16", "wanted_q16",
+    )  # fmt: skip
+
+    def __init__(self, config: AxisConfig) -> None:
+        self.acceleration = config.acceleration
+        self.classes = list(config.classes)
+        self.low = config.low
+        self.high = config.high
+        self.profile = Profile(config.acceleration << _RATE_TO_UNIT)
+        # Q18 counts of error to Q16 counts/tick, gain in Q16
+        self._gain = round(config.position_gain / _TICKS_PER_S * 65536)
+        self._correction = config.correction
+        self._lag = config.lag_steps * UNITS_PER_STEP
+        self._settle = config.settle_steps * UNITS_PER_STEP
+        self._frame_ns = config.frame_ns
+        self.position = 0
+        self.latch_ns = -STALE_NS
+        self.good_ns = -STALE_NS
+        self.rate = 0
+        self.selected = 0
+        self.mode = AxisMode.OFF
+        self.setpoint: Callable[[int, int], int] = self._idle
+        self.setpoint_q16 = 0
+        self.wanted_q16 = 0
+        self.near_ticks = 0
+
+    # --- measurements -----------------------------------------------------------------------------
+    def take_position(self, t_ns: int, data: bytes) -> None:
+        """A POSITION frame from this axis' encoder board."""
+        if data[1] & _BAD_POSITION:
+            return
+        self.good_ns = t_ns
+        self.position = (data[2] | data[3] << 8 | data[4] << 16 | data[5] << 24) & _POSITION_MASK
+        self.latch_ns = t_ns - data[6] * AGE_UNIT_NS - self._frame_ns
+
+    def fresh(self, t_ns: int) -> bool:
+        """Whether the position is recent enough to act on."""
+        return t_ns - self.good_ns < STALE_NS
+
+    def measured(self, t_ns: int, velocity: int) -> int:
+        """Position now, Q18 counts: the last reading carried on at the current velocity."""
+        return self.position * UNITS_PER_STEP + (velocity * (t_ns - self.latch_ns) * _NS_TO_UNIT >> 20)
+
+    def set_acceleration(self, acceleration_q16: int) -> None:
+        """Limit of the set point's change, Q16 counts/5 ms per tick."""
+        self.acceleration = acceleration_q16
+        self.profile.acceleration = acceleration_q16 << _RATE_TO_UNIT
+
+    @property
+    def target_steps(self) -> int:
+        """Where the pointing modes are heading, steps."""
+        return self.profile.target // UNITS_PER_STEP
+
+    # --- modes ------------------------------------------------------------------------------------
+    def off(self) -> None:
+        """No set point."""
+        self.mode = AxisMode.OFF
+        self.setpoint = self._idle
+        self.setpoint_q16 = self.wanted_q16 = 0
+        self.rate = self.profile.rate = 0
+        self.selected = 0
+
+    def open_loop(self) -> None:
+        """The effort is commanded: the set point follows the axis, so that closing the loop again is
+        bumpless."""
+        self.mode = AxisMode.OPEN_LOOP
+        self.setpoint = self._follow
+        self.rate = 0
+
+    def run(self, mode: AxisMode, rate_q16: int) -> None:
+        """Velocity modes: go to `rate_q16` with the set acceleration and stay there."""
+        self.mode = mode
+        self.wanted_q16 = rate_q16
+        self.rate = 0
+        self.setpoint = self._ramp
+
+    def move(self, t_ns: int, velocity: int, target_steps: int, top_q16: int) -> None:
+        """Position loop: to `target_steps`, which moves on with the tracking rate from now."""
+        self._enter_pointing(t_ns, velocity)
+        self.profile.top = top_q16 << _RATE_TO_UNIT
+        self.profile.aim(target_steps * UNITS_PER_STEP)
+        self.mode = AxisMode.MOVE
+
+    def track(self, t_ns: int, velocity: int, rate_q16: int) -> None:
+        """Position-locked tracking; while a move is under way its target gets the rate."""
+        if self.mode in POINTING:
+            # the relative speed keeps the velocity continuous
+            self.profile.speed += (self.rate - rate_q16) << _RATE_TO_UNIT
+            self.profile.rate = rate_q16 << _RATE_TO_UNIT
+            self.rate = rate_q16
+        else:
+            self.rate = rate_q16
+            self._enter_pointing(t_ns, velocity)
+        if self.profile.top <= 0:
+            self.profile.top = self.classes[1] << _RATE_TO_UNIT
+        self.mode = AxisMode.MOVE
+
+    def nudge(self, offset_steps: int) -> None:
+        """Shift the target."""
+        self.profile.aim(self.profile.target + offset_steps * UNITS_PER_STEP)
+        self.profile.top = max(self.profile.top, self.classes[2] << _RATE_TO_UNIT)
+        self.mode = AxisMode.MOVE
+
+    def _enter_pointing(self, t_ns: int, velocity: int) -> None:
+        if self.mode in POINTING:
+            return
+        self.profile.rate = self.rate << _RATE_TO_UNIT
+        self.profile.take_over(self.measured(t_ns, velocity), self.setpoint_q16 << _RATE_TO_UNIT)
+        self.near_ticks = 0
+        self.setpoint = self._point
+
+    # --- set points -------------------------------------------------------------------------------
+    def _idle(self, _t_ns: int, _velocity: int) -> int:
+        return 0
+
+    def _follow(self, _t_ns: int, velocity: int) -> int:
+        self.setpoint_q16 = velocity << 16
+        return self.setpoint_q16
+
+    def _ramp(self, _t_ns: int, _velocity: int) -> int:
+        setpoint = self.setpoint_q16
+        wanted = self.wanted_q16
+        if setpoint != wanted:
+            a = self.acceleration
+            if wanted > setpoint + a:
+                setpoint += a
+            elif wanted < setpoint - a:
+                setpoint -= a
+            else:
+                setpoint = wanted
+            self.setpoint_q16 = setpoint
+        return setpoint
+
+    def _point(self, t_ns: int, velocity: int) -> int:
+        profile = self.profile
+        feed = profile.step()
+        # measured(), written out: this runs 200 times a second
+        measured = self.position * 55_125 + (velocity * (t_ns - self.latch_ns) * _NS_TO_UNIT >> 20)
+        error = profile.target - profile.remaining - measured
+        lag = self._lag
+        if not -lag < error < lag:  # the axis cannot follow: the reference waits for it
+            profile.remaining += error - (lag if error > 0 else -lag)
+        correction = error * self._gain >> 18
+        limit = self._correction
+        if correction > limit:
+            correction = limit
+        elif correction < -limit:
+            correction = -limit
+        if -self._settle < error < self._settle and not profile.remaining:
+            self.near_ticks += 1
+            if self.rate:
+                self.mode = AxisMode.TRACK
+        else:
+            self.near_ticks = 0
+        self.setpoint_q16 = setpoint = (feed >> 2) + correction
+        return setpoint
+
+    # --- what the rest of the firmware asks -------------------------------------------------------
+    @property
+    def settled(self) -> bool:
+        """In a pointing mode and near the target for long enough."""
+        return self.mode in POINTING and self.near_ticks >= _SETTLE_TICKS
+
+    def distance_steps(self, t_ns: int, velocity: int) -> int:
+        """Target minus position, steps; 0 outside the pointing modes."""
+        if self.mode not in POINTING:
+            return 0
+        return (self.profile.target - self.measured(t_ns, velocity)) // UNITS_PER_STEP

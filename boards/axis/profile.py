@@ -1,0 +1,72 @@
+"""The speed profile of a move: the reference that the position loop follows, in integers.
+
+Positions in Q18 counts, because one step of the absolute encoder is then exactly 55125 units
+(112 896 000 counts / 2^29 steps x 2^18); speeds in Q18 counts per tick. A dsPIC keeps these in 64 bits.
+The target may itself move (tracking): the profile is the distance still to go, relative to it.
+"""
+
+from math import isqrt
+
+UNITS_PER_STEP = 55_125
+UNIT_SHIFT = 18
+
+
+class Profile:
+    """target: where to be, moving by `rate` a tick. remaining: reference to target. speed: of that
+    distance.
+
+    top: largest speed relative to the target. acceleration: change of speed per tick. All Q18 counts
+        (per tick).
+    """
+
+    __slots__ = ("acceleration", "rate", "remaining", "speed", "target", "top")
+
+    def __init__(self, acceleration: int) -> None:
+        self.acceleration = acceleration
+        self.target = 0
+        self.rate = 0
+        self.remaining = 0
+        self.speed = 0
+        self.top = 0
+
+    def take_over(self, position: int, velocity: int) -> None:
+        """Start from a measured position and the velocity in force; the target is where braking to `rate`
+        ends."""
+        relative = velocity - self.rate
+        stop = relative * abs(relative) // (2 * self.acceleration)
+        self.speed = relative
+        self.remaining = stop
+        self.target = position + stop
+
+    def aim(self, position: int) -> None:
+        """Move to `position` instead, from wherever the reference is."""
+        self.remaining += position - self.target
+        self.target = position
+
+    def step(self) -> int:
+        """One tick; returns the reference's velocity. The reference itself is `target - remaining`.
+
+        Braking law: v(v + a) / 2a <= distance, the sum of the ticks until rest, solved for v.
+        """
+        self.target += self.rate
+        distance = self.remaining
+        speed = self.speed
+        if distance or speed:
+            gap = distance if distance >= 0 else -distance
+            a = self.acceleration
+            wanted = isqrt((a * a >> 2) + 2 * a * gap) - (a >> 1)
+            if wanted > self.top:
+                wanted = self.top
+            if wanted > gap:
+                wanted = gap
+            if distance < 0:
+                wanted = -wanted
+            if wanted > speed + a:
+                speed += a
+            elif wanted < speed - a:
+                speed -= a
+            else:
+                speed = wanted
+            self.speed = speed
+            self.remaining = distance - speed
+        return self.rate + speed

@@ -1,0 +1,25 @@
+"""The firmware core common to all boards."""
+
+from boards.core.board import Board
+from boards.core.commands import answer
+from boards.core.interrupts import InterruptController, Line, Source
+from boards.core.parameters import Parameter, ParameterTable
+from boards.core.periodic import PeriodicBoard
+from boards.core.results import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer
+from boards.core.timer import Timer
+
+__all__ = [
+    "NOT_ALLOWED",
+    "OK",
+    "OUT_OF_RANGE",
+    "Answer",
+    "Board",
+    "InterruptController",
+    "Line",
+    "Parameter",
+    "ParameterTable",
+    "PeriodicBoard",
+    "Source",
+    "Timer",
+    "answer",
+]

@@ -1,0 +1,184 @@
+"""What all boards have in common: processor, crystal, CAN service, parameters, heartbeat, health."""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+
+from boards.core.commands import Handler, answer, i32, u8
+from boards.core.interrupts import InterruptController, Source
+from boards.core.parameters import Parameter, ParameterTable
+from boards.core.results import Answer
+from boards.silicon.can import FULL_MASK, CanController
+from bus.can import Frame, Wire
+from bus.protocol import (
+    COMMAND_BASE,
+    HEARTBEAT_BASE,
+    REPLY_BASE,
+    Health,
+    Result,
+    State,
+    pack_heartbeat,
+    pack_reply,
+)
+from bus.time import EventQueue, Oscillator
+
+CAN_LINE = "can"
+"""Name of the CAN interrupt in every board's table."""
+BOOT_NS = 300_000_000
+"""Power-up timer and self test, ASSUMPTION. Longer than any board's slowest timer."""
+_INBOX = 8
+"""Commands the firmware keeps until it serves them, ASSUMPTION (the chip itself holds two)."""
+
+
+class Board:
+    """A microcontroller board on the bus.
+
+    Subclasses give it `reset()` (state after power-up) and `start(t_ns)` (arm the timers), fill `mail`
+    with what to do with measurement frames (identifier -> call(t_ns, data)) and call `heartbeat(t_ns)`
+    once a second.
+    """
+
+    __slots__ = (
+        "can",
+        "commands",
+        "cpu",
+        "device_type",
+        "dropped",
+        "inbox",
+        "mail",
+        "name",
+        "on",
+        "oscillator",
+        "parameters",
+        "port",
+        "queue",
+        "send",
+        "started_ns",
+    )
+
+    def __init__(
+        self,
+        name: str,
+        device_type: int,
+        queue: EventQueue,
+        wire: Wire,
+        oscillator: Oscillator,
+        fcy_hz: int,
+        table: tuple[Source, ...],
+    ) -> None:
+        self.name = name
+        self.device_type = device_type
+        self.queue = queue
+        self.oscillator = oscillator
+        self.cpu = InterruptController(queue, fcy_hz, table)
+        self.cpu.lines[CAN_LINE].body = self._serve
+        self.mail: dict[int, Callable[[int, bytes], None]] = {COMMAND_BASE + device_type: self._take_command}
+        self.inbox: deque[bytes] = deque()
+        self.port = wire.attach(name)
+        self.can = CanController(self.port, self._receive)
+        self.send = self.can.send
+        self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]))
+        self.parameters = ParameterTable()
+        self.commands: Mapping[int, Handler] = self.common_commands()
+        self.dropped = 0
+        self.on = False
+        self.started_ns = 0
+
+    def common_commands(self) -> dict[int, Handler]:
+        """The commands every board knows."""
+        return {0x01: self._ping, 0x02: self._get_parameter, 0x03: self._set_parameter}
+
+    def set_parameters(self, rows: Iterable[Parameter]) -> None:
+        """Give the board its parameter table."""
+        self.parameters = ParameterTable(rows)
+
+    # --- power ------------------------------------------------------------------------------------
+    def power_on(self, t_ns: int) -> None:
+        """Supply comes up at `t_ns`: boot, then run."""
+        if not self.on:
+            self.queue.at(t_ns + BOOT_NS, self._boot)
+
+    def power_off(self, t_ns: int) -> None:
+        """Supply fails at `t_ns`: the board falls silent; what it drove goes to its unpowered state."""
+        self.on = False
+        self.port.online = False
+        self.unpowered(t_ns)
+
+    def begin(self, t_ns: int = 0) -> None:
+        """Run from `t_ns` on, without a boot: the state a simulation starts in."""
+        self._boot(t_ns)
+
+    def _boot(self, t_ns: int) -> None:
+        self.on = True
+        self.port.online = True
+        self.started_ns = t_ns
+        self.inbox.clear()
+        self.reset()
+        self.start(t_ns)
+
+    def reset(self) -> None:
+        """State after power-up."""
+
+    def start(self, t_ns: int) -> None:
+        """Arm the timers."""
+        raise NotImplementedError
+
+    def unpowered(self, t_ns: int) -> None:
+        """What the outputs do when the supply fails."""
+
+    # --- CAN --------------------------------------------------------------------------------------
+    def _receive(self, t_ns: int, frame: Frame) -> None:
+        call = self.mail.get(frame[0])
+        if call is not None and not frame[2] and not frame[3]:  # standard data frames only
+            call(t_ns, frame[1])
+
+    def _take_command(self, t_ns: int, data: bytes) -> None:
+        if len(self.inbox) >= _INBOX:
+            self.dropped += 1
+            return
+        self.inbox.append(data)
+        self.cpu.lines[CAN_LINE].request(t_ns)
+
+    def _serve(self, t_ns: int) -> None:
+        if not self.inbox or not self.on:
+            return
+        opcode, reply = answer(self.device_type, self.commands, t_ns, self.inbox.popleft())
+        self.transmit(REPLY_BASE + self.device_type, pack_reply(self.device_type, opcode, *reply), t_ns)
+        if self.inbox:
+            self.cpu.lines[CAN_LINE].request(t_ns)
+
+    def transmit(self, identifier: int, data: bytes, ready_ns: int) -> None:
+        """Load a frame into a transmit buffer at `ready_ns`; a full controller costs the frame and is
+        counted."""
+        if not self.send(Frame(identifier, data), ready_ns):
+            self.dropped += 1
+
+    def heartbeat(self, t_ns: int) -> None:
+        """Send the HEARTBEAT frame, ready at `t_ns`."""
+        uptime_s = (t_ns - self.started_ns) // 1_000_000_000
+        data = pack_heartbeat(self.device_type, self.state(), uptime_s, self.cpu.overruns, self.port.tec)
+        self.transmit(HEARTBEAT_BASE + self.device_type, data, t_ns)
+
+    # --- health and parameters --------------------------------------------------------------------
+    def state(self) -> State:
+        """State byte of the heartbeat."""
+        return State.READY
+
+    def health(self) -> Health:
+        """Health bits; boards add their own to these."""
+        bits = Health(0)
+        if self.port.state != "active":
+            bits |= Health.BUS
+        if self.cpu.overruns:
+            bits |= Health.OVERRUN
+        if self.dropped:
+            bits |= Health.DROPPED
+        return bits
+
+    def _ping(self, _t_ns: int, _arguments: bytes) -> Answer:
+        return Answer(Result.OK, 0, int(self.health()))
+
+    def _get_parameter(self, _t_ns: int, arguments: bytes) -> Answer:
+        return self.parameters.get(u8(arguments))
+
+    def _set_parameter(self, _t_ns: int, arguments: bytes) -> Answer:
+        return self.parameters.set(u8(arguments), i32(arguments, 1))

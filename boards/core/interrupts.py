@@ -1,0 +1,143 @@
+"""The interrupt controller: priorities, latency, cost, preemption, lost flags.
+
+A board's table names its sources. The routine of the highest priority can not be interrupted: its end
+is known at its start, so it runs in one event and stamps its outputs with that end. Everything below
+may be interrupted: its body runs at its end, which every interruption moves.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from bus.time import EventQueue
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One row of a board's interrupt table.
+
+    priority: higher interrupts lower.
+    latency_cycles: from the request to the first instruction of the routine.
+    cost_cycles: the routine, return included.
+    level: the request line stays up until served (an SPI chip's INT pin); otherwise it is a flag, and
+        a second request before the routine starts is lost and counted.
+    """
+
+    name: str
+    priority: int
+    latency_cycles: int
+    cost_cycles: int
+    level: bool = False
+
+
+class Line:
+    """A source at run time. `body(t_end_ns)` is called when the routine ends."""
+
+    __slots__ = (
+        "_controller",
+        "body",
+        "cost_ns",
+        "end_ns",
+        "latency_ns",
+        "overruns",
+        "pending",
+        "priority",
+        "runs",
+        "source",
+    )
+
+    def __init__(self, controller: "InterruptController", source: Source) -> None:
+        self._controller = controller
+        self.source = source
+        self.priority = source.priority
+        self.latency_ns = controller.cycles_ns(source.latency_cycles)
+        self.cost_ns = controller.cycles_ns(source.cost_cycles)
+        self.body: Callable[[int], None] = _no_routine
+        self.pending = False
+        self.overruns = 0
+        self.runs = 0
+        self.end_ns = 0
+
+    def request(self, t_ns: int) -> None:
+        """The hardware raises this line at `t_ns` (the present)."""
+        if self.pending:
+            if not self.source.level:
+                self.overruns += 1
+            return
+        self.pending = True
+        self._controller.dispatch(t_ns)
+
+    def complete(self, t_ns: int) -> None:
+        """Event: the routine should be through now, unless something interrupted it."""
+        if t_ns < self.end_ns:
+            self._controller.queue.at(self.end_ns, self.complete)
+            return
+        self._controller.finish(self, t_ns)
+
+
+def _no_routine(_t_ns: int) -> None:
+    raise RuntimeError("interrupt without a routine: the board's table and its firmware disagree")
+
+
+class InterruptController:
+    """Runs the lines of one processor.
+
+    queue: simulation time. fcy_hz: instruction rate. table: the sources; the first row is the
+        uninterruptible one.
+    """
+
+    __slots__ = ("_running", "busy", "fcy_hz", "lines", "queue", "top", "top_end_ns")
+
+    def __init__(self, queue: EventQueue, fcy_hz: int, table: tuple[Source, ...]) -> None:
+        if any(row.priority >= table[0].priority for row in table[1:]):
+            raise ValueError(
+                f"interrupt table: {table[0].name} must have the highest priority, it comes first"
+            )
+        self.queue = queue
+        self.fcy_hz = fcy_hz
+        self.lines = {row.name: Line(self, row) for row in table}
+        self.top = self.lines[table[0].name]
+        self.top_end_ns = 0
+        self.busy = False
+        self._running: list[Line] = []
+
+    def cycles_ns(self, cycles: int) -> int:
+        """Duration of `cycles` instruction cycles, ns, rounded up."""
+        return -(-cycles * 1_000_000_000 // self.fcy_hz)
+
+    @property
+    def overruns(self) -> int:
+        """Interrupts lost so far on all lines."""
+        return sum(line.overruns for line in self.lines.values())
+
+    def interrupted(self, cost_ns: int) -> None:
+        """The top routine takes `cost_ns` away from whatever is running; call it when `busy`."""
+        for line in self._running:
+            line.end_ns += cost_ns
+
+    def dispatch(self, t_ns: int) -> None:
+        """Start the most urgent pending line if it may run now."""
+        running = self._running
+        level = running[-1].priority if running else 0
+        best: Line | None = None
+        for line in self.lines.values():
+            if line.pending and line.priority > level:
+                best, level = line, line.priority
+        if best is None:
+            return
+        best.pending = False
+        start = max(t_ns + best.latency_ns, self.top_end_ns)
+        taken = start + best.cost_ns - t_ns
+        for line in running:
+            line.end_ns += taken
+        best.end_ns = start + best.cost_ns
+        running.append(best)
+        self.busy = True
+        self.queue.at(best.end_ns, best.complete)
+
+    def finish(self, line: Line, t_ns: int) -> None:
+        """`line` has run to its end: its outputs take effect, the next one may start."""
+        self._running.remove(line)
+        self.busy = bool(self._running)
+        line.runs += 1
+        line.body(t_ns)
+        self.dispatch(t_ns)

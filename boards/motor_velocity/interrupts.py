@@ -1,0 +1,16 @@
+"""Interrupt table of the motor velocity board.
+
+ASSUMPTION: a PIC18F4431 at 10 MIPS like the focus board, since the paper names no part and this one has
+a QEI. Cycles are estimated from instruction counts.
+"""
+
+from boards.core import Source
+
+FCY_HZ = 10_000_000
+
+TABLE = (
+    # 40 us: QEI, difference, SPI load of a frame
+    Source("sample", priority=2, latency_cycles=12, cost_cycles=400),
+    # 60 us: SPI read, dispatch, SPI load
+    Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
+)

@@ -1,0 +1,13 @@
+"""Interrupt table of the position board, PIC18F4480 at 10 MIPS. Cycles are ASSUMPTIONS.
+
+The sample routine waits for the EnDat transfer (some 55 us at 1 MHz), checks the CRC and loads the ECAN.
+"""
+
+from boards.core import Source
+
+FCY_HZ = 10_000_000
+
+TABLE = (
+    Source("sample", priority=2, latency_cycles=12, cost_cycles=1200),  # 120 us
+    Source("can", priority=1, latency_cycles=12, cost_cycles=400, level=True),  # 40 us, no SPI
+)

@@ -1,0 +1,52 @@
+"""10-bit analogue to digital converter, 5 V reference, and the current sense in front of it."""
+
+from collections.abc import Callable
+
+REFERENCE_V = 5.0
+FULL_SCALE = 1023
+_COUNTS_PER_V = 1024 / REFERENCE_V
+
+SHUNT_OHM = 0.1
+"""Paper, section 3.2."""
+SENSE_GAIN = 8.0
+"""Op-amp between shunt and converter, ASSUMPTION (hardware.md 2.3): 6 A reads 4.8 V, 6.1 mA per count."""
+
+
+def convert(volts: float) -> int:
+    """Conversion result of a voltage at the pin, clipped to 0..1023."""
+    counts = int(volts * _COUNTS_PER_V)
+    return 0 if counts < 0 else FULL_SCALE if counts > FULL_SCALE else counts
+
+
+class CurrentAdc:
+    """Two sense channels, sampled at the falling edge of the PWM, where the current peaks (paper,
+    section 3.3).
+
+    pin: (t_ns, motor) -> A as the sense chain sees it. Motors 0 (A) and 1 (B).
+    """
+
+    __slots__ = ("_counts_per_a", "pin")
+
+    def __init__(
+        self, pin: Callable[[int, int], float], shunt_ohm: float = SHUNT_OHM, gain: float = SENSE_GAIN
+    ) -> None:
+        self.pin = pin
+        self._counts_per_a = shunt_ohm * gain * _COUNTS_PER_V
+
+    def read(self, t_ns: int, motor: int) -> int:
+        """The last conversion of the motor's channel, 0..1023."""
+        counts = int(self.pin(t_ns, motor) * self._counts_per_a)
+        return 0 if counts < 0 else FULL_SCALE if counts > FULL_SCALE else counts
+
+
+class VoltageAdc:
+    """One channel on a voltage. pin: (t_ns) -> V."""
+
+    __slots__ = ("pin",)
+
+    def __init__(self, pin: Callable[[int], float]) -> None:
+        self.pin = pin
+
+    def read(self, t_ns: int) -> int:
+        """Conversion of the voltage at `t_ns`, 0..1023."""
+        return convert(self.pin(t_ns))

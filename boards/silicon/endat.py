@@ -1,0 +1,115 @@
+"""EnDat 2.2 position transfer, both ends: the encoder makes frames, the master checks them.
+
+Frame after the start bit, in transmission order: F1 (error, active high), F2 (active low), position
+LSB first, CRC-5 MSB first (hardware.md 3.1). The whole frame is one integer here, first bit lowest;
+the CRC sits on top as the number its five bits spell.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+POSITION_BITS = 29
+CLOCK_HZ = 1_000_000
+"""ASSUMPTION: within the 2 MHz that need no delay compensation."""
+_POLYNOMIAL = 0x0B
+"""x^5 + x^3 + x + 1, without its top bit."""
+_INVERT = 0x1F
+_DATA_BITS = POSITION_BITS + 2
+_HEALTHY_FLAGS = 0b10
+"""F1 = 0 in bit 0, F2 = 1 in bit 1."""
+_ALARM_FLAGS = 0b01
+
+COMMAND_CLOCKS = 2 + 6 + 2
+"""Two clocks, six mode bits, two clocks turn-round before the encoder may answer."""
+CALCULATION_NS = 5_000
+"""t_cal, position calculation: <= 5 us assumed, the catalogue value was not found (hardware.md 1.3)."""
+RECOVERY_NS = 20_000
+"""t_m, 10..30 us (hardware.md 3.1)."""
+
+
+def crc5(bits: int, count: int) -> int:
+    """CRC of the `count` lowest bits of `bits`, taken lowest first. The published vectors hold it to
+    account."""
+    crc = _INVERT
+    for k in range(count):
+        top = (crc >> 4) ^ (bits >> k & 1)
+        crc = (crc << 1) & _INVERT
+        if top:
+            crc ^= _POLYNOMIAL
+    return crc ^ _INVERT
+
+
+def _share(low: int, count: int) -> list[int]:
+    """CRC share of bits `low`..`low + count - 1` for each of their values (the CRC is linear but for its
+    constant)."""
+    constant = crc5(0, _DATA_BITS)
+    single = [crc5(1 << (low + k), _DATA_BITS) ^ constant for k in range(count)]
+    table = [0]
+    for share in single:
+        table += [entry ^ share for entry in table]
+    return table
+
+
+_LOW = [entry ^ crc5(0, _DATA_BITS) for entry in _share(0, 11)]
+_MIDDLE = _share(11, 10)
+_HIGH = _share(21, 10)
+
+
+def position_crc(data: int) -> int:
+    """CRC-5 of F1, F2 and a 29-bit position (`F1 | F2 << 1 | position << 2`), by table."""
+    return _LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]
+
+
+class Reading(NamedTuple):
+    """What the master makes of a frame."""
+
+    position: int
+    alarm: bool
+    crc_good: bool
+
+
+class EndatEncoder:
+    """The RCN 829's end. pin: (t_ns) -> position, any int; wraps to 29 bits. alarm: the encoder reports an
+    error."""
+
+    __slots__ = ("alarm", "pin")
+
+    def __init__(self, pin: Callable[[int], int]) -> None:
+        self.pin = pin
+        self.alarm = False
+
+    def transfer(self, latch_ns: int) -> int:
+        """The frame for a position latched at `latch_ns`: 31 data bits and the CRC above them."""
+        flags = _ALARM_FLAGS if self.alarm else _HEALTHY_FLAGS
+        data = (self.pin(latch_ns) & 0x1FFFFFFF) << 2 | flags
+        return data | (_LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]) << _DATA_BITS
+
+
+class EndatMaster:
+    """The board's end: clocks the encoder over a line that may be disturbed.
+
+    line: what the cable does to a frame (int -> int), None for nothing.
+    latch_to_data_ns: from the first clock edge, where the position is latched, to the last CRC bit.
+    """
+
+    __slots__ = ("encoder", "latch_to_data_ns", "line")
+
+    def __init__(self, encoder: EndatEncoder, clock_hz: int = CLOCK_HZ) -> None:
+        self.encoder = encoder
+        self.line: Callable[[int], int] | None = None
+        clocks = COMMAND_CLOCKS + 1 + _DATA_BITS + 5
+        self.latch_to_data_ns = CALCULATION_NS + clocks * 1_000_000_000 // clock_hz
+
+    def poll(self, latch_ns: int) -> Reading:
+        """One "send position" whose first clock edge is at `latch_ns`."""
+        frame = self.encoder.transfer(latch_ns)
+        if self.line is not None:
+            frame = self.line(frame)
+        return check(frame)
+
+
+def check(frame: int) -> Reading:
+    """Take a received frame apart. F1 and F2 that agree mean an alarm too: one of them is wrong."""
+    data = frame & 0x7FFFFFFF
+    good = frame >> _DATA_BITS == _LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]
+    return Reading(data >> 2, data & 3 != _HEALTHY_FLAGS, good)

@@ -1,0 +1,51 @@
+"""UART to RS232: bytes take their time, packets leave one after the other."""
+
+from collections import deque
+from collections.abc import Callable
+
+from bus.time import EventQueue
+
+BAUD = 115_200
+"""ASSUMPTION: the paper gives no rate. 25 samples of some 20 bytes every 250 ms need 20 kbaud; 19200
+would be the minimum for the bare five columns (hardware.md 2.1)."""
+BITS_PER_BYTE = 10
+"""Start, eight data, stop."""
+_BUFFERS = 2
+"""Packets the firmware keeps: one leaving, one waiting."""
+
+Sink = Callable[[int, bytes], None]
+"""(t_ns at which the last byte is through, the packet)."""
+
+
+class Uart:
+    """Transmitter. sink: whoever listens, or None (the cable is out; the board cannot tell)."""
+
+    __slots__ = ("_free_ns", "_packets", "_queue", "baud", "dropped", "sink")
+
+    def __init__(self, queue: EventQueue, baud: int = BAUD, sink: Sink | None = None) -> None:
+        self._queue = queue
+        self.baud = baud
+        self.sink = sink
+        self.dropped = 0
+        self._free_ns = 0
+        self._packets: deque[bytes] = deque()
+
+    def duration_ns(self, length: int) -> int:
+        """Time `length` bytes take on the line, ns."""
+        return length * BITS_PER_BYTE * 1_000_000_000 // self.baud
+
+    def send(self, t_ns: int, packet: bytes) -> bool:
+        """Start sending at `t_ns`, or when the packet before is through; False (and counted) when both
+        buffers are full."""
+        if len(self._packets) >= _BUFFERS:
+            self.dropped += 1
+            return False
+        self._packets.append(packet)
+        self._free_ns = max(t_ns, self._free_ns) + self.duration_ns(len(packet))
+        self._queue.at(self._free_ns, self._through)
+        return True
+
+    def _through(self, t_ns: int) -> None:
+        packet = self._packets.popleft()
+        if self.sink is not None:
+            self.sink(t_ns, packet)
