@@ -1,0 +1,156 @@
+"""Forward selection of effects in one channel, with out-of-run acceptance and re-tested earlier picks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.channels.problem import Problem
+from plant.calibration.decide.gate import gate
+from plant.calibration.decide.heldout import HeldOut, compare
+from plant.calibration.decide.scan import Contender, Look, fit_with, look
+from plant.calibration.readers.run import Array
+from plant.calibration.statistics.regression import Fit, gls
+from plant.calibration.statistics.surrogate import Scores
+
+MARGIN = 0.02  # of the held-out mean square; blocked validation needed 2 % to hold its level (effects.md, lesson 3)
+LUCK = 2.0  # z of the held-out gain over blocks
+MOST = 5  # effects per channel
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A candidate that was looked at and refused, and why."""
+
+    what: str
+    why: str
+
+
+@dataclass
+class Selection:
+    """What one channel says."""
+
+    problem: Problem
+    chosen: list[Contender]
+    classes: list[list[Contender]]  # per chosen: those this log cannot separate from it
+    before: Fit
+    after: Fit
+    held: HeldOut
+    scores: Scores
+    candidates: list[Candidate]
+    refused: list[Refusal] = field(default_factory=list)
+    steps: list[HeldOut] = field(default_factory=list)
+
+    @property
+    def statistic(self) -> float:
+        """The largest score of all candidates."""
+        return float(self.scores.value.max()) if len(self.scores.value) else 0.0
+
+
+def design(problem: Problem, chosen: list[Candidate]) -> Array:
+    """Base and chosen candidates side by side."""
+    return np.hstack([problem.base, *[c.columns for c in chosen]])
+
+
+def select(problem: Problem, candidates: list[Candidate], rng: np.random.Generator, most: int = MOST,
+           margin: float = MARGIN) -> Selection:
+    """Pick effects one after another while each helps on held-out rows; then hold them against surrogates."""
+    picks: list[Contender] = []
+    classes: list[list[Contender]] = []
+    steps: list[HeldOut] = []
+    refused: list[Refusal] = []
+    left = list(candidates)
+    first: Look | None = None
+    while len(picks) < most and left:
+        base = design(problem, [p.candidate for p in picks])
+        now = look(problem, base, left)
+        first = first or now
+        taken = None
+        for contender in now.contenders[:4]:
+            held = compare(problem, base, now.null.beta, np.hstack([base, contender.candidate.columns]),
+                           contender.fit.beta, contender.fit.whitener)
+            why = refuse(contender, held, margin)
+            if not why:
+                taken = contender
+                break
+            refused.append(Refusal(contender.candidate.say(), why))
+        if taken is None:
+            break
+        picks.append(taken)
+        classes.append(equivalents(problem, now.contenders, taken))
+        steps.append(held)
+        picks, classes, steps = _retest(problem, picks, classes, steps, refused)
+        left = [c for c in left if all(c.key != p.candidate.key for p in picks)]
+    before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
+    after = _fit(problem, picks)
+    scores = gate(problem, before, after, candidates, problem.base, rng)
+    keep = [p.evidence >= scores.threshold for p in picks]
+    for p, good in zip(picks, keep, strict=True):
+        if not good:
+            refused.append(Refusal(p.candidate.say(), f"below the surrogate threshold ({p.evidence:.1f} < "
+                                                      f"{scores.threshold:.1f})"))
+    if not all(keep):
+        picks, classes, steps = ([v for v, k in zip(x, keep, strict=True) if k]  # type: ignore[misc]
+                                 for x in (picks, classes, steps))
+        after = _fit(problem, picks)
+    held = compare(problem, problem.base, before.beta, design(problem, [p.candidate for p in picks]), after.beta,
+                   after.whitener)
+    return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
+
+
+def _fit(problem: Problem, picks: list[Contender]) -> Fit:
+    return gls(problem.y, design(problem, [p.candidate for p in picks]), problem.train, problem.ar_order,
+               problem.block)
+
+
+def refuse(contender: Contender, held: HeldOut, margin: float = MARGIN) -> str:
+    """Why a contender is not accepted; empty when it is."""
+    if contender.bayes <= 0:
+        return "gains less than its parameters cost"
+    if not np.isfinite(held.after):
+        return "no held-out rows to test it on"
+    if held.share < margin:
+        return f"held-out mean square changes by {-100 * held.share:.1f} % only"
+    if held.z < LUCK:
+        return f"held-out gain is within luck (z = {held.z:.1f})"
+    return ""
+
+
+def _retest(problem: Problem, picks: list[Contender], classes: list[list[Contender]], steps: list[HeldOut],
+            refused: list[Refusal]) -> tuple[list[Contender], list[list[Contender]], list[HeldOut]]:
+    """Drop earlier picks that the later ones made superfluous."""
+    keep = list(range(len(picks)))
+    for k in range(len(picks) - 1):
+        others = design(problem, [picks[j].candidate for j in keep if j != k])
+        null = gls(problem.y, others, problem.train, problem.ar_order, problem.block)
+        again = fit_with(problem, others, picks[k].candidate, null)
+        if again is None or again.bayes <= 0:
+            keep.remove(k)
+            refused.append(Refusal(picks[k].candidate.say(), "superfluous once the others are in"))
+    return [picks[k] for k in keep], [classes[k] for k in keep], [steps[k] for k in keep]
+
+
+def equivalents(problem: Problem, contenders: list[Contender], best: Contender) -> list[Contender]:
+    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood test)."""
+    out = []
+    for other in contenders:
+        if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
+            continue
+        loss, spread = _paired(problem, best, other)
+        if loss < max(2.0, 2.0 * spread):
+            out.append(other)
+    return out
+
+
+def _paired(problem: Problem, best: Contender, other: Contender) -> tuple[float, float]:
+    """Log likelihood lost by `other`, and its standard error over blocks, in the best model's noise."""
+    w = best.fit.whitener
+    rows = problem.train
+    use = w.usable(rows)
+    eb = w.apply(np.where(rows, best.fit.residual, 0.0))[use]
+    eo = w.apply(np.where(rows, other.fit.residual, 0.0))[use]
+    d = (eo**2 - eb**2) / (2 * best.fit.sigma**2)
+    sums = np.add.reduceat(d, np.arange(0, len(d), problem.block))
+    return float(d.sum()), float(np.std(sums) * np.sqrt(len(sums)))

@@ -1,0 +1,1 @@
+"""The statistics of coloured residuals: whitening, surrogates, intervals, spectra over order."""
