@@ -12,7 +12,8 @@ RECOVERY_RUN_BITS = 11
 SUSPEND_BITS = 8
 """A passive node waits this long after its own frame before it may send again."""
 _REC_AFTER_PASSIVE_OK = 127
-"""A good reception takes a passive REC back to 119..127; the standard leaves the choice (ASSUMPTION: 127)."""
+"""A good reception takes a passive REC back to 119..127; the standard leaves the choice (ASSUMPTION: 127).
+"""
 _REC_MAX = 255
 """REC registers are 8 bits wide and do not wrap (MCP2515 register 1Dh)."""
 

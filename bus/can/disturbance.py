@@ -110,7 +110,8 @@ def _tail(wire: list[int], start: int, crc_good: bool) -> Verdict | None:
         return Verdict("form", start)
     if not crc_good:
         return Verdict("crc", start + 2)
-    for offset in (2, 3, 4, 5, 6, 7, 8):  # a dominant last bit of EOF is an overload condition, not an error
+    # a dominant last bit of EOF is an overload condition, not an error
+    for offset in (2, 3, 4, 5, 6, 7, 8):
         if not tail[offset]:
             return Verdict("form", start + offset)
     return None

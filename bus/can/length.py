@@ -1,9 +1,9 @@
 """Exact length of a frame on the wire from tables: what every frame costs, so it has to be quick.
 
-CRC-15 is linear, so the CRC of an eight-byte frame is the header's share XOR one table entry per 16-bit word.
-Stuffing is a state machine of nine states (nothing yet; last bit and run of 1..4), tabulated for
-16 bits at a time: one byte per entry, new state in bits 0..3, inserted stuff bits in bits 4..6.
-Built once with numpy, 0.9 MB in all. `bits.py` is the reference it is tested against.
+CRC-15 is linear, so the CRC of an eight-byte frame is the header's share XOR one table entry per
+16-bit word. Stuffing is a state machine of nine states (nothing yet; last bit and run of 1..4),
+tabulated for 16 bits at a time: one byte per entry, new state in bits 0..3, inserted stuff bits in
+bits 4..6. Built once with numpy, 0.9 MB in all. `bits.py` is the reference it is tested against.
 """
 
 from array import array

@@ -62,10 +62,6 @@ class Trouble:
             if port.online and not port._bus_off and port is not sender and port not in self._excluded
         ]
 
-    def same_key(self, ready: list[Offer], winner: Offer) -> bool:
-        """Whether another node sends the very same arbitration field."""
-        return any(offer.key == winner.key and offer.port is not winner.port for offer in ready)
-
     def decide(self, sof_ns: int) -> None:
         """Arbitration and outcome of the frame that starts at `sof_ns`, with everything that can befall
         it."""
@@ -138,7 +134,7 @@ class Trouble:
                 offer, Verdict("ack", offer.bits - INTERMISSION_BITS - _RECESSIVE_TAIL_BITS - 1), sof_ns
             )
             return
-        wire._waiting.remove(offer)
+        wire._remove(offer)
         wire._begin(offer, sof_ns)
 
     def _fail(
@@ -202,7 +198,7 @@ class Trouble:
         self._recovery.quiet_since_ns = t_ns - _RECESSIVE_TAIL_BITS * wire.bit_ns
         senders = [offer.port]
         for twin in self._twins:
-            wire._waiting.remove(twin)
+            wire._remove(twin)
             twin.port._free += 1
             senders.append(twin.port)
             if twin.port.on_sent is not None:

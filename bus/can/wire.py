@@ -1,6 +1,7 @@
 """One CAN bus: arbitration by identifier, exact frame times, delivery. What goes wrong is in `trouble.py`."""
 
 from collections.abc import Callable
+from heapq import heapify, heappop, heappush
 
 from bus.can.bits import INTERMISSION_BITS
 from bus.can.disturbance import Flip
@@ -12,6 +13,8 @@ from bus.time import EventQueue
 Tap = Callable[[int, Frame, str], None]
 Disturb = Callable[[int, Frame, str], Flip | None]
 _NEVER = 1 << 62
+# A NamedTuple's own constructor takes three times as long, and this is done for every frame.
+_tuple = tuple.__new__
 _NS_PER_S = 1_000_000_000
 MAX_BITRATE = 1_000_000
 """bit/s; CAN 2.0."""
@@ -57,6 +60,14 @@ class Wire:
         self._forget_routes()
         return port
 
+    def detach(self, port: Port) -> None:
+        """Take a node off this wire for good; twice does nothing."""
+        if port in self.ports:
+            port.online = False
+            self.ports.remove(port)
+            self._trouble.check()
+            self._forget_routes()
+
     def tap(self, call: Tap) -> None:
         """Have `call(t_end_ns, frame, sender)` made for every good frame; a tap does not acknowledge."""
         self._taps.append(call)
@@ -83,8 +94,11 @@ class Wire:
         if ready_ns < now:
             ready_ns = now
         self._tickets = ticket = self._tickets + 1
-        self._waiting.append(Offer(key, ticket, ready_ns, port, frame, bits))
-        self._call_decide(ready_ns if ready_ns > self._free_ns else self._free_ns)
+        heappush(self._waiting, _tuple(Offer, (key, ticket, ready_ns, port, frame, bits)))
+        t_ns = (ready_ns if ready_ns > self._free_ns else self._free_ns) + self.bit_ns
+        if t_ns < self._decide_ns:
+            self._decide_ns = t_ns
+            self.queue.at(t_ns, self._decide)
 
     def _call_decide(self, sof_ns: int) -> None:
         """Have the arbitration of a frame that starts at `sof_ns` decided once its first bit is over."""
@@ -97,28 +111,31 @@ class Wire:
         if t_ns != self._decide_ns:
             return  # overtaken by an earlier start
         self._decide_ns = _NEVER
-        waiting = self._waiting
         sof_ns = t_ns - self.bit_ns
+        waiting = self._waiting
         if self._trouble.near:
             self._trouble.decide(sof_ns)
             return
-        if len(waiting) == 1:
-            winner = waiting[0]
-            if winner[2] > sof_ns:
-                self._call_decide(winner[2])
-                return
-            waiting.clear()
-        else:
+        if not waiting or waiting[0][2] > sof_ns:
+            # The first in line came later than the start of frame, or is not ready at all: look at
+            # everyone.
             ready = [offer for offer in waiting if offer[2] <= t_ns]
             if not ready or min(offer[2] for offer in ready) > sof_ns:
                 self._await_ready()
                 return
             winner = min(ready)
-            if len(ready) > 1 and self._trouble.same_key(ready, winner):
-                self._trouble.decide(sof_ns)
-                return
-            waiting.remove(winner)
+            self._remove(winner)
+        else:
+            winner = heappop(waiting)
+        if waiting and waiting[0][0] == winner[0] and waiting[0][3] is not winner[3]:
+            heappush(waiting, winner)
+            self._trouble.decide(sof_ns)
+            return
         self._begin(winner, sof_ns)
+
+    def _remove(self, offer: Offer) -> None:
+        self._waiting.remove(offer)
+        heapify(self._waiting)
 
     def _await_ready(self) -> None:
         if self._waiting:
@@ -172,6 +189,7 @@ class Wire:
     def _switched(self, port: Port) -> None:
         """`port` was switched on or off."""
         self._waiting = [offer for offer in self._waiting if offer.port is not port]
+        heapify(self._waiting)
         if self._sending is not None and self._sending.port is port:
             self._trouble.cut(self.queue.now_ns)
         port._free = TX_BUFFERS if port.online else 0
