@@ -1,0 +1,82 @@
+"""What a log effect does to the rows of a packet: samples lost or repeated, stamps jittered, columns cut."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from bus.protocol.serial import AxisSample
+from host.logs.axis import Distortion, Row
+
+WRAPPED = (("effort",), ("position",), ("velocity",), ("adc_a", "adc_b"), ("tach_a", "tach_b"))
+"""Columns that `log_wrap` names by number."""
+_UNSIGNED = {"position", "adc_a", "adc_b"}
+
+
+def sample_loss(packet_loss: float, repeats: float, random: np.random.Generator) -> Distortion:
+    """Lose whole packets with probability `packet_loss`; repeat the sample before with `repeats`."""
+
+    def distort(rows: list[Row]) -> list[Row]:
+        if random.random() < packet_loss:
+            return []
+        if repeats > 0.0:
+            again = random.random(len(rows)) < repeats
+            for index in range(1, len(rows)):
+                if again[index]:
+                    rows[index] = (rows[index][0], rows[index - 1][1])
+        return rows
+
+    return distort
+
+
+def clock_jitter(deviation_s: float, random: np.random.Generator) -> Distortion:
+    """Move every time stamp by a normal deviate."""
+
+    def distort(rows: list[Row]) -> list[Row]:
+        off = random.normal(0.0, deviation_s, len(rows))
+        return [(t + float(delta), sample) for (t, sample), delta in zip(rows, off, strict=True)]
+
+    return distort
+
+
+def log_wrap(column: int, bits: int, saturate: bool) -> Distortion:
+    """Keep only `bits` bits of a column: wrapped, or clipped to what they hold."""
+    names = WRAPPED[column]
+
+    def distort(rows: list[Row]) -> list[Row]:
+        return [(t, _cut(sample, names, bits, saturate)) for t, sample in rows]
+
+    return distort
+
+
+def chain(distortions: Sequence[Distortion]) -> Distortion | None:
+    """One after the other; None when there is nothing to do."""
+    if not distortions:
+        return None
+
+    def distort(rows: list[Row]) -> list[Row]:
+        for each in distortions:
+            rows = each(rows)
+        return rows
+
+    return distort
+
+
+def _cut(sample: AxisSample, names: tuple[str, ...], bits: int, saturate: bool) -> AxisSample:
+    keep: Callable[[int, bool], int] = _clip(bits) if saturate else _wrap(bits)
+    return sample._replace(**{name: keep(getattr(sample, name), name in _UNSIGNED) for name in names})
+
+
+def _wrap(bits: int) -> Callable[[int, bool], int]:
+    size, half = 1 << bits, 1 << (bits - 1)
+    return lambda value, unsigned: value % size if unsigned else (value + half) % size - half
+
+
+def _clip(bits: int) -> Callable[[int, bool], int]:
+    size, half = 1 << bits, 1 << (bits - 1)
+
+    def clip(value: int, unsigned: bool) -> int:
+        return min(max(value, 0), size - 1) if unsigned else min(max(value, -half), half - 1)
+
+    return clip
