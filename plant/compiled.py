@@ -1,0 +1,73 @@
+"""The one way to compile in this project: numba, cached under a key made of the sources.
+
+Numba's own cache only notices a change in the file of the compiled function, not in the files of what it calls.
+The cache directory is therefore named by a hash of every compiled source of the plant: a stale cache is never used.
+
+`entry` is for functions that Python calls (cached on disk), `inner` for those that only compiled code calls
+(compiled with their caller, so they cost nothing when the caller comes from the cache).
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+ROOM = Path(__file__).parent
+BASE = "SCHMIDT_CACHE_DIR"
+
+
+def _fingerprint() -> str:
+    """Return a hash of the compiled sources and of the compiler's version."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sorted(ROOM.rglob("*.py")):
+        text = path.read_bytes()
+        if b"plant.compiled" in text or b"plant.kernels" in text or path.parent.name in ("kernels", "effects"):
+            digest.update(path.relative_to(ROOM).as_posix().encode() + b"\0" + text)
+    return digest.hexdigest()[:16]
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def cache_folder() -> Path:
+    """Return the folder of compiled code: the user's cache, or a temporary one where that cannot be written."""
+    home = os.environ.get(BASE) or os.environ.get("NUMBA_CACHE_DIR")
+    bases = [Path(home)] if home else []
+    cache = os.environ.get("XDG_CACHE_HOME")
+    if cache or os.environ.get("HOME"):
+        bases.append((Path(cache) if cache else Path.home() / ".cache") / "schmidt")
+    for base in bases:
+        folder = base / f"compiled-{_fingerprint()}"
+        if _writable(folder):
+            return folder
+    return Path(tempfile.mkdtemp(prefix="schmidt-compiled-"))
+
+
+numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+
+
+def entry(function: F) -> F:
+    """Compile for calls from Python; the machine code is kept on disk."""
+    compiled: F = numba.njit(cache=True, error_model="numpy")(function)
+    return compiled
+
+
+def inner(function: F) -> F:
+    """Compile for calls from compiled code only."""
+    compiled: F = numba.njit(error_model="numpy")(function)
+    return compiled
+
+
+njit = entry

@@ -1,0 +1,50 @@
+"""The effects a drive shows and the declared model lacks: one file each, names of the catalogue."""
+
+from importlib import import_module
+
+from plant.effects.base import Effect
+
+NAMES: tuple[str, ...] = (
+    "stribeck_change",
+    "presliding",
+    "viscous_change",
+    "coulomb_change",
+    "friction_asymmetry",
+    "position_friction",
+    "load_friction",
+    "friction_warmup",
+    "preload_change",
+    "gravity_imbalance",
+    "gear_eccentricity",
+    "gear_mesh",
+    "damaged_tooth",
+    "motor_cogging",
+    "torque_ripple",
+    "backlash_loss",
+    "shaft_compliance",
+    "structural_mode",
+    "encoder_eccentricity",
+    "encoder_subdivision",
+    "roller_ratio",
+    "roller_slip",
+    "adc_offset",
+    "adc_gain",
+    "pwm_deadband",
+    "diode_braking",
+    "supply_sag",
+    "winding_heating",
+    "magnet_weakening",
+    "wind_torque",
+    "cable_wrap",
+    "brake_drag",
+    "bearing_pass",
+    "encoder_thermal_drift",
+    "channel_delay",
+    "clock_jitter",
+    "sample_loss",
+    "log_wrap",
+    "command_disturbance",
+    "unknown",
+)
+
+REGISTRY: dict[str, Effect] = {name: import_module(f"plant.effects.{name}").EFFECT for name in NAMES}

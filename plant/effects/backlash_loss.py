@@ -1,0 +1,22 @@
+"""The lagging motor holds less counter torque than friction: teeth part at reversal."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import COMMAND, LAGGING, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the change of the lagging motor's duty."""
+    return -p[MEMORY] * x[COMMAND] if x[LAGGING] > 0.0 else 0.0
+
+
+EFFECT = Effect(
+    name="backlash_loss",
+    channel="K",
+    domain="reversal",
+    equation="duty of the lagging motor -> (1 - a) duty",
+    parameters=(Parameter("loss", "1", 0.0, 1.0, 0.9, ASSUMED),),
+    source="paper 2.2: 42 deg between the motors; " + CATALOGUE,
+    terms=(Term(Hook.COMMAND, formula),),
+)

@@ -1,0 +1,28 @@
+"""A line at an order that belongs to no shaft: rolling elements of a bearing."""
+
+from math import sin
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.signals import ANGLE, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the torque, N m at the axis."""
+    return p[MEMORY + 1] * sin(p[MEMORY] * x[ANGLE] + p[MEMORY + 2])
+
+
+EFFECT = Effect(
+    name="bearing_pass",
+    channel="T",
+    domain="axis_angle",
+    equation="T = A sin(order angle + phase)",
+    parameters=(
+        Parameter("order", "1", 2.0, 20000.0, 437.3, "ASSUMPTION: no shaft of the gear table"),
+        Parameter("amplitude", "N m", 0.0, 200.0, 10.0, ASSUMED),
+        PHASE,
+    ),
+    source=CATALOGUE,
+    terms=(Term(Hook.AXIS_TORQUE, formula),),
+)

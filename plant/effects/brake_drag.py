@@ -1,0 +1,30 @@
+"""Something starts to drag: a constant torque against the motion, from one moment to another."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import TIME, COULOMB, STICTION, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Add the drag to Tc and Ts while it lasts."""
+    if p[MEMORY + 1] <= x[TIME] < p[MEMORY + 1] + p[MEMORY + 2]:
+        x[COULOMB] += p[MEMORY]
+        x[STICTION] += p[MEMORY]
+    return 0.0
+
+
+EFFECT = Effect(
+    name="brake_drag",
+    channel="T",
+    domain="time",
+    equation="Tc, Ts -> Tc, Ts + T_drag for start <= t < start + duration",
+    parameters=(
+        Parameter("torque", "N m", 0.0, 400.0, 60.0, ASSUMED),
+        Parameter("start", "s", -1e6, 1e6, 0.0, "free: when it happens"),
+        Parameter("duration", "s", 0.0, 1e9, 1e6, "free: for how long"),
+    ),
+    source=CATALOGUE,
+    terms=(Term(Hook.FRICTION, formula),),
+    odd=True,
+)

@@ -1,0 +1,27 @@
+"""One column of the log is late.
+
+The plant delays the reading itself; effort is delayed by the log writer."""
+
+from plant.compiled import inner
+from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the delay, s."""
+    return p[MEMORY + 1]
+
+
+EFFECT = Effect(
+    name="channel_delay",
+    channel="S",
+    domain="clock",
+    equation="reading(t) -> reading(t - delay)",
+    parameters=(
+        Parameter("column", "1", 0.0, 4.0, 1.0, "choice: 0 effort, 1 position, 2 velocity, 3 currents, 4 tachometers"),
+        Parameter("delay", "s", 0.0, 0.12, 0.005, "ASSUMPTION: one control period"),
+    ),
+    source=CATALOGUE,
+    terms=(Term(Hook.LOG, formula),),
+)

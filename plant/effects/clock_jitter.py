@@ -1,0 +1,22 @@
+"""The time stamps of the log jitter."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the deviation of a time stamp, s."""
+    return p[MEMORY]
+
+
+EFFECT = Effect(
+    name="clock_jitter",
+    channel="S",
+    domain="clock",
+    equation="t -> t + s n, n standard normal",
+    parameters=(Parameter("deviation", "s", 0.0, 0.005, 0.0005, ASSUMED),),
+    source=CATALOGUE,
+    terms=(Term(Hook.LOG, formula),),
+)

@@ -1,0 +1,30 @@
+"""The lagging motor drives current through its freewheel diode and brakes."""
+
+from plant.compiled import inner
+from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import MOTOR_RATE, MOTOR, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the braking torque of the motor concerned, N m at the axis."""
+    share = p[MEMORY]
+    speed = x[MOTOR_RATE] if x[MOTOR] == 0.0 else -x[MOTOR_RATE]
+    pull = max(0.0, -speed * p[MEMORY + 2] - p[MEMORY + 1])
+    return (share * p[MEMORY + 2] * p[MEMORY + 4] * pull / p[MEMORY + 3]) * (1.0 if x[MOTOR] == 0.0 else -1.0)
+
+
+EFFECT = Effect(
+    name="diode_braking",
+    channel="T",
+    domain="velocity",
+    equation="T = a K N i_d, R i_d = K |w_motor| - drop, on the motor that turns against its pull",
+    parameters=(
+        Parameter("share", "1", 0.0, 1.0, 1.0, "hardware.md 2.3: 0 is the paper's superposition, 1 the real diode"),
+        Parameter("drop", "V", 0.0, 1.5, 0.0, "ASSUMPTION: forward voltage of the freewheel diode"),
+    ),
+    source="hardware.md 2.3; " + CATALOGUE,
+    terms=(Term(Hook.SWITCH, formula),),
+    constants=("torque_constant", "resistance", "ratio"),
+    odd=True,
+)

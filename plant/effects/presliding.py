@@ -1,0 +1,28 @@
+"""Bristle stiffness and damping differ from the declared ones."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import SIGMA0, SIGMA1, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Scale sigma0 and sigma1."""
+    x[SIGMA0] *= p[MEMORY]
+    x[SIGMA1] *= p[MEMORY + 1]
+    return 0.0
+
+
+EFFECT = Effect(
+    name="presliding",
+    channel="T",
+    domain="reversal",
+    equation="sigma0 -> a sigma0, sigma1 -> b sigma1",
+    parameters=(
+        Parameter("stiffness_factor", "1", 0.05, 20.0, 0.5, "hardware.md 1.1: sigma0 1e6 to 1e8 N m/rad"),
+        Parameter("damping_factor", "1", 0.0, 5.0, 1.0, ASSUMED),
+    ),
+    source=CATALOGUE,
+    terms=(Term(Hook.FRICTION, formula),),
+    odd=True,
+)

@@ -1,0 +1,22 @@
+"""The driver swallows the first part of each pulse."""
+
+from plant.compiled import inner
+from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import COMMAND, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the change of the duty."""
+    return -min(x[COMMAND], p[MEMORY])
+
+
+EFFECT = Effect(
+    name="pwm_deadband",
+    channel="E",
+    domain="command",
+    equation="duty -> max(0, duty - u0)",
+    parameters=(Parameter("deadband", "1", 0.0, 0.2, 0.01, "ASSUMPTION: gate delay of the IRF250 driver stage"),),
+    source=CATALOGUE,
+    terms=(Term(Hook.COMMAND, formula),),
+)

@@ -1,0 +1,22 @@
+"""The friction roller is not 735:30: the incremental encoder has another scale."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import ANGLE, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the error of the incremental reading, rad at the axis."""
+    return p[MEMORY] * x[ANGLE]
+
+
+EFFECT = Effect(
+    name="roller_ratio",
+    channel="K",
+    domain="axis_angle",
+    equation="incremental -> (1 + e) angle",
+    parameters=(Parameter("error", "ppm", -20000.0, 20000.0, 500.0, ASSUMED),),
+    source="paper 2.2: friction roller; " + CATALOGUE,
+    terms=(Term(Hook.INCREMENTAL, formula),),
+)

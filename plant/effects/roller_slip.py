@@ -1,0 +1,32 @@
+"""The friction roller loses travel while the axis accelerates hard."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import RATE, ACCELERATION, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the travel lost so far, rad at the axis (p[0])."""
+    return p[0]
+
+
+@inner
+def update(x, p, dt):  # type: ignore[no-untyped-def]
+    """Lose a share of the travel while the acceleration is above the threshold."""
+    if abs(x[ACCELERATION]) > p[MEMORY + 1]:
+        p[0] -= p[MEMORY] * x[RATE] * dt
+
+
+EFFECT = Effect(
+    name="roller_slip",
+    channel="K",
+    domain="time",
+    equation="d(incremental)/dt -> (1 - s) w while |dw/dt| > limit",
+    parameters=(
+        Parameter("slip", "1", 0.0, 1.0, 0.02, ASSUMED),
+        Parameter("threshold", "rad/s2", 0.0, 1.0, 0.005, ASSUMED),
+    ),
+    source="paper 2.2: friction roller; " + CATALOGUE,
+    terms=(Term(Hook.INCREMENTAL, formula, update),),
+)

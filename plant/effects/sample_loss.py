@@ -1,0 +1,25 @@
+"""Packets of 25 samples are missing, samples are repeated."""
+
+from plant.compiled import inner
+from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the share of packets that are lost."""
+    return p[MEMORY]
+
+
+EFFECT = Effect(
+    name="sample_loss",
+    channel="S",
+    domain="clock",
+    equation="a packet is lost with probability p, a sample repeats its predecessor with probability q",
+    parameters=(
+        Parameter("packet_loss", "1", 0.0, 0.9, 0.02, "paper 3.4: packets of 25 samples every 250 ms; share assumed"),
+        Parameter("repeats", "1", 0.0, 0.5, 0.0, ASSUMED),
+    ),
+    source=CATALOGUE,
+    terms=(Term(Hook.LOG, formula),),
+)

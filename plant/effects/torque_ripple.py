@@ -1,0 +1,31 @@
+"""The torque constant varies with the motor angle (commutation)."""
+
+from math import cos
+
+from plant.compiled import inner
+from plant.effects.base import CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
+from plant.effects.signals import MOTOR_ANGLE, MOTOR, MEMORY, Hook
+
+
+@inner
+def formula(x, p):  # type: ignore[no-untyped-def]
+    """Return the relative change of the torque constant."""
+    if p[MEMORY + 3] != 0.0 and p[MEMORY + 3] != x[MOTOR] + 1.0:
+        return 0.0
+    return p[MEMORY + 1] * cos(p[MEMORY] * x[MOTOR_ANGLE] + p[MEMORY + 2])
+
+
+EFFECT = Effect(
+    name="torque_ripple",
+    channel="T",
+    domain="motor_angle",
+    equation="K -> K (1 + r cos(N motor_angle + phase))",
+    parameters=(
+        Parameter("cycles", "1", 1.0, 200.0, 37.0, "hardware.md 1.2: 30 to 60 per turn, assumed"),
+        Parameter("ripple", "1", 0.0, 0.4, 0.05, "hardware.md 1.2: 5 % (2 to 7 %), assumed"),
+        PHASE,
+        MOTOR_CHOICE,
+    ),
+    source="paper 4: commuting effects; " + CATALOGUE,
+    terms=(Term(Hook.CONSTANT, formula),),
+)

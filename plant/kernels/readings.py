@@ -1,0 +1,89 @@
+"""What the sensors show at a grid point, as (value, change per nanosecond): reads in between extrapolate."""
+
+from plant.compiled import inner
+from plant.effects import signals as sig
+from plant.effects.signals import Hook
+from plant.kernels import layout as at
+from plant.kernels.hooks import any_effect, total
+
+INCREMENTAL = int(Hook.INCREMENTAL)
+ABSOLUTE = int(Hook.ABSOLUTE)
+AUXILIARY = int(Hook.AUXILIARY)
+CURRENT = int(Hook.CURRENT)
+NANO = 1e-9
+
+
+@inner
+def read(w, t):  # type: ignore[no-untyped-def]
+    """Fill the readings of one axis at the grid point `t`, s."""
+    half = 0.5 * w[at.GRID]
+    rate = w[at.RATE]
+    angle = w[at.ANGLE] - half * rate
+    incremental = angle
+    absolute = angle
+    auxiliary = angle
+    effects = any_effect(w)
+    if effects:
+        x = at.SIGNALS
+        w[x + sig.TIME] = t
+        w[x + sig.ANGLE] = angle
+        w[x + sig.RATE] = rate
+        w[x + sig.TEMPERATURE] = w[at.TEMPERATURE] + w[at.WARMING] * t
+        incremental += total(w, INCREMENTAL)
+        absolute += total(w, ABSOLUTE)
+        auxiliary += total(w, AUXILIARY)
+
+    o = at.OUT
+    w[o + at.OUT_ANGLE] = angle
+    w[o + at.OUT_ANGLE + 1] = rate * NANO
+    w[o + at.OUT_INCREMENTAL] = (incremental - w[at.INCREMENTAL_ZERO]) * w[at.INCREMENTAL_SCALE]
+    w[o + at.OUT_INCREMENTAL + 1] = rate * NANO * w[at.INCREMENTAL_SCALE]
+    w[o + at.OUT_ABSOLUTE] = absolute * w[at.ABSOLUTE_SCALE]
+    w[o + at.OUT_ABSOLUTE + 1] = rate * NANO * w[at.ABSOLUTE_SCALE]
+    w[o + at.OUT_AUXILIARY] = (auxiliary - w[at.AUXILIARY_ZERO]) * w[at.AUXILIARY_SCALE]
+    w[o + at.OUT_AUXILIARY + 1] = rate * NANO * w[at.AUXILIARY_SCALE]
+    for m in range(2):
+        motor = at.MOTORS + m * at.MOTOR_SIZE
+        speed = w[motor + at.M_RATE]
+        turned = w[motor + at.M_ANGLE] - half * speed - w[at.TACH_ZERO + m]
+        w[o + at.OUT_TACH_A + 2 * m] = turned * w[at.TACH_SCALE]
+        w[o + at.OUT_TACH_A + 2 * m + 1] = speed * NANO * w[at.TACH_SCALE]
+        duty = w[at.DUTY + m]
+        # sampled at the PWM's falling edge, where the ripple peaks
+        current = w[motor + at.M_CURRENT]
+        if current > 0.0:
+            current += w[at.RIPPLE] * duty * (1.0 - duty)
+        if effects:
+            w[at.SIGNALS + sig.MOTOR] = m
+            w[at.SIGNALS + sig.CURRENT] = current
+            current += total(w, CURRENT)
+        w[o + at.OUT_CURRENT_A + m] = current
+
+
+@inner
+def keep(w):  # type: ignore[no-untyped-def]
+    """Copy the readings into the ring of delayed ones; the place follows from the step count."""
+    row = at.DELAYS + (int(w[at.STEP]) % at.DELAY_ROWS) * at.OUT_SIZE
+    for k in range(at.OUT_SIZE):
+        w[row + k] = w[at.OUT + k]
+
+
+@inner
+def record(w, t):  # type: ignore[no-untyped-def]
+    """Append one row of truth (columns: layout.TRUTH_COLUMNS) to the ring."""
+    half = 0.5 * w[at.GRID]
+    row = at.TRUTH + (int(w[at.RECORDED]) % at.TRUTH_ROWS) * at.TRUTH_SIZE
+    a = at.MOTORS
+    b = at.MOTORS + at.MOTOR_SIZE
+    w[row] = t
+    w[row + 1] = w[at.ANGLE] - half * w[at.RATE]
+    w[row + 2] = w[at.RATE]
+    w[row + 3] = w[a + at.M_CURRENT]
+    w[row + 4] = w[b + at.M_CURRENT]
+    w[row + 5] = w[a + at.M_ANGLE] - half * w[a + at.M_RATE]
+    w[row + 6] = w[b + at.M_ANGLE] - half * w[b + at.M_RATE]
+    w[row + 7] = w[a + at.M_GEAR]
+    w[row + 8] = w[b + at.M_GEAR]
+    w[row + 9] = w[at.FRICTION]
+    w[row + 10] = w[at.BRISTLE]
+    w[at.RECORDED] += 1.0

@@ -1,0 +1,205 @@
+"""Plant files: load, write, look up and override numbers.
+
+A plant file is YAML; every number is {value, unit, source}. Errors name file, line, field and the nearest valid word.
+"""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from plant.effects import REGISTRY
+from plant.parts import (
+    Axes,
+    AxisModel,
+    Controller,
+    EffectModel,
+    Encoders,
+    Environment,
+    FocusModel,
+    Friction,
+    Function,
+    Gear,
+    Motor,
+    Number,
+    Numerics,
+    PlantModel,
+    Supply,
+)
+from plant.reading import ModelError, Reader, nearest
+
+__all__ = [
+    "Axes",
+    "AxisModel",
+    "Controller",
+    "EffectModel",
+    "Encoders",
+    "Environment",
+    "FocusModel",
+    "Friction",
+    "Function",
+    "Gear",
+    "ModelError",
+    "Motor",
+    "Number",
+    "Numerics",
+    "PlantModel",
+    "Supply",
+    "default_files",
+    "dump",
+    "dumps",
+    "get",
+    "load",
+    "loads",
+    "numbers",
+    "with_effects",
+    "with_value",
+]
+
+FILES = Path(__file__).parent / "files"
+DEFAULT = "low_preload"
+FORMAT = "schmidt-plant 1"
+
+
+def default_files() -> dict[str, Path]:
+    """Return the plant files that come with the project, by name."""
+    return {path.stem: path for path in sorted(FILES.glob("*.yaml"))}
+
+
+def load(source: str | Path = DEFAULT) -> PlantModel:
+    """Return the model in a file; a bare name (`low_preload`) means one of the project's own files."""
+    path = Path(source)
+    own = default_files()
+    if str(source) in own and not path.exists():
+        path = own[str(source)]
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "is not UTF-8 text"
+        hint = "" if path.suffix else "; " + nearest(str(source), list(own))
+        raise ModelError(f"{source}: cannot read the plant file: {reason}{hint}") from None
+    return loads(text, str(source))
+
+
+def loads(text: str, name: str = "plant file") -> PlantModel:
+    """Return the model in a YAML text; `name` is what errors call it."""
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        node = yaml.compose(text, Loader=loader)
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        raise ModelError(f"{name}, line {line}: not YAML: {error.problem}") from None
+    except yaml.YAMLError as error:
+        raise ModelError(f"{name}: not YAML: {str(error).splitlines()[0]}") from None
+    reader = Reader(name)
+    if node is None:
+        raise ModelError(f"{name}: is empty")
+    top = reader.mapping(node, "")
+    if "format" not in top or reader.scalar(top["format"][1], "format") != FORMAT:
+        raise reader.fail(node, "format", f"expected 'format: {FORMAT}'")
+    body = yaml.MappingNode(node.tag, [kv for kv in node.value if kv[0].value != "format"], node.start_mark)
+    model: PlantModel = reader.part(body, "", PlantModel)
+    return model
+
+
+def _plain(part: Any) -> Any:
+    if isinstance(part, Number):
+        return {"value": part.value, "unit": part.unit, "source": part.source}
+    if isinstance(part, EffectModel):
+        effect: dict[str, Any] = {"name": part.name}
+        if part.stage is not None:
+            effect |= {"stage": part.stage, "harmonic": part.harmonic}
+        if not part.enabled:
+            effect["enabled"] = False
+        if part.parameters:
+            effect["parameters"] = {k: _plain(v) for k, v in part.parameters.items()}
+        if part.function is not None:
+            f = part.function
+            effect["function"] = {
+                "target": f.target,
+                "domain": f.domain,
+                "interpolation": f.interpolation,
+                "period": f.period,
+                "source": f.source,
+                "knots": [[x, y] for x, y in f.knots],
+            }
+        return effect
+    if isinstance(part, tuple):
+        return [_plain(child) for child in part]
+    if dataclasses.is_dataclass(part):
+        return {field.name: _plain(getattr(part, field.name)) for field in dataclasses.fields(part)}
+    return part
+
+
+def dumps(model: PlantModel) -> str:
+    """Return the model as YAML text; `loads` gives the same model back."""
+    text: str = yaml.safe_dump({"format": FORMAT, **_plain(model)}, sort_keys=False, allow_unicode=True, width=110)
+    return text
+
+
+def dump(model: PlantModel, path: str | Path) -> None:
+    """Write the model to a file."""
+    Path(path).write_text(dumps(model), encoding="utf-8")
+
+
+def numbers(model: PlantModel) -> dict[str, Number]:
+    """Return every number of the model by path, such as `axes.ra.friction.coulomb` or `axes.ra.effects.0.amplitude`."""
+    return dict(_walk(model, ""))
+
+
+def _walk(part: Any, path: str) -> Iterator[tuple[str, Number]]:
+    if isinstance(part, Number):
+        yield path, part
+    elif isinstance(part, EffectModel):
+        for word, value in part.parameters.items():
+            yield f"{path}.{word}", value
+    elif isinstance(part, tuple):
+        for k, child in enumerate(part):
+            yield from _walk(child, f"{path}.{k}")
+    elif dataclasses.is_dataclass(part):
+        for field in dataclasses.fields(part):
+            yield from _walk(getattr(part, field.name), f"{path}.{field.name}".lstrip("."))
+
+
+def get(model: PlantModel, path: str) -> Number:
+    """Return the number at a path; ModelError names the nearest path."""
+    found = numbers(model)
+    if path not in found:
+        raise ModelError(f"plant model: no number at '{path}'; " + nearest(path, list(found)))
+    return found[path]
+
+
+def with_value(model: PlantModel, path: str, value: float, source: str | None = None) -> PlantModel:
+    """Return the model with another value (in the number's own unit) at a path.
+
+    An effect's parameter that the model leaves at its default may be given too, as `axes.ra.effects.0.phase`,
+    in the effect's own unit.
+    """
+    changed: PlantModel = _replaced(model, path.split("."), path, value, source)
+    return changed
+
+
+def _replaced(part: Any, words: list[str], path: str, value: float, source: str | None) -> Any:
+    if not words and isinstance(part, Number):
+        return Number(float(value), part.unit, part.source if source is None else source)
+    word = words[0] if words else ""
+    if isinstance(part, tuple) and word.isdigit() and int(word) < len(part):
+        k = int(word)
+        return (*part[:k], _replaced(part[k], words[1:], path, value, source), *part[k + 1 :])
+    if isinstance(part, EffectModel) and len(words) == 1 and word in [p.name for p in REGISTRY[part.name].parameters]:
+        spec = REGISTRY[part.name].parameter(word)
+        old = part.parameters.get(word, Number(spec.default, spec.unit, spec.source))
+        new = Number(float(value), old.unit, old.source if source is None else source)
+        return dataclasses.replace(part, parameters={**part.parameters, word: new})
+    if dataclasses.is_dataclass(part) and not isinstance(part, Number) and hasattr(part, word):
+        child = _replaced(getattr(part, word), words[1:], path, value, source)
+        return dataclasses.replace(part, **{word: child})  # type: ignore[type-var]
+    raise ModelError(f"plant model: no number at '{path}'")
+
+
+def with_effects(model: PlantModel, axis: str, effects: Sequence[EffectModel]) -> PlantModel:
+    """Return the model with this list of effects on `axis` (`ra` or `dec`)."""
+    part = dataclasses.replace(getattr(model.axes, axis), effects=tuple(effects))
+    return dataclasses.replace(model, axes=dataclasses.replace(model.axes, **{axis: part}))
