@@ -1,0 +1,29 @@
+"""What is set when the focus board is programmed."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+
+@dataclass(frozen=True, slots=True)
+class FocusConfig:
+    """half_steps_per_turn: of the motor (paper, 3.2: 0.9 deg). counts_per_turn: of its encoder.
+
+    travel: largest position either side of the middle, half steps (5 mm at 6.25 um).
+    index: positions of the index pulses, half steps: four, 2.5 mm apart, either side of the middle.
+    start_rate, top_rate: half steps/s; ramp: half steps/s2 (ASSUMPTIONS: below the motor's pull-out).
+    """
+
+    half_steps_per_turn: int = 400
+    counts_per_turn: int = 1600
+    travel: int = 800
+    index: tuple[int, ...] = (-600, -200, 200, 600)
+    start_rate: int = 100
+    top_rate: int = 400
+    ramp: int = 800
+
+    @property
+    def intervals_ns(self) -> tuple[int, ...]:
+        """Time between half steps along the ramp: v^2 = v0^2 + 2 a n."""
+        count = (self.top_rate**2 - self.start_rate**2) // (2 * self.ramp) + 1
+        rates = (sqrt(self.start_rate**2 + 2 * self.ramp * n) for n in range(count))
+        return tuple(round(1e9 / rate) for rate in rates)

@@ -1,0 +1,231 @@
+"""Firmware of the focus board: a 10 ms sample interrupt and, while moving, a step interrupt."""
+
+from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PeriodicBoard
+from boards.core.commands import i8, i16
+from boards.focus.config import FocusConfig
+from boards.focus.interrupts import FCY_HZ, TABLE
+from boards.focus.pins import FocusPins
+from boards.focus.reference import Reference
+from boards.focus.stepping import Stepping
+from boards.silicon.adc import VoltageAdc
+from boards.silicon.qei import Qei, difference
+from boards.silicon.stepper import StepperDriver
+from boards.silicon.uart import Uart
+from bus.can import Wire
+from bus.protocol import MEASUREMENT_BASE, FocusFlag, Health, Opcode, State, pack_focus
+from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
+from bus.time import EventQueue, Oscillator
+
+TICK_NS = 10_000_000
+_FRAME_TICKS = 5
+_HEARTBEAT_TICKS = 100
+_REST_NS = 50_000_000
+"""Full current after the last step, until the rotor is surely at rest. ASSUMPTION."""
+_LOST = 2
+"""Half steps between counter and encoder that count as lost steps. ASSUMPTION."""
+
+
+class FocusBoard(PeriodicBoard):
+    """Counts half steps; the encoder checks them, the index and the LVDT give them an origin."""
+
+    __slots__ = (
+        "_encoder_zero", "_identifier", "_index", "_last_move_ns", "_timer_ns", "adc", "config", "driver",
+        "encoder", "free", "index_pin", "lvdt", "packets", "poscnt", "qei", "reference", "referenced",
+        "samples", "stamp_ns", "stepping", "uart",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        name: str,
+        device_type: int,
+        queue: EventQueue,
+        wire: Wire,
+        pins: FocusPins,
+        oscillator: Oscillator,
+        config: FocusConfig,
+    ) -> None:
+        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+        self.config = config
+        self.qei = Qei(pins.encoder)
+        self.adc = VoltageAdc(pins.lvdt)
+        self.index_pin = pins.index
+        self.driver = StepperDriver(pins.coils)
+        self.uart = Uart(queue)
+        self.packets = 0
+        self.stamp_ns = 0
+        self._identifier = MEASUREMENT_BASE + device_type
+        self.cpu.lines["step"].body = self._step
+        self.commands = self.common_commands() | {
+            Opcode.FOCUS_STEP: self._command_step,
+            Opcode.FOCUS_MOVE_TO: self._command_move,
+            Opcode.FOCUS_HOLD: self._command_hold,
+            Opcode.FOCUS_FREE: self._command_free,
+            Opcode.FOCUS_REFERENCE: self._command_reference,
+        }
+        self.reset()
+
+    def reset(self) -> None:
+        """After power-up: holding, position unknown."""
+        self.stepping = Stepping(self.config)
+        self.reference = Reference(self.config)
+        self.referenced = False
+        self.free = False
+        self.encoder = 0
+        self.poscnt = self.qei.poscnt(self.queue.now_ns)
+        self.lvdt = 0
+        self.samples: list[tuple[int, int, int]] = []
+        self._encoder_zero = 0
+        self._index = False
+        self._last_move_ns = 0
+        self._timer_ns = 0
+
+    def unpowered(self, t_ns: int) -> None:
+        """Without supply the shaft is free."""
+        self.driver.release(t_ns)
+
+    # --- sample interrupt
+    def routine(self, t_ns: int) -> None:
+        """Timer interrupt, every 10 ms."""
+        end = self.enter(t_ns)
+        if not end:
+            return
+        poscnt = self.qei.poscnt(t_ns)
+        self.encoder += difference(poscnt, self.poscnt)
+        self.poscnt = poscnt
+        self.lvdt = self.adc.read(t_ns)
+        stepping = self.stepping
+        if self.driver.energised and not stepping.moving and t_ns - self._last_move_ns > _REST_NS:
+            self.driver.rest(end)
+        if not self.samples:
+            self.stamp_ns = t_ns
+        self.samples.append((stepping.position, self._counts(), self.lvdt))
+        if len(self.samples) == SAMPLES:
+            stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
+            self.uart.send(end, pack_packet(self.device_type, self.packets, stamp, self.samples))
+            self.packets += 1
+            self.samples = []
+        if not self.ticks % _FRAME_TICKS:
+            self._index = self.index_pin(t_ns)
+            data = pack_focus(self.device_type, self._flags(), stepping.position, self._counts(), self.lvdt)
+            self.transmit(self._identifier, data, end)
+        elif self.ticks % _HEARTBEAT_TICKS == 1:
+            self.heartbeat(end)
+
+    def _counts(self) -> int:
+        """Encoder counts from the origin, as the 16 bits of the frame."""
+        return ((self.encoder - self._encoder_zero + 0x8000) & 0xFFFF) - 0x8000
+
+    def _flags(self) -> int:
+        flags = FocusFlag.FREE if self.free else FocusFlag(0)
+        if self.stepping.moving:
+            flags |= FocusFlag.MOVING
+        elif not self.free:
+            flags |= FocusFlag.HOLD
+        if self.referenced:
+            flags |= FocusFlag.REFERENCED
+        if self._index:
+            flags |= FocusFlag.INDEX_SEEN
+        return int(flags)
+
+    # --- step interrupt
+    def _begin(self, t_ns: int, target: int) -> None:
+        self.stepping.target = target
+        if not self.stepping.moving:
+            self.stepping.moving = True
+            self._arm(t_ns)
+
+    def _arm(self, t_ns: int) -> None:
+        self._timer_ns = t_ns
+        self.queue.at(t_ns, self._timer)
+
+    def _timer(self, t_ns: int) -> None:
+        if t_ns == self._timer_ns and self.on and self.stepping.moving:
+            self.cpu.lines["step"].request(t_ns)
+
+    def _step(self, t_ns: int) -> None:
+        stepping, reference = self.stepping, self.reference
+        if not stepping.moving or not self.on:
+            return
+        if reference.active:
+            found = reference.look(self.adc.read(t_ns), self.index_pin(t_ns))
+            if found is not None:
+                self._set_origin(t_ns, found)
+                return
+        direction, interval_ns = stepping.next()
+        if not direction:
+            if reference.active:
+                reference.give_up()
+            return
+        self.driver.step(t_ns, direction)
+        self._last_move_ns = t_ns
+        self._arm(t_ns + interval_ns)
+
+    def _set_origin(self, t_ns: int, position: int) -> None:
+        """The motor stands at `position`, beyond doubt."""
+        self.stepping.rebase(position)
+        poscnt = self.qei.poscnt(t_ns)
+        self.encoder += difference(poscnt, self.poscnt)
+        self.poscnt = poscnt
+        self._encoder_zero = self.encoder - self._expected(position)
+        self.referenced = True
+
+    def _expected(self, position: int) -> int:
+        """Encoder counts at a position."""
+        return position * self.config.counts_per_turn // self.config.half_steps_per_turn
+
+    # --- commands
+    def _command_step(self, t_ns: int, arguments: bytes) -> Answer:
+        return self._go(t_ns, self.stepping.target + i8(arguments))
+
+    def _command_move(self, t_ns: int, arguments: bytes) -> Answer:
+        return self._go(t_ns, i16(arguments))
+
+    def _go(self, t_ns: int, target: int) -> Answer:
+        if abs(target) > self.config.travel:
+            return OUT_OF_RANGE
+        if self.free or self.reference.active:
+            return NOT_ALLOWED
+        if target != self.stepping.position or self.stepping.moving:
+            self._begin(t_ns, target)
+        return OK
+
+    def _command_hold(self, t_ns: int, _arguments: bytes) -> Answer:
+        """Motor power off: stop, then hold by the free-wheeling diodes."""
+        self.reference.active = False
+        if self.free:
+            self.free = False
+            self.driver.rest(t_ns)
+        self.stepping.brake()
+        return OK
+
+    def _command_free(self, t_ns: int, _arguments: bytes) -> Answer:
+        """Control power off: nothing holds the shaft, so the origin cannot be trusted any more."""
+        self.reference.active = False
+        self.stepping.rebase(self.stepping.position)
+        self.free = True
+        self.referenced = False
+        self.driver.release(t_ns)
+        return OK
+
+    def _command_reference(self, t_ns: int, _arguments: bytes) -> Answer:
+        if self.free or self.stepping.moving:
+            return NOT_ALLOWED
+        self.referenced = False
+        target = self.reference.begin(self.stepping.position, self.adc.read(t_ns), self.index_pin(t_ns))
+        self._begin(t_ns, target)
+        return OK
+
+    # --- health
+    def state(self) -> State:
+        """Active while the motor may be stepped."""
+        return State.READY if self.free else State.ACTIVE
+
+    def health(self) -> Health:
+        """Adds lost steps and a failed search for the index to the common bits."""
+        bits = super().health()
+        settled = not self.stepping.moving and self.queue.now_ns - self._last_move_ns > _REST_NS
+        wrong = abs(self._counts() - self._expected(self.stepping.position))
+        lost = wrong > self._expected(_LOST)
+        if self.reference.failed or (self.referenced and settled and lost):
+            bits |= Health.SENSOR
+        return bits

@@ -1,0 +1,158 @@
+"""Firmware of the gateway: a ring of frames towards the PC, a queue of commands towards the bus."""
+
+from collections import deque
+
+from boards.core import PeriodicBoard, answer
+from boards.gateway.interrupts import FCY_HZ, TABLE
+from boards.silicon.can import FULL_MASK
+from boards.silicon.hid import FRAME_NS, HidEndpoint, next_frame_ns
+from bus.can import Frame, Wire
+from bus.protocol import (
+    COMMAND_BASE,
+    HEARTBEAT_BASE,
+    MEASUREMENT_BASE,
+    REPLY_BASE,
+    SUMMARY_BASE,
+    pack_reply,
+)
+from bus.protocol.report import SLOTS, ReportError, pack_report, slot, unpack_commands
+from bus.time import EventQueue, Oscillator
+
+TICK_NS = 1_000_000_000
+HOLD_NS = 4_000_000
+"""A frame waits no longer than this for its report to fill. ASSUMPTION: four USB frames."""
+RING_SLOTS = 64
+"""512 bytes of the PIC's 2 KB. ASSUMPTION."""
+_REPORTS = 16
+"""Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
+_BASE_MASK = 0x700
+_NEVER = 1 << 62
+
+
+class GatewayBoard(PeriodicBoard):
+    """hid: the USB endpoint. ring: slots waiting for the PC. lost: slots dropped from a full ring."""
+
+    __slots__ = (
+        "_commands",
+        "_flush_ns",
+        "_own_command",
+        "_reports",
+        "foreign",
+        "hid",
+        "hold_ns",
+        "lost",
+        "ring",
+    )
+
+    def __init__(
+        self, name: str, device_type: int, queue: EventQueue, wire: Wire, oscillator: Oscillator
+    ) -> None:
+        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+        self.hid = HidEndpoint()
+        self.hid.from_host = self._take_report
+        self.hold_ns = HOLD_NS
+        self.ring: deque[bytes] = deque()
+        self.lost = 0
+        self.foreign = 0
+        self._flush_ns = _NEVER
+        self._reports: deque[bytes] = deque()
+        self._commands: deque[Frame] = deque()
+        self._own_command = COMMAND_BASE + device_type
+        self.cpu.lines["usb"].body = self._unpack
+        self.port.on_sent = self._sent
+        bases = [REPLY_BASE, MEASUREMENT_BASE, SUMMARY_BASE, HEARTBEAT_BASE]
+        self.can.accept((FULL_MASK, [self._own_command]), (_BASE_MASK, bases))
+
+    def reset(self) -> None:
+        """After power-up: nothing to send either way."""
+        self.ring.clear()
+        self._reports.clear()
+        self._commands.clear()
+        self._flush_ns = _NEVER
+
+    def routine(self, t_ns: int) -> None:
+        """Timer interrupt, every second."""
+        end = self.enter(t_ns)
+        if end:
+            self.heartbeat(end)
+
+    # --- bus to PC
+    def _receive(self, t_ns: int, frame: Frame) -> None:
+        identifier, data, extended, remote = frame
+        if extended or remote:
+            return
+        if identifier == self._own_command:
+            self._take_command(t_ns, data)
+            return
+        if len(data) != 8 or identifier - data[0] != MEASUREMENT_BASE:
+            try:
+                data = slot(frame)
+            except ReportError:
+                self.foreign += 1
+                return
+        self._put(t_ns, data)
+
+    def _put(self, t_ns: int, data: bytes) -> None:
+        ring = self.ring
+        count = len(ring)
+        if count >= RING_SLOTS:
+            self.lost += 1
+            self.dropped += 1
+            return
+        ring.append(data)
+        if not count:
+            self._arm(next_frame_ns(t_ns + self.hold_ns))
+        elif count == SLOTS - 1:
+            self._arm(next_frame_ns(t_ns))
+
+    def _arm(self, t_ns: int) -> None:
+        if t_ns < self._flush_ns:
+            self._flush_ns = t_ns
+            self.queue.at(t_ns, self._flush)
+
+    def _flush(self, t_ns: int) -> None:
+        """Start of a USB frame: one report, when one is due."""
+        if t_ns != self._flush_ns or not self.on:
+            return
+        self._flush_ns = _NEVER
+        ring = self.ring
+        report = pack_report([ring.popleft() for _ in range(min(len(ring), SLOTS))])
+        if ring:
+            self._arm(t_ns + (FRAME_NS if len(ring) >= SLOTS else self.hold_ns))
+        if self.hid.to_host is not None:
+            self.hid.to_host(t_ns, report)
+
+    def transmit(self, identifier: int, data: bytes, ready_ns: int) -> None:
+        """On the bus, and to the PC: a CAN controller does not hear itself."""
+        super().transmit(identifier, data, ready_ns)
+        self._put(self.queue.now_ns, slot(Frame(identifier, data)))
+
+    # --- PC to bus
+    def _take_report(self, t_ns: int, report: bytes) -> None:
+        if not self.on:
+            return
+        if len(self._reports) >= _REPORTS:
+            self.dropped += 1
+            return
+        self._reports.append(report)
+        self.cpu.lines["usb"].request(t_ns)
+
+    def _unpack(self, t_ns: int) -> None:
+        if not self._reports:
+            return
+        for frame in unpack_commands(self._reports.popleft()):
+            if frame.identifier == self._own_command:
+                opcode, reply = answer(self.device_type, self.commands, t_ns, frame.data)
+                data = pack_reply(self.device_type, opcode, *reply)
+                self._put(t_ns, slot(Frame(REPLY_BASE + self.device_type, data)))
+            else:
+                self._commands.append(frame)
+        self._sent(t_ns, None)
+        if self._reports:
+            self.cpu.lines["usb"].request(t_ns)
+
+    def _sent(self, t_ns: int, _frame: Frame | None) -> None:
+        """A transmit buffer may be free: load the next command."""
+        commands = self._commands
+        while commands and self.send(commands[0], t_ns):
+            commands.popleft()

@@ -1,0 +1,275 @@
+"""Wires boards, bus and plant together: `build(config, plant, seed)`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from boards.axis import AxisBoard, AxisConfig, AxisPins
+from boards.axis.config import STEPS_PER_TURN
+from boards.core import Board
+from boards.display import DisplayBoard
+from boards.focus import FocusBoard, FocusConfig, FocusPins
+from boards.gateway import GatewayBoard
+from boards.motor_velocity import MotorVelocityBoard, MotorVelocityPins
+from boards.position import PositionBoard, PositionPins
+from boards.silicon.hid import HidEndpoint
+from boards.silicon.uart import Uart
+from bus.can import Wire
+from bus.protocol import Device
+from bus.time import EventQueue, Oscillator, generator
+from plant.axis import AxisPort
+from plant.plant import Plant
+
+CRYSTAL_PPM = 50.0
+"""Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
+CRYSTAL_DRIFT_PPM_PER_HOUR = 0.2
+"""Largest drift while the night cools, ASSUMPTION: 0.04 ppm/K2 of an AT cut, a few kelvin an hour."""
+CRYSTAL_PHASE_NS = 1_000_000_000
+"""Boards have been switched on within the same second, ASSUMPTION."""
+_FRAME_BITS = 120
+"""Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
+_MAXIMUM_NODES = 64
+
+
+class NetworkError(ValueError):
+    """A network that cannot be built."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeConfig:
+    """What may be set per board: crystal error and phase (None: drawn from the seed), parameters by
+    number."""
+
+    ppm: float | None = None
+    phase_ns: int | None = None
+    parameters: Mapping[int, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkConfig:
+    """bitrate: of the CAN bus, bit/s. nodes: settings by board name. limits: soft limits (low, high)
+    in steps by axis.
+
+    size: number of boards. 11 is the lab network L2 with the focus board; fewer leaves out boards from
+        the end
+    of `ORDER`, more adds motor velocity boards of unassigned device types (for scaling measurements).
+    """
+
+    bitrate: int = 1_000_000
+    nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
+    limits: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    size: int = 11
+
+
+ORDER = (
+    Device.AXIS_RA,
+    Device.POSITION_RA,
+    Device.MOTOR_RA_A,
+    Device.MOTOR_RA_B,
+    Device.AXIS_DEC,
+    Device.POSITION_DEC,
+    Device.MOTOR_DEC_A,
+    Device.MOTOR_DEC_B,
+    Device.GATEWAY,
+    Device.FOCUS,
+    Device.DISPLAY,
+)
+"""The boards of the lab network, those that make up one axis first."""
+SPARE_TYPES = tuple(
+    number for number in range(0x35, 0x80) if number not in {int(device) for device in Device}
+)
+"""Device types for boards beyond the lab network."""
+
+
+@dataclass
+class Network:
+    """Everything that has been wired. Nothing has run yet: use `queue.run_until(t_ns)`."""
+
+    queue: EventQueue
+    wire: Wire
+    boards: dict[str, Board]
+    plant: Plant
+    hid: HidEndpoint
+    uarts: dict[str, Uart]
+
+    def run_until(self, t_ns: int) -> None:
+        """Let simulated time go on to `t_ns`."""
+        self.queue.run_until(t_ns)
+
+    def board(self, name: str) -> Board:
+        """Return a board by name; raises NetworkError naming the ones there are."""
+        try:
+            return self.boards[name]
+        except KeyError:
+            known = ", ".join(self.boards)
+            raise NetworkError(f"network: there is no board '{name}'; expected one of {known}") from None
+
+    @property
+    def overruns(self) -> dict[str, int]:
+        """Interrupts lost so far, by board."""
+        return {name: board.cpu.overruns for name, board in self.boards.items()}
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Frames lost so far for want of buffers, by board."""
+        return {name: board.dropped for name, board in self.boards.items()}
+
+
+def crystal(seed: int, name: str, settings: NodeConfig) -> Oscillator:
+    """The oscillator of a board: rate, phase and drift from (seed, board name) unless set."""
+    random = generator(seed, f"crystal.{name}")
+    ppm = float(random.uniform(-CRYSTAL_PPM, CRYSTAL_PPM))
+    phase_ns = int(random.integers(CRYSTAL_PHASE_NS))
+    drift = float(random.uniform(-CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_DRIFT_PPM_PER_HOUR))
+    return Oscillator(
+        ppm if settings.ppm is None else settings.ppm,
+        phase_ns if settings.phase_ns is None else settings.phase_ns,
+        drift,
+    )
+
+
+def axis_config(plant: Plant, limits: tuple[int, int], bitrate: int) -> AxisConfig:
+    """Settings of an axis board that belong to the plant file's drive: gains, split, PWM."""
+    controller = plant.model.controller
+    return AxisConfig(
+        kp=controller.kp.si,
+        ki=controller.ki.si,
+        counter_split=round(controller.counter_split.si * 100),
+        pwm_steps=round(controller.pwm_steps.si),
+        pwm_hz=round(controller.pwm_frequency.si),
+        low=limits[0],
+        high=limits[1],
+        frame_ns=_FRAME_BITS * round(1e9 / bitrate),
+    )
+
+
+class _Wiring:
+    """The parts all boards share while they are being made."""
+
+    def __init__(self, config: NetworkConfig, plant: Plant, seed: int) -> None:
+        self.config = config
+        self.plant = plant
+        self.seed = seed
+        self.queue = EventQueue()
+        self.wire = Wire(self.queue, config.bitrate)
+
+    def common(self, name: str, device: int) -> tuple[str, int, EventQueue, Wire]:
+        return name, int(device), self.queue, self.wire
+
+    def crystal(self, name: str) -> Oscillator:
+        return crystal(self.seed, name, self.config.nodes.get(name, NodeConfig()))
+
+    def port(self, device: Device) -> tuple[str, AxisPort]:
+        axis = "ra" if "_RA" in device.name else "dec"
+        return axis, getattr(self.plant, axis)
+
+    def limits(self, axis: str) -> tuple[int, int]:
+        return self.config.limits.get(axis, (0, STEPS_PER_TURN - 1))
+
+    def axis(self, device: Device) -> Board:
+        axis, port = self.port(device)
+        pins = AxisPins(port.incremental, port.drive, port.current)
+        settings = axis_config(self.plant, self.limits(axis), self.config.bitrate)
+        side = axis.upper()
+        motors = (int(Device[f"MOTOR_{side}_A"]), int(Device[f"MOTOR_{side}_B"]))
+        position = int(Device[f"POSITION_{side}"])
+        crystal = self.crystal(device.name)
+        return AxisBoard(*self.common(device.name, device), pins, crystal, settings, position, motors)
+
+    def position(self, device: Device) -> Board:
+        axis, port = self.port(device)
+        crystal = self.crystal(device.name)
+        pins = PositionPins(port.absolute)
+        return PositionBoard(*self.common(device.name, device), pins, crystal, *self.limits(axis))
+
+    def motor(self, device: Device) -> Board:
+        _, port = self.port(device)
+        motor = 0 if device.name.endswith("A") else 1
+        return self.velocity(device.name, int(device), partial(_tachometer, port, motor))
+
+    def velocity(self, name: str, device_type: int, encoder: Callable[[int], int]) -> Board:
+        crystal = self.crystal(name)
+        return MotorVelocityBoard(*self.common(name, device_type), MotorVelocityPins(encoder), crystal)
+
+    def gateway(self, device: Device) -> Board:
+        return GatewayBoard(*self.common(device.name, device), self.crystal(device.name))
+
+    def focus(self, device: Device) -> Board:
+        port = self.plant.focus
+        pins = FocusPins(port.coils, port.encoder, port.index, port.lvdt)
+        model = self.plant.model.focus
+        settings = FocusConfig(round(model.half_steps.si), round(model.encoder.si))
+        return FocusBoard(*self.common(device.name, device), pins, self.crystal(device.name), settings)
+
+    def display(self, device: Device) -> Board:
+        positions = (int(Device.POSITION_RA), int(Device.POSITION_DEC))
+        crystal = self.crystal(device.name)
+        return DisplayBoard(*self.common(device.name, device), crystal, positions, int(Device.FOCUS))
+
+
+_MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
+    ("AXIS", _Wiring.axis),
+    ("POSITION", _Wiring.position),
+    ("MOTOR", _Wiring.motor),
+    ("GATEWAY", _Wiring.gateway),
+    ("FOCUS", _Wiring.focus),
+    ("DISPLAY", _Wiring.display),
+)
+
+
+def _tachometer(port: AxisPort, motor: int, t_ns: int) -> int:
+    return port.tachometer(t_ns, motor)
+
+
+def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
+    """The network, every board running from time 0 on; raises NetworkError for settings no network can
+    have."""
+    config = config or NetworkConfig()
+    if not 1 <= config.size <= _MAXIMUM_NODES:
+        raise NetworkError(f"network: size {config.size} is not within 1..{_MAXIMUM_NODES}")
+    wiring = _Wiring(config, plant, seed)
+    boards: dict[str, Board] = {}
+    for device in ORDER[: config.size]:
+        make = next(maker for prefix, maker in _MAKERS if device.name.startswith(prefix))
+        boards[device.name] = make(wiring, device)
+    for device_type in SPARE_TYPES[: max(0, config.size - len(ORDER))]:
+        name = f"MOTOR_{device_type:02X}"
+        boards[name] = wiring.velocity(name, device_type, partial(_tachometer, plant.ra, device_type & 1))
+    unknown = set(config.nodes) - set(boards)
+    if unknown:
+        raise NetworkError(
+            f"network: there is no board '{min(unknown)}'; expected one of {', '.join(boards)}"
+        )
+    gateway = boards.get(Device.GATEWAY.name)
+    hid = gateway.hid if isinstance(gateway, GatewayBoard) else HidEndpoint()
+    uarts = {
+        name: board.uart
+        for name, board in boards.items()
+        if isinstance(board, AxisBoard | PositionBoard | FocusBoard)
+    }
+    for name, board in boards.items():
+        board.begin()
+        _set_parameters(board, config.nodes.get(name, NodeConfig()))
+    return Network(wiring.queue, wiring.wire, boards, plant, hid, uarts)
+
+
+def _set_parameters(board: Board, settings: NodeConfig) -> None:
+    for number, value in settings.parameters.items():
+        if board.parameters.set(number, value).result:
+            reply = board.parameters.get(number)
+            reason = "does not exist" if reply.result else f"does not take {value}"
+            raise NetworkError(f"network: nodes.{board.name}.parameters: parameter {number} {reason}")
+
+
+def config_from(network: Mapping[str, Any], limits: Mapping[str, tuple[int, int]]) -> NetworkConfig:
+    """The configuration of a scenario's checked `network` section (bit/s, s, ppm, parameters by number)."""
+    nodes = {
+        name: NodeConfig(
+            settings.get("ppm"),
+            None if settings.get("phase") is None else round(settings["phase"] * 1e9),
+            {int(number): int(value) for number, value in settings.get("parameters", {}).items()},
+        )
+        for name, settings in network.get("nodes", {}).items()
+    }
+    return NetworkConfig(round(network.get("bitrate", 1_000_000)), nodes, dict(limits))
