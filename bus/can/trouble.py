@@ -98,6 +98,7 @@ class Trouble:
         if parted is None:
             self._twins.append(other)
             self._excluded.append(other.port)
+            self.near = True  # until `delivered` has seen to the second sender
             return one
         index, one_is_recessive = parted
         loser, winner = (one, other) if one_is_recessive else (other, one)

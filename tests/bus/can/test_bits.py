@@ -1,0 +1,87 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bus.can import Frame, FrameError
+from bus.can.bits import crc15, header_bits, number_bits, stuff, stuffed_field, wire_bits
+from bus.can.frame import arbitration_key
+from bus.can.length import frame_bits
+
+# Identifier, data, CRC-15, stuff bits, bits with intermission; found apart from this code (hardware.md 3.3).
+VECTORS = [
+    (0x000, "", 0x0000, 6, 53),
+    (0x7FF, "", 0x272F, 3, 50),
+    (0x123, "0102030405060708", 0x64EF, 8, 119),
+    (0x555, "AAAAAAAAAAAAAAAA", 0x7DCE, 1, 112),
+    (0x100, "00CA22FF5566AADF", 0x4BAB, 6, 117),
+]
+frames = st.one_of(
+    st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8), st.just(False), st.booleans()),
+    st.builds(Frame, st.integers(0, 0x1FFF_FFFF), st.binary(max_size=8), st.just(True), st.booleans()),
+    # Long runs, where the stuffing is.
+    st.builds(
+        Frame,
+        st.sampled_from([0, 0x7FF, 0x7E0, 0x01F]),
+        st.lists(st.sampled_from([0x00, 0xFF, 0x0F, 0xF0, 0x07, 0xF8, 0x83]), min_size=8, max_size=8).map(
+            bytes
+        ),
+    ),
+)
+
+
+@pytest.mark.parametrize(("identifier", "data", "crc", "stuffed", "total"), VECTORS)
+def test_L1_published_vectors(identifier: int, data: str, crc: int, stuffed: int, total: int) -> None:
+    frame = Frame(identifier, bytes.fromhex(data))
+    plain = stuffed_field(frame)
+    assert crc15(plain[:-15]) == crc
+    assert len(stuff(plain)) - len(plain) == stuffed
+    assert frame_bits(frame) == total
+
+
+def test_L1_crc_check_value() -> None:
+    assert crc15([bit for byte in b"123456789" for bit in number_bits(byte, 8)]) == 0x059E
+
+
+@given(frames)
+def test_L1_tables_agree_with_the_bits(frame: Frame) -> None:
+    assert frame_bits(frame) == len(wire_bits(frame)) + 3
+
+
+@given(frames)
+def test_L1_stuffing_leaves_no_run_of_six_and_can_be_undone(frame: Frame) -> None:
+    plain = stuffed_field(frame)
+    wire = stuff(plain)
+    assert all(len(set(wire[i : i + 6])) == 2 for i in range(len(wire) - 5))
+    back, run, last = [], 0, -1
+    for bit in wire:
+        if run == 5:
+            run, last = 1, bit
+            continue
+        back.append(bit)
+        run = run + 1 if bit == last else 1
+        last = bit
+    assert back == plain
+
+
+@given(frames)
+def test_L1_length_stays_within_the_published_worst_case(frame: Frame) -> None:
+    payload = 0 if frame.remote else 8 * len(frame.data)
+    fixed, stuffable = (67, 54) if frame.extended else (47, 34)
+    assert fixed + payload <= frame_bits(frame) <= fixed + payload + (stuffable + payload - 1) // 4
+
+
+@given(frames, frames)
+def test_L1_the_key_orders_as_the_bits_do(one: Frame, other: Frame) -> None:
+    def field(frame: Frame) -> list[int]:
+        return header_bits(frame)[1 : 33 if frame.extended else 14]
+
+    if arbitration_key(one) < arbitration_key(other):
+        assert field(one) < field(other)
+
+
+@pytest.mark.parametrize(
+    "frame", [Frame(0x800, b""), Frame(-1, b""), Frame(1 << 29, b"", True), Frame(1, bytes(9))]
+)
+def test_L1_what_can_cannot_carry_is_refused(frame: Frame) -> None:
+    with pytest.raises(FrameError):
+        frame_bits(frame)

@@ -1,0 +1,197 @@
+"""Error confinement by ISO 11898-1 (hardware.md 3.3)."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bus.can import Flip, Frame, Wire
+from bus.can.bits import wire_bits
+from bus.time import EventQueue
+from tests.bus.can.test_wire import listen, network
+
+FRAME = Frame(0x123, bytes.fromhex("0102030405060708"))
+LENGTH = len(wire_bits(FRAME))
+
+
+def once(flip: Flip):  # type: ignore[no-untyped-def]
+    left = [flip]
+    return lambda *_: left.pop() if left else None
+
+
+def sent_through(wire: Wire, queue: EventQueue, flip: Flip) -> None:
+    wire.disturb(once(flip))
+    wire.ports[0].send(FRAME, queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+
+
+def test_L1_a_lone_node_goes_passive_and_never_bus_off() -> None:
+    queue, wire = network(1)
+    port = wire.ports[0]
+    port.send(FRAME, 0)
+    queue.run_until(3_000_000)
+    assert (port.tec, port.state) == (128, "passive")
+    assert wire.errors["ack"] > 16
+    queue.run_until(1_000_000_000)
+    assert (port.tec, port.state, wire.frames) == (128, "passive", 0)
+    wire.attach("late")
+    queue.run_until(1_001_000_000)
+    assert (wire.frames, port.tec, port.state) == (1, 127, "active")
+
+
+@given(st.integers(0, LENGTH - 1))
+def test_L1_every_flipped_bit_on_the_wire_is_an_error_and_the_frame_arrives_after_all(bit: int) -> None:
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    sent_through(wire, queue, Flip(bit))
+    assert sum(wire.errors.values()) == 1
+    # The last bit of EOF is the known double reception: receivers had the frame, the sender sends again.
+    assert [frame for _, frame in log] == [FRAME] * (2 if bit == LENGTH - 1 else 1)
+    assert wire.frames == 1
+
+
+CRC_DELIMITER = LENGTH - 10
+CASES = [
+    (0, "bit"),  # SOF read recessive
+    (CRC_DELIMITER - 20, "bit"),
+    (CRC_DELIMITER, "form"),
+    (CRC_DELIMITER + 1, "ack"),
+    (CRC_DELIMITER + 2, "form"),
+    (LENGTH - 3, "form"),
+]
+
+
+@pytest.mark.parametrize(("bit", "kind"), CASES)
+def test_L1_where_the_bit_is_says_what_the_error_is(bit: int, kind: str) -> None:
+    queue, wire = network(3)
+    sent_through(wire, queue, Flip(bit))
+    assert wire.errors == {kind: 1}
+    # One error (+8) and one good frame (-1); receivers +1 and -1.
+    assert [(port.tec, port.rec) for port in wire.ports] == [(7, 0), (0, 0), (0, 0)]
+
+
+def test_L1_a_recessive_identifier_bit_overwritten_is_lost_arbitration_not_the_senders_error() -> None:
+    queue, wire = network(2)
+    wire.disturb(once(Flip(3)))  # 0x123 = 00100100011: bit 3 after SOF is the first recessive one
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    assert wire.errors == {"stuff": 1}
+    assert [(port.tec, port.rec) for port in wire.ports] == [(0, 1), (0, 0)]
+
+
+@given(st.integers(0, LENGTH - 2))
+def test_L1_one_receivers_own_error_makes_everyone_repeat(bit: int) -> None:
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    sent_through(wire, queue, Flip(bit, seen_by="n2"))
+    kinds = wire.errors
+    assert [frame for _, frame in log] == [FRAME]
+    if kinds:  # the flag of the first is answered: +1 and +8, then one good reception
+        assert set(kinds) <= {"stuff", "crc", "form"}
+        assert [(port.tec, port.rec) for port in wire.ports] == [(7, 0), (0, 0), (0, 8)]
+    else:  # a receiver does not look at the ACK slot of others
+        assert bit == CRC_DELIMITER + 1
+
+
+def test_L1_a_flip_that_changes_data_only_is_a_crc_error() -> None:
+    queue, wire = network(3)
+    sent_through(wire, queue, Flip(60, seen_by="n1"))
+    assert wire.errors == {"crc": 1}
+
+
+def test_L1_passive_receiver_misses_the_frame_and_disturbs_nobody() -> None:
+    queue, wire = network(3)
+    first, second = listen(wire, 1), listen(wire, 2)
+    wire.ports[2].rec = 130
+    sent_through(wire, queue, Flip(60, seen_by="n2"))
+    assert (len(first), len(second), wire.frames) == (1, 0, 1)
+    assert wire.ports[2].rec == 131
+    wire.ports[0].send(FRAME, queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+    assert (len(second), wire.ports[2].rec, wire.ports[2].state) == (1, 127, "active")
+
+
+def test_L1_bus_off_and_recovery_after_128_times_11_recessive_bits() -> None:
+    queue, wire = network(2)
+    port = wire.ports[0]
+    wire.disturb(lambda *_: Flip(50))
+    port.send(FRAME, 0)
+    while port.state != "bus_off":
+        queue.run_until(queue.now_ns + 1000)
+    assert (port.tec, wire.errors["bit"], wire.frames) == (256, 32, 0)
+    off_ns = queue.now_ns
+    wire.disturb(None)
+    while port.state == "bus_off":
+        queue.run_until(queue.now_ns + 1000)
+    # The eight bits of the error delimiter had already begun to count.
+    assert 128 * 11 - 8 <= (queue.now_ns - off_ns) // 1000 <= 128 * 11 + 1
+    queue.run_until(queue.now_ns + 1_000_000)
+    assert (port.tec, wire.frames) == (0, 1)
+
+
+def test_L1_recovery_counts_one_run_per_frame_on_a_busy_bus() -> None:
+    queue, wire = network(3)
+    port = wire.ports[0]
+    wire.disturb(lambda _t, _f, sender: Flip(50) if sender == "n0" else None)
+    port.send(Frame(0x700, bytes(8)), 0)
+    while port.state != "bus_off":
+        queue.run_until(queue.now_ns + 1000)
+    busy = wire.ports[1]
+
+    def refill(t_ns: int, _frame: Frame) -> None:
+        busy.send(Frame(1, bytes(8)), t_ns)
+
+    busy.on_sent = refill
+    refill(queue.now_ns, FRAME)
+    refill(queue.now_ns, FRAME)
+    before = wire.frames
+    while port.state == "bus_off":
+        queue.run_until(queue.now_ns + 1000)
+    assert 120 <= wire.frames - before <= 130
+
+
+def test_L1_two_nodes_with_one_identifier_and_different_data_have_a_bit_error() -> None:
+    queue, wire = network(3)
+    log = listen(wire, 2)
+    wire.ports[0].send(Frame(5, b"\x00"), 0)
+    wire.ports[1].send(Frame(5, b"\x01"), 0)
+    queue.run_until(10_000_000)
+    assert wire.errors["bit"] >= 16
+    assert [frame.data for _, frame in log] == [b"\x00", b"\x01"], (
+        "the passive one gives way, then has its turn"
+    )
+    assert all(port.state != "bus_off" for port in wire.ports)
+
+
+def test_L1_two_nodes_with_the_very_same_frame_both_succeed() -> None:
+    queue, wire = network(3)
+    log, first = listen(wire, 2), listen(wire, 0)
+    done: list[str] = []
+    for port in wire.ports[:2]:
+        port.on_sent = lambda *_, name=port.name: done.append(name)
+        port.send(Frame(5, b"same"), 0)
+    queue.run_until(1_000_000)
+    assert (len(log), len(first), sorted(done)) == (1, 0, ["n0", "n1"])
+    assert not wire.errors
+
+
+def test_L1_switched_off_in_the_middle_of_its_frame() -> None:
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    wire.ports[0].send(FRAME, 0)
+    wire.ports[2].send(Frame(0x200, b""), 0)
+    queue.run_until(40_000)
+    wire.ports[0].online = False
+    queue.run_until(1_000_000)
+    assert [frame.identifier for _, frame in log] == [0x200]
+    assert wire.errors == {"stuff": 1}
+
+
+def test_L1_a_healthy_wire_after_trouble_is_healthy_again() -> None:
+    queue, wire = network(3)
+    sent_through(wire, queue, Flip(50))
+    wire.disturb(None)
+    for _ in range(8):
+        wire.ports[0].send(FRAME, queue.now_ns)
+        queue.run_until(queue.now_ns + 1_000_000)
+    assert all(port.tec == port.rec == 0 for port in wire.ports)
+    assert wire.frames == 9
