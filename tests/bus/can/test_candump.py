@@ -1,0 +1,63 @@
+from hashlib import sha256
+from io import BytesIO
+from pathlib import Path
+
+import can
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bus.can import Frame
+from bus.can.candump import CandumpWriter, line
+from tests.bus.can.test_bits import frames
+from tests.bus.can.test_wire import network
+
+logs = st.lists(st.tuples(st.integers(0, 10**14), frames), max_size=20)
+
+
+@given(logs, st.integers(0, 2_000_000_000))
+def test_what_python_can_reads_is_what_was_written(log: list[tuple[int, Frame]], epoch_s: int) -> None:
+    file = BytesIO()
+    writer = CandumpWriter(file, "vcan0", epoch_s)
+    for t_ns, frame in log:
+        writer(t_ns, frame)
+    writer.close()
+    from io import StringIO
+
+    back = list(can.CanutilsLogReader(StringIO(file.getvalue().decode())))
+    assert len(back) == len(log) == writer.frames
+    for message, (t_ns, frame) in zip(back, log, strict=True):
+        assert abs(message.timestamp - epoch_s - t_ns / 1e9) < 2e-6
+        assert message.channel == "vcan0"
+        assert message.arbitration_id == frame.identifier
+        assert message.is_extended_id == frame.extended
+        assert message.is_remote_frame == frame.remote
+        assert message.dlc == len(frame.data)
+        if not frame.remote:
+            assert bytes(message.data) == frame.data
+    assert writer.hexdigest() == sha256(file.getvalue()).hexdigest()
+
+
+@given(logs)
+def test_the_digest_needs_no_file_and_no_order_of_flushes(log: list[tuple[int, Frame]]) -> None:
+    kept, bare = CandumpWriter(BytesIO()), CandumpWriter(None)
+    for t_ns, frame in log:
+        kept(t_ns, frame)
+        kept.flush()
+        bare(t_ns, frame)
+    assert kept.hexdigest() == bare.hexdigest()
+    text = "".join(line(t_ns, frame) + "\n" for t_ns, frame in log)
+    assert bare.hexdigest() == sha256(text.encode()).hexdigest()
+
+
+def test_it_taps_a_wire(tmp_path: Path) -> None:
+    queue, wire = network(2)
+    path = tmp_path / "can.log"
+    with path.open("wb") as file:
+        writer = CandumpWriter(file)
+        wire.tap(writer)
+        wire.ports[0].send(Frame(0x211, b"\x11\x22"), 1_000_000_000)
+        queue.run_until(2_000_000_000)
+        writer.close()
+    # 0x211 with two bytes: 63 bits and its stuff bits, delivered three bits before the end of intermission.
+    assert path.read_text().endswith(" can0 211#1122\n")
+    assert path.read_text().startswith("(1.00006")
