@@ -66,7 +66,7 @@ def entry(function: F) -> F:
 
 def inner(function: F) -> F:
     """Compile for calls from compiled code only."""
-    compiled: F = numba.njit(error_model="numpy")(function)
+    compiled: F = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
     return compiled
 
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from plant.effects import REGISTRY
 from plant.effects.base import Effect, Formula
-from plant.effects.signals import HOOK_COUNT, Hook
+from plant.effects.signals import MOTOR_HOOKS, Hook
 from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD
 from plant.gears import ORDERS
-from plant.kernels.layout import EFFECTS, HOOKS, MAX_EFFECTS, MEMORY_SIZE, ROW, ROW_MEMORY
+from plant.kernels.layout import EFFECTS, MAX_EFFECTS, MEMORY_SIZE, ROW, ROW_MEMORY, ROWS_ALL, ROWS_MOTOR
 from plant.parts import EffectModel, Function
 from plant.units import to_si
 
@@ -106,7 +106,7 @@ def write(
             if hook in (Hook.SWITCH, Hook.LOG) or (hook is Hook.TRANSMISSION and parameters.get("kinematic") == 0.0):
                 continue
             memory = [0.0, 0.0, 0.0, number_from(seed, f"{axis}.{model.name}.{k}")]
-            rows.append((hook, [float(KINDS[term.formula]), *memory, *numbers]))
+            rows.append((hook, [float(hook), float(KINDS[term.formula]), *memory, *numbers]))
     if len(rows) > MAX_EFFECTS:
         raise ValueError(f"plant model: axes.{axis}.effects: {len(rows)} effects, at most {MAX_EFFECTS} can act at once")
     rows.sort(key=lambda row: row[0])  # stable: the file's order within a hook
@@ -114,5 +114,5 @@ def write(
         start = EFFECTS + place * ROW
         world[start : start + ROW] = 0.0
         world[start : start + len(row)] = row
-    for hook in range(HOOK_COUNT + 1):
-        world[HOOKS + hook] = sum(1 for h, _ in rows if h < hook)
+    world[ROWS_MOTOR] = sum(1 for hook, _ in rows if hook < MOTOR_HOOKS)
+    world[ROWS_ALL] = len(rows)

@@ -38,20 +38,24 @@ MEMORY: Final = 4  # parameters start here in a formula's p; before them its own
 class Hook(IntEnum):
     """Where in the step an effect acts, and the unit of its formula's value."""
 
-    COMMAND = 0  # added to a motor's duty
-    SUPPLY = 1  # V, added to the supply
-    RESISTANCE = 2  # ohm, added to the loop (p of the motor concerned)
-    SWITCH = 3  # changes the axis' parameters once (plant/effects/rows.py); the formula is for calibration
-    CONSTANT = 4  # relative change of the torque constant
-    MOTOR_TORQUE = 5  # N m at the motor
+    # of each motor
+    COMMAND = 0  # added to its duty
+    RESISTANCE = 1  # ohm, added to its winding
+    CONSTANT = 2  # relative change of its torque constant
+    MOTOR_TORQUE = 3  # N m at the motor
+    CURRENT = 4  # A, added to its reading
+    # of the axis
+    SUPPLY = 5  # V, added to the supply
     FRICTION = 6  # changes the friction parameters in place; value unused
     AXIS_TORQUE = 7  # N m at the axis, positive accelerates
     TRANSMISSION = 8  # rad at the axis, added to the twist of both trains
     INCREMENTAL = 9  # rad, added to the reading
     ABSOLUTE = 10
     AUXILIARY = 11
-    CURRENT = 12  # A, added to the reading
-    LOG = 13  # not in the step: a delayed reading or the host's log writer
+    # not in the step
+    SWITCH = 12  # changes parameters of the axis once (plant/world.py); the formula is for calibration
+    LOG = 13  # a delayed reading (plant/axis.py) or the host's log writer
 
 
-HOOK_COUNT: Final = 14
+MOTOR_HOOKS: Final = 5
+HOOK_COUNT: Final = 12

@@ -9,7 +9,7 @@ from plant.effects.signals import RATE, MEMORY, Hook
 
 @inner
 def formula(x, p):  # type: ignore[no-untyped-def]
-    """Return the torque of the second mass on the axis, N m (p[0]: its lead, rad; p[1]: its rate)."""
+    """Return the torque of the second mass on the axis, N m (p[0]: its lead, rad; p[1]: its rate; p[2]: the axis')."""
     pulse = 2.0 * pi * p[MEMORY]
     return p[MEMORY + 2] * (pulse * pulse * p[0] + 2.0 * p[MEMORY + 1] * pulse * (p[1] - x[RATE]))
 
@@ -17,11 +17,10 @@ def formula(x, p):  # type: ignore[no-untyped-def]
 @inner
 def update(x, p, dt):  # type: ignore[no-untyped-def]
     """Leapfrog of the second mass, whose lead is kept at the step's middle."""
-    if p[2] == 0.0:
-        p[2] = 1.0
-        p[1] = x[RATE]
-    p[1] -= dt * formula(x, p) / p[MEMORY + 2]
+    pulse = 2.0 * pi * p[MEMORY]
+    p[1] -= dt * (pulse * pulse * p[0] + 2.0 * p[MEMORY + 1] * pulse * (p[1] - p[2]))
     p[0] += dt * (p[1] - x[RATE])
+    p[2] = x[RATE]
 
 
 EFFECT = Effect(

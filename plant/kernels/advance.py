@@ -20,10 +20,10 @@ def advance_axis(w, steps):  # type: ignore[no-untyped-def]
         if every > 0 and int(w[at.STEP]) % every == 0:
             record(w, t + h)
         if delayed:
-            read(w, t + h)
+            read(w)
             keep(w)
     if not delayed:
-        read(w, w[at.STEP] * h)
+        read(w)
 
 
 @entry

@@ -2,7 +2,7 @@
 
 T = sigma0 z + sigma1 dz/dt + sigma2 w,  dz/dt = w - |w| z / g(w),
 sigma0 g(w) = Tc + (Ts - Tc) exp(-(|w| / ws)^delta).
-For constant w the bristle relaxes exponentially, so its update is exact for any step (no |w| dt / g limit).
+The parameters are eight numbers of an array `w` from place `f` on (layout.F_*). For a constant rate the bristle relaxes exponentially, so its update is exact for any step (no |w| dt / g limit).
 """
 
 from math import exp
@@ -23,33 +23,33 @@ NEGLIGIBLE = 40.0  # exp(-40) is below the resolution of the sum it enters
 
 
 @inner
-def stribeck(rate, f):  # type: ignore[no-untyped-def]
+def stribeck(rate, w, f):  # type: ignore[no-untyped-def]
     """Return g(rate), rad: the bristle deflection of steady sliding."""
-    x = abs(rate) / f[F_RATE]
-    if f[F_EXPONENT] == 2.0:
+    x = abs(rate) / w[f + F_RATE]
+    if w[f + F_EXPONENT] == 2.0:
         x = x * x
-    elif f[F_EXPONENT] != 1.0:
-        x = x ** f[F_EXPONENT]
-    level = f[F_COULOMB]
+    elif w[f + F_EXPONENT] != 1.0:
+        x = x ** w[f + F_EXPONENT]
+    level = w[f + F_COULOMB]
     if x < NEGLIGIBLE:
-        level += (f[F_STICTION] - level) * exp(-x)
-    return level / f[F_SIGMA0]
+        level += (w[f + F_STICTION] - level) * exp(-x)
+    return level / w[f + F_SIGMA0]
 
 
 @inner
-def damping(rate, f):  # type: ignore[no-untyped-def]
+def damping(rate, w, f):  # type: ignore[no-untyped-def]
     """Return sigma1, N m s/rad, decayed with the rate when a decay rate is given (> 0)."""
-    if f[F_DECAY] > 0.0:
-        x = rate / f[F_DECAY]
-        return f[F_SIGMA1] * exp(-x * x)
-    return f[F_SIGMA1]
+    if w[f + F_DECAY] > 0.0:
+        x = rate / w[f + F_DECAY]
+        return w[f + F_SIGMA1] * exp(-x * x)
+    return w[f + F_SIGMA1]
 
 
 @inner
-def torque(rate, z, g, f):  # type: ignore[no-untyped-def]
+def torque(rate, z, g, w, f):  # type: ignore[no-untyped-def]
     """Return the friction torque, N m, against the motion."""
     flow = rate - abs(rate) * z / g
-    return f[F_SIGMA0] * z + damping(rate, f) * flow + f[F_SIGMA2] * rate
+    return w[f + F_SIGMA0] * z + damping(rate, w, f) * flow + w[f + F_SIGMA2] * rate
 
 
 @inner
@@ -62,9 +62,9 @@ def relax(z, rate, g, dt):  # type: ignore[no-untyped-def]
 
 
 @inner
-def steady(rate, f):  # type: ignore[no-untyped-def]
+def steady(rate, w, f):  # type: ignore[no-untyped-def]
     """Return the torque of steady sliding at `rate`, N m, signed."""
     if rate == 0.0:
         return 0.0
-    level = stribeck(rate, f) * f[F_SIGMA0]
-    return (level if rate > 0.0 else -level) + f[F_SIGMA2] * rate
+    level = stribeck(rate, w, f) * w[f + F_SIGMA0]
+    return (level if rate > 0.0 else -level) + w[f + F_SIGMA2] * rate

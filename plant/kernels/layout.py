@@ -67,11 +67,13 @@ FRICTION_NOW = SIGNALS + SIGNALS_SIZE  # friction parameters of this step: part 
 SIGNALS_END = FRICTION_NOW + FRICTION_SIZE
 
 # --- effects: rows sorted by hook --------------------------------------------------------------------------------
-HOOKS = 116  # first row of each hook, one more at the end
-HOOKS_SIZE = 24
-EFFECTS = HOOKS + HOOKS_SIZE
-ROW = 80  # kind, memory, parameters
-ROW_MEMORY = 1
+ROWS_MOTOR = SIGNALS_END  # number of rows that act on each motor
+ROWS_ALL = ROWS_MOTOR + 1  # number of all rows
+SUMS = ROWS_ALL + 1  # sum of the values at each hook, for motor A; then of the motor hooks for motor B
+SUMS_OF_B = SUMS + 12
+EFFECTS = SUMS_OF_B + 6
+ROW = 80  # hook, kind, memory, parameters
+ROW_KIND, ROW_MEMORY = 1, 2
 MEMORY_SIZE = 4
 MAX_EFFECTS = 32
 

@@ -1,37 +1,27 @@
 """What the sensors show at a grid point, as (value, change per nanosecond): reads in between extrapolate."""
 
 from plant.compiled import inner
-from plant.effects import signals as sig
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
-from plant.kernels.hooks import any_effect, total
 
-INCREMENTAL = int(Hook.INCREMENTAL)
-ABSOLUTE = int(Hook.ABSOLUTE)
-AUXILIARY = int(Hook.AUXILIARY)
-CURRENT = int(Hook.CURRENT)
+# errors of the readings, from the effects of the last step
+INCREMENTAL = at.SUMS + int(Hook.INCREMENTAL)
+ABSOLUTE = at.SUMS + int(Hook.ABSOLUTE)
+AUXILIARY = at.SUMS + int(Hook.AUXILIARY)
+CURRENT_A = at.SUMS + int(Hook.CURRENT)
+CURRENT_B = at.SUMS_OF_B + int(Hook.CURRENT)
 NANO = 1e-9
 
 
 @inner
-def read(w, t):  # type: ignore[no-untyped-def]
-    """Fill the readings of one axis at the grid point `t`, s."""
+def read(w):  # type: ignore[no-untyped-def]
+    """Fill the readings of one axis at the grid point."""
     half = 0.5 * w[at.GRID]
     rate = w[at.RATE]
     angle = w[at.ANGLE] - half * rate
-    incremental = angle
-    absolute = angle
-    auxiliary = angle
-    effects = any_effect(w)
-    if effects:
-        x = at.SIGNALS
-        w[x + sig.TIME] = t
-        w[x + sig.ANGLE] = angle
-        w[x + sig.RATE] = rate
-        w[x + sig.TEMPERATURE] = w[at.TEMPERATURE] + w[at.WARMING] * t
-        incremental += total(w, INCREMENTAL)
-        absolute += total(w, ABSOLUTE)
-        auxiliary += total(w, AUXILIARY)
+    incremental = angle + w[INCREMENTAL]
+    absolute = angle + w[ABSOLUTE]
+    auxiliary = angle + w[AUXILIARY]
 
     o = at.OUT
     w[o + at.OUT_ANGLE] = angle
@@ -53,11 +43,7 @@ def read(w, t):  # type: ignore[no-untyped-def]
         current = w[motor + at.M_CURRENT]
         if current > 0.0:
             current += w[at.RIPPLE] * duty * (1.0 - duty)
-        if effects:
-            w[at.SIGNALS + sig.MOTOR] = m
-            w[at.SIGNALS + sig.CURRENT] = current
-            current += total(w, CURRENT)
-        w[o + at.OUT_CURRENT_A + m] = current
+        w[o + at.OUT_CURRENT_A + m] = current + (w[CURRENT_A] if m == 0 else w[CURRENT_B])
 
 
 @inner
