@@ -10,12 +10,15 @@ if TYPE_CHECKING:
 
 
 class AxisPort:
-    """The pins of one axis. Times are integer nanoseconds; reads between grid points extrapolate with the rate.
+    """The pins of one axis. Times are integer nanoseconds; reads between grid points extrapolate with the
+    rate.
 
     Motor 0 is A, which pulls in +, motor 1 is B, which pulls in -.
     """
 
-    def __init__(self, plant: "Plant", row: int, delays_ns: dict[str, int], absolute_bits: int, auxiliary_bits: int):
+    def __init__(
+        self, plant: "Plant", row: int, delays_ns: dict[str, int], absolute_bits: int, auxiliary_bits: int
+    ):
         self._plant = plant
         self._view = plant.view
         self._base = row * at.WIDTH
@@ -32,7 +35,9 @@ class AxisPort:
         self._mean = self._base + at.MEAN_DUTY
 
     def drive(self, t_ns: int, duty_a: float, duty_b: float) -> None:
-        """Set the duty cycles, 0..1 each, from `t_ns` on; within a grid step they count for the rest of it."""
+        """Set the duty cycles, 0..1 each, from `t_ns` on; within a grid step they count for the rest of
+        it.
+        """
         if not (0.0 <= duty_a <= 1.0 and 0.0 <= duty_b <= 1.0):
             raise ValueError(f"duty cycles must lie within 0..1, not {duty_a}, {duty_b}")
         plant = self._plant

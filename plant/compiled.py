@@ -1,10 +1,14 @@
 """The one way to compile in this project: numba, cached under a key made of the sources.
 
-Numba's own cache only notices a change in the file of the compiled function, not in the files of what it calls.
-The cache directory is therefore named by a hash of every compiled source of the plant: a stale cache is never used.
+Numba's own cache only notices a change in the file of the compiled function, not in the files of what it
+calls. The cache directory is therefore named by a hash of every compiled source of the plant: a stale cache
+is
+never used.
 
 `entry` is for functions that Python calls (cached on disk), `inner` for those that only compiled code calls
-(compiled with their caller, so they cost nothing when the caller comes from the cache).
+(compiled with their caller, so they cost nothing when the caller comes from the cache). `entry` is also
+called
+`njit`. SCHMIDT_CACHE_DIR moves the cache.
 """
 
 import hashlib
@@ -15,7 +19,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
+from numpy.typing import NDArray
 
+Floats = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
 ROOM = Path(__file__).parent
@@ -27,7 +34,11 @@ def _fingerprint() -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for path in sorted(ROOM.rglob("*.py")):
         text = path.read_bytes()
-        if b"plant.compiled" in text or b"plant.kernels" in text or path.parent.name in ("kernels", "effects"):
+        if (
+            b"plant.compiled" in text
+            or b"plant.kernels" in text
+            or path.parent.name in ("kernels", "effects")
+        ):
             digest.update(path.relative_to(ROOM).as_posix().encode() + b"\0" + text)
     return digest.hexdigest()[:16]
 
@@ -42,7 +53,7 @@ def _writable(folder: Path) -> bool:
 
 
 def cache_folder() -> Path:
-    """Return the folder of compiled code: the user's cache, or a temporary one where that cannot be written."""
+    """Return the folder of compiled code: the user's cache, or a temporary one if that is read-only."""
     home = os.environ.get(BASE) or os.environ.get("NUMBA_CACHE_DIR")
     bases = [Path(home)] if home else []
     cache = os.environ.get("XDG_CACHE_HOME")
@@ -60,13 +71,17 @@ numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
 
 def entry(function: F) -> F:
     """Compile for calls from Python; the machine code is kept on disk."""
-    compiled: F = numba.njit(cache=True, error_model="numpy")(function)
-    return compiled
+    return _njit(function, cache=True)
 
 
 def inner(function: F) -> F:
     """Compile for calls from compiled code only."""
-    compiled: F = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
+    return _njit(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
+def _njit(function: F, **options: bool) -> F:
+    compile_with: Any = numba.njit  # its stubs do not know all options
+    compiled: F = compile_with(error_model="numpy", **options)(function)
     return compiled
 
 

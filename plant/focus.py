@@ -1,6 +1,8 @@
-"""The focus drive: half-stepping motor, belt, ball screw, shaft encoder with index, LVDT (paper, section 3.2).
+"""The focus drive: half-stepping motor, belt, ball screw, shaft encoder with index, LVDT (paper, section
+3.2).
 
-Positions are in half steps from the middle of the travel. Between commands the rotor settles exponentially; it is
+Positions are in half steps from the middle of the travel. Between commands the rotor settles exponentially;
+it is
 evaluated when somebody looks, so the focus costs nothing on the plant's grid.
 """
 
@@ -35,7 +37,8 @@ class FocusPort:
         self._driven = False
 
     def coils(self, t_ns: int, phase: int, energised: bool, hold: bool) -> None:
-        """Set the coils: half-step phase 0..7; not energised, the rotor stays, braked (`hold`) or by friction.
+        """Set the coils: half-step phase 0..7; not energised, the rotor stays, braked (`hold`) or by
+        friction.
 
         The field pulls the rotor to the nearest position of that phase; one exactly opposite cannot move it.
         """

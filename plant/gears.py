@@ -1,6 +1,7 @@
 """The gear table: what turns how often per turn of the telescope axis (paper, section 2.2).
 
-Orders are computed from the tooth counts, so that calibration can ask for "one tooth more" and get a table for it.
+Orders are computed from the tooth counts, so that calibration can ask for "one tooth more" and get a table
+for it.
 """
 
 from math import pi

@@ -1,6 +1,7 @@
 """Plant files: load, write, look up and override numbers.
 
-A plant file is YAML; every number is {value, unit, source}. Errors name file, line, field and the nearest valid word.
+A plant file is YAML; every number is {value, unit, source}. Errors name file, line, field and the nearest
+valid word.
 """
 
 import dataclasses
@@ -135,7 +136,9 @@ def _plain(part: Any) -> Any:
 
 def dumps(model: PlantModel) -> str:
     """Return the model as YAML text; `loads` gives the same model back."""
-    text: str = yaml.safe_dump({"format": FORMAT, **_plain(model)}, sort_keys=False, allow_unicode=True, width=110)
+    text: str = yaml.safe_dump(
+        {"format": FORMAT, **_plain(model)}, sort_keys=False, allow_unicode=True, width=110
+    )
     return text
 
 
@@ -145,7 +148,9 @@ def dump(model: PlantModel, path: str | Path) -> None:
 
 
 def numbers(model: PlantModel) -> dict[str, Number]:
-    """Return every number of the model by path, such as `axes.ra.friction.coulomb` or `axes.ra.effects.0.amplitude`."""
+    """Return every number of the model by path, such as `axes.ra.friction.coulomb` or
+    `axes.ra.effects.0.amplitude`.
+    """
     return dict(_walk(model, ""))
 
 
@@ -188,7 +193,11 @@ def _replaced(part: Any, words: list[str], path: str, value: float, source: str 
     if isinstance(part, tuple) and word.isdigit() and int(word) < len(part):
         k = int(word)
         return (*part[:k], _replaced(part[k], words[1:], path, value, source), *part[k + 1 :])
-    if isinstance(part, EffectModel) and len(words) == 1 and word in [p.name for p in REGISTRY[part.name].parameters]:
+    if (
+        isinstance(part, EffectModel)
+        and len(words) == 1
+        and word in [p.name for p in REGISTRY[part.name].parameters]
+    ):
         spec = REGISTRY[part.name].parameter(word)
         old = part.parameters.get(word, Number(spec.default, spec.unit, spec.source))
         new = Number(float(value), old.unit, old.source if source is None else source)

@@ -15,14 +15,22 @@ from plant.parts import AxisModel, PlantModel
 from plant.world import AXES, build, grid_ns
 
 TRUTH_COLUMNS = at.TRUTH_COLUMNS
-COLUMNS = ("effort", "position", "velocity", "currents", "tachometers")  # choice of channel_delay and log_wrap
+COLUMNS = (
+    "effort",
+    "position",
+    "velocity",
+    "currents",
+    "tachometers",
+)  # choice of channel_delay and log_wrap
 Sink = Callable[[str, NDArray[np.float64]], None]
 
 
 class Plant:
-    """Both axes on a fixed time grid, advanced when somebody looks; deterministic, whoever looks and how often.
+    """Both axes on a fixed time grid, advanced when somebody looks; deterministic, whoever looks and how
+    often.
 
-    start_steps: where things stand at time 0: `ra`, `dec` in steps of the absolute encoder, `focus` in half steps.
+    start_steps: where things stand at time 0: `ra`, `dec` in steps of the absolute encoder, `focus` in half
+    steps.
     """
 
     def __init__(self, model: PlantModel, seed: int, start_steps: Mapping[str, float] | None = None):
@@ -33,7 +41,7 @@ class Plant:
         angles = {name: start.get(name, 0.0) * TURN / 2 ** _bits(model, name) for name in AXES}
         self.model = model
         self.world = build(model, seed, angles)
-        self.view = memoryview(self.world.reshape(-1))
+        self.view = memoryview(self.world.reshape(-1).data).cast("B").cast("d")
         self.grid_ns = grid_ns(model)
         self.now_ns = 0
         self.next_ns = self.grid_ns
@@ -56,7 +64,9 @@ class Plant:
         advance(self.world, 0)  # fill the readings
 
     def advance(self, t_ns: int) -> None:
-        """Bring both axes to the last grid point at or before `t_ns`; going back is no error and does nothing."""
+        """Bring both axes to the last grid point at or before `t_ns`; going back is no error and does
+        nothing.
+        """
         if t_ns < self.next_ns:
             return
         steps = (t_ns - self.now_ns) // self.grid_ns
@@ -80,14 +90,18 @@ class Plant:
     def record(self, sink: Sink | None, period_ns: int = 10_000_000) -> None:
         """Hand the truth of both axes to `sink(axis, rows)` every `period_ns`, from now on; None ends it.
 
-        rows: float64 (n, 11), columns TRUTH_COLUMNS: t s, angle rad, rate rad/s, currents A, motor angles rad,
-        gear torques and friction N m at the axis, bristle rad. The array is the sink's own. Chunks are of up to 256.
+        rows: float64 (n, 11), columns TRUTH_COLUMNS: t s, angle rad, rate rad/s, currents A, motor angles
+        rad,
+        gear torques and friction N m at the axis, bristle rad. The array is the sink's own. Chunks are of up
+        to 256.
         """
         if self._sink is not None:
             self.flush()
         every = period_ns // self.grid_ns
         if sink is not None and (every < 1 or every * self.grid_ns != period_ns):
-            raise ValueError(f"plant: record: the period must be a multiple of the grid step, {self.grid_ns} ns")
+            raise ValueError(
+                f"plant: record: the period must be a multiple of the grid step, {self.grid_ns} ns"
+            )
         self._sink = sink
         self._every = every if sink is not None else 0
         self._room = self._every * (at.TRUTH_ROWS - 1)
@@ -110,7 +124,8 @@ class Plant:
     def log_effects(self, axis: str) -> list[tuple[str, dict[str, float]]]:
         """Return the effects of `axis` that the log writer has to apply, with parameters in SI units.
 
-        clock_jitter, sample_loss, log_wrap always; channel_delay only for the column `effort` (the plant delays the others).
+        clock_jitter, sample_loss, log_wrap always; channel_delay only for the column `effort` (the plant
+        delays the others).
         """
         part: AxisModel = getattr(self.model.axes, axis)
         found = []

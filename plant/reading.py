@@ -1,4 +1,6 @@
-"""From YAML nodes to the parts of a plant model, with errors that name file, line, field and the nearest word."""
+"""From YAML nodes to the parts of a plant model, with errors that name file, line, field and the nearest
+word.
+"""
 
 import dataclasses
 import difflib
@@ -54,7 +56,9 @@ class Reader:
         found = self.mapping(node, path)
         for word, (key, _) in found.items():
             if word not in required and word not in optional:
-                raise self.fail(key, f"{path}.{word}".lstrip("."), "unknown field; " + nearest(word, required + optional))
+                raise self.fail(
+                    key, f"{path}.{word}".lstrip("."), "unknown field; " + nearest(word, required + optional)
+                )
         for word in required:
             if word not in found:
                 raise self.fail(node, f"{path}.{word}".lstrip("."), "missing")
@@ -91,7 +95,9 @@ class Reader:
         given = self.scalar(fields["unit"], path + ".unit")
         fitting = [u for u in UNITS if UNITS[u][0] == UNITS[unit][0]]
         if given not in fitting:
-            raise self.fail(fields["unit"], path + ".unit", f"'{given}' does not fit; " + nearest(given, fitting))
+            raise self.fail(
+                fields["unit"], path + ".unit", f"'{given}' does not fit; " + nearest(given, fitting)
+            )
         scaled = value * factor(given, unit)
         slack = 1e-9 * max(abs(low), abs(high))
         if not low - slack <= scaled <= high + slack:
@@ -115,7 +121,9 @@ class Reader:
                 values[spec.name] = () if spec.name == "effects" else ""
             elif spec.metadata:
                 meta = spec.metadata
-                values[spec.name] = self.number(given[spec.name], here, meta["unit"], meta["low"], meta["high"])
+                values[spec.name] = self.number(
+                    given[spec.name], here, meta["unit"], meta["low"], meta["high"]
+                )
             elif kind is AxisModel and spec.name == "effects":
                 values[spec.name] = self.effects(given[spec.name], here)
             elif hints[spec.name] is str:
@@ -141,16 +149,30 @@ class Reader:
         effect = REGISTRY[name]
         if name == "unknown":
             given = self.fields(node, path, ["name", "function"], ["enabled"])
-            return EffectModel(name, function=self.function(given["function"], path + ".function"), enabled=self.flag(given, path))
+            return EffectModel(
+                name,
+                function=self.function(given["function"], path + ".function"),
+                enabled=self.flag(given, path),
+            )
         places = ["stage", "harmonic"] if effect.staged else []
-        given = self.fields(node, path, ["name"] + places[:1], ["parameters", "enabled", *places[1:]])
-        stage = self.choice(given["stage"], path + ".stage", list(effect.stages or STAGES)) if effect.staged else None
+        given = self.fields(node, path, ["name", *places[:1]], ["parameters", "enabled", *places[1:]])
+        stage = (
+            self.choice(given["stage"], path + ".stage", list(effect.stages or STAGES))
+            if effect.staged
+            else None
+        )
         harmonic = 1
         if "harmonic" in given:
             harmonic = int(self.real(given["harmonic"], path + ".harmonic"))
             if not 1 <= harmonic <= 1000:
-                raise self.fail(given["harmonic"], path + ".harmonic", "expected a whole number from 1 to 1000")
-        parameters = self.parameters(given["parameters"], path + ".parameters", effect) if "parameters" in given else {}
+                raise self.fail(
+                    given["harmonic"], path + ".harmonic", "expected a whole number from 1 to 1000"
+                )
+        parameters = (
+            self.parameters(given["parameters"], path + ".parameters", effect)
+            if "parameters" in given
+            else {}
+        )
         return EffectModel(name, stage, harmonic, parameters, None, self.flag(given, path))
 
     def flag(self, given: dict[str, yaml.Node], path: str) -> bool:
@@ -174,11 +196,17 @@ class Reader:
         given = self.fields(node, path, ["target", "domain", "knots", "source"], ["interpolation", "period"])
         target = self.choice(given["target"], path + ".target", list(TARGETS))
         domain = self.choice(given["domain"], path + ".domain", list(DOMAINS))
-        kind = self.choice(given["interpolation"], path + ".interpolation", ["linear", "cubic"]) if "interpolation" in given else "cubic"
+        kind = (
+            self.choice(given["interpolation"], path + ".interpolation", ["linear", "cubic"])
+            if "interpolation" in given
+            else "cubic"
+        )
         period = self.real(given["period"], path + ".period") if "period" in given else 0.0
         rows = given["knots"]
         if not isinstance(rows, yaml.SequenceNode) or not 1 <= len(rows.value) <= MAX_KNOTS:
-            raise self.fail(rows, path + ".knots", f"expected a list of 1 to {MAX_KNOTS} pairs [x, y], SI units")
+            raise self.fail(
+                rows, path + ".knots", f"expected a list of 1 to {MAX_KNOTS} pairs [x, y], SI units"
+            )
         knots: list[tuple[float, float]] = []
         for k, row in enumerate(rows.value):
             here = f"{path}.knots.{k}"
@@ -188,4 +216,6 @@ class Reader:
             if knots and x <= knots[-1][0]:
                 raise self.fail(row, here, "knots must rise in x")
             knots.append((x, y))
-        return Function(target, domain, kind, period, tuple(knots), self.scalar(given["source"], path + ".source"))
+        return Function(
+            target, domain, kind, period, tuple(knots), self.scalar(given["source"], path + ".source")
+        )

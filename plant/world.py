@@ -43,14 +43,18 @@ def _switches(axis: AxisModel) -> dict[str, float]:
     return changed
 
 
-def _axis(w: NDArray[np.float64], model: PlantModel, axis: AxisModel, seed: int, name: str, angle: float) -> None:
+def _axis(
+    w: NDArray[np.float64], model: PlantModel, axis: AxisModel, seed: int, name: str, angle: float
+) -> None:
     step = model.numerics.grid.si
     motor, gear, friction, encoders = axis.motor, axis.gear, axis.friction, axis.encoders
     switches = _switches(axis)
     resistance = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
     inertia = axis.inertia.si - switches["swinging"]
     if inertia <= 0.0:
-        raise ValueError(f"plant model: axes.{name}.effects: structural_mode swings more than the axis' inertia")
+        raise ValueError(
+            f"plant model: axes.{name}.effects: structural_mode swings more than the axis' inertia"
+        )
 
     w[at.GRID] = step
     w[at.INERTIA] = inertia

@@ -1,12 +1,12 @@
 """The current reading is shifted."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
-from plant.effects.signals import CURRENT, MOTOR, MEMORY, Hook
+from plant.effects.signals import MEMORY, MOTOR, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the error of the reading, A."""
     if p[MEMORY + 1] != 0.0 and p[MEMORY + 1] != x[MOTOR] + 1.0:
         return 0.0
@@ -18,7 +18,10 @@ EFFECT = Effect(
     channel="E",
     domain="current",
     equation="reading -> i + offset",
-    parameters=(Parameter("offset", "A", -1.0, 1.0, 0.05, "ASSUMPTION: amplifier offset; 6.1 mA per count"), MOTOR_CHOICE),
+    parameters=(
+        Parameter("offset", "A", -1.0, 1.0, 0.05, "ASSUMPTION: amplifier offset; 6.1 mA per count"),
+        MOTOR_CHOICE,
+    ),
     source=CATALOGUE,
     terms=(Term(Hook.CURRENT, formula),),
 )

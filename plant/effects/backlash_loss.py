@@ -1,12 +1,12 @@
 """The lagging motor holds less counter torque than friction: teeth part at reversal."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import COMMAND, LAGGING, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the change of the lagging motor's duty."""
     return -p[MEMORY] * x[COMMAND] if x[LAGGING] > 0.0 else 0.0
 

@@ -38,9 +38,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Term:
-    """One compiled formula and the hook it acts at; `update` advances its memory once per step."""
+    """One compiled formula and the hook it acts at; `update` advances its memory once per step.
 
-    hook: Hook | Literal["encoder"]
+    `encoder`: at the encoder that the parameter `encoder` or the stage names; `target`: where the function
+    says.
+    """
+
+    hook: Hook | Literal["encoder", "target"]
     formula: Formula
     update: Update | None = None
 

@@ -2,13 +2,13 @@
 
 from math import sin
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the torque, N m at the axis."""
     return p[MEMORY + 1] * sin(p[MEMORY] * x[ANGLE] + p[MEMORY + 2])
 

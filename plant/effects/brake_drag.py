@@ -1,12 +1,12 @@
 """Something starts to drag: a constant torque against the motion, from one moment to another."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import TIME, COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import COULOMB, MEMORY, STICTION, TIME, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Add the drag to Tc and Ts while it lasts."""
     if p[MEMORY + 1] <= x[TIME] < p[MEMORY + 1] + p[MEMORY + 2]:
         x[COULOMB] += p[MEMORY]

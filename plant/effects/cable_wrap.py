@@ -2,19 +2,19 @@
 
 from math import exp
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, RATE, MEMORY, Hook
+from plant.effects.signals import ANGLE, MEMORY, RATE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the torque, N m at the axis (p[0]: the hysteresis, -1..1)."""
     return -p[MEMORY] * (x[ANGLE] - p[MEMORY + 1]) - p[MEMORY + 2] * p[0]
 
 
 @inner
-def update(x, p, dt):  # type: ignore[no-untyped-def]
+def update(x: Floats, p: Floats, dt: float) -> None:
     """Dahl hysteresis, exact for a constant rate."""
     goal = 1.0 if x[RATE] > 0.0 else -1.0
     p[0] = goal + (p[0] - goal) * exp(-abs(x[RATE]) * dt / p[MEMORY + 3])

@@ -2,13 +2,13 @@
 
 The plant delays the reading itself; effort is delayed by the log writer."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the delay, s."""
     return p[MEMORY + 1]
 
@@ -19,7 +19,14 @@ EFFECT = Effect(
     domain="clock",
     equation="reading(t) -> reading(t - delay)",
     parameters=(
-        Parameter("column", "1", 0.0, 4.0, 1.0, "choice: 0 effort, 1 position, 2 velocity, 3 currents, 4 tachometers"),
+        Parameter(
+            "column",
+            "1",
+            0.0,
+            4.0,
+            1.0,
+            "choice: 0 effort, 1 position, 2 velocity, 3 currents, 4 tachometers",
+        ),
         Parameter("delay", "s", 0.0, 0.12, 0.005, "ASSUMPTION: one control period"),
     ),
     source=CATALOGUE,

@@ -1,12 +1,12 @@
 """The time stamps of the log jitter."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the deviation of a time stamp, s."""
     return p[MEMORY]
 

@@ -2,13 +2,13 @@
 
 from math import pi, sin
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import TIME, COMMAND, MOTOR, LAGGING, MEMORY, Hook
+from plant.effects.signals import LAGGING, MEMORY, MOTOR, TIME, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the change of the leading motor's duty."""
     if x[LAGGING] > 0.0:
         return 0.0

@@ -1,12 +1,12 @@
 """Coulomb friction differs from the declared one."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import COULOMB, MEMORY, STICTION, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale Tc; Ts never falls below it."""
     x[COULOMB] *= p[MEMORY]
     x[STICTION] = max(x[STICTION], x[COULOMB])

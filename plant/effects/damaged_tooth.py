@@ -2,13 +2,13 @@
 
 from math import exp, floor, pi
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, SHAFTS, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the torque, N m at the axis: a Gaussian pulse in the angle of the shaft."""
     turn = (p[MEMORY] * x[ANGLE] - p[MEMORY + 2]) / (2.0 * pi)
     away = (turn - floor(turn + 0.5)) * 2.0 * pi / p[MEMORY + 3]

@@ -1,12 +1,12 @@
 """The lagging motor drives current through its freewheel diode and brakes."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MOTOR_RATE, MOTOR, MEMORY, Hook
+from plant.effects.signals import MEMORY, MOTOR, MOTOR_RATE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the braking torque of the motor concerned, N m at the axis."""
     share = p[MEMORY]
     speed = x[MOTOR_RATE] if x[MOTOR] == 0.0 else -x[MOTOR_RATE]
@@ -20,7 +20,9 @@ EFFECT = Effect(
     domain="velocity",
     equation="T = a K N i_d, R i_d = K |w_motor| - drop, on the motor that turns against its pull",
     parameters=(
-        Parameter("share", "1", 0.0, 1.0, 1.0, "hardware.md 2.3: 0 is the paper's superposition, 1 the real diode"),
+        Parameter(
+            "share", "1", 0.0, 1.0, 1.0, "hardware.md 2.3: 0 is the paper's superposition, 1 the real diode"
+        ),
         Parameter("drop", "V", 0.0, 1.5, 0.0, "ASSUMPTION: forward voltage of the freewheel diode"),
     ),
     source="hardware.md 2.3; " + CATALOGUE,

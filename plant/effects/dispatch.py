@@ -2,7 +2,7 @@
 
 Kinds count the terms of the registry in its order; a test compares the two."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects import (
     adc_gain,
     adc_offset,
@@ -48,7 +48,7 @@ from plant.effects import (
 
 
 @inner
-def value(kind, x, p):  # type: ignore[no-untyped-def]
+def value(kind: int, x: Floats, p: Floats) -> float:
     """Return the value of one term, in the unit of its hook; friction terms change `x` in place."""
     if kind == 0:
         return stribeck_change.formula(x, p)
@@ -136,7 +136,7 @@ def value(kind, x, p):  # type: ignore[no-untyped-def]
 
 
 @inner
-def update(kind, x, p, dt):  # type: ignore[no-untyped-def]
+def update(kind: int, x: Floats, p: Floats, dt: float) -> None:
     """Advance the memory of one term by `dt` seconds."""
     if kind == 7:
         friction_warmup.update(x, p, dt)

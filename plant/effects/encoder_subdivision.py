@@ -2,13 +2,13 @@
 
 from math import sin
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, MEMORY
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the error of the reading, rad at the axis."""
     line = p[MEMORY] * x[ANGLE]
     return p[MEMORY + 1] * sin(line + p[MEMORY + 3]) + p[MEMORY + 2] * sin(2.0 * line)

@@ -1,14 +1,14 @@
 """One encoder drifts with the ambient temperature."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import TEMPERATURE, MEMORY
+from plant.effects.signals import MEMORY, TEMPERATURE
 
 REFERENCE = 20.0  # degC
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the error of the reading, rad at the axis."""
     return p[MEMORY] * (x[TEMPERATURE] - REFERENCE)
 

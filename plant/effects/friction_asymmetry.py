@@ -1,12 +1,12 @@
 """Friction differs between the two directions."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import RATE, SIGMA2, COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import COULOMB, MEMORY, RATE, SIGMA2, STICTION, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale Tc, Ts and sigma2 up in one direction and down in the other."""
     side = 1.0 if x[RATE] > 0.0 else -1.0
     x[COULOMB] *= 1.0 + side * p[MEMORY]

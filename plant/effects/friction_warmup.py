@@ -2,14 +2,15 @@
 
 from math import exp
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import RATE, SIGMA2, COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import COULOMB, MEMORY, RATE, SIGMA2, STICTION, Hook
+
 MOVING = 1e-6  # rad/s, 0.2 arcsec/s: below it the axis rests
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale Tc, Ts and sigma2 by 1 - a exp(-t / tau), t being time in motion."""
     factor = 1.0 - p[MEMORY] * (1.0 - p[0])
     x[COULOMB] *= factor
@@ -19,7 +20,7 @@ def formula(x, p):  # type: ignore[no-untyped-def]
 
 
 @inner
-def update(x, p, dt):  # type: ignore[no-untyped-def]
+def update(x: Floats, p: Floats, dt: float) -> None:
     """Warm towards 1 in motion and towards 0 at rest (p[0]: warmth)."""
     goal = 1.0 if abs(x[RATE]) > MOVING else 0.0
     p[0] += (goal - p[0]) * (1.0 - exp(-dt / p[MEMORY + 1]))

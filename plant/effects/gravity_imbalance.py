@@ -2,13 +2,13 @@
 
 from math import cos
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the torque, N m."""
     return p[MEMORY] * cos(x[ANGLE] - p[MEMORY + 1])
 
@@ -18,7 +18,12 @@ EFFECT = Effect(
     channel="T",
     domain="axis_angle",
     equation="T = m g r cos(angle - phase)",
-    parameters=(Parameter("amplitude", "N m", 0.0, 400.0, 40.0, "ASSUMPTION: below the drive's 420 N m (paper Table 1)"), PHASE),
+    parameters=(
+        Parameter(
+            "amplitude", "N m", 0.0, 400.0, 40.0, "ASSUMPTION: below the drive's 420 N m (paper Table 1)"
+        ),
+        PHASE,
+    ),
     source="paper 4: imbalances; " + CATALOGUE,
     terms=(Term(Hook.AXIS_TORQUE, formula),),
 )

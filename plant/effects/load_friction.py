@@ -1,12 +1,12 @@
 """Friction that grows with the torque the gears transmit."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import TORQUE, COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import COULOMB, MEMORY, STICTION, TORQUE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Add mu |T| to Tc and Ts."""
     change = p[MEMORY] * abs(x[TORQUE])
     x[COULOMB] += change
@@ -19,7 +19,9 @@ EFFECT = Effect(
     channel="T",
     domain="current",
     equation="Tc, Ts -> Tc, Ts + mu |T_gear|",
-    parameters=(Parameter("coefficient", "1", 0.0, 0.5, 0.1, "ASSUMPTION: gear efficiency 0.9 to 1, hardware.md 2.2"),),
+    parameters=(
+        Parameter("coefficient", "1", 0.0, 0.5, 0.1, "ASSUMPTION: gear efficiency 0.9 to 1, hardware.md 2.2"),
+    ),
     source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,

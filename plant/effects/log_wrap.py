@@ -1,12 +1,12 @@
 """A counter of the log wraps or saturates."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the number of bits that are kept."""
     return p[MEMORY + 1]
 
@@ -17,7 +17,14 @@ EFFECT = Effect(
     domain="clock",
     equation="column -> column modulo 2^bits, signed (mode 0), or clipped to it (mode 1)",
     parameters=(
-        Parameter("column", "1", 0.0, 4.0, 2.0, "choice: 0 effort, 1 position, 2 velocity, 3 currents, 4 tachometers"),
+        Parameter(
+            "column",
+            "1",
+            0.0,
+            4.0,
+            2.0,
+            "choice: 0 effort, 1 position, 2 velocity, 3 currents, 4 tachometers",
+        ),
         Parameter("bits", "1", 4.0, 29.0, 8.0, ASSUMED),
         Parameter("mode", "1", 0.0, 1.0, 0.0, "choice: 0 wrap, 1 saturate"),
     ),

@@ -1,12 +1,12 @@
 """The magnets are weaker than declared: torque and back EMF fall together."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
-from plant.effects.signals import MOTOR, MEMORY, Hook
+from plant.effects.signals import MEMORY, MOTOR, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the relative change of the torque constant."""
     if p[MEMORY + 1] != 0.0 and p[MEMORY + 1] != x[MOTOR] + 1.0:
         return 0.0

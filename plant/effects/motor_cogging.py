@@ -2,13 +2,13 @@
 
 from math import sin
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import MOTOR_ANGLE, MOTOR, MEMORY, Hook
+from plant.effects.signals import MEMORY, MOTOR, MOTOR_ANGLE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the torque, N m at the motor."""
     if p[MEMORY + 3] != 0.0 and p[MEMORY + 3] != x[MOTOR] + 1.0:
         return 0.0

@@ -2,13 +2,13 @@
 
 from math import cos
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, STAGES, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, COULOMB, STICTION, MEMORY, Hook
+from plant.effects.signals import ANGLE, COULOMB, MEMORY, STICTION, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Add a wave over the angle to Tc and Ts."""
     change = p[MEMORY + 1] * cos(p[MEMORY] * x[ANGLE] - p[MEMORY + 2])
     x[COULOMB] = max(0.0, x[COULOMB] + change)

@@ -1,12 +1,12 @@
 """Bristle stiffness and damping differ from the declared ones."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import SIGMA0, SIGMA1, MEMORY, Hook
+from plant.effects.signals import MEMORY, SIGMA0, SIGMA1, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale sigma0 and sigma1."""
     x[SIGMA0] *= p[MEMORY]
     x[SIGMA1] *= p[MEMORY + 1]

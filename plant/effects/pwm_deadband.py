@@ -1,12 +1,12 @@
 """The driver swallows the first part of each pulse."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import COMMAND, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the change of the duty."""
     return -min(x[COMMAND], p[MEMORY])
 
@@ -16,7 +16,9 @@ EFFECT = Effect(
     channel="E",
     domain="command",
     equation="duty -> max(0, duty - u0)",
-    parameters=(Parameter("deadband", "1", 0.0, 0.2, 0.01, "ASSUMPTION: gate delay of the IRF250 driver stage"),),
+    parameters=(
+        Parameter("deadband", "1", 0.0, 0.2, 0.01, "ASSUMPTION: gate delay of the IRF250 driver stage"),
+    ),
     source=CATALOGUE,
     terms=(Term(Hook.COMMAND, formula),),
 )

@@ -1,12 +1,12 @@
 """The friction roller is not 735:30: the incremental encoder has another scale."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the error of the incremental reading, rad at the axis."""
     return p[MEMORY] * x[ANGLE]
 

@@ -1,18 +1,18 @@
 """The friction roller loses travel while the axis accelerates hard."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import RATE, ACCELERATION, MEMORY, Hook
+from plant.effects.signals import ACCELERATION, MEMORY, RATE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the travel lost so far, rad at the axis (p[0])."""
     return p[0]
 
 
 @inner
-def update(x, p, dt):  # type: ignore[no-untyped-def]
+def update(x: Floats, p: Floats, dt: float) -> None:
     """Lose a share of the travel while the acceleration is above the threshold."""
     if abs(x[ACCELERATION]) > p[MEMORY + 1]:
         p[0] -= p[MEMORY] * x[RATE] * dt

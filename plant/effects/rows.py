@@ -50,7 +50,9 @@ def values(model: EffectModel) -> dict[str, float]:
     return result
 
 
-def vector(effect: Effect, order: float, parameters: Mapping[str, float], constants: Mapping[str, float]) -> list[float]:
+def vector(
+    effect: Effect, order: float, parameters: Mapping[str, float], constants: Mapping[str, float]
+) -> list[float]:
     """Return what follows the memory in a formula's `p`: [order,] parameters, constants; SI units."""
     start = [order] if effect.staged else []
     return [
@@ -88,7 +90,11 @@ def _hook(model: EffectModel, hook: Any, parameters: Mapping[str, float]) -> Hoo
 
 
 def write(
-    world: NDArray[np.float64], effects: tuple[EffectModel, ...], constants: Mapping[str, float], seed: int, axis: str
+    world: NDArray[np.float64],
+    effects: tuple[EffectModel, ...],
+    constants: Mapping[str, float],
+    seed: int,
+    axis: str,
 ) -> None:
     """Write the enabled effects of one axis into its row of the world; ValueError when they are too many.
 
@@ -100,15 +106,23 @@ def write(
             continue
         effect = REGISTRY[model.name]
         parameters = values(model)
-        numbers = _function(model.function) if model.function else vector(effect, order_of(model), parameters, constants)
+        numbers = (
+            _function(model.function)
+            if model.function
+            else vector(effect, order_of(model), parameters, constants)
+        )
         for term in effect.terms:
             hook = _hook(model, term.hook, parameters)
-            if hook in (Hook.SWITCH, Hook.LOG) or (hook is Hook.TRANSMISSION and parameters.get("kinematic") == 0.0):
+            if hook in (Hook.SWITCH, Hook.LOG) or (
+                hook is Hook.TRANSMISSION and parameters.get("kinematic") == 0.0
+            ):
                 continue
             memory = [0.0, 0.0, 0.0, number_from(seed, f"{axis}.{model.name}.{k}")]
             rows.append((hook, [float(hook), float(KINDS[term.formula]), *memory, *numbers]))
     if len(rows) > MAX_EFFECTS:
-        raise ValueError(f"plant model: axes.{axis}.effects: {len(rows)} effects, at most {MAX_EFFECTS} can act at once")
+        raise ValueError(
+            f"plant model: axes.{axis}.effects: {len(rows)} effects, at most {MAX_EFFECTS} can act at once"
+        )
     rows.sort(key=lambda row: row[0])  # stable: the file's order within a hook
     for place, (_, row) in enumerate(rows):
         start = EFFECTS + place * ROW

@@ -1,12 +1,12 @@
 """Packets of 25 samples are missing, samples are repeated."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
 from plant.effects.signals import MEMORY, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the share of packets that are lost."""
     return p[MEMORY]
 
@@ -17,7 +17,9 @@ EFFECT = Effect(
     domain="clock",
     equation="a packet is lost with probability p, a sample repeats its predecessor with probability q",
     parameters=(
-        Parameter("packet_loss", "1", 0.0, 0.9, 0.02, "paper 3.4: packets of 25 samples every 250 ms; share assumed"),
+        Parameter(
+            "packet_loss", "1", 0.0, 0.9, 0.02, "paper 3.4: packets of 25 samples every 250 ms; share assumed"
+        ),
         Parameter("repeats", "1", 0.0, 0.5, 0.0, ASSUMED),
     ),
     source=CATALOGUE,

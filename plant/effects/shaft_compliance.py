@@ -1,12 +1,12 @@
 """The trains wind up more than declared."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import TORQUE, MEMORY, Hook
+from plant.effects.signals import MEMORY, TORQUE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the extra wind-up of the axis behind the motors, rad."""
     return -p[MEMORY] * x[TORQUE]
 
@@ -16,7 +16,11 @@ EFFECT = Effect(
     channel="K",
     domain="current",
     equation="twist -> twist - c T_gear",
-    parameters=(Parameter("compliance", "arcsec/(N m)", 0.0, 2.0, 0.1, "ASSUMPTION: Table 1 winds up 0.067 arcsec per N m"),),
+    parameters=(
+        Parameter(
+            "compliance", "arcsec/(N m)", 0.0, 2.0, 0.1, "ASSUMPTION: Table 1 winds up 0.067 arcsec per N m"
+        ),
+    ),
     source=CATALOGUE,
     terms=(Term(Hook.SWITCH, formula),),
 )

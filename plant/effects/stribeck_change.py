@@ -1,12 +1,12 @@
 """Static friction, Stribeck rate or exponent differ from the declared ones."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import STICTION, STRIBECK_RATE, STRIBECK_EXPONENT, MEMORY, Hook
+from plant.effects.signals import MEMORY, STICTION, STRIBECK_EXPONENT, STRIBECK_RATE, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale Ts and the Stribeck rate, shift the exponent."""
     x[STICTION] *= p[MEMORY]
     x[STRIBECK_RATE] *= p[MEMORY + 1]

@@ -1,12 +1,12 @@
 """The supply gives way under load."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import SUPPLY_CURRENT, MEMORY, Hook
+from plant.effects.signals import MEMORY, SUPPLY_CURRENT, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the change of the supply, V."""
     return -p[MEMORY] * x[SUPPLY_CURRENT]
 

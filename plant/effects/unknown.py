@@ -1,21 +1,21 @@
 """An effect outside the catalogue: a smooth function of the domain it was found in, given by knots.
 
-Parameters are `target` (where it acts), `domain` (the signal it depends on), `kind` (1 linear, 3 cubic), `period`
+Parameters are `target` (where it acts), `domain` (the signal it depends on), `kind` (1 linear, 3 cubic),
+`period`
 (0: none; else the domain wraps, knots within one period), and up to 32 knots x0, y0, x1, y1 … in SI units."""
 
 from math import floor
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import Effect, Term
 from plant.effects.signals import MEMORY
-
 
 KNOTS = 32
 DOMAIN, KIND, PERIOD, COUNT, FIRST = 0, 1, 2, 3, 4  # places behind the memory; knots are x's, then y's
 
 
 @inner
-def slope(p, k, count):  # type: ignore[no-untyped-def]
+def slope(p: Floats, k: int, count: int) -> float:
     """Return the slope at a knot: that of the parabola through its neighbours, one-sided at the ends."""
     a = max(k - 1, 0)
     b = min(k + 1, count - 1)
@@ -31,7 +31,7 @@ def slope(p, k, count):  # type: ignore[no-untyped-def]
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the function of its domain at the signal vector; constant beyond the outer knots."""
     u = x[int(p[MEMORY + DOMAIN])]
     count = int(p[MEMORY + COUNT])

@@ -1,12 +1,12 @@
 """Viscous friction differs from the declared one."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import SIGMA2, MEMORY, Hook
+from plant.effects.signals import MEMORY, SIGMA2, Hook
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Scale sigma2."""
     x[SIGMA2] *= p[MEMORY]
     return 0.0

@@ -2,22 +2,21 @@
 
 from math import exp
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import CURRENT, MOTOR, MEMORY, Hook
-
+from plant.effects.signals import CURRENT, MEMORY, MOTOR, Hook
 
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 
 @inner
-def formula(x, p):  # type: ignore[no-untyped-def]
+def formula(x: Floats, p: Floats) -> float:
     """Return the change of the winding resistance of the motor concerned, ohm (p[0], p[1]: warmth, K)."""
     return p[MEMORY + 2] * COPPER * p[int(x[MOTOR])]
 
 
 @inner
-def update(x, p, dt):  # type: ignore[no-untyped-def]
+def update(x: Floats, p: Floats, dt: float) -> None:
     """First-order heating by i^2 R; called once per motor."""
     m = int(x[MOTOR])
     goal = p[MEMORY] * x[CURRENT] * x[CURRENT] * p[MEMORY + 2]

@@ -1,1 +1,3 @@
-"""Compiled kernels: flat arrays in, flat arrays out; nothing here knows a file, a name or a unit other than SI."""
+"""Compiled kernels: flat arrays in, flat arrays out; nothing here knows a file, a name or a unit other than
+SI.
+"""

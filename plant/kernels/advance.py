@@ -1,13 +1,13 @@
 """Advance whole axes over whole grid steps: the one call that the plant makes into compiled code."""
 
-from plant.compiled import entry, inner
+from plant.compiled import Floats, entry, inner
 from plant.kernels import layout as at
 from plant.kernels.readings import keep, read, record
 from plant.kernels.step import axis_step
 
 
 @inner
-def advance_axis(w, steps):  # type: ignore[no-untyped-def]
+def advance_axis(w: Floats, steps: int) -> None:
     """Advance one axis by `steps` grid steps and fill its readings."""
     h = w[at.GRID]
     every = int(w[at.RECORD_EVERY])
@@ -27,7 +27,7 @@ def advance_axis(w, steps):  # type: ignore[no-untyped-def]
 
 
 @entry
-def advance(world, steps):  # type: ignore[no-untyped-def]
+def advance(world: Floats, steps: int) -> None:
     """Advance every axis (rows of `world`, see layout.py) by `steps` grid steps."""
     for k in range(world.shape[0]):
         advance_axis(world[k], steps)

@@ -2,12 +2,13 @@
 
 T = sigma0 z + sigma1 dz/dt + sigma2 w,  dz/dt = w - |w| z / g(w),
 sigma0 g(w) = Tc + (Ts - Tc) exp(-(|w| / ws)^delta).
-The parameters are eight numbers of an array `w` from place `f` on (layout.F_*). For a constant rate the bristle relaxes exponentially, so its update is exact for any step (no |w| dt / g limit).
+The parameters are eight numbers of an array `w` from place `f` on (layout.F_*). For a constant rate the
+bristle relaxes exponentially, so its update is exact for any step (no |w| dt / g limit).
 """
 
 from math import exp
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.kernels.layout import (
     F_COULOMB,
     F_DECAY,
@@ -23,7 +24,7 @@ NEGLIGIBLE = 40.0  # exp(-40) is below the resolution of the sum it enters
 
 
 @inner
-def stribeck(rate, w, f):  # type: ignore[no-untyped-def]
+def stribeck(rate: float, w: Floats, f: int) -> float:
     """Return g(rate), rad: the bristle deflection of steady sliding."""
     x = abs(rate) / w[f + F_RATE]
     if w[f + F_EXPONENT] == 2.0:
@@ -37,7 +38,7 @@ def stribeck(rate, w, f):  # type: ignore[no-untyped-def]
 
 
 @inner
-def damping(rate, w, f):  # type: ignore[no-untyped-def]
+def damping(rate: float, w: Floats, f: int) -> float:
     """Return sigma1, N m s/rad, decayed with the rate when a decay rate is given (> 0)."""
     if w[f + F_DECAY] > 0.0:
         x = rate / w[f + F_DECAY]
@@ -46,14 +47,14 @@ def damping(rate, w, f):  # type: ignore[no-untyped-def]
 
 
 @inner
-def torque(rate, z, g, w, f):  # type: ignore[no-untyped-def]
+def torque(rate: float, z: float, g: float, w: Floats, f: int) -> float:
     """Return the friction torque, N m, against the motion."""
     flow = rate - abs(rate) * z / g
     return w[f + F_SIGMA0] * z + damping(rate, w, f) * flow + w[f + F_SIGMA2] * rate
 
 
 @inner
-def relax(z, rate, g, dt):  # type: ignore[no-untyped-def]
+def relax(z: float, rate: float, g: float, dt: float) -> float:
     """Return the bristle deflection after `dt` at constant rate: exact."""
     if rate == 0.0:
         return z
@@ -62,7 +63,7 @@ def relax(z, rate, g, dt):  # type: ignore[no-untyped-def]
 
 
 @inner
-def steady(rate, w, f):  # type: ignore[no-untyped-def]
+def steady(rate: float, w: Floats, f: int) -> float:
     """Return the torque of steady sliding at `rate`, N m, signed."""
     if rate == 0.0:
         return 0.0

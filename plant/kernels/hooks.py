@@ -1,11 +1,12 @@
 """Where effects enter the step: rows of numbers; an axis without rows skips all of it.
 
 All rows are evaluated in one place, at the start of a step, into one sum per hook. (One place also keeps the
-compiler from unfolding the catalogue a dozen times.) Gear torque, currents and acceleration are those of the step
+compiler from unfolding the catalogue a dozen times.) Gear torque, currents and acceleration are those of the
+step
 before.
 """
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects import signals as sig
 from plant.effects.dispatch import update, value
 from plant.effects.signals import HOOK_COUNT, MOTOR_HOOKS
@@ -13,7 +14,7 @@ from plant.kernels import layout as at
 
 
 @inner
-def fill_signals(w, t):  # type: ignore[no-untyped-def]
+def fill_signals(w: Floats, t: float) -> None:
     """Fill the signals of the axis and copy the declared friction behind them."""
     x = at.SIGNALS
     w[x + sig.TIME] = t
@@ -31,7 +32,7 @@ def fill_signals(w, t):  # type: ignore[no-untyped-def]
 
 
 @inner
-def evaluate(w, t, h):  # type: ignore[no-untyped-def]
+def evaluate(w: Floats, t: float, h: float) -> None:
     """Evaluate all rows for the step whose middle is `t`: sums per hook, friction parameters of this step."""
     fill_signals(w, t)
     x = w[at.SIGNALS : at.SIGNALS_END]

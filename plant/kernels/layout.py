@@ -4,7 +4,7 @@ One flat row per axis keeps the compiled call cheap (one array argument) and let
 through a memoryview. Positions are those of the step's middle (leapfrog), rates those of the grid point.
 """
 
-# --- state -----------------------------------------------------------------------------------------------------
+# --- state
 RATE = 0  # axis, rad/s, at the grid point
 ANGLE = 1  # axis, rad, half a step later
 RATE_BEFORE = 2  # one step earlier, to extrapolate the rate to the step's middle
@@ -20,11 +20,11 @@ SUPPLY_CURRENT = 21  # sum of duty * current of the last step, A
 ACCELERATION = 22  # last axis acceleration, rad/s2
 STEP = 23  # grid steps done
 
-# --- inputs ----------------------------------------------------------------------------------------------------
+# --- inputs
 DUTY = 24  # two: in force now, 0..1
 MEAN_DUTY = 26  # two: mean over the running grid step
 
-# --- readings at the grid point: pairs (value, change per nanosecond) -------------------------------------------
+# --- readings at the grid point: pairs (value, change per nanosecond)
 OUT = 28
 OUT_INCREMENTAL, OUT_ABSOLUTE, OUT_AUXILIARY = 0, 2, 4  # counts
 OUT_TACH_A, OUT_TACH_B = 6, 8  # counts
@@ -32,7 +32,7 @@ OUT_ANGLE = 10  # rad, truth
 OUT_CURRENT_A, OUT_CURRENT_B = 12, 13  # A
 OUT_SIZE = 14
 
-# --- parameters ------------------------------------------------------------------------------------------------
+# --- parameters
 INERTIA = 44  # axis without rotors and without the second mass, kg m2
 ROTOR_INERTIA = 45
 RATIO = 46
@@ -60,13 +60,13 @@ DECLARED_FRICTION = 78  # friction parameters as declared
 FRICTION_SIZE = 8
 F_SIGMA0, F_SIGMA1, F_SIGMA2, F_COULOMB, F_STICTION, F_RATE, F_EXPONENT, F_DECAY = range(FRICTION_SIZE)
 
-# --- signals: what an effect may depend on -----------------------------------------------------------------------
+# --- signals: what an effect may depend on
 SIGNALS = 88
 SIGNALS_SIZE = 16
 FRICTION_NOW = SIGNALS + SIGNALS_SIZE  # friction parameters of this step: part of the signal vector
 SIGNALS_END = FRICTION_NOW + FRICTION_SIZE
 
-# --- effects: rows sorted by hook --------------------------------------------------------------------------------
+# --- effects: rows sorted by hook
 ROWS_MOTOR = SIGNALS_END  # number of rows that act on each motor
 ROWS_ALL = ROWS_MOTOR + 1  # number of all rows
 SUMS = ROWS_ALL + 1  # sum of the values at each hook, for motor A; then of the motor hooks for motor B
@@ -77,7 +77,7 @@ ROW_KIND, ROW_MEMORY = 1, 2
 MEMORY_SIZE = 4
 MAX_EFFECTS = 32
 
-# --- rings -----------------------------------------------------------------------------------------------------
+# --- rings
 TRUTH = EFFECTS + ROW * MAX_EFFECTS
 TRUTH_COLUMNS = (
     "t",

@@ -2,7 +2,7 @@
 
 from math import exp
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
 from plant.kernels.drive import back_emf, winding
@@ -14,7 +14,7 @@ MOTOR_TORQUE = int(Hook.MOTOR_TORQUE)
 
 
 @inner
-def motor_step(w, m, voltage, h, sums):  # type: ignore[no-untyped-def]
+def motor_step(w: Floats, m: int, voltage: float, h: float, sums: int) -> float:
     """Advance winding and rotor of motor `m` (0: A, pulls +; 1: B, pulls -); return duty * mean current, A.
 
     sums: where the effects on this motor lie, zero without effects.

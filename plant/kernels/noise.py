@@ -15,7 +15,7 @@ UNIT = 1.0 / 9007199254740992.0  # 2**-53
 
 
 @inner
-def uniform(seed, count):  # type: ignore[no-untyped-def]
+def uniform(seed: np.uint64, count: np.uint64) -> float:
     """Return a number in (0, 1) for two unsigned integers."""
     bits = np.uint64(seed) + GOLDEN * np.uint64(count + ONE)
     bits = (bits ^ (bits >> SHIFT30)) * FIRST
@@ -25,8 +25,10 @@ def uniform(seed, count):  # type: ignore[no-untyped-def]
 
 
 @inner
-def normal(seed, count):  # type: ignore[no-untyped-def]
-    """Return a standard normal number for a seed and a count, both whole floats below 2**53 (Box and Muller)."""
+def normal(seed: float, count: float) -> float:
+    """Return a standard normal number for a seed and a count, both whole floats below 2**53 (Box and
+    Muller).
+    """
     base = np.uint64(seed)
     place = TWO * np.uint64(count)
     return sqrt(-2.0 * log(uniform(base, place))) * cos(2.0 * pi * uniform(base, place + ONE))

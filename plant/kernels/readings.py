@@ -1,6 +1,6 @@
 """What the sensors show at a grid point, as (value, change per nanosecond): reads in between extrapolate."""
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
 
@@ -14,7 +14,7 @@ NANO = 1e-9
 
 
 @inner
-def read(w):  # type: ignore[no-untyped-def]
+def read(w: Floats) -> None:
     """Fill the readings of one axis at the grid point."""
     half = 0.5 * w[at.GRID]
     rate = w[at.RATE]
@@ -47,7 +47,7 @@ def read(w):  # type: ignore[no-untyped-def]
 
 
 @inner
-def keep(w):  # type: ignore[no-untyped-def]
+def keep(w: Floats) -> None:
     """Copy the readings into the ring of delayed ones; the place follows from the step count."""
     row = at.DELAYS + (int(w[at.STEP]) % at.DELAY_ROWS) * at.OUT_SIZE
     for k in range(at.OUT_SIZE):
@@ -55,7 +55,7 @@ def keep(w):  # type: ignore[no-untyped-def]
 
 
 @inner
-def record(w, t):  # type: ignore[no-untyped-def]
+def record(w: Floats, t: float) -> None:
     """Append one row of truth (columns: layout.TRUTH_COLUMNS) to the ring."""
     half = 0.5 * w[at.GRID]
     row = at.TRUTH + (int(w[at.RECORDED]) % at.TRUTH_ROWS) * at.TRUTH_SIZE

@@ -1,10 +1,12 @@
 """One grid step of one axis: leapfrog for the mechanics, exact updates for the windings and the bristles.
 
-Rates live at grid points, angles and the bristle half a step later, so one evaluation of the torques per step is
-second order, and springs keep their energy. Rate-dependent torques use the rate extrapolated to the step's middle.
+Rates live at grid points, angles and the bristle half a step later, so one evaluation of the torques per
+step is
+second order, and springs keep their energy. Rate-dependent torques use the rate extrapolated to the step's
+middle.
 """
 
-from plant.compiled import inner
+from plant.compiled import Floats, inner
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
 from plant.kernels.drive import train
@@ -18,7 +20,7 @@ SUPPLY = at.SUMS + int(Hook.SUPPLY)
 
 
 @inner
-def gears(w, rate, error):  # type: ignore[no-untyped-def]
+def gears(w: Floats, rate: float, error: float) -> float:
     """Return the torque of both trains on the axis, N m, at the step's middle; keep each one's."""
     sum_of_both = 0.0
     scale = 1.0 / w[at.RATIO]
@@ -38,7 +40,7 @@ def gears(w, rate, error):  # type: ignore[no-untyped-def]
 
 
 @inner
-def axis_step(w, t, h):  # type: ignore[no-untyped-def]
+def axis_step(w: Floats, t: float, h: float) -> None:
     """Advance one axis from `t` to `t + h`, s."""
     rate = w[at.RATE]
     middle = 1.5 * rate - 0.5 * w[at.RATE_BEFORE]
