@@ -26,6 +26,8 @@ class Record:
     end_s: float | None = None
     failed: str = ""
     star: Star | None = None
+    focus_goal: float | None = None
+    """Where a focus step sends the housing, half steps."""
 
 
 class Programme:
@@ -147,7 +149,7 @@ class Programme:
             case "stop":
                 return manual.stop(client, given.get("axis", "both"))
             case "focus":
-                return _focus(client, given)
+                return _focus(client, given, record)
             case "park":
                 return self.pointing.park()
             case "wait":
@@ -164,10 +166,13 @@ def _device(client: Client, name: str) -> Device:
     return next(device for device in client.devices if device.name == name)
 
 
-def _focus(client: Client, given: dict[str, float | str | bool]) -> Procedure:
+def _focus(client: Client, given: dict[str, float | str | bool], record: Record) -> Procedure:
+    now = client.focus()
     if "to" in given:
+        record.focus_goal = float(given["to"])
         return focus.move_to(client, float(given["to"]))
     if "by" in given:
+        record.focus_goal = now.position + float(given["by"]) if now is not None else None
         return focus.step_by(client, float(given["by"]))
     if "state" in given:
         return focus.set_state(client, str(given["state"]))

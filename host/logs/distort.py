@@ -80,3 +80,19 @@ def _clip(bits: int) -> Callable[[int, bool], int]:
         return min(max(value, 0), size - 1) if unsigned else min(max(value, -half), half - 1)
 
     return clip
+
+
+def effort_delay(delay_s: float) -> Distortion:
+    """Show the effort late: the one in force `delay_s` earlier (the plant itself delays other columns)."""
+    past: list[tuple[float, int]] = []
+
+    def late(t: float, effort: int) -> int:
+        past.append((t, effort))
+        while len(past) > 1 and past[1][0] <= t - delay_s + 1e-9:
+            past.pop(0)
+        return past[0][1]
+
+    def distort(rows: list[Row]) -> list[Row]:
+        return [(t, sample._replace(effort=late(t, sample.effort))) for t, sample in rows]
+
+    return distort

@@ -1,0 +1,172 @@
+"""The command `schmidt`. Commands import what they need when they are called, so that it starts at once."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+from typing import Any, NoReturn
+
+import click
+
+UNUSABLE = 2
+INTERRUPTED = 130
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="schmidt", prog_name="schmidt")
+def cli() -> None:
+    """Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."""
+
+
+@cli.command()
+@click.argument("scenario", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<scenario>).")
+@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's.")
+@click.option("--plant", help="Another plant file, or the name of one that comes with schmidt.")
+@click.option(
+    "--speed",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Times real time (default: as fast as it goes).",
+)
+@click.option(
+    "--log-rate", type=click.FloatRange(0.01, 20), help="Lines per second of the status and sensor logs."
+)
+def run(
+    scenario: Path,
+    out: Path | None,
+    seed: int | None,
+    plant: str | None,
+    speed: float | None,
+    log_rate: float | None,
+) -> None:
+    """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
+    from scenarios import run as runner
+
+    folder = out if out is not None else Path("out") / scenario.stem
+    loaded, model = runner.prepare(scenario, seed, plant, speed, 1.0 / log_rate if log_rate else None)
+    with runner.bar(loaded, sys.stderr.isatty()) as progress:
+        result = runner.run(loaded, model, folder, progress)
+    for verdict in result.verdicts:
+        sign, limit = ("≤" if verdict.upper else "≥"), f"{verdict.limit:g}"
+        value = "no value" if verdict.value is None else f"{verdict.value:.4g}"
+        unit = "" if verdict.unit == "1" else f" {verdict.unit}"
+        reason = f"  ({verdict.reason})" if verdict.reason else ""
+        click.echo(
+            f"{'ok  ' if verdict.passed else 'MISS'} {verdict.name}: {value} {sign} {limit}{unit}{reason}"
+        )
+    summary = result.summary
+    click.echo(
+        f"{summary['simulated_s']:.1f} s simulated at {summary['real_time_factor']:.1f} times real time, "
+        f"digest {summary['trace_digest'][:16]}, report {folder / 'report.html'}"
+    )
+    if result.interrupted:
+        _fail(f"interrupted, logs up to t={summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
+    sys.exit(0 if result.passed else 1)
+
+
+@cli.command()
+@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the rows to this file.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("out/paper"), show_default=True)
+@click.pass_context
+def paper(context: click.Context, json_file: Path | None, out: Path) -> None:
+    """Repeat the paper's experiments E1 to E10 and print published against emulated figures."""
+    from scenarios.paper import command
+
+    sys.exit(command(json_file=json_file, out=out))
+
+
+@cli.command()
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0.")
+@click.option("--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
+@click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
+def serve(scenario: Path | None, channel: str, speed: float, seed: int, plant: str | None) -> None:
+    """Pace the network in real time and join it to a python-can interface."""
+    from scenarios import serve as server
+
+    given: dict[str, Any] = {
+        "scenario": scenario,
+        "can": channel,
+        "speed": speed,
+        "seed": seed,
+        "plant": plant,
+    }
+    sys.exit(server.serve(**given))
+
+
+@cli.command()
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--rig", type=click.Path(path_type=Path), help="Rig file of another drive.")
+@click.option("--hold-out", multiple=True, help="Run to hold out (repeatable).")
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="Output folder.")
+def calibrate(logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], out: Path) -> None:
+    """Find what the model lacks in measured LOGS and write the corrected plant."""
+    from plant.calibration.command import calibrate as command
+
+    sys.exit(command(list(logs), rig, list(hold_out), out))
+
+
+@cli.command()
+@click.option(
+    "--can", "channel", metavar="INTERFACE:CHANNEL", help="Test a served network (default: in process)."
+)
+@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
+def conformance(channel: str | None, json_file: Path | None) -> None:
+    """Run the protocol's conformance tests against a network."""
+    from bus.conformance.cli import conformance_command
+
+    sys.exit(conformance_command(channel, json_file))
+
+
+@cli.command()
+@click.argument("name", required=False)
+def effects(name: str | None) -> None:
+    """List the catalogue of effects, or describe one."""
+    from plant.effects import REGISTRY
+
+    if name is not None:
+        if name not in REGISTRY:
+            from scenarios.validate import nearest
+
+            raise ValueError(f"no effect is called {name!r}; {nearest(name, REGISTRY)}")
+        effect = REGISTRY[name]
+        click.echo(f"{effect.name}: {effect.equation}\nchannel {effect.channel}, seen over {effect.domain}")
+        if effect.stages:
+            click.echo(f"stages: {', '.join(effect.stages)}")
+        for each in effect.parameters:
+            click.echo(
+                f"  {each.name}: {each.default:g} {each.unit}, {each.low:g}..{each.high:g}; {each.source}"
+            )
+        return
+    for effect in REGISTRY.values():
+        click.echo(f"{effect.name:22} {effect.channel}  {effect.domain:12} {effect.equation}")
+
+
+def _fail(text: str, status: int) -> NoReturn:
+    click.echo(f"schmidt: {text}", err=True)
+    sys.exit(status)
+
+
+def _terminate(_signal: int, _frame: object) -> None:
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    """Run the command; whatever goes wrong is one line, never a traceback."""
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        cli.main(standalone_mode=False)
+    except click.exceptions.Abort:
+        _fail("interrupted", INTERRUPTED)
+    except click.ClickException as error:
+        _fail(" ".join(error.format_message().split()), UNUSABLE)
+    except KeyboardInterrupt:
+        _fail("interrupted", INTERRUPTED)
+    except (ValueError, OSError) as error:
+        _fail(" ".join(str(error).split()), UNUSABLE)
+    except ImportError as error:
+        _fail(f"this command needs a part that is not installed: {error}", UNUSABLE)
+    except Exception as error:
+        _fail(f"internal error, please report it: {type(error).__name__}: {' '.join(str(error).split())}", 70)

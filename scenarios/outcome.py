@@ -1,0 +1,80 @@
+"""What a finished (or interrupted) run leaves to be judged: the folder, the steps, the counters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from host.logs import traces
+from host.sky.catalogue import Star
+from host.sky.mount import STEPS_PER_TURN
+from host.sky.observed import observe_many
+from scenarios.model import Scenario
+from scenarios.programme import Record
+
+Array = npt.NDArray[np.float64]
+_RAD_PER_STEP = 2 * np.pi / STEPS_PER_TURN
+_KNOT_S = 1.0
+
+
+@dataclass
+class Outcome:
+    """Files by way of `folder`, everything else as it stood when the run ended."""
+
+    folder: Path
+    scenario: Scenario
+    records: list[Record]
+    counters: dict[str, Any]
+    bus: list[tuple[float, float, int]] = field(default_factory=list)
+    """(t s, load of the second before, frames so far), once a simulated second."""
+
+    def record(self, name: str) -> Record:
+        """The step of a name."""
+        return next(record for record in self.records if record.step.name == name)
+
+    def window(self, record: Record, settle_s: float = 0.0) -> tuple[float, float] | None:
+        """Start and end of a step, s, without its first `settle_s`; None when it has nothing to offer."""
+        if record.start_s is None or record.end_s is None or record.end_s <= record.start_s + settle_s:
+            return None
+        return record.start_s + settle_s, record.end_s
+
+    def truth(self, axis: str, low_s: float, high_s: float) -> tuple[Array, Array, Array]:
+        """Time s, true angle of the axis (rad, zero at hour angle or declination zero), true rate rad/s."""
+        rows = traces.read(self.folder / f"truth-{axis}.parquet", ("angle", "rate"), low_s, high_s)
+        scale = getattr(self.scenario.mount, axis)
+        return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
+
+    def host(self, low_s: float, high_s: float) -> dict[str, Array]:
+        """The host's own trace."""
+        return traces.read(
+            self.folder / "host.parquet",
+            ("ra_error_arcsec", "dec_error_arcsec", "focus_half_steps"),
+            low_s,
+            high_s,
+        )
+
+    def star_places(self, star: Star, t_s: Array) -> tuple[Array, Array]:
+        """Observed hour angle and declination, rad: exact every second, linear between (within 1e-6″)."""
+        knots = np.arange(np.floor(t_s[0]) - 1, np.ceil(t_s[-1]) + 2 * _KNOT_S, _KNOT_S)
+        hour_angle, declination, _, _ = observe_many(star, self.scenario.site, self.scenario.clock, knots)
+        return np.interp(t_s, knots, np.unwrap(hour_angle)), np.interp(t_s, knots, declination)
+
+    def axis_log(self, axis: str, low_s: float, high_s: float) -> dict[str, Array]:
+        """Columns t and velocity of the axis log, rows of the window."""
+        from pyarrow import csv
+
+        path = self.folder / f"axis-{axis}.csv"
+        with path.open() as file:
+            header = sum(1 for _ in iter(lambda: file.readline().startswith("#"), False))
+        table = csv.read_csv(
+            path,
+            read_options=csv.ReadOptions(skip_rows=header),
+            convert_options=csv.ConvertOptions(include_columns=["t", "velocity"]),
+        )
+        t, velocity = (table[name].to_numpy().astype(float) for name in ("t", "velocity"))
+        inside = (t >= low_s) & (t <= high_s)
+        return {"t": t[inside], "velocity": velocity[inside]}

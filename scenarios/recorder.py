@@ -1,0 +1,122 @@
+"""Everything a run leaves behind while it runs: can.log, the logs of the host, traces. All of it streams."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from bus.can.candump import CandumpWriter
+from bus.protocol import Device
+from bus.time import generator
+from host.logs import distort
+from host.logs.ascii import AsciiLogs
+from host.logs.axis import AxisLog, Distortion
+from host.logs.files import LogError
+from host.logs.space import check as check_space
+from host.logs.traces import Trace
+from scenarios.model import Scenario
+
+if TYPE_CHECKING:
+    from plant.plant import Plant
+
+AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
+HOST_COLUMNS = ("t_s", "ra_steps", "dec_steps", "ra_error_arcsec", "dec_error_arcsec", "focus_half_steps")
+FOCUS_COLUMNS = ("t_s", "true_half_steps", "encoder_counts")
+_HOST_UNITS = {"t_s": "s", "ra_error_arcsec": "arcsec", "dec_error_arcsec": "arcsec"}
+
+
+class Recorder:
+    """Owns every file of the output folder that grows during a run.
+
+    The digest is SHA-256 over can.log, the axis logs and the truth samples, in this order: nothing in it
+    depends on the wall clock, the speed factor or the folder.
+    """
+
+    def __init__(
+        self, folder: Path, scenario: Scenario, plant: Plant, headers: dict[str, dict[str, str]]
+    ) -> None:
+        self.folder = folder
+        check_space(folder)
+        self.ascii = AsciiLogs(folder, scenario.clock.iso)
+        self.axis = {
+            name: AxisLog(
+                folder / f"axis-{name}.csv", headers[name], _distortions(plant, name, scenario.seed)
+            )
+            for name in AXES
+        }
+        try:
+            self._can_file: BinaryIO = open(folder / "can.log", "wb")  # noqa: SIM115 (closed with the recorder)
+        except OSError as error:
+            raise LogError(f"{folder / 'can.log'}: cannot be written: {error.strerror}") from None
+        self.can = CandumpWriter(self._can_file)
+        self._can_digest = ""
+        from plant.plant import TRUTH_COLUMNS
+
+        columns = ("t_s", *(str(name) for name in TRUTH_COLUMNS[1:]))
+        self.truth = {name: Trace(folder / f"truth-{name}.parquet", columns, {"t_s": "s"}) for name in AXES}
+        self.host = Trace(folder / "host.parquet", HOST_COLUMNS, _HOST_UNITS)
+        self.focus = Trace(folder / "focus.parquet", FOCUS_COLUMNS, {"t_s": "s"})
+        self._truth_digest = {name: hashlib.sha256() for name in AXES}
+        self._plant = plant
+        plant.record(self._take_truth, round(scenario.trace_period_s * 1e9))
+
+    def _take_truth(self, axis: str, rows: npt.NDArray[np.float64]) -> None:
+        self._truth_digest[axis].update(np.ascontiguousarray(rows).tobytes())
+        self.truth[axis].append(rows)
+
+    def flush(self) -> None:
+        """Bring the text logs to disk and see whether there is room for what comes."""
+        check_space(self.folder)
+        self._guard(self.can.flush)
+        self.ascii.flush()
+        for log in self.axis.values():
+            log.file.flush()
+
+    def close(self) -> list[str]:
+        """Close everything, whatever fails; returns what could not be written."""
+        self._plant.record(None)
+        failures: list[str] = []
+        self._can_digest = self.can.hexdigest()
+        closers: list[Any] = [self.can.close, self._can_file.close]
+        closers += [file.close for file in self.ascii.files()]
+        closers += [log.file.close for log in self.axis.values()]
+        closers += [trace.close for trace in (*self.truth.values(), self.host, self.focus)]
+        for close in closers:
+            try:
+                self._guard(close)
+            except LogError as error:
+                failures.append(str(error))
+        return failures
+
+    def digest(self) -> str:
+        """The trace digest; call it after `close`."""
+        parts = [self._can_digest, *(self.axis[name].file.hexdigest() for name in AXES)]
+        parts += [self._truth_digest[name].hexdigest() for name in AXES]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+    def _guard(self, call: Any) -> None:
+        try:
+            call()
+        except OSError as error:
+            raise LogError(
+                f"{self.folder / 'can.log'}: {(error.strerror or 'cannot be written').lower()}"
+            ) from None
+
+
+def _distortions(plant: Plant, axis: str, seed: int) -> Distortion | None:
+    found: list[Distortion] = []
+    for index, (name, given) in enumerate(plant.log_effects(axis)):
+        random = generator(seed, f"log.{axis}.{name}.{index}")
+        if name == "sample_loss":
+            found.append(distort.sample_loss(given["packet_loss"], given["repeats"], random))
+        elif name == "clock_jitter":
+            found.append(distort.clock_jitter(given["deviation"], random))
+        elif name == "log_wrap":
+            found.append(distort.log_wrap(int(given["column"]), int(given["bits"]), given["mode"] >= 0.5))
+        elif name == "channel_delay":
+            found.append(distort.effort_delay(given["delay"]))
+    return distort.chain(found)

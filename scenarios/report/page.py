@@ -1,0 +1,78 @@
+"""`report.html`: one page with everything inside, and the figures as files beside it."""
+
+from __future__ import annotations
+
+import base64
+import io
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from host.logs.files import LogError
+from scenarios.evaluate import Verdict
+from scenarios.outcome import Outcome
+from scenarios.report.figures import FIGURES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LIBRARIES = ("numpy", "numba", "pyerfa", "python-can", "cantools", "pyarrow", "matplotlib")
+
+
+def write(outcome: Outcome, verdicts: list[Verdict], summary: dict[str, Any]) -> None:
+    """Draw the figures and write the page into the outcome's folder."""
+    import jinja2
+
+    pictures = []
+    for name, (title, draw) in FIGURES.items():
+        figure = draw(outcome)
+        if figure is not None:
+            pictures.append({"title": title, "data": _save(figure, outcome.folder / f"{name}.png")})
+    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+    template = jinja2.Environment(loader=loader, autoescape=True).get_template("page.html.j2")
+    text = template.render(
+        scenario=outcome.scenario,
+        verdicts=verdicts,
+        passed=all(verdict.passed for verdict in verdicts),
+        steps=_timeline(outcome),
+        summary=summary,
+        pictures=pictures,
+        versions=_versions(),
+        start=outcome.scenario.clock.iso(0.0),
+        files=sorted(path.name for path in outcome.folder.iterdir() if path.is_file()),
+    )
+    try:
+        (outcome.folder / "report.html").write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise LogError(f"{outcome.folder / 'report.html'}: {(error.strerror or '').lower()}") from None
+
+
+def _save(figure: Figure, path: Path) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    path.write_bytes(buffer.getvalue())
+    return base64.b64encode(buffer.getvalue()).decode()
+
+
+def _timeline(outcome: Outcome) -> list[dict[str, Any]]:
+    """Steps as bars: shares of the run's length in percent."""
+    length = max(outcome.counters["simulated_s"], 1e-9)
+    rows = []
+    for record in outcome.records:
+        row: dict[str, Any] = {"name": record.step.name, "action": record.step.action, "failed": record.failed}
+        if record.start_s is not None:
+            end_s = record.end_s if record.end_s is not None else length
+            row |= {
+                "start": record.start_s,
+                "seconds": end_s - record.start_s,
+                "left": 100 * record.start_s / length,
+                "width": max(0.3, 100 * (end_s - record.start_s) / length),
+            }
+        rows.append(row)
+    return rows
+
+
+def _versions() -> dict[str, str]:
+    found = {"schmidt": version("schmidt"), "Python": platform.python_version()}
+    return found | {name: version(name) for name in _LIBRARIES}

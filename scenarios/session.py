@@ -1,0 +1,139 @@
+"""One run, wired: plant, boards, host and recorder on one event queue."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from bus.protocol import Device
+from bus.time import generator
+from host.client import TICK_NS, Client
+from host.link import HidLink
+from host.logs.sensors import readings
+from host.serial_link import SerialLink
+from plant.model import PlantModel
+from plant.plant import Plant
+from scenarios import faults
+from scenarios.model import Scenario
+from scenarios.network import Network, build, config_from
+from scenarios.programme import Programme
+from scenarios.recorder import AXES, Recorder
+
+SERIAL = (Device.AXIS_RA, Device.AXIS_DEC, Device.POSITION_RA, Device.POSITION_DEC, Device.FOCUS)
+"""The five boards on RS232 (L3)."""
+_FOCUS_START = 40
+"""Half steps either side of the middle within which the focus is found at power-up. ASSUMPTION."""
+
+
+class Session:
+    """Everything of one run. Build it, call `advance` until `programme.finished`, then `recorder.close`."""
+
+    def __init__(self, scenario: Scenario, model: PlantModel, folder: Path) -> None:
+        self.scenario = scenario
+        self.plant = Plant(model, scenario.seed, start_steps(scenario))
+        self.recorder = Recorder(folder, scenario, self.plant, _headers(scenario, model))
+        faults.stick_sensors(self.plant, scenario.faults)
+        limits = {name: _limits(scenario, name) for name in AXES}
+        self.network: Network = build(config_from(scenario.network, limits), self.plant, scenario.seed)
+        self.network.wire.tap(self.recorder.can)
+        self.link = HidLink(self.network.hid.write)
+        self.network.hid.to_host = self.link.receive
+        self.client = Client(self.link, self.recorder.ascii)
+        self.serial = [self._serial(device) for device in SERIAL]
+        self.programme = Programme(scenario, self.client, self.recorder.ascii)
+        faults.apply(self.network, scenario.faults, scenario.seed)
+        self._status_ns = round(scenario.status_period_s * 1e9)
+        self._next_status_ns = 0
+        self._host_rows: list[tuple[float, ...]] = []
+        self._focus_rows: list[tuple[float, ...]] = []
+        self.network.queue.at(TICK_NS, self._tick)
+
+    def advance(self, t_ns: int) -> None:
+        """Let simulated time go on to `t_ns`."""
+        self.network.queue.run_until(t_ns)
+        self.flush_traces()
+
+    def flush_traces(self) -> None:
+        """Hand the host's rows to their traces."""
+        if self._host_rows:
+            self.recorder.host.append(np.array(self._host_rows))
+            self.recorder.focus.append(np.array(self._focus_rows))
+            self._host_rows.clear()
+            self._focus_rows.clear()
+
+    def _serial(self, device: Device) -> SerialLink:
+        axis = next((name for name, board in AXES.items() if board == device), None)
+        consume = self.recorder.axis[axis].packet if axis else (lambda _t, _packet: None)
+        link = SerialLink(device, self.recorder.ascii, consume)
+        self.network.uarts[device.name].sink = link.receive
+        return link
+
+    def _tick(self, t_ns: int) -> None:
+        self.client.now_ns = t_ns
+        self.programme.tick(t_ns)
+        self.client.tick(t_ns)
+        self._record(t_ns)
+        if t_ns >= self._next_status_ns:
+            self._next_status_ns += self._status_ns
+            self.recorder.ascii.sensors(t_ns, readings(self.client, self.scenario.mount))
+            for link in self.serial:
+                link.watch(t_ns)
+        self.network.queue.at(t_ns + TICK_NS, self._tick)
+
+    def _record(self, t_ns: int) -> None:
+        client = self.client
+        ra, dec = client.position(Device.POSITION_RA), client.position(Device.POSITION_DEC)
+        errors = self.programme.pointing.errors_arcsec()
+        focus = client.focus()
+        nan = float("nan")
+        self._host_rows.append(
+            (
+                t_ns * 1e-9,
+                ra.position if ra else nan,
+                dec.position if dec else nan,
+                *(errors or (nan, nan)),
+                focus.position if focus else nan,
+            )
+        )
+        port = self.plant.focus
+        self._focus_rows.append((t_ns * 1e-9, port.position(t_ns), float(port.encoder(t_ns))))
+
+
+def start_steps(scenario: Scenario) -> dict[str, float]:
+    """Where the telescope stands at first: parked, and the focus somewhere near the middle, by the seed."""
+    mount = scenario.mount
+    focus = generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1)
+    return {
+        "ra": mount.ra.steps(mount.park_hour_angle_rad),
+        "dec": mount.dec.steps(mount.park_declination_rad),
+        "focus": float(focus),
+    }
+
+
+def _limits(scenario: Scenario, axis: str) -> tuple[int, int]:
+    scale = getattr(scenario.mount, axis)
+    return scale.low_steps, scale.high_steps
+
+
+def _headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]:
+    """Header of each axis log; `loop` is open when every step that moves the axis directly is open loop."""
+    stamp = scenario.clock.iso(0.0)
+    name = model.name.lower()
+    headers = {}
+    for axis in AXES:
+        actions = {step.action for step in scenario.steps if step.arguments.get("axis") == axis}
+        closed = {step.action for step in scenario.steps} & {"goto", "park"} or actions & {"move", "set_rate"}
+        headers[axis] = {
+            "axis": axis,
+            "session": f"{scenario.name} seed {scenario.seed}",
+            "loop": "open" if "open_loop" in actions and not closed else "closed",
+            "start_utc": stamp,
+            "counter_torque": f"{model.controller.counter_split.si:.2f}",
+            "supply_V": f"{model.supply.voltage.si:g}",
+            "temperature_C": f"{scenario.site.temperature_c:g}",
+        }
+        for preload in ("low", "high"):
+            if preload in name:
+                headers[axis]["preload"] = preload
+    return headers
