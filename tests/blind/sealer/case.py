@@ -16,6 +16,7 @@ from tests.blind.sealer.drawn import Drawn
 from tests.blind.sealer.drive_runs import Trace, run_all, travel
 from tests.blind.sealer.manoeuvres import Run, plan
 
+ONE_SESSION = {"preload_change", "magnet_weakening", "brake_drag"}  # they begin at a time of the session
 TOP_DELAY_S = 0.05  # the kernel remembers 64 ms
 
 
@@ -51,18 +52,19 @@ def merged(effects: list[Drawn]) -> dict[str, float]:
     return out
 
 
-def set_size(effect: Drawn, ratio: float, drawn: Drive, runs: list[Run], seed: int) -> dict[str, float]:
-    """Scale the effect until its largest channel ratio is within 10 % of the wanted one; answer the ratios."""
+def set_size(
+    effect: Drawn, ratio: float, drawn: Drive, runs: list[Run], seed: int
+) -> tuple[dict[str, float], list[Trace]]:
+    """Scale the effect until its largest channel ratio is within 10 % of the wanted one; the ratios, the runs."""
     found: dict[str, float] = {}
-    for _ in range(4):
+    traces: list[Trace] = []
+    for _ in range(3):
         values = effect.values()
         traces = run_all(drawn, runs, values, seed)
         found = measure.ratios(drawn, traces, values, seed)
-        if effect.how != "measured":
-            return found
         top = max(found.values())
-        if 0.9 * ratio < top < 1.1 * ratio:
-            break
+        if effect.how != "measured" or 0.9 * ratio < top < 1.1 * ratio:
+            return found, traces
         effect.size *= float(np.clip(ratio / max(top, 1e-6), 0.02, 50.0))
         for key, value in effect.values().items():
             limit = {"DELAY_POS": TOP_DELAY_S, "DELAY_ADC": TOP_DELAY_S, "DELAY_TACH": TOP_DELAY_S,
@@ -71,7 +73,9 @@ def set_size(effect: Drawn, ratio: float, drawn: Drive, runs: list[Run], seed: i
                 effect.size *= limit / value
         if effect.name == "structural_mode" and effect.values()["J2"] > 0.5 * drawn.values["J"]:
             effect.size = 0.5 * drawn.values["J"] / effect.scaled["J2"]
-    return found
+    values = effect.values()
+    traces = run_all(drawn, runs, values, seed)
+    return measure.ratios(drawn, traces, values, seed), traces
 
 
 def truth_of(effect: Drawn, ratio: float, found: dict[str, float], poor: bool) -> dict[str, Any]:
@@ -105,19 +109,20 @@ def build(order: Order, seed: int) -> tuple[Drive, list[Trace], dict[str, float]
     number = int.from_bytes(digest[:4], "little")
     rng = np.random.default_rng(number)
     drawn = drive(rng, order.kind)
-    probes = [name for name in order.names]
-    single_session = any(name in ("preload_change", "magnet_weakening", "brake_drag") for name in probes)
+    single_session = bool(ONE_SESSION & set(order.names))
     runs = plan(rng, breakaway_effort(drawn), order.poor, 1 if single_session else None)
     span = travel(run_all(drawn, runs, {}, number)) if "position_friction" in order.names else 1.0
     effects: list[Drawn] = []
     entries: list[dict[str, Any]] = []
+    traces: list[Trace] = []
     for name in order.names:
         effect = (BY_NAME | OUTSIDE)[name](rng, drawn, span, order.ratio)
-        found = set_size(effect, order.ratio, drawn, runs, number)
+        found, traces = set_size(effect, order.ratio, drawn, runs, number)
         effects.append(effect)
         entries.append(truth_of(effect, order.ratio, found, order.poor))
     values = merged(effects)
-    traces = run_all(drawn, runs, values, number)
+    if len(effects) != 1:
+        traces = run_all(drawn, runs, values, number)
     used = {**drawn.values, **{k: v for k, v in values.items() if k in drawn.values}}
     truth = {
         "key": order.key, "cell": order.cell, "kind": order.kind, "seed": seed, "poor": order.poor,

@@ -34,15 +34,33 @@ def tooth_pulse(turns: float, width: float) -> float:
 
 
 @compiled
+def friction_effects(p: Array) -> bool:
+    """Whether any friction effect is on (most cases have none, and this is in the inner loop)."""
+    return (
+        p[p_.ASYM_C] != 0.0 or p[p_.ASYM_V] != 0.0 or p[p_.POSF_A] != 0.0 or p[p_.LOADF] != 0.0
+        or p[p_.WARM_A] != 0.0 or p[p_.PRELOAD_A] != 0.0 or p[p_.BRAKE_T] != 0.0
+    )  # fmt: skip
+
+
+@compiled
+def sine(on: float, order: float, angle: float, phase: float) -> float:
+    """sin(order * angle + phase), or 0 when its amplitude `on` is 0."""
+    return math.sin(order * angle + phase) if on != 0.0 else 0.0
+
+
+@compiled
 def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
     """Levels of friction: warm-up, preload, position, load, brake."""
+    q[r_.Q_BREAKAWAY] = q[r_.Q_VISCOUS] = q[r_.Q_LEVEL] = 1.0
+    q[r_.Q_COULOMB_ADD] = 0.0
+    if not friction_effects(p):
+        return
     load = p[p_.RATIO] * (p[p_.KA] * s[6] + p[p_.KB] * s[7])
     warm = p[p_.WARM_A] * math.exp(-t / p[p_.WARM_TAU]) if p[p_.WARM_A] != 0.0 else 0.0
     pre = p[p_.PRELOAD_A] * onset(t, p[p_.PRELOAD_T0], p[p_.PRELOAD_RAMP])
     q[r_.Q_BREAKAWAY] = 1.0 + pre
     q[r_.Q_VISCOUS] = 1.0 + pre
     q[r_.Q_LEVEL] = 1.0 + warm
-    q[r_.Q_COULOMB_ADD] = 0.0
     plain = r_.friction_level(s[1], q, p)
     add = p[p_.LOADF] * load + p[p_.BRAKE_T] * onset(t, p[p_.BRAKE_T0], 0.0)
     add += p[p_.POSF_A] * math.sin(p[p_.POSF_ORDER] * s[0] + p[p_.POSF_PH])
@@ -60,15 +78,15 @@ def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
 def hold_axis(s: Array, m: Array, extra: float, q: Array, p: Array, e: Array) -> None:
     """Torques and kinematic errors over the angles."""
     theta = s[0]
-    torque = extra + p[p_.GRAV_A] * math.cos(theta - p[p_.GRAV_PH]) - p[p_.QUAD] * s[1] * abs(s[1])
+    torque = extra + p[p_.GRAV_A] * sine(p[p_.GRAV_A], 1.0, theta, 0.5 * math.pi - p[p_.GRAV_PH]) - p[p_.QUAD] * s[1] * abs(s[1])
     torque -= p[p_.CABLE_K] * (theta - p[p_.CABLE_TH0])
     if p[p_.CABLE_H] != 0.0:
         torque -= p[p_.CABLE_H] * m[2] / p[p_.CABLE_SCALE]
     for i in range(STOPS):
         if p[p_.PREI_A] != 0.0:
             torque -= p[p_.PREI_A] / STOPS * m[3 + i] / (p[p_.PREI_W] * (i + 1) / STOPS)
-    one = math.sin(p[p_.L1_ORDER] * theta + p[p_.L1_PH])
-    two = math.sin(p[p_.L2_ORDER] * theta + p[p_.L2_PH])
+    one = sine(p[p_.L1_T], p[p_.L1_ORDER], theta, p[p_.L1_PH])
+    two = sine(p[p_.L2_T], p[p_.L2_ORDER], theta, p[p_.L2_PH])
     tooth = 0.0
     if p[p_.TOOTH_WIDTH] > 0.0:
         tooth = tooth_pulse(p[p_.TOOTH_ORDER] * theta / (2.0 * math.pi) + p[p_.TOOTH_PH], p[p_.TOOTH_WIDTH])
@@ -110,8 +128,9 @@ def hold_motors(t: float, burst: float, s: Array, m: Array, duty: Array, q: Arra
         e[0] += sign * (k - k0) * current
         if p[p_.DIODE] > 0.0 and duty[side] <= 0.0:  # the open switch hides this current from the sense resistor
             e[0] += sign * k * current
-    q[r_.Q_KFA] = q[r_.Q_KA] * (1.0 + p[p_.RIP_A] * math.cos(p[p_.RIP_N] * s[2] + p[p_.RIP_PH]))
-    cog = p[p_.COG_A] * math.sin(p[p_.COG_N] * s[2] + p[p_.COG_PH])
+    wave = sine(p[p_.RIP_A], p[p_.RIP_N], s[2], p[p_.RIP_PH])
+    q[r_.Q_KFA] = q[r_.Q_KA] * (1.0 + p[p_.RIP_A] * wave)
+    cog = p[p_.COG_A] * sine(p[p_.COG_A], p[p_.COG_N], s[2], p[p_.COG_PH])
     e[0] += ratio * (cog + (q[r_.Q_KFA] - q[r_.Q_KA]) * s[6])
     q[r_.Q_TORQUE_A] = cog
     q[r_.Q_TORQUE_B] = 0.0

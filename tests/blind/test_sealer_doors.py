@@ -1,0 +1,35 @@
+"""The sealer imports no room, and no room imports the sealer."""
+
+import ast
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+ROOMS = {"boards", "bus", "plant", "host", "scenarios"}
+
+
+def imported(path: Path) -> set[str]:
+    """Full names of the modules a file imports, wherever in the file."""
+    out: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            out |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            assert node.level == 0, f"{path}: relative import"
+            out |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return out
+
+
+def test_the_sealer_knows_no_room() -> None:
+    files = sorted((ROOT / "tests" / "blind" / "sealer").glob("*.py"))
+    assert len(files) > 10
+    for path in files:
+        for name in imported(path):
+            assert name.split(".")[0] not in ROOMS, f"{path.name} imports {name}"
+            if name.startswith("tests."):
+                assert name.startswith("tests.blind.sealer"), f"{path.name} imports {name}"
+
+
+def test_no_room_knows_the_tests() -> None:
+    for room in sorted(ROOMS):
+        for path in (ROOT / room).rglob("*.py"):
+            assert not {name for name in imported(path) if name.split(".")[0] == "tests"}, path
