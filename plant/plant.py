@@ -52,7 +52,7 @@ class Plant:
         ports = []
         for row, name in enumerate(AXES):
             axis: AxisModel = getattr(model.axes, name)
-            delays = _delays(axis)
+            delays = delays_ns(axis)
             limit = (at.DELAY_ROWS - 2) * self.grid_ns
             if max(delays.values()) > limit:
                 raise ValueError(f"plant: axes.{name}: channel_delay beyond {limit * 1e-9:g} s")
@@ -142,8 +142,8 @@ def _bits(model: PlantModel, axis: str) -> int:
     return int(part.encoders.absolute.si)
 
 
-def _delays(axis: AxisModel) -> dict[str, int]:
-    """Return the delay of each column, ns."""
+def delays_ns(axis: AxisModel) -> dict[str, int]:
+    """Return the delay of each column of the log (COLUMNS), ns: the effects called channel_delay."""
     delays = dict.fromkeys(COLUMNS, 0)
     for effect in axis.effects:
         if effect.enabled and effect.name == "channel_delay":

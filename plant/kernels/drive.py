@@ -21,15 +21,19 @@ def winding(current: float, target: float, decay: float, blend: float) -> tuple[
 
 
 @inner
-def back_emf(speed: float, constant: float, diode: float, drop: float) -> float:
+def back_emf(speed: float, constant: float, applied: float, leads: bool, diode: float, drop: float) -> float:
     """Return the voltage that opposes the current, V; `speed` counts positive in the motor's own direction.
 
-    A lagging motor (speed < 0) drives current through its freewheel diode. The paper leaves that out
-    (superposition); `diode` 0..1 is the share of it that acts, `drop` the diode's forward voltage.
+    Turned against its pull, the leading motor's EMF adds to the applied voltage, but no more than that voltage (a
+    switch that is off conducts nothing), and the lagging motor gives the torque of its duty alone: the paper's
+    superposition. In truth the EMF drives current through the freewheel diode; `diode` 0..1 is the share of that,
+    `drop` the diode's forward voltage.
     """
-    if speed < 0.0:
-        return diode * min(0.0, constant * speed + drop)
-    return constant * speed
+    emf = constant * speed
+    if emf >= 0.0:
+        return emf
+    free = max(emf, -applied) if leads else 0.0
+    return free + diode * (min(0.0, emf + drop) - free)
 
 
 @inner

@@ -33,8 +33,10 @@ def motor_step(w: Floats, m: int, voltage: float, h: float, sums: int) -> float:
         decay = exp(-resistance * h / w[at.INDUCTANCE])
         blend = (1.0 - decay) * w[at.INDUCTANCE] / (resistance * h)
 
-    opposing = back_emf(side * middle, constant, w[at.DIODE], w[at.DIODE_DROP])
-    goal = (duty * voltage - opposing) / resistance
+    applied = duty * voltage
+    leads = w[at.MEAN_DUTY + m] >= w[at.MEAN_DUTY + 1 - m]
+    opposing = back_emf(side * middle, constant, applied, leads, w[at.DIODE], w[at.DIODE_DROP])
+    goal = (applied - opposing) / resistance
     current, mean = winding(w[o + at.M_CURRENT], goal, decay, blend)
     load = w[o + at.M_GEAR] / w[at.RATIO] + w[at.ROTOR_DRAG] * middle
     torque = side * constant * mean + w[sums + MOTOR_TORQUE] - load

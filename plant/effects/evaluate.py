@@ -1,0 +1,76 @@
+"""The formulas of the effects over the columns of a log: what calibration fits is what the kernel calls."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from plant.compiled import Floats, entry
+from plant.effects import REGISTRY
+from plant.effects.base import Term
+from plant.effects.dispatch import update, value
+from plant.effects.rows import KINDS, vector
+from plant.effects.signals import MEMORY, RATE, SIGMA0, TIME, VECTOR, Hook
+from plant.kernels.friction import steady
+from plant.kernels.layout import ROW, ROW_MEMORY
+
+
+@entry
+def values_over(kind: int, rows: Floats, p: Floats, y: Floats) -> None:
+    """Fill y with a term's values, memory advancing with the time column."""
+    for k in range(rows.shape[0]):
+        if k > 0:
+            update(kind, rows[k], p, rows[k, TIME] - rows[k - 1, TIME])
+        y[k] = value(kind, rows[k], p)
+
+
+@entry
+def friction_over(kind: int, rows: Floats, p: Floats, y: Floats) -> None:
+    """Fill y with the change of the steady friction torque on the axis, N m, positive accelerates."""
+    for k in range(rows.shape[0]):
+        x = rows[k]
+        if k > 0:
+            update(kind, x, p, x[TIME] - rows[k - 1, TIME])
+        before = steady(x[RATE], x, SIGMA0)
+        value(kind, x, p)
+        y[k] = before - steady(x[RATE], x, SIGMA0)
+
+
+def signals(count: int, columns: Mapping[int, Floats]) -> Floats:
+    """Return `count` signal vectors with the given columns (plant/effects/signals.py), zero elsewhere."""
+    rows = np.zeros((count, VECTOR))
+    for place, column in columns.items():
+        rows[:, place] = column
+    return rows
+
+
+def evaluate(
+    name: str,
+    rows: Floats,
+    parameters: Mapping[str, float],
+    *,
+    order: float = 0.0,
+    constants: Mapping[str, float] | None = None,
+    term: int = 0,
+    memory: Floats | None = None,
+) -> Floats:
+    """Return one value per row, in the unit of the term's hook.
+
+    rows: (n, VECTOR) signal vectors in time order. parameters: SI units, all of them. order: cycles per axis turn,
+    for staged effects. constants: those the effect names. memory: 4 numbers to start from. Friction terms need the
+    friction parameters in the vectors and give the change of the steady torque on the axis, N m.
+    """
+    effect = REGISTRY[name]
+    chosen: Term = effect.terms[term]
+    p = np.zeros(ROW - ROW_MEMORY)
+    numbers = vector(effect, order, parameters, constants or {})
+    p[MEMORY : MEMORY + len(numbers)] = numbers
+    if memory is not None:
+        p[:MEMORY] = memory
+    y = np.zeros(len(rows))
+    kind = KINDS[chosen.formula]
+    work = np.array(rows, dtype=float)
+    if chosen.hook == Hook.FRICTION:
+        friction_over(kind, work, p, y)
+    else:
+        values_over(kind, work, p, y)
+    return y

@@ -1,0 +1,139 @@
+"""The axis board's velocity loop around one axis, in one compiled loop.
+
+The arithmetic is the firmware's: gains in Q12, errors and effort in Q16, effort limited where it accumulates,
+counter torque as a rounded percentage, current read before the new duty. A test compares it with the emulator.
+"""
+
+from math import floor
+
+from plant.compiled import Floats, entry, inner
+from plant.kernels import layout as at
+from plant.kernels.advance import advance_axis
+
+# columns of a log row
+T, SETPOINT, EFFORT, POSITION, VELOCITY, ADC_A, ADC_B, TACH_A, TACH_B, AUX, LOG_SIZE = range(11)
+# columns of a truth row
+(
+    TRUE_ANGLE,
+    TRUE_RATE,
+    CURRENT_A,
+    CURRENT_B,
+    MOTOR_A,
+    MOTOR_B,
+    GEAR_A,
+    GEAR_B,
+    FRICTION,
+    BRISTLE,
+    DUTY_A,
+    DUTY_B,
+    TRUTH_SIZE,
+) = range(13)
+# settings of a run
+KP, KI, STEPS, SPLIT, TICK_STEPS, LATENCY, AMPERE, DELAYS, SETTINGS = 0, 1, 2, 3, 4, 5, 6, 7, 12
+LATE_POSITION, LATE_VELOCITY, LATE_CURRENT, LATE_TACH = DELAYS + 1, DELAYS + 2, DELAYS + 3, DELAYS + 4
+HALF = 1 << 15
+ADC_TOP = 1023  # 10 bit
+EFFORT_SCALE = 3000  # log: effort in 1/3000 of the supply
+
+
+@inner
+def reading(w: Floats, place: int, delay: float) -> float:
+    """Return a reading now, or as it was `delay` s ago."""
+    if delay <= 0.0:
+        return w[at.OUT + place]
+    back = w[at.STEP] - delay / w[at.GRID]
+    step = max(1, int(floor(back)))
+    row = at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
+    if place >= at.OUT_CURRENT_A:
+        return w[row + place]
+    return w[row + place] + w[row + place + 1] * max(0.0, back - step) * w[at.GRID] * 1e9
+
+
+@inner
+def truth_row(w: Floats, row: Floats) -> None:
+    """Fill one row of truth at the grid point."""
+    a = at.MOTORS
+    b = a + at.MOTOR_SIZE
+    half = 0.5 * w[at.GRID]
+    row[TRUE_ANGLE] = w[at.OUT + at.OUT_ANGLE]
+    row[TRUE_RATE] = w[at.RATE]
+    row[CURRENT_A] = w[a + at.M_CURRENT]
+    row[CURRENT_B] = w[b + at.M_CURRENT]
+    row[MOTOR_A] = w[a + at.M_ANGLE] - half * w[a + at.M_RATE]
+    row[MOTOR_B] = w[b + at.M_ANGLE] - half * w[b + at.M_RATE]
+    row[GEAR_A] = w[a + at.M_GEAR]
+    row[GEAR_B] = w[b + at.M_GEAR]
+    row[FRICTION] = w[at.FRICTION]
+    row[BRISTLE] = w[at.BRISTLE]
+    row[DUTY_A] = w[at.DUTY]
+    row[DUTY_B] = w[at.DUTY + 1]
+
+
+@inner
+def apply_effort(w: Floats, effort: int, s: Floats) -> None:
+    """Write both duty registers; they count after the latency of interrupt and PWM period."""
+    steps = int(s[STEPS])
+    size = abs(effort)
+    counter = (size * int(s[SPLIT]) + 50) // 100
+    lead = size / steps
+    lag = counter / steps
+    rest = 1.0 - s[LATENCY] / w[at.GRID]
+    for m in range(2):
+        duty = lead if (effort >= 0) == (m == 0) else lag
+        w[at.MEAN_DUTY + m] += (duty - w[at.DUTY + m]) * rest
+        w[at.DUTY + m] = duty
+
+
+@entry
+def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Floats, truth: Floats) -> None:
+    """Run one axis: two control ticks per log row.
+
+    w: the axis' row of the world. s: settings. setpoint, effort: per tick; Q16 counts per tick (a whole number, or
+    NaN: open loop) and PWM steps (used in open loop). log, truth: one row per two ticks, filled here.
+    """
+    tick_steps = int(s[TICK_STEPS])
+    steps = int(s[STEPS])
+    limit = steps << 16
+    kp = int(s[KP])
+    ki = int(s[KI])
+    held = 0  # Q16 PWM steps
+    last_error = 0
+    last_count = int(floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY])))
+    last_a = int(floor(reading(w, at.OUT_TACH_A, s[LATE_TACH])))
+    last_b = int(floor(reading(w, at.OUT_TACH_B, s[LATE_TACH])))
+    for tick in range(2 * log.shape[0]):
+        count = int(floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY])))
+        velocity = count - last_count
+        last_count = count
+        wanted = setpoint[tick]
+        if wanted == wanted:
+            error = int(wanted) - (velocity << 16)
+            held += (kp * (error - last_error) + ki * error) >> 12
+            held = max(-limit, min(limit, held))
+            last_error = error
+        else:
+            # bumpless when the loop closes: the set point follows the axis
+            held = int(floor(effort[tick] + 0.5)) << 16
+            held = max(-limit, min(limit, held))
+            last_error = 0
+        output = (held + HALF) >> 16
+        if tick % 2 == 0:
+            row = log[tick // 2]
+            row[T] = w[at.STEP] * w[at.GRID]
+            row[SETPOINT] = wanted
+            row[EFFORT] = output * EFFORT_SCALE // steps
+            row[POSITION] = floor(reading(w, at.OUT_ABSOLUTE, s[LATE_POSITION]))
+            row[VELOCITY] = velocity
+            for m in range(2):
+                ampere = reading(w, at.OUT_CURRENT_A + m, s[LATE_CURRENT])
+                row[ADC_A + m] = max(0.0, min(ADC_TOP, floor(ampere * s[AMPERE])))
+            now_a = int(floor(reading(w, at.OUT_TACH_A, s[LATE_TACH])))
+            now_b = int(floor(reading(w, at.OUT_TACH_B, s[LATE_TACH])))
+            row[TACH_A] = now_a - last_a
+            row[TACH_B] = now_b - last_b
+            last_a = now_a
+            last_b = now_b
+            row[AUX] = floor(reading(w, at.OUT_AUXILIARY, s[LATE_POSITION]))
+            truth_row(w, truth[tick // 2])
+        apply_effort(w, output, s)
+        advance_axis(w, tick_steps)

@@ -1,0 +1,165 @@
+"""One axis with its velocity loop in one compiled call: for parameter search and calibration.
+
+Same kernels as the plant, same arithmetic as the axis board; columns as in the axis log. About a thousand times
+real time and more; the emulator's boards, bus and clocks are left out.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant.gears import ARCSEC, TURN
+from plant.kernels import control as at_control
+from plant.kernels import layout as at
+from plant.kernels.advance import advance
+from plant.kernels.control import control_loop
+from plant.kernels.friction import stribeck
+from plant.parts import AxisModel, PlantModel
+from plant.plant import delays_ns
+from plant.world import AXES, build, grid_ns
+
+Floats = NDArray[np.float64]
+ADC_COUNTS_PER_A = (
+    0.1 * 8.0 / 5.0 * 1024.0
+)  # 0.1 ohm (paper), gain 8 and 5 V (hardware.md 2.3): 6.1 mA per count
+LATENCY_S = 65e-6  # 40 us of interrupt routine and half a PWM period of 50 us, as the axis board takes
+SAMPLE_S = 0.010  # paper, section 3.4
+TRUTH_COLUMNS = (
+    "angle",  # rad
+    "rate",  # rad/s
+    "current_a",  # A
+    "current_b",
+    "motor_angle_a",  # rad
+    "motor_angle_b",
+    "gear_torque_a",  # N m at the axis
+    "gear_torque_b",
+    "friction",  # N m
+    "bristle",  # rad
+    "duty_a",  # before this tick's new effort
+    "duty_b",
+)
+
+
+@dataclass(frozen=True)
+class LogColumns:
+    """Columns of the axis log (units as in log-format.md: raw counts), and the truth beside them.
+
+    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last 5 ms,
+    adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by TRUTH_COLUMNS.
+    """
+
+    t: Floats
+    setpoint: Floats
+    effort: Floats
+    position: Floats
+    velocity: Floats
+    adc_a: Floats
+    adc_b: Floats
+    tach_a: Floats
+    tach_b: Floats
+    aux: Floats
+    truth: dict[str, Floats]
+
+
+def simulate(
+    model: PlantModel,
+    axis: str,
+    duration: float,
+    *,
+    setpoint: float | Floats | None = None,
+    effort: float | Floats | None = None,
+    seed: int = 0,
+    start_steps: float = 0.0,
+    start_rate: float = 0.0,
+    adc_counts_per_A: float = ADC_COUNTS_PER_A,
+) -> LogColumns:
+    """Run `axis` (`ra` or `dec`) for `duration` s and return its log.
+
+    setpoint: arcsec/s, a number or one value per 10 ms sample (closed loop where it is not NaN). effort: 1/3000 of
+    the supply, a number or one value per sample (open loop where there is no set point; between samples the mean of
+    two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s, both motors and the bristle
+    following. Raises ValueError for shapes that do not fit, or when neither is given.
+    """
+    if axis not in AXES:
+        raise ValueError(f"simulate: axis '{axis}' is not known; expected ra or dec")
+    rows = round(duration / SAMPLE_S)
+    if rows < 1:
+        raise ValueError("simulate: the duration must be at least one sample of 0.01 s")
+    if setpoint is None and effort is None:
+        raise ValueError("simulate: give a set point or an effort")
+    part: AxisModel = getattr(model.axes, axis)
+    w = build(model, seed, {axis: start_steps * TURN / 2 ** int(part.encoders.absolute.si)})[AXES.index(axis)]
+    if start_rate:
+        _start(w, start_rate * ARCSEC)
+    settings = _settings(model, part, adc_counts_per_A)
+    w[at.DELAY_ON] = float(settings[at_control.DELAYS :].any())
+    advance(w.reshape(1, -1), 0)
+
+    counts = part.encoders.incremental.si * part.encoders.roller_ratio.si * model.controller.period.si
+    wanted = np.repeat(_column(setpoint, rows, np.nan, "setpoint"), 2)
+    ticks = np.rint(wanted * ARCSEC / TURN * counts * 65536.0)
+    log = np.zeros((rows, at_control.LOG_SIZE))
+    truth = np.zeros((rows, at_control.TRUTH_SIZE))
+    control_loop(w, settings, ticks, _between(_column(effort, rows, 0.0, "effort"), model), log, truth)
+
+    mask = 2.0 ** int(part.encoders.absolute.si)
+    log[:, at_control.POSITION] %= mask
+    log[:, at_control.AUX] %= 2.0 ** int(part.encoders.auxiliary.si)
+    log[:, at_control.SETPOINT] = wanted[::2]
+    columns = [np.ascontiguousarray(log[:, k]) for k in range(at_control.LOG_SIZE)]
+    return LogColumns(
+        *columns, {name: np.ascontiguousarray(truth[:, k]) for k, name in enumerate(TRUTH_COLUMNS)}
+    )
+
+
+def _column(given: float | Floats | None, rows: int, absent: float, name: str) -> Floats:
+    if given is None:
+        return np.full(rows, absent)
+    values = np.asarray(given, dtype=float)
+    if values.ndim == 0:
+        return np.full(rows, float(values))
+    if values.shape != (rows,):
+        raise ValueError(f"simulate: {name} has {values.size} values for {rows} samples")
+    return values
+
+
+def _between(effort: Floats, model: PlantModel) -> Floats:
+    """Return PWM steps per tick: the samples, and between two samples their mean."""
+    steps = effort * model.controller.pwm_steps.si / at_control.EFFORT_SCALE
+    ticks = np.repeat(steps, 2)
+    ticks[1:-1:2] = 0.5 * (steps[:-1] + steps[1:])
+    return ticks
+
+
+def _settings(model: PlantModel, part: AxisModel, adc: float) -> Floats:
+    """Return the settings vector of the loop kernel."""
+    c = model.controller
+    grid = grid_ns(model)
+    tick = round(c.period.si * 1e9)
+    if tick % grid or grid < LATENCY_S * 1e9:
+        raise ValueError(f"simulate: the control period must be a multiple of the grid step, {grid} ns")
+    s = np.zeros(at_control.SETTINGS)
+    s[at_control.KP] = round(c.kp.si * 4096)
+    s[at_control.KI] = round(c.ki.si * 4096)
+    s[at_control.STEPS] = c.pwm_steps.si
+    s[at_control.SPLIT] = round(c.counter_split.si * 100)
+    s[at_control.TICK_STEPS] = tick // grid
+    s[at_control.LATENCY] = LATENCY_S
+    s[at_control.AMPERE] = adc
+    s[at_control.DELAYS :] = [delay * 1e-9 for delay in delays_ns(part).values()]
+    return s
+
+
+def _start(w: Floats, rate: float) -> None:
+    """Set the axis, both motors and the bristle in steady motion at `rate`, rad/s."""
+    w[at.RATE] = w[at.RATE_BEFORE] = rate
+    w[at.DIRECTION] = np.sign(rate)
+    w[at.STRIBECK] = stribeck.py_func(rate, w, at.DECLARED_FRICTION)  # type: ignore[attr-defined]
+    w[at.BRISTLE] = np.sign(rate) * w[at.STRIBECK]
+    half = 0.5 * w[at.GRID]
+    w[at.ANGLE] += half * rate
+    for m in range(2):
+        o = at.MOTORS + m * at.MOTOR_SIZE
+        w[o + at.M_RATE] = w[o + at.M_RATE_BEFORE] = rate * w[at.RATIO]
+        w[o + at.M_ANGLE] += half * rate * w[at.RATIO]
