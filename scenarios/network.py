@@ -3,10 +3,11 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from math import pi
 from typing import Any
 
 from boards.axis import AxisBoard, AxisConfig, AxisPins
-from boards.axis.config import STEPS_PER_TURN
+from boards.axis.config import COUNTS_PER_TURN, STEPS_PER_TURN, TICK_NS
 from boards.core import Board
 from boards.display import DisplayBoard
 from boards.focus import FocusBoard, FocusConfig, FocusPins
@@ -19,6 +20,8 @@ from bus.can import Wire
 from bus.protocol import Device
 from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
+from plant.gears import RATIO
+from plant.parts import AxisModel, PlantModel
 from plant.plant import Plant
 
 CRYSTAL_PPM = 50.0
@@ -30,6 +33,13 @@ CRYSTAL_PHASE_NS = 1_000_000_000
 _FRAME_BITS = 120
 """Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
 _MAXIMUM_NODES = 64
+POINTING_BANDWIDTH = 22.0
+"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors
+against the axis (about 130 rad/s, 5 % damped), which 10 ms of delay would otherwise drive."""
+_POINTING_KI = 0.04
+"""Ki/Kp while the axis slides: 8 rad/s. ASSUMPTION."""
+_CREEP_KI = 0.15
+"""Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
 
 
 class NetworkError(ValueError):
@@ -129,12 +139,37 @@ def crystal(seed: int, name: str, settings: NodeConfig) -> Oscillator:
     )
 
 
-def axis_config(plant: Plant, limits: tuple[int, int], bitrate: int) -> AxisConfig:
-    """Settings of an axis board that belong to the plant file's drive: gains, split, PWM."""
-    controller = plant.model.controller
+def _inertia(axis: AxisModel) -> float:
+    """Load and both rotors at the axis, kg m2."""
+    return axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2
+
+
+def _unit_gain(model: PlantModel, axis: AxisModel) -> float:
+    """PWM steps that accelerate the axis by 1 count/5 ms in a second."""
+    motor, controller = axis.motor, model.controller
+    ohm = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
+    volts = model.supply.voltage.si * (1.0 - controller.counter_split.si) / controller.pwm_steps.si
+    torque_per_step = volts / ohm * motor.torque_constant.si * RATIO
+    counts_per_rad_s = COUNTS_PER_TURN / (2 * pi) * TICK_NS * 1e-9
+    return _inertia(axis) / (torque_per_step * counts_per_rad_s)
+
+
+def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) -> AxisConfig:
+    """Settings of an axis board that follow from the plant's drive: gains, split, PWM.
+
+    The file's Kp and Ki are those of the RA axis; the other axis gets them scaled by its inertia.
+    """
+    model = plant.model
+    controller = model.controller
+    part: AxisModel = getattr(model.axes, axis)
+    scale = _unit_gain(model, part) / _unit_gain(model, model.axes.ra)
+    pointing = POINTING_BANDWIDTH * _unit_gain(model, part)
     return AxisConfig(
-        kp=controller.kp.si,
-        ki=controller.ki.si,
+        kp=controller.kp.si * scale,
+        ki=controller.ki.si * scale,
+        kp_pointing=pointing,
+        ki_pointing=pointing * _POINTING_KI,
+        ki_creep=pointing * _CREEP_KI,
         counter_split=round(controller.counter_split.si * 100),
         pwm_steps=round(controller.pwm_steps.si),
         pwm_hz=round(controller.pwm_frequency.si),
@@ -170,7 +205,7 @@ class _Wiring:
     def axis(self, device: Device) -> Board:
         axis, port = self.port(device)
         pins = AxisPins(port.incremental, port.drive, port.current)
-        settings = axis_config(self.plant, self.limits(axis), self.config.bitrate)
+        settings = axis_config(self.plant, axis, self.limits(axis), self.config.bitrate)
         side = axis.upper()
         motors = (int(Device[f"MOTOR_{side}_A"]), int(Device[f"MOTOR_{side}_B"]))
         position = int(Device[f"POSITION_{side}"])

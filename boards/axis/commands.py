@@ -133,13 +133,13 @@ def axis_commands(board: "AxisBoard") -> dict[int, Handler]:
 
 def axis_parameters(board: "AxisBoard") -> list[Parameter]:
     """Parameters 1..11; what depends on one is worked out again when it changes."""
-    motion, pi, limits = board.motion, board.pi, board.limits
+    motion, limits = board.motion, board.limits
 
     def set_kp(value: int) -> None:
-        pi.kp_q12 = value
+        motion.set_gains(value, motion.ki_q12)
 
     def set_ki(value: int) -> None:
-        pi.ki_q12 = value
+        motion.set_gains(motion.kp_q12, value)
 
     def set_low(value: int) -> None:
         motion.low = value
@@ -164,8 +164,8 @@ def axis_parameters(board: "AxisBoard") -> list[Parameter]:
 
     return [
         Parameter(1, "counter_split_percent", *_SPLIT_BOUNDS, lambda: board.split, board.set_split),
-        Parameter(2, "kp_q12", 0, _GAIN_BOUND, lambda: pi.kp_q12, set_kp),
-        Parameter(3, "ki_q12", 0, _GAIN_BOUND, lambda: pi.ki_q12, set_ki),
+        Parameter(2, "kp_q12", 0, _GAIN_BOUND, lambda: motion.kp_q12, set_kp),
+        Parameter(3, "ki_q12", 0, _GAIN_BOUND, lambda: motion.ki_q12, set_ki),
         Parameter(4, "soft_limit_low_steps", 0, STEPS_PER_TURN - 1, lambda: motion.low, set_low),
         Parameter(5, "soft_limit_high_steps", 0, STEPS_PER_TURN - 1, lambda: motion.high, set_high),
         Parameter(

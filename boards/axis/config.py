@@ -40,6 +40,11 @@ class AxisConfig:
         (hardware.md 2.3: 25 % is not compatible with 24 V at slew for some motor constants).
     pwm_steps, pwm_hz: resolution and frequency of the motor PWM.
     position_gain: 1/s, of the position loop around the velocity loop (ASSUMPTION).
+    kp_pointing, ki_pointing: gains of the velocity loop inside the position loop, and for stopping
+        (ASSUMPTION: the paper has no position loop).
+    ki_creep: instead of ki_pointing while the reference creeps. Below `creep_rate` (Q16 counts/5 ms) the
+        bearings' bristles make the axis a spring, which wants, and bears, more integral action than a
+        sliding mass.
     correction: largest rate the position loop adds, Q16 counts/5 ms.
     lag_steps: following error at which the profile waits for the axis.
     acceleration: Q16 counts/5 ms per 5 ms (Table 1: 12.583 rad/s2 at the motor = 2 deg/s2).
@@ -54,7 +59,11 @@ class AxisConfig:
     split_fade_counts: int = 0
     pwm_steps: int = 3000
     pwm_hz: int = 20_000
-    position_gain: float = 2.0
+    position_gain: float = 6.0
+    kp_pointing: float = 1.0
+    ki_pointing: float = 0.04
+    ki_creep: float = 0.15
+    creep_rate: int = rate_q16(200.0)
     correction: int = rate_q16(300.0)
     lag_steps: int = steps(900.0)
     acceleration: int = rate_q16(7200.0) // _TICKS_PER_S

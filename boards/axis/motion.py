@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
 
@@ -27,12 +28,21 @@ class Motion:
     """Set point generator. `setpoint(t_ns, velocity)` is replaced when the mode changes; Q16 counts/tick."""
 
     __slots__ = (
-        "_correction", "_frame_ns", "_gain", "_lag", "_settle", "acceleration", "classes", "good_ns",
-        "high", "latch_ns", "low", "mode", "near_ticks", "position", "profile", "rate", "selected",
-        "setpoint", "setpoint_q16", "wanted_q16",
+        "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_pointing",
+        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "classes", "good_ns",
+        "high", "ki_q12", "kp_q12", "latch_ns", "low", "mode", "near_ticks", "position",
+        "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
     )  # fmt: skip
 
-    def __init__(self, config: AxisConfig) -> None:
+    def __init__(self, config: AxisConfig, pi: IncrementalPi) -> None:
+        self._pi = pi
+        self._creep_rate = config.creep_rate << _RATE_TO_UNIT
+        self._kp_pointing, self._ki_pointing, self._ki_creep = (
+            round(gain * (1 << GAIN_SHIFT))
+            for gain in (config.kp_pointing, config.ki_pointing, config.ki_creep)
+        )
+        self.kp_q12 = pi.kp_q12
+        self.ki_q12 = pi.ki_q12
         self.acceleration = config.acceleration
         self.classes = list(config.classes)
         self.low = config.low
@@ -101,6 +111,10 @@ class Motion:
     def run(self, mode: AxisMode, rate_q16: int) -> None:
         """Velocity modes: go to `rate_q16` with the set acceleration and stay there."""
         self.mode = mode
+        if mode is AxisMode.STOP:
+            self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_pointing
+        else:
+            self._velocity_gains()
         self.wanted_q16 = rate_q16
         self.rate = 0
         self.setpoint = self._ramp
@@ -138,7 +152,19 @@ class Motion:
         self.profile.rate = self.rate << _RATE_TO_UNIT
         self.profile.take_over(self.measured(t_ns, velocity), self.setpoint_q16 << _RATE_TO_UNIT)
         self.near_ticks = 0
+        self._pi.kp_q12 = self._kp_pointing
         self.setpoint = self._point
+
+    def _velocity_gains(self) -> None:
+        self._pi.kp_q12 = self.kp_q12
+        self._pi.ki_q12 = self.ki_q12
+
+    def set_gains(self, kp_q12: int, ki_q12: int) -> None:
+        """Gains of RATE and CLASS; in force at once there, with the next change of mode elsewhere."""
+        self.kp_q12 = kp_q12
+        self.ki_q12 = ki_q12
+        if self.mode in (AxisMode.RATE, AxisMode.CLASS):
+            self._velocity_gains()
 
     # --- set points -------------------------------------------------------------------------------
     def _idle(self, _t_ns: int, _velocity: int) -> int:
@@ -171,6 +197,8 @@ class Motion:
         lag = self._lag
         if not -lag < error < lag:  # the axis cannot follow: the reference waits for it
             profile.remaining += error - (lag if error > 0 else -lag)
+        creeping = -self._creep_rate < feed < self._creep_rate
+        self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         correction = error * self._gain >> 18
         limit = self._correction
         if correction > limit:
