@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.problem import Problem
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import orthonormal_blocks
+from plant.calibration.statistics.tails import chi2_log10
 
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
 
@@ -41,7 +41,7 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
     null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
     if not candidates:
         return Look(null, [])
-    share = np.maximum(_share(problem, null, base, candidates, True), _share(problem, null, base, candidates, False))
+    share = _share(problem, null, base, candidates, True)
     chosen: list[Contender] = []
     seen: dict[object, int] = {}
     for k in np.argsort(-share):
@@ -87,7 +87,7 @@ def fit_with(problem: Problem, base: Array, candidate: Candidate, null: Fit) -> 
     at = slice(p, p + candidate.width)
     gain = fit.loglik - null.loglik * fit.rows / null.rows
     wald = float(fit.beta[at] @ np.linalg.pinv(fit.covariance[at, at], hermitian=True) @ fit.beta[at])
-    evidence = min(float(-chi2.logsf(wald, candidate.width) / np.log(10)), 1e6)
+    evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0
     bayes = gain / effect - candidate.width / 2 * float(np.log(fit.rows))
     return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, at)

@@ -60,7 +60,10 @@ def gls(y: Array, x: Array, valid: Mask, order: int, block: int = 200, rounds: i
 def block_covariance(x: Array, e: Array, block: int) -> Array:
     """Sandwich covariance with scores summed over blocks of rows, small-sample corrected."""
     n, p = x.shape
-    bread = np.linalg.pinv(x.T @ x, rcond=1e-12, hermitian=True)
+    size = np.sqrt(np.einsum("ij,ij->j", x, x))
+    size[size == 0] = 1.0
+    x = x / size
+    bread = np.linalg.pinv(x.T @ x, rcond=1e-11, hermitian=True)
     edges = np.arange(0, n, block)
     scores = np.add.reduceat(x * e[:, None], edges, axis=0)
     count = len(edges)
@@ -69,4 +72,4 @@ def block_covariance(x: Array, e: Array, block: int) -> Array:
     robust = bread @ meat @ bread
     # a sum over few blocks can come out too small by luck: never below the white-noise value
     lift = np.sqrt(np.maximum(np.diag(naive) / np.maximum(np.diag(robust), 1e-300), 1.0))
-    return np.asarray(robust * np.outer(lift, lift))
+    return np.asarray(robust * np.outer(lift, lift) / np.outer(size, size))

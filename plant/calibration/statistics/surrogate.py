@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
 from plant.calibration.readers.run import Array
+from plant.calibration.statistics.tails import chi2_log10
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,6 @@ class Scores:
         """Fraction of surrogates whose maximum reaches ours (never zero)."""
         top = float(self.value.max()) if len(self.value) else 0.0
         return float((1 + np.sum(self.surrogate_max >= top)) / (1 + len(self.surrogate_max)))
-
-
-def neg_log10_p(gain: Array, dof: Array) -> Array:
-    """-log10 of the chi2 tail, finite for huge gains."""
-    return np.asarray(-chi2.logsf(gain, dof) / np.log(10.0))
 
 
 def orthonormal_blocks(x: Array, base: Array, widths: list[int]) -> tuple[Array, list[int]]:
@@ -90,7 +85,7 @@ def score(e: Array, noise: Array, q: Array, widths: list[int], block: int, draws
         nulls[:, k] = np.sum((null[:, at:at + width] @ half) ** 2, axis=1)
         at += width
     dof = np.maximum(np.array(widths), 1)
-    value = neg_log10_p(gain, dof)
+    value = chi2_log10(gain, dof)
     value[np.array(widths) == 0] = 0.0
-    largest = neg_log10_p(nulls, dof[None, :]).max(axis=1) if len(widths) else np.zeros(draws)
+    largest = chi2_log10(nulls, dof[None, :]).max(axis=1) if len(widths) else np.zeros(draws)
     return Scores(value, gain, float(np.quantile(largest, level)), largest)

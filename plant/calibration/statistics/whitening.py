@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter
 
 from plant.calibration.readers.run import Array
 
@@ -24,7 +23,10 @@ class Whitener:
         """Filter along axis 0."""
         if len(self.a) == 0:
             return x
-        return np.asarray(lfilter(np.concatenate([[1.0], -self.a]), [1.0], x, axis=0))
+        out = x.copy()
+        for j, a in enumerate(self.a, 1):
+            out[j:] -= a * x[:-j]
+        return out
 
     def usable(self, valid: Mask) -> Mask:
         """Rows that have themselves and all predecessors valid."""

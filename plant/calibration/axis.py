@@ -1,0 +1,170 @@
+"""The axis pipeline: from logs of one telescope axis to findings, channel by channel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plant.calibration.candidates import axis_lines, axis_torque, modes
+from plant.calibration.candidates import electrical as electrical_candidates
+from plant.calibration.candidates import kinematic as kinematic_candidates
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.context import Context
+from plant.calibration.channels.electrical import Electrical, electrical_problem
+from plant.calibration.channels.frame import Frame, build_frame, fill
+from plant.calibration.channels.kinematic import Kinematic, auxiliary_problem, kinematic_problem, roller_problem
+from plant.calibration.channels.motion import Motion, motion_of
+from plant.calibration.channels.problem import Problem
+from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
+from plant.calibration.decide.finding import Finding
+from plant.calibration.decide.parameters import finding_of
+from plant.calibration.decide.select import Selection, select
+from plant.calibration.readers.run import Array, Run
+from plant.calibration.statistics.regression import gls
+from plant.calibration.statistics.whitening import Mask
+
+K_DECLARED = 0.39  # N m/A; design.md, the near miss that reaches the paper's rows together
+
+
+@dataclass
+class AxisResult:
+    """Everything the axis pipeline found, for the decision and the report."""
+
+    frame: Frame
+    motion: Motion
+    held: Mask
+    electrical: Electrical | None
+    kinematic: Kinematic | None
+    torque: Torque | None
+    selections: dict[str, Selection] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    held_out: list[str] = field(default_factory=list)
+
+
+def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
+    """Held-out rows: the runs named, else one whole run whose speeds the others cover, else the end of a single run."""
+    n = len(frame.runs)
+    if names:
+        chosen = [k for k, r in enumerate(frame.runs) if {r.name, r.path.name, str(r.path)} & set(names)]
+        return np.isin(frame.run, chosen), [frame.runs[k].name for k in chosen]
+    if n >= 3:
+        reach = []
+        for k in range(n):
+            w = np.abs(np.gradient(fill(frame.columns["position"], frame.run)[0]))[frame.run == k]
+            reach.append(float(np.quantile(w, 0.9)))
+        order = sorted(range(n), key=lambda k: reach[k])
+        closed = [k for k in order[1:-1] if frame.runs[k].header.get("loop") == "closed"] or order[1:-1]
+        sessions = [r.session for r in frame.runs]
+        shared = [k for k in closed if sessions.count(sessions[k]) > 1] or closed
+        pick = max(shared)
+        return frame.run == pick, [frame.runs[pick].name]
+    held = np.zeros(len(frame.t), dtype=bool)
+    names_out = []
+    for k, r in enumerate(frame.runs):
+        rows = np.flatnonzero(frame.run == k)
+        cut = rows[int(0.7 * len(rows))]
+        held[cut:rows[-1] + 1] = True
+        names_out.append(f"{r.name} from {frame.t[cut] - frame.t[rows[0]]:.0f} s")
+    return held, names_out
+
+
+def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[[str], None] = lambda s: None
+            ) -> AxisResult:
+    """Run every channel the logs have."""
+    rng = np.random.default_rng(seed)
+    frame = build_frame(runs)
+    held, held_names = choose_held_out(frame, hold_out)
+    m = motion_of(frame, WIDTH)
+    result = AxisResult(frame, m, held, None, None, None, held_out=held_names)
+    clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)[m.pick]
+    tell("electrical channel")
+    e = result.electrical = electrical_problem(frame, m, held)
+    per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
+    if e is not None and e.problem.train.sum() > 200:
+        s = select(e.problem, electrical_candidates.electrical_effects(e, clock), rng)
+        result.selections["E"] = s
+        per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
+        _collect(result, s)
+    tell("encoder channels")
+    result.kinematic = kinematic_problem(frame, m, held, per_ampere)
+    context = _kinematic_context(frame, m)
+    if result.kinematic is not None:
+        p = result.kinematic.problem
+        stacked = _stack(context)
+        s = select(p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s), rng)
+        result.selections["K"] = s
+        _collect(result, s)
+    roller = roller_problem(frame, m, held)
+    if roller is not None:
+        alpha = m.acceleration[m.pick]
+        s = select(roller, kinematic_candidates.roller_effects(context, alpha, m.period_s)
+                   + kinematic_candidates.subdivision(context, m.period_s), rng)
+        result.selections["S"] = s
+        _collect(result, s)
+    tell("torque channel")
+    _torque(result, per_ampere, clock, rng)
+    return result
+
+
+def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.Generator) -> None:
+    frame, m = result.frame, result.motion
+    torque = result.torque = torque_problem(frame, per_ampere, result.held)
+    if torque is None:
+        return
+    p, c = torque.problem, torque.context
+    if result.kinematic is not None:
+        p.valid &= result.kinematic.engaged
+    null = gls(p.y, p.base, p.train, p.ar_order, p.block)
+    ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
+    f = axis_torque.Friction(m.at(torque.bristle) * torque.friction.coulomb, m.rate[m.pick] * torque.friction.viscous,
+                             per_ampere * m.at(ia), -per_ampere * m.at(ib), p.y - null.residual, clock)
+    forced = {x.name for x in result.findings}
+    if "adc_offset" in forced:
+        p.base = np.column_stack([p.base, np.ones(len(p.y))])
+        p.base_labels.append(("offset_torque", "N m"))
+    stiffness = 3.08e6 if frame.runs[0].header.get("axis") == "ra" else 2.46e6
+    if "K" in result.selections and result.selections["K"].after.beta[0] > 1e-8:
+        stiffness = 1.0 / float(result.selections["K"].after.beta[0])
+    theta = m.theta[m.pick]
+    ratio = frame.scale["gear_ratio"]
+    motors = axis_lines.Motors(
+        {"a": (theta + f.torque_a / stiffness) * ratio / (2 * np.pi),
+         "b": (theta + f.torque_b / stiffness) * ratio / (2 * np.pi)},
+        {"a": f.torque_a, "b": f.torque_b}, m.period_s)
+    offsets = ("adc_offset",) if result.electrical is not None and "adc_offset" not in forced else ()
+    candidates: list[Candidate] = [
+        *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets), *axis_torque.angle_effects(c), *axis_torque.slow_effects(c, f),
+        *axis_lines.gear_lines(c, m.period_s), *axis_lines.motor_lines(c, motors, null.residual, p.train),
+        *modes.structural_modes(c, m.acceleration[m.pick], m.period_s)]
+    candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
+    s = select(p, candidates, rng)
+    result.selections["T"] = s
+    _collect(result, s)
+
+
+def _collect(result: AxisResult, s: Selection) -> None:
+    for k in range(len(s.chosen)):
+        result.findings.append(finding_of(s, k))
+
+
+def _kinematic_context(frame: Frame, m: Motion) -> Context:
+    pick = m.pick
+    zero = np.zeros(len(pick))
+    temperature = frame.get("temperature")
+    return Context(frame.t[pick], m.theta[pick], m.rate[pick], np.sign(m.rate[pick]), zero, frame.run[pick],
+                   frame.session[pick], "arcsec", "rad", 2 * np.pi, zero,
+                   temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None)
+
+
+def _stack(c: Context) -> Context:
+    def twice(x: Array) -> Array:
+        return np.concatenate([x, x])
+
+    return Context(twice(c.t), twice(c.angle), twice(c.speed), twice(c.direction), twice(c.since),
+                   np.concatenate([c.run, c.run]), np.concatenate([c.session, c.session]), c.unit, c.angle_unit,
+                   c.turn, twice(c.friction), temperature=twice(c.temperature) if c.temperature is not None else None)
+
+
+__all__ = ["AxisResult", "Problem", "analyse", "auxiliary_problem", "choose_held_out"]

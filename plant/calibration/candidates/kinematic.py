@@ -1,0 +1,95 @@
+"""Effects seen between encoders (channels K and S)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plant.calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.context import Context
+from plant.calibration.candidates.orders import order_spectrum, peaks
+from plant.calibration.readers.drive import STAGES
+from plant.calibration.readers.run import Array
+
+LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
+
+
+def motor_encoder_effects(c: Context, period_s: float) -> list[Candidate]:
+    """Candidates of the stacked K problem in arcsec; `c` holds the stacked columns."""
+    out = []
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    x = c.angle
+    for columns in (np.column_stack([np.cos(x), np.sin(x)]),
+                    np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)])):
+        out.append(Candidate("encoder_eccentricity", "axis_angle", columns, (("amplitude", "arcsec"),), kind="line",
+                             stage="axis", harmonic=1, order=1.0))
+    for stage in (*SHAFTS, *MESHES):
+        for h in (1, 2):
+            order = STAGES[stage] * h
+            if span * order < 0.8:
+                continue
+            name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
+            out.append(line(c, name, stage, h, order, pair(turns * order, c, period_s, None, order),
+                            "motor_angle" if stage == "motor" else "axis_angle"))
+    if c.temperature is not None and np.ptp(c.temperature) > 0.3:
+        out.append(Candidate("encoder_thermal_drift", "temperature", (c.temperature - c.temperature.mean())[:, None],
+                             (("drift", "arcsec/K"),)))
+    out.append(Candidate("encoder_thermal_drift", "time", ((c.t - c.t.mean()) / (np.ptp(c.t) or 1.0))[:, None],
+                         (("drift", "arcsec"),)))
+    return out
+
+
+def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:
+    """Candidates of velocity minus rate in arcsec/s; `c.speed` in rad/s."""
+    arcsec = 206264.806
+    w = c.speed * arcsec
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
+    size = np.abs(acceleration)
+    for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
+        on = size > limit
+        if not 0.002 < on.mean() < 0.6:
+            continue
+        out.append(Candidate("roller_slip", "velocity", (-w * on)[:, None], (("creep", "1"),), stage="roller",
+                             fixed={"limit": (limit, "rad/s2")}))
+        over = np.sign(acceleration) * np.maximum(size - limit, 0.0) * arcsec
+        out.append(Candidate("roller_slip", "velocity", -over[:, None], (("slip", "s"),), stage="roller",
+                             fixed={"limit": (limit, "rad/s2")}))
+    for h in (1, 2):
+        order = STAGES["roller"] * h
+        if span * order > 0.8:
+            out.append(line(c, "encoder_eccentricity", "roller", h, order, pair(turns * order, c, period_s, w, order),
+                            "axis_angle"))
+    x = c.angle
+    out.append(Candidate("encoder_eccentricity", "axis_angle",
+                         w[:, None] * np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+                         (("amplitude", "1"),), kind="line", stage="axis", harmonic=1, order=1.0))
+    return out
+
+
+def subdivision(c: Context, period_s: float) -> list[Candidate]:
+    """Rate error of the absolute encoder's interpolation: its line count and twice it."""
+    w = c.speed * 206264.806
+    turns = c.angle / c.turn
+    one = pair(turns * LINES, c, period_s, w, LINES)
+    two = pair(turns * 2 * LINES, c, period_s, w, 2 * LINES)
+    if np.mean(one**2) < 1e-3 * np.mean(w**2):
+        return []
+    return [Candidate("encoder_subdivision", "axis_angle", np.hstack([one, two]), (("amplitude", "rad/rad"),),
+                      kind="line", order=float(LINES), harmonic=1)]
+
+
+def free_kinematic(c: Context, e: Array, rows: Array, period_s: float, top: float = 3000.0) -> list[Candidate]:
+    """Strongest orders of the difference that no stage explains."""
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    orders, power = order_spectrum(np.where(rows, e, 0.0), turns, rows.astype(float), top)
+    out = []
+    for order in peaks(orders, power, 2, 1.5 / span if span else 1.0):
+        if min(abs(order - v * h) for v in STAGES.values() for h in (1, 2)) * span < 0.8:
+            continue
+        out.append(line(c, "unknown", None, None, float(order), pair(turns * order, c, period_s, None, order),
+                        "axis_angle"))
+    return out

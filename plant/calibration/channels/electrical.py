@@ -1,0 +1,85 @@
+"""The electrical residual: duty times supply less R i less K omega, both motors stacked.
+
+A motor pulls one way only; its back-EMF counts while it turns the way it pulls (a motor that is dragged backwards has
+none unless its freewheel diode conducts, which is the effect `diode_braking`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant.calibration.channels.frame import Frame, fill
+from plant.calibration.channels.motion import Motion
+from plant.calibration.channels.problem import Problem
+from plant.calibration.channels.torque import saturated, transients
+from plant.calibration.readers.run import Array
+from plant.calibration.statistics.regression import gls
+from plant.calibration.statistics.whitening import Mask
+
+CLIPPED = 2.5  # counts: below it the converter's noise is cut off at zero and its mean is no longer the current
+
+
+@dataclass
+class Electrical:
+    """The E problem and the columns its candidates are made of, all (2 n,): motor A's rows, then motor B's."""
+
+    problem: Problem
+    duty: Array
+    current: Array  # A
+    pulling: Array  # rad/s of the motor, in the way it pulls, zero when dragged
+    dragged: Array  # rad/s of the motor while it is dragged backwards, else zero
+    sum_power: Array  # A, sum over motors of duty times current
+    motor: Array  # 0 for A, 1 for B
+    supply: Array  # V
+    resistance: float
+    constant: float  # V s/rad
+    constant_error: float  # standard error of the constant
+
+
+def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None:
+    """Build the E channel; None when the log lacks a current."""
+    if frame.get("current_a") is None or frame.get("current_b") is None:
+        return None
+    n, ratio = len(m.pick), frame.scale["gear_ratio"]
+    effort, te = fill(frame.columns["effort"], frame.run)
+    share = np.full(len(effort), frame.scale["counter_torque"])
+    for k, r in enumerate(frame.runs):
+        share[frame.run == k] = r.scales["counter_torque"]
+    supply_column = frame.get("supply")
+    supply = fill(supply_column, frame.run)[0] if supply_column is not None else np.full(len(effort), frame.scale["supply_V"])
+    near = transients(frame, effort)
+    parts: dict[str, list[Array]] = {k: [] for k in ("y", "i", "pull", "drag", "duty", "ok", "lag", "power", "v")}
+    rate = m.rate[m.pick] * ratio
+    current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
+    duty = {"a": np.where(effort > 0, effort, -share * effort), "b": np.where(effort > 0, share * effort, -effort)}
+    power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
+    for key, sign in (("a", 1.0), ("b", -1.0)):
+        i, ti = current[key]
+        volts = duty[key] * supply
+        parts["y"].append(m.at(volts))
+        parts["i"].append(m.at(i))
+        parts["pull"].append(np.maximum(sign * rate, 0.0))
+        parts["drag"].append(np.maximum(-sign * rate, 0.0))
+        parts["duty"].append(m.at(duty[key]))
+        parts["v"].append(m.at(supply))
+        slope = np.gradient(volts, frame.period_s)
+        parts["lag"].append(m.at(slope))
+        bad = near | saturated(frame, i) | (volts <= 0) | ~ti | ~te | ~m.trusted
+        bad |= i < CLIPPED * frame.scale["adc_A_per_count"]
+        crossing = np.abs(np.sign(m.rate)) < 0.5
+        parts["ok"].append((m.smooth((bad | crossing).astype(float))[m.pick] < 1e-9).astype(float))
+        parts["power"].append(power)
+    c = {k: np.concatenate(v) for k, v in parts.items()}
+    twice = lambda x: np.concatenate([x, x])  # noqa: E731
+    base = np.column_stack([c["i"], c["pull"], c["lag"]])
+    labels = [("resistance", "ohm"), ("torque_constant", "N m/A"), ("electrical_lag", "s")]
+    problem = Problem("E", "V", c["y"], base, labels, twice(frame.t[m.pick]), twice(frame.run[m.pick]),
+                      twice(frame.session[m.pick]), c["ok"] > 0, twice(held[m.pick]), m.period_s, ar_order=4,
+                      block_s=3.0, sensor="voltage")
+    fit = gls(problem.y, base, problem.train, 4, problem.block)
+    error = float(np.sqrt(fit.covariance[1, 1]))
+    motor = np.concatenate([np.zeros(n), np.ones(n)])
+    return Electrical(problem, c["duty"], c["i"], c["pull"], c["drag"], c["power"], motor, c["v"],
+                      float(fit.beta[0]), float(fit.beta[1]), error)

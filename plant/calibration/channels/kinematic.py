@@ -1,0 +1,135 @@
+"""Differences of encoders: motor encoders against the axis (K), roller against the axis (S), auxiliary against the axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant.calibration.channels.frame import Frame, fill
+from plant.calibration.channels.motion import Motion
+from plant.calibration.channels.problem import Problem
+from plant.calibration.channels.torque import saturated, transients
+from plant.calibration.readers.drive import ARCSEC
+from plant.calibration.readers.run import Array
+from plant.calibration.statistics.whitening import Mask
+
+APART_ARCSEC = 8.0  # a motor this far from where wind-up puts it has left its tooth face
+
+
+@dataclass
+class Kinematic:
+    """The K problem (motor A's rows, then motor B's, in arcsec) and what its candidates need."""
+
+    problem: Problem
+    torque: Array  # N m at the axis through this motor's train, signed
+    motor: Array
+    engaged: Mask  # (n_analysis,) both motors on their tooth faces
+    disengaged_driven: float  # fraction of driven rows in which a motor is off its face
+
+
+def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) -> Kinematic | None:
+    """Motor angle / ratio - axis angle, with an offset per run and motor; None without tachometers."""
+    if frame.get("motor_a") is None or frame.get("motor_b") is None:
+        return None
+    pick, ratio = m.pick, frame.scale["gear_ratio"]
+    n = len(pick)
+    effort, _ = fill(frame.columns["effort"], frame.run)
+    near = m.smooth(transients(frame, effort).astype(float))[pick] > 1e-9
+    ys, torques, oks = [], [], []
+    apart = np.zeros(n, dtype=bool)
+    run = frame.run[pick]
+    segment = np.cumsum(m.fresh)[pick]
+    for key, sign in (("a", 1.0), ("b", -1.0)):
+        spin, trusted = fill(frame.columns[f"motor_{key}"], frame.run)
+        current = fill(frame.columns[f"current_{key}"], frame.run)[0] if frame.get(f"current_{key}") is not None \
+            else np.zeros(len(frame.t))
+        angle = np.cumsum(spin) * frame.period_s / ratio - m.theta
+        y = m.at(angle) / ARCSEC
+        torque = sign * per_ampere * m.at(current)
+        full = m.smooth(saturated(frame, current).astype(float))[pick] > 1e-9
+        y, off = _off_face(y, torque, segment, m.trusted[pick] & ~near & ~full)
+        apart |= off & ~full
+        ys.append(y)
+        torques.append(torque)
+        oks.append((m.trusted & trusted)[pick] & ~near & ~full)
+    wide = apart.copy()
+    for k in range(1, 6):
+        wide[k:] |= apart[:-k]
+        wide[:-k] |= apart[k:]
+    y, torque = np.concatenate(ys), np.concatenate(torques)
+    valid = np.concatenate(oks) & ~np.concatenate([wide, wide])
+    offsets = _offsets(segment, n, valid)
+    alpha, rate = m.acceleration[pick], m.rate[pick]
+    base = np.column_stack([torque / ARCSEC, np.concatenate([alpha, alpha]), np.concatenate([rate, rate]) / ARCSEC,
+                            offsets])
+    labels = [("compliance", "rad/(N m)"), ("rotor_lag", "arcsec s2/rad"), ("tachometer_delay", "s")]
+    labels += [("offset", "arcsec")] * offsets.shape[1]
+    twice = lambda x: np.concatenate([x, x])  # noqa: E731
+    problem = Problem("K", "arcsec", y, base, labels, twice(frame.t[pick]), twice(run), twice(frame.session[pick]),
+                      valid, twice(held[pick]), m.period_s, ar_order=4, block_s=3.0, sensor="position",
+                      fresh=offsets)
+    driven = np.abs(m.at(effort)) > 0.01
+    fraction = float(np.mean(apart[driven])) if driven.any() else 0.0
+    motor = np.concatenate([np.zeros(n), np.ones(n)])
+    return Kinematic(problem, torque, motor, ~wide, fraction)
+
+
+def _off_face(y: Array, torque: Array, segment: Array, rows: Mask) -> tuple[Array, Mask]:
+    """Centre y per segment and find rows off the wind-up line: robust line with a level per segment."""
+    level = np.zeros(len(y))
+    slope = 0.0
+    inside = rows.copy()
+    for _ in range(6):
+        for s in np.unique(segment):
+            at = segment == s
+            use = at & inside if (at & inside).sum() > 10 else at
+            level[at] = np.median((y - slope * torque)[use])
+        z = y - level
+        use = inside if inside.sum() > 20 else np.ones(len(y), dtype=bool)
+        slope = float(np.sum(z[use] * torque[use]) / max(float(np.sum(torque[use] ** 2)), 1e-300))
+        gap = np.abs(z - slope * torque)
+        inside = rows & (gap < max(APART_ARCSEC, 2 * float(np.median(gap[rows])) if rows.any() else 0.0))
+    return y - level, np.abs(y - level - slope * torque) > APART_ARCSEC
+
+
+def _offsets(segment: Array, n: int, valid: Mask) -> Array:
+    columns = []
+    for motor in (0, 1):
+        for s in np.unique(segment):
+            c = np.zeros(2 * n)
+            c[motor * n:(motor + 1) * n] = segment == s
+            if (c.astype(bool) & valid).sum() > 10:
+                columns.append(c)
+    return np.column_stack(columns) if columns else np.zeros((2 * n, 0))
+
+
+def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
+    """Incremental velocity - rate of the absolute encoder, in arcsec/s; base: the counting window's delay."""
+    if frame.get("velocity") is None:
+        return None
+    velocity, trusted = fill(frame.columns["velocity"], frame.run)
+    pick = m.pick
+    y = (m.at(velocity) - m.rate[pick]) / ARCSEC
+    effort, _ = fill(frame.columns["effort"], frame.run)
+    near = m.smooth(transients(frame, effort).astype(float))[pick] > 1e-9
+    base = (m.acceleration[pick] / ARCSEC)[:, None]
+    return Problem("S", "arcsec/s", y, base, [("velocity_delay", "s")], frame.t[pick], frame.run[pick],
+                   frame.session[pick], (m.trusted & trusted)[pick] & ~near, held[pick], m.period_s, ar_order=4,
+                   block_s=3.0, sensor="velocity")
+
+
+def auxiliary_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
+    """Auxiliary encoder - absolute encoder in arcsec, an offset per session."""
+    if frame.get("aux") is None:
+        return None
+    aux, trusted = fill(frame.columns["aux"], frame.run)
+    pick = m.pick
+    raw = m.at(aux - m.theta) / ARCSEC
+    run = frame.run[pick]
+    offsets = np.column_stack([(run == k).astype(float) for k in np.unique(run)])
+    base = np.column_stack([m.rate[pick] / ARCSEC, offsets])
+    labels = [("aux_delay", "s")] + [("offset", "arcsec")] * offsets.shape[1]
+    return Problem("K", "arcsec", raw, base, labels, frame.t[pick], run, frame.session[pick],
+                   (m.trusted & trusted)[pick], held[pick], m.period_s, ar_order=4, block_s=3.0, sensor="auxiliary",
+                   fresh=offsets)

@@ -1,0 +1,75 @@
+"""What moved: rates and accelerations of the axis on the analysis grid, each as a mean over the same two boxcars.
+
+With h = box_D * box_D, the second difference of the position over D rows is h * theta'' exactly, the difference quotient
+over D rows smoothed once more is h * theta', and every other column is smoothed by h: the torque balance then holds
+between the smoothed columns without any bias of a differentiating filter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant.calibration.channels.frame import Frame, boxcar, fill
+from plant.calibration.readers.run import Array
+from plant.calibration.statistics.whitening import Mask
+
+
+@dataclass
+class Motion:
+    """Full-rate position, and h-smoothed rate and acceleration; `pick` are the rows of the analysis grid."""
+
+    width: int
+    theta: Array  # rad, gaps filled
+    trusted: Mask
+    rate: Array  # rad/s
+    acceleration: Array  # rad/s2
+    pick: NDArray[np.int64]
+    fresh: Mask  # first row of a run or after a long gap
+    period_s: float
+
+    def smooth(self, x: Array) -> Array:
+        """h * x at full rate."""
+        return boxcar(boxcar(x, self.width), self.width)
+
+    def at(self, x: Array) -> Array:
+        """h * x on the analysis grid; `x` is (n,) or (n, k)."""
+        return np.asarray(self.smooth(x)[self.pick])
+
+
+def motion_of(frame: Frame, width: int) -> Motion:
+    """Motion from the absolute encoder; `width` D is odd."""
+    dt = frame.period_s
+    theta, trusted = fill(frame.columns["position"], frame.run)
+    same = np.ones(len(theta), dtype=bool)
+    same[1:] = frame.run[1:] == frame.run[:-1]
+    fresh = ~same
+    fresh |= trusted & ~np.concatenate([[False], trusted[:-1]])
+    d = width
+    ahead, behind = _shift(theta, -d), _shift(theta, d)
+    acceleration = (ahead - 2 * theta + behind) / (d * dt) ** 2
+    half = d // 2
+    slope = (_shift(theta, -half - 1) + _shift(theta, -half) - _shift(theta, half) - _shift(theta, half + 1)) / 2
+    slope = slope / ((2 * half + 1) * dt) if d > 1 else (ahead - behind) / (2 * dt)
+    rate = boxcar(slope, d)
+    usable = trusted.copy()
+    for k in range(1, d + 1):
+        usable &= _shift(trusted.astype(float), -k) > 0
+        usable &= _shift(trusted.astype(float), k) > 0
+        usable &= (_shift(frame.run.astype(float), -k) == frame.run) & (_shift(frame.run.astype(float), k) == frame.run)
+    pick = np.arange(d // 2, len(theta), d)
+    return Motion(d, theta, usable, rate, acceleration, pick, fresh, d * dt)
+
+
+def _shift(x: Array, by: int) -> Array:
+    """x[k - by], ends repeated."""
+    if by == 0:
+        return x
+    out = np.empty_like(x)
+    if by > 0:
+        out[by:], out[:by] = x[:-by], x[0]
+    else:
+        out[:by], out[by:] = x[-by:], x[-1]
+    return out

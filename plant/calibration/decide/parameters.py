@@ -1,0 +1,69 @@
+"""From coefficients to parameters with 95 % intervals."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import chndtrix
+
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.decide.scan import Contender
+from plant.calibration.decide.select import Selection
+from plant.calibration.statistics.tails import student_reach
+
+
+def interval(value: float, error: float, blocks: int) -> tuple[float, float]:
+    """Student's 95 % interval with as many degrees of freedom as there are blocks."""
+    reach = student_reach(max(blocks - 2, 3)) * error
+    return value - reach, value + reach
+
+
+def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
+    """Parameters of the selection's chosen effect `index`, from the joint fit of all of them."""
+    problem = selection.problem
+    at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
+    candidate = selection.chosen[index].candidate
+    where = slice(at, at + candidate.width)
+    beta, cov = selection.after.beta[where], selection.after.covariance[where, where]
+    blocks = int(problem.train.sum() / problem.block)
+    out: dict[str, Parameter] = {}
+    if candidate.kind == "line":
+        for k in range(candidate.width // 2):
+            name, unit = candidate.labels[0]
+            pair = slice(2 * k, 2 * k + 2)
+            amplitude, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
+            out[name if k == 0 else f"{name}_{k + 1}"] = Parameter(amplitude, unit, low, high)
+            phase = float(np.arctan2(-beta[2 * k + 1], beta[2 * k]))
+            spread = float(np.sqrt(np.trace(cov[pair, pair]) / 2)) / max(amplitude, 1e-300)
+            low, high = interval(phase, min(spread, 2.0), blocks)
+            out["phase" if k == 0 else f"phase_{k + 1}"] = Parameter(phase, "rad", low, high)
+    else:
+        for k, (name, unit) in enumerate(candidate.labels):
+            low, high = interval(float(beta[k]), float(np.sqrt(cov[k, k])), blocks)
+            out[name] = Parameter(float(beta[k]), unit, low, high)
+    for name, (value, unit) in candidate.fixed.items():
+        out[name] = Parameter(value, unit, value, value)
+    return out
+
+
+def amplitude_interval(beta: np.ndarray, cov: np.ndarray, blocks: int) -> tuple[float, float, float]:  # type: ignore[type-arg]
+    """Amplitude of a sine pair with an interval that does not pretend a small line is a sure one."""
+    amplitude = float(np.hypot(beta[0], beta[1]))
+    variance = float(beta @ cov @ beta) / max(amplitude**2, 1e-300)
+    error = float(np.sqrt(max(variance, 1e-300)))
+    low, high = interval(amplitude, error, blocks)
+    if low <= 0:
+        low = 0.0
+        high = max(high, error * float(np.sqrt(chndtrix(0.95, 2, (amplitude / error) ** 2))))
+    return amplitude, low, high
+
+
+def finding_of(selection: Selection, index: int, name: str | None = None) -> Finding:
+    """The chosen effect as a finding, with the names the log cannot separate from it."""
+    contender: Contender = selection.chosen[index]
+    c: Candidate = contender.candidate
+    names = [e.candidate.name for e in selection.classes[index]] + list(c.twins)
+    equivalent = [n for n in dict.fromkeys(names) if n != c.name]
+    step = selection.steps[index] if index < len(selection.steps) else selection.held
+    return Finding(name or c.name, selection.problem.channel, c.domain, c.stage, c.harmonic, c.order, c.frequency,
+                   equivalent, parameters_of(selection, index), contender.evidence, step.share)
