@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Sequence
 from itertools import count
+from math import ceil
 from typing import Any
 
 import can
@@ -80,7 +81,7 @@ class SchmidtBus(can.BusABC):
     def _run(self, timeout_s: float | None, done: Any) -> None:
         """Event by event until `done()` or the timeout."""
         queue = self.wire.queue
-        end_ns = None if timeout_s is None else queue.now_ns + round(timeout_s * _NS_PER_S)
+        end_ns = None if timeout_s is None else queue.now_ns + ceil(timeout_s * _NS_PER_S)
         while not done():
             next_ns = queue.next_ns()
             if next_ns is None or (end_ns is not None and next_ns > end_ns):

@@ -1,0 +1,7 @@
+"""Protocol conformance checks for any bus python-can can open: emulated, served, or the real one."""
+
+from bus.conformance.result import CheckResult, Level, summary
+from bus.conformance.run import run
+from bus.conformance.settings import Settings
+
+__all__ = ["CheckResult", "Level", "Settings", "run", "summary"]

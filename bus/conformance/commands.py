@@ -1,0 +1,109 @@
+"""The answer to every command: exactly one, from the right board, naming the opcode, with a result that
+fits."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from bus.conformance.link import Link
+from bus.conformance.result import CheckResult, Level
+from bus.protocol import Device, Opcode, Reply, Result, SpeedClass
+
+_OK = (Result.OK,)
+_REFUSED_TOO = (Result.OK, Result.NOT_ALLOWED)
+"""What changes nothing may still be refused while the axis is off."""
+_EXISTS_OR_NOT = (Result.OK, Result.OUT_OF_RANGE)
+
+
+class Case(NamedTuple):
+    """A command with arguments, the results that are right, and whether it powers or moves something."""
+
+    opcode: Opcode
+    arguments: tuple[int, ...]
+    results: tuple[Result, ...]
+    moves: bool = False
+
+
+_AXIS = (
+    Case(Opcode.POWER, (0,), _OK),
+    Case(Opcode.STOP, (), _OK),
+    Case(Opcode.SET_RATE, (0,), _REFUSED_TOO),
+    Case(Opcode.SET_CLASS, (SpeedClass.FINE, 0), _REFUSED_TOO),
+    Case(Opcode.TRACK_RATE, (0,), _REFUSED_TOO),
+    Case(Opcode.OPEN_LOOP, (0,), _REFUSED_TOO),
+    Case(Opcode.NUDGE, (0,), _REFUSED_TOO),
+    Case(Opcode.MOVE_TO, (0, SpeedClass.FINE), (Result.NOT_ALLOWED, Result.OUT_OF_RANGE)),
+    Case(Opcode.POWER, (1,), _OK, True),
+    Case(Opcode.SET_RATE, (0,), _OK, True),
+    Case(Opcode.SET_CLASS, (SpeedClass.GUIDE, 1), _OK, True),
+    Case(Opcode.TRACK_RATE, (0,), _OK, True),
+    Case(Opcode.NUDGE, (100,), _OK, True),
+    Case(Opcode.OPEN_LOOP, (0,), _OK, True),
+    Case(Opcode.STOP, (), _OK, True),
+    Case(Opcode.POWER, (0,), _OK, True),
+)
+_FOCUS = (
+    Case(Opcode.FOCUS_HOLD, (), _OK),
+    Case(Opcode.FOCUS_STEP, (0,), _EXISTS_OR_NOT),
+    Case(Opcode.FOCUS_REFERENCE, (), _REFUSED_TOO, True),
+    Case(Opcode.FOCUS_STEP, (1,), _REFUSED_TOO, True),
+    Case(Opcode.FOCUS_MOVE_TO, (0,), _REFUSED_TOO, True),
+    Case(Opcode.FOCUS_FREE, (), _OK, True),
+)
+_DISPLAY = (Case(Opcode.BRIGHTNESS, (100,), _OK),)
+_FAMILIES = {"AXIS": _AXIS, "FOCUS": _FOCUS, "DISPLAY": _DISPLAY}
+_PARAMETER = 1
+"""Axis boards have it; a board without parameters says out of range."""
+
+
+def judge(
+    check: str, subject: str, replies: Sequence[Reply], device: int, results: Sequence[int], duration_s: float
+) -> CheckResult:
+    """One answer, from `device`, with one of `results`."""
+    expected = "one reply: " + " or ".join(Result(result).name for result in results)
+    observed = ", ".join(_text(reply, device) for reply in replies) or "no reply"
+    passed = len(replies) == 1 and replies[0].device == device and replies[0].result in results
+    return CheckResult(check, subject, Level.MUST, passed, expected, observed, duration_s)
+
+
+def _text(reply: Reply, device: int) -> str:
+    name = Result(reply.result).name if reply.result in set(Result) else f"result {reply.result}"
+    value = f" value {reply.value}" if reply.value else ""
+    return name + value + ("" if reply.device == device else f" from device type {reply.device:#04x}")
+
+
+def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
+    """Every command `device` knows; those that move something only when the settings allow it."""
+    name = device.name
+    start = link.now()
+    replies = link.ask(device, Opcode.PING)
+    yield judge("command", f"{name} PING", replies, device, _OK, link.now() - start)
+    health = replies[0].value if replies else None
+    yield CheckResult(
+        "health", name, Level.SHOULD, health == 0, "0", "no reply" if health is None else f"{health:#x}", 0.0
+    )
+    yield from _parameters(link, device)
+    for case in _FAMILIES.get(name.partition("_")[0], ()):
+        if case.moves and not link.settings.motion:
+            continue
+        start = link.now()
+        replies = link.ask(device, case.opcode, *case.arguments)
+        arguments = "".join(f" {argument}" for argument in case.arguments)
+        subject = f"{name} {case.opcode.name}{arguments}"
+        yield judge("command", subject, replies, device, case.results, link.now() - start)
+
+
+def _parameters(link: Link, device: Device) -> Iterator[CheckResult]:
+    """Read a parameter and write the same value back."""
+    has_parameters = device.name.startswith("AXIS_")
+    results = _OK if has_parameters else _EXISTS_OR_NOT
+    start = link.now()
+    replies = link.ask(device, Opcode.GET_PARAMETER, _PARAMETER)
+    yield judge(
+        "command", f"{device.name} GET_PARAMETER {_PARAMETER}", replies, device, results, link.now() - start
+    )
+    value = replies[0].value if replies else 0
+    start = link.now()
+    replies = link.ask(device, Opcode.SET_PARAMETER, _PARAMETER, value)
+    yield judge(
+        "command", f"{device.name} SET_PARAMETER {_PARAMETER}", replies, device, results, link.now() - start
+    )

@@ -1,0 +1,45 @@
+"""All checks, in order, on one bus."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import can
+
+from bus.conformance.commands import check_commands
+from bus.conformance.link import Link
+from bus.conformance.misuse import check_misuse, check_unknown_identifier
+from bus.conformance.result import CheckResult
+from bus.conformance.settings import Settings
+from bus.conformance.telemetry import check_telemetry
+from bus.protocol import Device
+from bus.protocol.database import database
+
+if TYPE_CHECKING:
+    from cantools.database import Database
+
+
+def run(
+    bus: can.BusABC,
+    dbc: "Database | None" = None,
+    devices: Sequence[Device] = tuple(Device),
+    settings: Settings | None = None,
+) -> list[CheckResult]:
+    """Check every one of `devices` on `bus` against `dbc` (None: the project's own).
+
+    Never raises for what boards do or fail to do; a bus that breaks raises can.CanError. Nobody else
+    should be sending commands meanwhile.
+    """
+    settings = settings or Settings()
+    results = []
+    for result in _checks(Link(bus, settings), dbc or database(), devices):
+        settings.each(result)
+        results.append(result)
+    return results
+
+
+def _checks(link: Link, dbc: "Database", devices: Sequence[Device]) -> Iterator[CheckResult]:
+    yield from check_telemetry(link, dbc, {device.name for device in devices})
+    for device in devices:
+        yield from check_commands(link, device)
+        yield from check_misuse(link, device)
+        yield from check_unknown_identifier(link, device)

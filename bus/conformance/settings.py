@@ -1,0 +1,33 @@
+"""How patient and how bold the checks are."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from bus.conformance.result import CheckResult
+
+
+def _nobody(_result: CheckResult) -> None:
+    """Nobody wants to see results as they come."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """listen_s: how long telemetry is collected; at least three of the longest period, or periods go
+    unchecked.
+
+    reply_s: how long an answer may take. quiet_s: how long to watch for a second answer.
+    period_tolerance: of the mean period, relative. 2 %: crystals are within 0.01 %, the rest is for the
+    PC's clock.
+    speed: simulated seconds per second of the bus's time stamps (`schmidt serve --speed`).
+    motion: also send commands that power or move something. Off by default: the bus may be a real
+    telescope's.
+    each: called with every result as it is found.
+    """
+
+    listen_s: float = 4.2
+    reply_s: float = 1.0
+    quiet_s: float = 0.03
+    period_tolerance: float = 0.02
+    speed: float = 1.0
+    motion: bool = False
+    each: Callable[[CheckResult], None] = _nobody

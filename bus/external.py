@@ -1,0 +1,32 @@
+"""`INTERFACE:CHANNEL[,key=value…]` as users write it on the command line, opened as a python-can bus."""
+
+import can
+
+
+class SpecError(ValueError):
+    """A bus that cannot be opened, and why."""
+
+
+def open_bus(spec: str) -> can.BusABC:
+    """The python-can bus that `spec` names, e.g. `socketcan:vcan0`, `udp_multicast:239.74.163.2,port=43113`.
+
+    Raises SpecError with one line: what is wrong with the text, or why the interface cannot be opened.
+    """
+    interface, colon, rest = spec.partition(":")
+    channel, *options = rest.split(",")
+    if not (interface and colon and channel):
+        raise SpecError(f'"{spec}": expected INTERFACE:CHANNEL, for example socketcan:vcan0')
+    if interface not in can.VALID_INTERFACES:
+        known = ", ".join(sorted(can.VALID_INTERFACES))
+        raise SpecError(f'"{spec}": python-can has no interface "{interface}"; it has {known}')
+    settings: dict[str, str | int] = {}
+    for option in options:
+        key, equals, value = option.partition("=")
+        if not (key and equals):
+            raise SpecError(f'"{spec}": option "{option}" is not key=value')
+        settings[key] = int(value) if value.isdecimal() else value
+    try:
+        return can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
+    except (can.CanError, OSError, ValueError, TypeError, ImportError) as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise SpecError(f'"{spec}" cannot be opened: {reason}') from None
