@@ -35,8 +35,12 @@ SETTLED_S = 1.0
 """Both axes stay inside `fine` for this long before the telescope counts as on target. ASSUMPTION."""
 REFRESH_S = 5.0
 """Rates are sent again this often: refraction changes them by less than 0.001 ″/s meanwhile. ASSUMPTION."""
-NUDGE_ARCSEC = 0.3
-"""A larger mean error is taken out of the board's target: crystals differ by some 50 ppm. ASSUMPTION."""
+TRIM_S = 20.0
+"""A mean error is taken out over this time by way of the rate, so that nothing jerks. ASSUMPTION."""
+TRIM_ARCSEC_S = 0.1
+"""Largest such change of the rate: a tenth of the 1 ″/s that the paper asks for. ASSUMPTION."""
+NUDGE_ARCSEC = 5.0
+"""A mean error beyond half the 10″ objective is taken out at once. ASSUMPTION."""
 
 
 class Pointing:
@@ -81,13 +85,17 @@ class Pointing:
         self.on_target = True
 
     def follow(self, seconds: float) -> Procedure:
-        """Track: refresh the rates and take out what the encoders show the board's clock to have lost."""
+        """Track: refresh the rates and take out what the encoders show to be missing.
+
+        The boards' crystals are off by some 50 ppm: 0.05″ a minute that only the PC's clock can see.
+        """
         if self.track is None:
             raise ClientError("track: there is no target yet; go to one first")
         self.tracking = True
         end_ns = self.client.now_ns + round(seconds * 1e9)
+        trims = [0.0, 0.0]
         while self.client.now_ns < end_ns:
-            yield from self._send_rates()
+            yield from self._send_rates((trims[0], trims[1]))
             sums, count = [0.0, 0.0], 0
             part_end_ns = min(end_ns, self.client.now_ns + round(REFRESH_S * 1e9))
             while self.client.now_ns < part_end_ns:
@@ -95,8 +103,9 @@ class Pointing:
                 if errors is not None:
                     sums, count = [total + each for total, each in zip(sums, errors, strict=True)], count + 1
                 yield
-            for axis, total in zip(AXES, sums, strict=True):
-                mean = total / max(count, 1)
+            for index, axis in enumerate(AXES):
+                mean = sums[index] / max(count, 1)
+                trims[index] = min(max(mean / TRIM_S, -TRIM_ARCSEC_S), TRIM_ARCSEC_S)
                 if abs(mean) > NUDGE_ARCSEC:
                     yield from self.client.ask(axis, Opcode.NUDGE, round(mean / STEP_ARCSEC))
         self.tracking = False
@@ -120,10 +129,11 @@ class Pointing:
             )
         yield from power_off(self.client)
 
-    def _send_rates(self) -> Procedure:
+    def _send_rates(self, trims: tuple[float, float] = (0.0, 0.0)) -> Procedure:
         assert self.track is not None
-        for axis, rate in zip(AXES, self.track.rates(self._now_s()), strict=True):
-            yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate))
+        rates = self.track.rates(self._now_s())
+        for axis, rate, trim in zip(AXES, rates, trims, strict=True):
+            yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate + trim))
 
     def _settle(self, reach: Reach) -> Procedure:
         assert self.track is not None

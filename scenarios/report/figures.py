@@ -12,7 +12,7 @@ from host.sky.observed import observe_many
 from scenarios.evaluate import NoData, pointing_errors, rate_errors
 from scenarios.outcome import Outcome
 from scenarios.programme import Record
-from scenarios.report.style import COLOURS, axes, new_figure, thin
+from scenarios.report.style import COLOURS, axes, new_figure, thin, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,7 +43,7 @@ def pointing(outcome: Outcome) -> Figure | None:
         view.axhspan(-10, 10, color=COLOURS["ok"], alpha=0.07, lw=0)
         reach = max(1.0, *(float(np.nanmax(np.abs(line.get_ydata()))) for line in view.lines)) * 1.15
         view.set_ylim(-reach, reach)
-        view.set_title(f"{record.step.name}: star less telescope")
+        title(view, f"{record.step.name}: star less telescope")
         view.legend(ncols=4, loc="upper right")
     return figure
 
@@ -69,7 +69,7 @@ def tracking(outcome: Outcome) -> Figure | None:
         view = axes(figure, 3, 4, (4 * row + 1, 4 * row + 3), ylabel="arcsec/s", xlabel="time, s" if row == 2 else "")
         view.plot(*thin(t, error), color=COLOURS[source], lw=0.6 if source != "mean_1s" else 1.0)
         view.axhline(0, color="#888", lw=0.5)
-        view.set_title(f"{record.step.name}, RA rate error, {label}: rms {rms:.3f}, peak {peak:.2f} arcsec/s")
+        title(view, f"{record.step.name}, RA rate error, {label}: rms {rms:.3f}, peak {peak:.2f} arcsec/s")
         side = axes(figure, 3, 4, 4 * row + 4, xlabel="samples" if row == 2 else "")
         step = COUNT_ARCSEC / LOOP_S if source == "counts_5ms" else max(peak / 25, 1e-9)
         edges = np.arange(error.min() - step / 2, error.max() + step, step)
@@ -124,7 +124,7 @@ def focus(outcome: Outcome) -> Figure | None:
     view.plot(*thin(rows["t_s"], rows["true_half_steps"]), color=COLOURS["truth"], lw=2.2, label="true")
     view.plot(*thin(board["t_s"], board["focus_half_steps"]), color=COLOURS["dec"], lw=0.9, label="board")
     view.legend(loc="best")
-    view.set_title("Focus")
+    title(view, "Focus")
     ends = [r.end_s or r.start_s or 0.0 for r in outcome.records if r.step.action == "focus" and r.start_s is not None]
     starts = [r.start_s for r in outcome.records if r.step.action == "focus" and r.start_s is not None]
     view.set_xlim(min(starts) - 2, max(ends) + 5)
@@ -144,7 +144,7 @@ def motion(outcome: Outcome) -> Figure | None:
     view.set_yscale("symlog", linthresh=20.0)
     view.axhline(15.041, color="#888", lw=0.5, ls=":")
     view.legend(loc="best")
-    view.set_title("Rates of the axes (linear to ±20 arcsec/s, logarithmic beyond)")
+    title(view, "Rates of the axes (linear to ±20 arcsec/s, logarithmic beyond)")
     for record in outcome.records:
         if record.start_s is not None and record.step.after is None:
             view.axvline(record.start_s, color="#bbb", lw=0.5)
@@ -162,7 +162,7 @@ def bus(outcome: Outcome) -> Figure | None:
     view.step(t, load * 100, where="pre", color=COLOURS["truth"], lw=0.8)
     view.set_ylim(0, max(5.0, float(load.max()) * 130))
     rate = (frames[-1] - frames[0]) / max(t[-1] - t[0], 1e-9)
-    view.set_title(f"CAN bus: mean load {load.mean():.1%}, {rate:.0f} frames/s")
+    title(view, f"CAN bus: mean load {load.mean():.1%}, {rate:.0f} frames/s")
     return figure
 
 

@@ -44,10 +44,12 @@ def axes(
     view.set_xlabel(xlabel, fontsize=9)
     view.set_ylabel(ylabel, fontsize=9)
     view.tick_params(labelsize=8)
-    view.title.set_fontsize(10)
-    view.title.set_ha("left")
-    view.title.set_x(0.0)
     return view  # type: ignore[no-any-return]
+
+
+def title(view: Axes, text: str) -> None:
+    """A title at the left end."""
+    view.set_title(text, loc="left", fontsize=10)
 
 
 def thin(t: Array, values: Array, points: int = _POINTS) -> tuple[Array, Array]:
