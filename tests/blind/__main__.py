@@ -17,7 +17,13 @@ SCORED_SEED = 20261121  # opened once, on the frozen finder; development uses 10
 @click.option("--only", default="", help="only cases whose key contains this")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/blind"), show_default=True)
 @click.option("--jobs", default=min(2, os.cpu_count() or 1), show_default=True)
-@click.option("--finder", "command", default=finder.COMMAND, show_default=True, help="module:function of the command line")
+@click.option(
+    "--finder",
+    "command",
+    default=finder.COMMAND,
+    show_default=True,
+    help="module:function of the command line",
+)
 def main(seed: int, name: str, only: str, out: Path, jobs: int, command: str) -> None:
     """Seal cases, let the finder answer, open the seals, score, write the table. Resumes where it stopped."""
     orders = [order for order in SETS[name]() if only in order.key]

@@ -1,4 +1,5 @@
-"""Seal, let the finder answer, open the seals, score. Every step leaves its result on disk and is not made twice."""
+"""Seal, let the finder answer, open the seals, score. Every step leaves its result on disk and is not made
+twice."""
 
 import hashlib
 import json
@@ -11,7 +12,14 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from tests.blind import finder, score, table
 from tests.blind.sealer.case import Order, seal
@@ -34,7 +42,13 @@ def find_one(order: Order, command: str, out: Path) -> None:
 
 def in_parallel(what: str, work: Callable[..., None], orders: list[Order], jobs: int, *args: object) -> None:
     """All orders over `jobs` processes with a progress bar."""
-    columns = (TextColumn("{task.description:8}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description:8}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns) as bar:
         task = bar.add_task(what, total=len(orders))
         if jobs == 1:
@@ -59,7 +73,9 @@ def digest(paths: Iterable[Path]) -> str:
 
 def commit() -> str:
     """The checkout's commit, or "unknown" outside git."""
-    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    )
     return done.stdout.strip() or "unknown"
 
 
@@ -83,7 +99,9 @@ def judged(order: Order, out: Path) -> dict[str, Any]:
     return score.score(answer, report, open_seal(order, out))
 
 
-def run(orders: list[Order], seed: int, out: Path, jobs: int, command: str = finder.COMMAND) -> dict[str, Any]:
+def run(
+    orders: list[Order], seed: int, out: Path, jobs: int, command: str = finder.COMMAND
+) -> dict[str, Any]:
     """The whole test; answers what `results.json` holds. Wall time adds up over resumed runs."""
     begin = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
@@ -104,10 +122,16 @@ def run(orders: list[Order], seed: int, out: Path, jobs: int, command: str = fin
     rows = [judged(order, out) for order in orders]
     seconds = sorted(row["seconds"] for row in rows)
     about = {
-        "seed": seed, "cases": len(rows), "jobs": jobs, "commit": commit(), "wall_s": float(clock.read_text()),
-        "finder": command, "finder_source_sha256": digest(Path("plant").rglob("*.py")),
-        "finder_median_s": seconds[len(seconds) // 2], "finder_max_s": seconds[-1],
-    }  # fmt: skip
+        "seed": seed,
+        "cases": len(rows),
+        "jobs": jobs,
+        "commit": commit(),
+        "wall_s": float(clock.read_text()),
+        "finder": command,
+        "finder_source_sha256": digest(Path("plant").rglob("*.py")),
+        "finder_median_s": seconds[len(seconds) // 2],
+        "finder_max_s": seconds[-1],
+    }
     lines = table.figures(rows)
     results = {"about": about, "figures": lines, "cases": rows}
     (out / "results.json").write_text(json.dumps(results, indent=1))

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-# Ambiguous answers are right when they contain the truth and stay inside one of these groups: the pairs that the
-# catalogue itself calls twins. A certain answer must be the name.
+# Ambiguous answers are right when they contain the truth and stay inside one of these groups: the pairs
+# that the catalogue itself calls twins. A certain answer must be the name.
 TWINS: tuple[frozenset[str], ...] = (
     frozenset({"position_friction", "gravity_imbalance", "cable_wrap"}),
     frozenset({"friction_asymmetry", "adc_offset"}),
@@ -19,7 +19,12 @@ TWINS: tuple[frozenset[str], ...] = (
     frozenset({"roller_ratio", "roller_slip"}),
     frozenset({"supply_sag", "pwm_deadband"}),
 )
-CHANNEL_KEYS = {"T": ("torque",), "K": ("position", "velocity"), "E": ("electrical", "torque"), "S": ("velocity", "position")}
+CHANNEL_KEYS = {
+    "T": ("torque",),
+    "K": ("position", "velocity"),
+    "E": ("electrical", "torque"),
+    "S": ("velocity", "position"),
+}
 
 
 def right(effect: dict[str, Any], truth: dict[str, Any]) -> bool:
@@ -46,7 +51,8 @@ def match(effects: list[dict[str, Any]], truths: list[dict[str, Any]]) -> tuple[
 
 
 def held_out(report: dict[str, Any], channel: str | None) -> dict[str, float] | None:
-    """before, after, floor of the channel the effect lives in; without one, of the channel furthest off its floor."""
+    """before, after, floor of the channel the effect lives in; without one, of the channel furthest off its
+    floor."""
     errors = {k: e for k, e in report.get("error", {}).items() if e.get("floor")}
     if not errors:
         return None
@@ -66,7 +72,8 @@ def worse(report: dict[str, Any]) -> bool:
 
 
 def intervals(report: dict[str, Any], truth: dict[str, Any]) -> list[dict[str, Any]]:
-    """Every reported 95 % interval whose true value is known: calibrated figures, and parameters of right names."""
+    """Every reported 95 % interval whose true value is known: calibrated figures, and parameters of right
+    names."""
     from tests.blind.names import calibrated_truths, parameter_truths
 
     out: list[dict[str, Any]] = []
@@ -90,11 +97,16 @@ def intervals(report: dict[str, Any], truth: dict[str, Any]) -> list[dict[str, A
 def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str, Any]) -> dict[str, Any]:
     """One row of results."""
     row: dict[str, Any] = {
-        "key": truth["key"], "cell": truth["cell"], "kind": truth["kind"], "poor": truth["poor"],
+        "key": truth["key"],
+        "cell": truth["cell"],
+        "kind": truth["kind"],
+        "poor": truth["poor"],
         "truth": [e["name"] for e in truth["effects"]],
         "ratio": min((e["ratio"] for e in truth["effects"]), default=0.0),
-        "seconds": answer["seconds"], "failure": answer["failure"], "answered": report is not None,
-    }  # fmt: skip
+        "seconds": answer["seconds"],
+        "failure": answer["failure"],
+        "answered": report is not None,
+    }
     effects = list(report["effects"]) if report else []
     named = [e for e in effects if e["name"] != "unknown"]
     row["verdict"] = report["verdict"] if report else None

@@ -27,7 +27,8 @@ def share(rows: list[Row], test: Callable[[Row], bool]) -> dict[str, Any]:
 
 
 def quotient(rows: list[Row], over: str, under: str) -> dict[str, Any]:
-    """Median of a quotient of held-out errors with its bootstrap 95 % interval (fixed generator) and the 90 % point."""
+    """Median of a quotient of held-out errors with its bootstrap 95 % interval (fixed generator) and the 90
+    % point."""
     pairs = [(r["held_out"][over], r["held_out"][under]) for r in rows if r.get("held_out")]
     values = np.array([a / b for a, b in pairs if b])
     if len(values) == 0:
@@ -71,28 +72,76 @@ def figures(rows: list[Row]) -> list[dict[str, Any]]:
         line("right name or right class, one effect, ratio ≥ 2", "≥ 90 %", "≥ 98 %", one, at_least(one, 0.9)),
         line("both names and none extra, two effects", "≥ 70 %", "≥ 90 %", both, at_least(both, 0.7)),
         line("outside the catalogue: `unknown`, right domain", "≥ 80 %", "≥ 95 %", out, at_least(out, 0.8)),
-        line("held-out after / floor, one effect, ratio ≥ 2 (median)", "≤ 1.2", "≤ 1.05", floor, at_most(floor, 1.2)),
+        line(
+            "held-out after / floor, one effect, ratio ≥ 2 (median)",
+            "≤ 1.2",
+            "≤ 1.05",
+            floor,
+            at_most(floor, 1.2),
+        ),
         line("held-out after / before, same (median)", "≤ 0.5", "floor/before", before, at_most(before, 0.5)),
         line("accepted effects that make held-out data worse", "0", "0", bad, at_most(bad, 0.0)),
         line("95 % intervals that contain the truth", "90–98 %", "95 %", inside, covered),
     ]
     more = [
         line("one effect, ratio ≥ 2: the name itself", "", "", share(strong, lambda r: r["exact"]), None),
-        line("one effect, ratio ≥ 2: right and none extra", "", "", share(strong, lambda r: r["right"] and not r["extra"]), None),
-        *(line(f"one effect, ratio {x:g}: right", "", "", share([r for r in single if r["ratio"] == x], lambda r: r["right"]), None)
-          for x in (1.0, 2.0, 5.0)),
-        line("stage right where there is one, ratio ≥ 2", "", "",
-             share([r for r in strong if r.get("staged")], lambda r: r["stage_right"]), None),
-        *(line(f"nothing, {k}: one named", "", "",
-               share([r for r in nothing if r["kind"] == k], lambda r: r["named"] > 0), None)
-          for k in ("pure", "off", "gains")),
-        line("nothing: answered `unknown`", "", "",
-             share(nothing, lambda r: r["answered"] and r["named"] == 0 and not r["right"]), None),
-        line("two effects that look alike", "", "",
-             share([r for r in pairs if "-twin-" in r["key"]], lambda r: r["right"]), None),
-        line("outside the catalogue: `unknown`, any domain", "", "", share(outside, lambda r: r["unknown"]), None),
+        line(
+            "one effect, ratio ≥ 2: right and none extra",
+            "",
+            "",
+            share(strong, lambda r: r["right"] and not r["extra"]),
+            None,
+        ),
+        *(
+            line(
+                f"one effect, ratio {x:g}: right",
+                "",
+                "",
+                share([r for r in single if r["ratio"] == x], lambda r: r["right"]),
+                None,
+            )
+            for x in (1.0, 2.0, 5.0)
+        ),
+        line(
+            "stage right where there is one, ratio ≥ 2",
+            "",
+            "",
+            share([r for r in strong if r.get("staged")], lambda r: r["stage_right"]),
+            None,
+        ),
+        *(
+            line(
+                f"nothing, {k}: one named",
+                "",
+                "",
+                share([r for r in nothing if r["kind"] == k], lambda r: r["named"] > 0),
+                None,
+            )
+            for k in ("pure", "off", "gains")
+        ),
+        line(
+            "nothing: answered `unknown`",
+            "",
+            "",
+            share(nothing, lambda r: r["answered"] and r["named"] == 0 and not r["right"]),
+            None,
+        ),
+        line(
+            "two effects that look alike",
+            "",
+            "",
+            share([r for r in pairs if "-twin-" in r["key"]], lambda r: r["right"]),
+            None,
+        ),
+        line(
+            "outside the catalogue: `unknown`, any domain",
+            "",
+            "",
+            share(outside, lambda r: r["unknown"]),
+            None,
+        ),
         line("cases without an answer", "0", "0", share(rows, lambda r: not r["answered"]), None),
-    ]  # fmt: skip
+    ]
     return must + more
 
 
@@ -111,12 +160,14 @@ def markdown(lines: list[dict[str, Any]], about: dict[str, Any]) -> str:
     out = ["| figure | must | aim | measured (95 % interval) | met |", "|---|---|---|---|---|"]
     for item in lines:
         met = {True: "yes", False: "**no**", None: ""}[item["met"]]
-        out.append(f"| {item['figure']} | {item['must']} | {item['aim']} | {text_of(item['measured'])} | {met} |")
-    wall = about["wall_s"] / 60.0
+        out.append(
+            f"| {item['figure']} | {item['must']} | {item['aim']} | {text_of(item['measured'])} | {met} |"
+        )
     out.append("")
     out.append(
-        f"Seed {about['seed']}, {about['cases']} cases, {wall:.0f} min wall time with {about['jobs']} processes; finder "
-        f"{about['finder_median_s']:.1f} s a case (median), {about['finder_max_s']:.1f} s at most; commit {about['commit']}."
+        f"Seed {about['seed']}, {about['cases']} cases, {about['wall_s'] / 60.0:.0f} min wall time with "
+        f"{about['jobs']} processes; finder {about['finder_median_s']:.1f} s a case (median), "
+        f"{about['finder_max_s']:.1f} s at most; commit {about['commit']}."
     )
     return "\n".join(out) + "\n"
 
@@ -131,6 +182,8 @@ def per_name(rows: list[Row]) -> str:
         for ratio in (1.0, 2.0, 5.0):
             some = [r for r in mine if r["ratio"] == ratio]
             cells.append(f"{sum(r['right'] for r in some)}/{len(some)}")
-        wrong = [r["said"][0][0] if r["said"] else (r["verdict"] or "no answer") for r in mine if not r["right"]]
+        wrong = [
+            r["said"][0][0] if r["said"] else (r["verdict"] or "no answer") for r in mine if not r["right"]
+        ]
         out.append(f"| {name} | {' | '.join(cells)} | {', '.join(f'{w}' for w in wrong)} |")
     return "\n".join(out) + "\n"

@@ -1,4 +1,5 @@
-"""The harness: seals before the finder runs, resumes, refuses a broken seal; a small deterministic run for CI."""
+"""The harness: seals before the finder runs, resumes, refuses a broken seal; a small deterministic run for
+CI."""
 
 import json
 import sys
@@ -18,7 +19,9 @@ def says_nothing() -> None:
     """A finder that always answers "nothing"."""
     CALLS.append(sys.argv[1:])
     out = Path(sys.argv[sys.argv.index("--out") + 1])
-    (out / "report.json").write_text(json.dumps({"verdict": "nothing", "effects": [], "error": {}, "calibrated": {}}))
+    (out / "report.json").write_text(
+        json.dumps({"verdict": "nothing", "effects": [], "error": {}, "calibrated": {}})
+    )
 
 
 def breaks() -> None:
@@ -52,7 +55,8 @@ def test_a_finder_that_breaks_is_a_case_without_an_answer(tmp_path: Path) -> Non
 
 @pytest.mark.slow
 def test_small_deterministic_subset(tmp_path: Path) -> None:
-    """The real finder on ten logs of a development seed: an answer to each, no name where there is nothing."""
+    """The real finder on ten logs of a development seed: an answer to each, no name where there is
+    nothing."""
     module, _, _ = finder.COMMAND.partition(":")
     pytest.importorskip(module, reason="the command line is not built yet")
     results = harness.run(cells.quick(), 1900, tmp_path, 1)

@@ -13,13 +13,38 @@ def effect(name: str, equivalent: tuple[str, ...] = (), **more: Any) -> dict[str
 
 def truth(cell: str, *names: str, ratio: float = 2.0, klass: tuple[str, ...] | None = None) -> dict[str, Any]:
     effects = [
-        {"name": n, "class": list(klass or (n,)), "ratio": ratio, "stage": None, "channel": "T", "domain": ["time"],
-         "parameters": {"amplitude": {"value": 3.0, "unit": "N m"}}}
+        {
+            "name": n,
+            "class": list(klass or (n,)),
+            "ratio": ratio,
+            "stage": None,
+            "channel": "T",
+            "domain": ["time"],
+            "parameters": {"amplitude": {"value": 3.0, "unit": "N m"}},
+        }
         for n in names
-    ]  # fmt: skip
-    drive = {"TC": 229.0, "TS": 621.0, "SIG2": 6700.0, "VS": 4e-4, "SIG0": 5.9e6, "SIG1": 3.9e3, "KA": 0.39, "RA": 2.2,
-             "KGEAR": 3.08e6, "J": 1760.0, "JM": 8e-4}  # fmt: skip
-    return {"key": "k", "cell": cell, "kind": "mixed", "poor": klass is not None, "effects": effects, "drive": drive}
+    ]
+    drive = {
+        "TC": 229.0,
+        "TS": 621.0,
+        "SIG2": 6700.0,
+        "VS": 4e-4,
+        "SIG0": 5.9e6,
+        "SIG1": 3.9e3,
+        "KA": 0.39,
+        "RA": 2.2,
+        "KGEAR": 3.08e6,
+        "J": 1760.0,
+        "JM": 8e-4,
+    }
+    return {
+        "key": "k",
+        "cell": cell,
+        "kind": "mixed",
+        "poor": klass is not None,
+        "effects": effects,
+        "drive": drive,
+    }
 
 
 def report(*effects: dict[str, Any], verdict: str = "found", **more: Any) -> dict[str, Any]:
@@ -76,7 +101,10 @@ def test_outside_needs_unknown_and_the_domain() -> None:
 
 def test_no_answer_counts_against_the_finder() -> None:
     failed = {"seconds": 300.0, "failure": "too slow", "status": 1}
-    rows = [score.score(failed, None, truth("single", "gear_mesh")), score.score(failed, None, truth("nothing"))]
+    rows = [
+        score.score(failed, None, truth("single", "gear_mesh")),
+        score.score(failed, None, truth("nothing")),
+    ]
     lines = {line["figure"]: line["measured"] for line in table.figures(rows)}
     assert lines["right name or right class, one effect, ratio ≥ 2"]["hits"] == 0
     assert lines["logs without an effect in which one is named"]["hits"] == 1
@@ -84,7 +112,10 @@ def test_no_answer_counts_against_the_finder() -> None:
 
 
 def test_worse_looks_at_the_channel_of_the_effect() -> None:
-    error = {"torque": {"before": 2.0, "after": 2.1, "floor": 1.0}, "position": {"before": 9.0, "after": 1.0, "floor": 1.0}}
+    error = {
+        "torque": {"before": 2.0, "after": 2.1, "floor": 1.0},
+        "position": {"before": 9.0, "after": 1.0, "floor": 1.0},
+    }
     assert score.worse(report(effect("gear_mesh"), error=error))
     error["torque"]["after"] = 1.9
     assert not score.worse(report(effect("gear_mesh"), error=error))
@@ -92,7 +123,10 @@ def test_worse_looks_at_the_channel_of_the_effect() -> None:
 
 def test_coverage_reads_effects_and_calibrated_figures() -> None:
     said = effect("gear_mesh", parameters={"amplitude": {"value": 2.9, "low": 2.5, "high": 3.2}})
-    calibrated = {"inertia": {"value": 1700.0, "low": 1600.0, "high": 1700.0}, "other": {"value": 1, "low": 0, "high": 2}}
+    calibrated = {
+        "inertia": {"value": 1700.0, "low": 1600.0, "high": 1700.0},
+        "other": {"value": 1, "low": 0, "high": 2},
+    }
     found = score.intervals(report(said, calibrated=calibrated), truth("single", "gear_mesh"))
     assert {(i["name"], i["inside"]) for i in found} == {("inertia", False), ("gear_mesh.amplitude", True)}
 

@@ -70,7 +70,9 @@ def test_pure_logs_read_what_they_should(tmp_path: Path) -> None:
     assert truth["effects"] == []
     for i, trace in enumerate(traces):
         out = sensors.columns(trace, drive, values, truth["number"], i)
-        error = np.unwrap(out["position"], period=d.POSITION_COUNTS) / d.POSITION_COUNTS * d.TURN - trace["theta"]
+        error = (
+            np.unwrap(out["position"], period=d.POSITION_COUNTS) / d.POSITION_COUNTS * d.TURN - trace["theta"]
+        )
         error -= np.round(error.mean() / d.TURN) * d.TURN
         assert np.abs(error).max() / d.ARCSEC < 6 * 0.0024140
         assert np.abs(out["velocity"]).max() < 4704 * 1.5  # 3 deg/s is 4704 counts in 5 ms

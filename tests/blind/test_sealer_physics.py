@@ -57,8 +57,16 @@ def free(values: dict[str, float]) -> tuple[slots.Array, slots.Array, slots.Arra
 
 @pytest.mark.parametrize(("inertia", "stiffness", "hertz"), [(2200.0, 3.08e6, 5.96), (579.0, 2.46e6, 10.37)])
 def test_P1_lock_rotor_frequency(drive: draw.Drive, inertia: float, stiffness: float, hertz: float) -> None:
-    values = {**drive.values, "J": inertia, "KGEAR": stiffness, "CGEAR": 0.0, "JM": 1e9, "SIG0": 1e-3, "SIG1": 0.0,
-              "SIG2": 0.0}  # fmt: skip
+    values = {
+        **drive.values,
+        "J": inertia,
+        "KGEAR": stiffness,
+        "CGEAR": 0.0,
+        "JM": 1e9,
+        "SIG0": 1e-3,
+        "SIG1": 0.0,
+        "SIG2": 0.0,
+    }
     p, q, s = free(values)
     q[rates.Q_AXIS_TORQUE] = -300.0  # keeps the teeth of train A together; train B stands in its gap
     s[2] = p[slots.RATIO] * (p[slots.HALF_GAP] + 300.0 / stiffness)

@@ -22,7 +22,8 @@ TOP_DELAY_S = 0.05  # the kernel remembers 64 ms
 
 @dataclass(frozen=True)
 class Order:
-    """What to seal: cell ("nothing", "single", "pair", "outside"), drive kind, names with ratios, manoeuvre."""
+    """What to seal: cell ("nothing", "single", "pair", "outside"), drive kind, names with ratios,
+    manoeuvre."""
 
     key: str
     cell: str
@@ -55,7 +56,8 @@ def merged(effects: list[Drawn]) -> dict[str, float]:
 def set_size(
     effect: Drawn, ratio: float, drawn: Drive, runs: list[Run], seed: int
 ) -> tuple[dict[str, float], list[Trace]]:
-    """Scale the effect until its largest channel ratio is within 10 % of the wanted one; the ratios, the runs."""
+    """Scale the effect until its largest channel ratio is within 10 % of the wanted one; the ratios, the
+    runs."""
     found: dict[str, float] = {}
     traces: list[Trace] = []
     for _ in range(3):
@@ -67,8 +69,15 @@ def set_size(
             return found, traces
         effect.size *= float(np.clip(ratio / max(top, 1e-6), 0.02, 50.0))
         for key, value in effect.values().items():
-            limit = {"DELAY_POS": TOP_DELAY_S, "DELAY_ADC": TOP_DELAY_S, "DELAY_TACH": TOP_DELAY_S,
-                     "DELAY_VEL": TOP_DELAY_S, "DIODE": 1.0, "RIP_A": 0.5, "MAG_A": 0.5}.get(key)  # fmt: skip
+            limit = {
+                "DELAY_POS": TOP_DELAY_S,
+                "DELAY_ADC": TOP_DELAY_S,
+                "DELAY_TACH": TOP_DELAY_S,
+                "DELAY_VEL": TOP_DELAY_S,
+                "DIODE": 1.0,
+                "RIP_A": 0.5,
+                "MAG_A": 0.5,
+            }.get(key)
             if limit is not None and value > limit:
                 effect.size *= limit / value
         if effect.name == "structural_mode" and effect.values()["J2"] > 0.5 * drawn.values["J"]:
@@ -125,11 +134,20 @@ def build(order: Order, seed: int) -> tuple[Drive, list[Trace], dict[str, float]
         traces = run_all(drawn, runs, values, number)
     used = {**drawn.values, **{k: v for k, v in values.items() if k in drawn.values}}
     truth = {
-        "key": order.key, "cell": order.cell, "kind": order.kind, "seed": seed, "poor": order.poor,
-        "axis": drawn.axis, "preload": drawn.preload, "effects": entries,
-        "floors": measure.floors(drawn), "noise": drawn.noise, "drive": used, "declared": drawn.declared,
+        "key": order.key,
+        "cell": order.cell,
+        "kind": order.kind,
+        "seed": seed,
+        "poor": order.poor,
+        "axis": drawn.axis,
+        "preload": drawn.preload,
+        "effects": entries,
+        "floors": measure.floors(drawn),
+        "noise": drawn.noise,
+        "drive": used,
+        "declared": drawn.declared,
         "runs": [{"kind": r.kind, "session": r.session, "loop": r.loop, "seconds": r.seconds} for r in runs],
-    }  # fmt: skip
+    }
     return drawn, traces, values, {**truth, "number": number}
 
 

@@ -16,7 +16,8 @@ def nothing(count: int = NOTHING) -> list[Order]:
 
 
 def single(repeats: int = REPEATS) -> list[Order]:
-    """One effect: every name at every ratio. The last repeat at ratio 2 of some names has the poor manoeuvre."""
+    """One effect: every name at every ratio. The last repeat at ratio 2 of some names has the poor
+    manoeuvre."""
     out: list[Order] = []
     for name in BY_NAME:
         for ratio in RATIOS:
@@ -39,7 +40,13 @@ def outside(count: int = OUTSIDE_CASES) -> list[Order]:
     """Effects outside the catalogue, in turn."""
     names = list(OUTSIDE)
     return [
-        Order(f"outside-{names[i % len(names)]}-{i:02d}", "outside", "mixed", (names[i % len(names)],), (2.0, 5.0)[i % 2])
+        Order(
+            f"outside-{names[i % len(names)]}-{i:02d}",
+            "outside",
+            "mixed",
+            (names[i % len(names)],),
+            (2.0, 5.0)[i % 2],
+        )
         for i in range(count)
     ]
 
@@ -51,13 +58,21 @@ def everything() -> list[Order]:
 
 def quick() -> list[Order]:
     """A small subset for continuous integration: two of nothing, six singles, one pair, one outside."""
-    names = ("gravity_imbalance", "motor_cogging", "supply_sag", "encoder_eccentricity", "sample_loss", "viscous_change")
+    names = (
+        "gravity_imbalance",
+        "motor_cogging",
+        "supply_sag",
+        "encoder_eccentricity",
+        "sample_loss",
+        "viscous_change",
+    )
     some = [o for o in single(1) if o.names[0] in names and o.ratio == 5.0]
     return nothing(1)[:2] + some + pairs()[20:21] + outside(1)
 
 
 def develop() -> list[Order]:
-    """A first set to develop on: three of nothing per kind, every name at ratios 2 and 5, some pairs, each outside."""
+    """A first set to develop on: three of nothing per kind, every name at ratios 2 and 5, some pairs, each
+    outside."""
     some = [o for o in single(1) if o.ratio > 1.0]
     return nothing(3) + some + pairs()[::4] + outside(len(OUTSIDE))
 

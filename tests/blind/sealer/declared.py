@@ -1,6 +1,7 @@
 """What everybody knows of the drive: the paper's Tables 1 and 2, the gear train, the scales of the log.
 
-Source of every number: the paper (P), its arithmetic (I) or an assumption (A) the log format or the design notes state.
+Source of every number: the paper (P), its arithmetic (I) or an assumption (A) the log format or the design
+notes state.
 """
 
 import math

@@ -27,7 +27,8 @@ def off(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def drive(rng: np.random.Generator, kind: str) -> Drive:
-    """Draw a drive. kind: "pure" (as declared), "off" (5-20 % off), "gains" (other gains and clock), "mixed"."""
+    """Draw a drive. kind: "pure" (as declared), "off" (5-20 % off), "gains" (other gains and clock),
+    "mixed"."""
     axis = "ra" if rng.random() < 0.8 else "dec"
     preload = "low" if rng.random() < 0.85 else "high"
     low, high = {"pure": (0.0, 0.0), "off": (0.05, 0.20), "gains": (0.0, 0.02), "mixed": (0.0, 0.12)}[kind]
@@ -84,6 +85,14 @@ def drive(rng: np.random.Generator, kind: str) -> Drive:
         "ppm": ppm,
         "stamp_s": 5e-6 * rng.uniform(0.3, 1.5),  # A: interrupt latency in every board's time stamp
     }
-    named = {"J": inertia, "SIG2": table.viscous, "TC": table.coulomb, "TS": table.breakaway, "VS": table.stribeck,
-             "KGEAR": d.AXES[axis].stiffness, "SIG0": d.SIGMA_0, "SIG1": d.SIGMA_1}  # fmt: skip
+    named = {
+        "J": inertia,
+        "SIG2": table.viscous,
+        "TC": table.coulomb,
+        "TS": table.breakaway,
+        "VS": table.stribeck,
+        "KGEAR": d.AXES[axis].stiffness,
+        "SIG0": d.SIGMA_0,
+        "SIG1": d.SIGMA_1,
+    }
     return Drive(axis, preload, values, noise, named)

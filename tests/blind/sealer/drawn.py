@@ -1,4 +1,5 @@
-"""What a drawn effect is: kernel slots and sensor figures, those that scale with its size and those that do not."""
+"""What a drawn effect is: kernel slots and sensor figures, those that scale with its size and those that do
+not."""
 
 from dataclasses import dataclass, field
 
@@ -9,8 +10,10 @@ class Drawn:
 
     scaled: slot or sensor name -> value at size 1 (about the floor); fixed: not scaled.
     parameters: truth name -> (slot or sensor name, factor to unit, unit).
-    how: "measured" (size set so that residual/floor has the wanted ratio), "tolerance" (values already carry the
-    ratio as multiples of the declared tolerance), "fraction" (values already carry the share of samples or the step).
+    how: "measured" (size set so that residual/floor has the wanted ratio), "tolerance" (values already
+    carry the
+    ratio as multiples of the declared tolerance), "fraction" (values already carry the share of samples or
+    the step).
     """
 
     name: str

@@ -56,8 +56,9 @@ def run_all(drive: Drive, runs: list[Run], effects: dict[str, float], seed: int)
         noise = np.random.default_rng([seed, 1, i]).standard_normal(len(run.command))
         given = inputs(run, effects, seed * 1000 + i)
         closed = np.full(len(run.command), 1.0 if run.loop == "closed" else 0.0)
-        rows = simulate(p, closed, run.command, given.hidden, given.torque, given.upset, given.burst, noise, state,
-                        memory)  # fmt: skip
+        rows = simulate(
+            p, closed, run.command, given.hidden, given.torque, given.upset, given.burst, noise, state, memory
+        )
         angle = float(state[0])
         out.append(Trace(run, rows, given))
     return out

@@ -35,20 +35,31 @@ def presliding(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     power = min(ratio, 4.5 if up else 3.0)
     factor = math.exp(power * d.SIGMA_0_TOLERANCE * (1.0 if up else -1.0))
     values = {"SIG0": drive.declared["SIG0"] * factor}
-    return Drawn("presliding", "T", ("reversal",), {}, values, {"sigma_0": ("SIG0", 1.0, "N m/rad")}, how="tolerance")
+    return Drawn(
+        "presliding", "T", ("reversal",), {}, values, {"sigma_0": ("SIG0", 1.0, "N m/rad")}, how="tolerance"
+    )
 
 
 def viscous_change(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Viscous friction away from the declared."""
     values = {"SIG2": drive.declared["SIG2"] * beyond(rng, ratio)}
-    return Drawn("viscous_change", "T", ("velocity",), {}, values, {"sigma_2": ("SIG2", 1.0, "N m s/rad")},
-                 how="tolerance")  # fmt: skip
+    return Drawn(
+        "viscous_change",
+        "T",
+        ("velocity",),
+        {},
+        values,
+        {"sigma_2": ("SIG2", 1.0, "N m s/rad")},
+        how="tolerance",
+    )
 
 
 def coulomb_change(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Coulomb friction away from the declared."""
     values = {"TC": drive.declared["TC"] * beyond(rng, ratio)}
-    return Drawn("coulomb_change", "T", ("velocity",), {}, values, {"coulomb": ("TC", 1.0, "N m")}, how="tolerance")
+    return Drawn(
+        "coulomb_change", "T", ("velocity",), {}, values, {"coulomb": ("TC", 1.0, "N m")}, how="tolerance"
+    )
 
 
 def friction_asymmetry(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -69,7 +80,9 @@ def position_friction(rng: Rng, drive: Drive, span: float, ratio: float) -> Draw
 
 def load_friction(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Friction in proportion to the torque through the trains."""
-    return Drawn("load_friction", "T", ("current", "velocity"), {"LOADF": 0.02}, {}, {"mu": ("LOADF", 1.0, "1")})
+    return Drawn(
+        "load_friction", "T", ("current", "velocity"), {"LOADF": 0.02}, {}, {"mu": ("LOADF", 1.0, "1")}
+    )
 
 
 def friction_warmup(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:

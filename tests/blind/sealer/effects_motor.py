@@ -7,7 +7,22 @@ from tests.blind.sealer.draw import Drive
 from tests.blind.sealer.drawn import Drawn
 
 Rng = np.random.Generator
-COGGING = (6, 8, 11, 12, 14, 16, 18, 20, 22, 24, 28, 30, 33, 36)  # A: cycles per motor turn, none a mesh order
+COGGING = (
+    6,
+    8,
+    11,
+    12,
+    14,
+    16,
+    18,
+    20,
+    22,
+    24,
+    28,
+    30,
+    33,
+    36,
+)  # A: cycles per motor turn, none a mesh order
 
 
 def motor_cogging(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -15,16 +30,34 @@ def motor_cogging(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     n = int(rng.choice(COGGING))
     fixed = {"COG_N": float(n), "COG_PH": rng.uniform(0, d.TURN)}
     names = {"amplitude": ("COG_A", 1.0, "N m at the motor")}
-    return Drawn("motor_cogging", "T", ("motor_angle",), {"COG_A": 1.5 / d.GEAR_RATIO}, fixed, names, "motor", n,
-                 n * d.GEAR_RATIO)  # fmt: skip
+    return Drawn(
+        "motor_cogging",
+        "T",
+        ("motor_angle",),
+        {"COG_A": 1.5 / d.GEAR_RATIO},
+        fixed,
+        names,
+        "motor",
+        n,
+        n * d.GEAR_RATIO,
+    )
 
 
 def torque_ripple(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Torque constant of motor A waves with its angle."""
     n = int(rng.choice(COGGING))
     fixed = {"RIP_N": float(n), "RIP_PH": rng.uniform(0, d.TURN)}
-    return Drawn("torque_ripple", "T", ("motor_angle", "current"), {"RIP_A": 0.01}, fixed,
-                 {"ripple": ("RIP_A", 1.0, "1")}, "motor", n, n * d.GEAR_RATIO)  # fmt: skip
+    return Drawn(
+        "torque_ripple",
+        "T",
+        ("motor_angle", "current"),
+        {"RIP_A": 0.01},
+        fixed,
+        {"ripple": ("RIP_A", 1.0, "1")},
+        "motor",
+        n,
+        n * d.GEAR_RATIO,
+    )
 
 
 def adc_offset(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -37,8 +70,14 @@ def adc_offset(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
 def adc_gain(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """One current channel reads in proportion too much or too little."""
     key = f"ADC_GAIN_{rng.choice(['A', 'B'])}"
-    return Drawn("adc_gain", "E", ("current",), {key: 0.01 * float(rng.choice([-1.0, 1.0]))}, {},
-                 {"gain": (key, 1.0, "1")})  # fmt: skip
+    return Drawn(
+        "adc_gain",
+        "E",
+        ("current",),
+        {key: 0.01 * float(rng.choice([-1.0, 1.0]))},
+        {},
+        {"gain": (key, 1.0, "1")},
+    )
 
 
 def pwm_deadband(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -64,10 +103,16 @@ def winding_heating(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
 
 
 def magnet_weakening(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
-    """Torque constant of both motors falls, at a time or slowly."""
-    fixed = {"MAG_T0": rng.uniform(140.0, 240.0), "MAG_RAMP": 0.0 if rng.random() < 0.5 else rng.uniform(60.0, 200.0)}
+    """Torque constant falls: one motor's for good, or both at a time or slowly (K itself is not known)."""
+    if rng.random() < 0.5:
+        fixed = {"MAG_T0": -1.0, "MAG_RAMP": 0.0, "MAG_SIDE": float(rng.integers(1, 3))}
+    else:
+        ramp = 0.0 if rng.random() < 0.5 else rng.uniform(60.0, 200.0)
+        fixed = {"MAG_T0": rng.uniform(140.0, 240.0), "MAG_RAMP": ramp, "MAG_SIDE": 0.0}
     names = {"fraction": ("MAG_A", 1.0, "1"), "onset": ("MAG_T0", 1.0, "s")}
-    return Drawn("magnet_weakening", "T", ("time", "current"), {"MAG_A": 0.01}, fixed, names, one_session=True)
+    return Drawn(
+        "magnet_weakening", "T", ("time", "current"), {"MAG_A": 0.01}, fixed, names, one_session=True
+    )
 
 
 def command_disturbance(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -75,4 +120,6 @@ def command_disturbance(rng: Rng, drive: Drive, span: float, ratio: float) -> Dr
     f = rng.uniform(0.3, 6.0)
     fixed = {"UPSET_F": f, "UPSET_PH": rng.uniform(0, d.TURN)}
     names = {"amplitude": ("UPSET", 1.0, "1/3000"), "frequency": ("UPSET_F", 1.0, "Hz")}
-    return Drawn("command_disturbance", "S", ("command", "time"), {"UPSET": 2.0}, fixed, names, frequency_hz=f)
+    return Drawn(
+        "command_disturbance", "S", ("command", "time"), {"UPSET": 2.0}, fixed, names, frequency_hz=f
+    )

@@ -23,27 +23,43 @@ def encoder_subdivision(rng: Rng, drive: Drive, span: float, ratio: float) -> Dr
     scaled = {"SUB_1": 0.003, "SUB_2": 0.003 * rng.uniform(0.0, 0.7)}
     fixed = {"SUB_1_PH": rng.uniform(0, d.TURN), "SUB_2_PH": rng.uniform(0, d.TURN)}
     names = {"amplitude": ("SUB_1", 1.0, "arcsec"), "amplitude_2": ("SUB_2", 1.0, "arcsec")}
-    return Drawn("encoder_subdivision", "S", ("axis_angle",), scaled, fixed, names, None, 1, float(SIGNAL_PERIODS))
+    return Drawn(
+        "encoder_subdivision", "S", ("axis_angle",), scaled, fixed, names, None, 1, float(SIGNAL_PERIODS)
+    )
 
 
 def roller_ratio(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Roller diameter: incremental scale error."""
-    return Drawn("roller_ratio", "K", ("velocity", "axis_angle"),
-                 {"ROLLER_EPS": 3e-4 * float(rng.choice([-1.0, 1.0]))}, {}, {"scale": ("ROLLER_EPS", 1.0, "1")},
-                 "roller")  # fmt: skip
+    return Drawn(
+        "roller_ratio",
+        "K",
+        ("velocity", "axis_angle"),
+        {"ROLLER_EPS": 3e-4 * float(rng.choice([-1.0, 1.0]))},
+        {},
+        {"scale": ("ROLLER_EPS", 1.0, "1")},
+        "roller",
+    )
 
 
 def roller_slip(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Roller creeps while the axis accelerates harder than a limit."""
     fixed = {"SLIP_A0": 0.3 * 2400.0 * d.ARCSEC}
     names = {"creep": ("SLIP_C", 1.0, "s"), "limit": ("SLIP_A0", 1.0, "rad/s2")}
-    return Drawn("roller_slip", "K", ("velocity", "reversal", "time"), {"SLIP_C": 0.01}, fixed, names, "roller")
+    return Drawn(
+        "roller_slip", "K", ("velocity", "reversal", "time"), {"SLIP_C": 0.01}, fixed, names, "roller"
+    )
 
 
 def encoder_thermal_drift(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """On-shaft encoder drifts with temperature (column `temperature`)."""
-    return Drawn("encoder_thermal_drift", "K", ("temperature", "time"), {"DRIFT": 0.3}, {},
-                 {"drift": ("DRIFT", 1.0, "arcsec/K")})  # fmt: skip
+    return Drawn(
+        "encoder_thermal_drift",
+        "K",
+        ("temperature", "time"),
+        {"DRIFT": 0.3},
+        {},
+        {"drift": ("DRIFT", 1.0, "arcsec/K")},
+    )
 
 
 def channel_delay(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
@@ -55,16 +71,23 @@ def channel_delay(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
 
 def clock_jitter(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Time stamps jitter (the samples do not)."""
-    return Drawn("clock_jitter", "S", ("clock", "time"), {"JITTER": 1e-4}, {}, {"sigma": ("JITTER", 1.0, "s")})
+    return Drawn(
+        "clock_jitter", "S", ("clock", "time"), {"JITTER": 1e-4}, {}, {"sigma": ("JITTER", 1.0, "s")}
+    )
 
 
 def sample_loss(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Packets of 25 samples missing, or samples repeated: 1, 2 or 5 % of them."""
     fixed = {"LOSS": 0.01 * ratio, "LOSS_REPEAT": float(rng.random() < 0.4)}
-    return Drawn("sample_loss", "S", ("clock", "time"), {}, fixed, {"fraction": ("LOSS", 1.0, "1")}, how="fraction")
+    return Drawn(
+        "sample_loss", "S", ("clock", "time"), {}, fixed, {"fraction": ("LOSS", 1.0, "1")}, how="fraction"
+    )
 
 
 def log_wrap(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
-    """A column wraps or saturates early; 1, 2 or 5 % of the samples (WRAP_KIND: 0 velocity, 1 position, 2 ADC top)."""
+    """A column wraps or saturates early; 1, 2 or 5 % of the samples (WRAP_KIND: 0 velocity, 1 position, 2
+    ADC top)."""
     fixed = {"WRAP": 0.01 * ratio, "WRAP_KIND": float(rng.integers(3))}
-    return Drawn("log_wrap", "S", ("clock", "velocity", "current", "axis_angle"), {}, fixed, {}, how="fraction")
+    return Drawn(
+        "log_wrap", "S", ("clock", "velocity", "current", "axis_angle"), {}, fixed, {}, how="fraction"
+    )

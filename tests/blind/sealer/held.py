@@ -1,15 +1,16 @@
 """Everything that is held over one step: what the effects add, and the trace of their own contribution.
 
-Own contribution e: 0 torque N m, 1 kinematic arcsec, 2 volts A, 3 volts B (the roller's is taken in the loop).
-Memory m of the slow elements: 0/1 heat of the motors (K), 2 cable loop (rad), 3.. six stops of the hysteresis (rad).
+Own contribution e: 0 torque N m, 1 kinematic arcsec, 2 volts A, 3 volts B (the roller's is taken in the
+loop).
+Memory m of the slow elements: 0/1 heat of the motors (K), 2 cable loop (rad), 3.. six stops of the
+hysteresis (rad).
 """
 
 import math
 
-from tests.blind.sealer.compiled import compiled
-
 from tests.blind.sealer import rates as r_
 from tests.blind.sealer import slots as p_
+from tests.blind.sealer.compiled import compiled
 from tests.blind.sealer.slots import Array
 
 STOPS = 6
@@ -36,10 +37,9 @@ def tooth_pulse(turns: float, width: float) -> float:
 @compiled
 def friction_effects(p: Array) -> bool:
     """Whether any friction effect is on (most cases have none, and this is in the inner loop)."""
-    return (
-        p[p_.ASYM_C] != 0.0 or p[p_.ASYM_V] != 0.0 or p[p_.POSF_A] != 0.0 or p[p_.LOADF] != 0.0
-        or p[p_.WARM_A] != 0.0 or p[p_.PRELOAD_A] != 0.0 or p[p_.BRAKE_T] != 0.0
-    )  # fmt: skip
+    total = abs(p[p_.ASYM_C]) + abs(p[p_.ASYM_V]) + abs(p[p_.POSF_A]) + abs(p[p_.LOADF])
+    total += abs(p[p_.WARM_A]) + abs(p[p_.PRELOAD_A]) + abs(p[p_.BRAKE_T])
+    return bool(total > 0.0)
 
 
 @compiled
@@ -78,7 +78,11 @@ def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
 def hold_axis(s: Array, m: Array, extra: float, q: Array, p: Array, e: Array) -> None:
     """Torques and kinematic errors over the angles."""
     theta = s[0]
-    torque = extra + p[p_.GRAV_A] * sine(p[p_.GRAV_A], 1.0, theta, 0.5 * math.pi - p[p_.GRAV_PH]) - p[p_.QUAD] * s[1] * abs(s[1])
+    torque = (
+        extra
+        + p[p_.GRAV_A] * sine(p[p_.GRAV_A], 1.0, theta, 0.5 * math.pi - p[p_.GRAV_PH])
+        - p[p_.QUAD] * s[1] * abs(s[1])
+    )
     torque -= p[p_.CABLE_K] * (theta - p[p_.CABLE_TH0])
     if p[p_.CABLE_H] != 0.0:
         torque -= p[p_.CABLE_H] * m[2] / p[p_.CABLE_SCALE]
@@ -100,10 +104,12 @@ def hold_axis(s: Array, m: Array, extra: float, q: Array, p: Array, e: Array) ->
 
 
 @compiled
-def hold_motors(t: float, burst: float, s: Array, m: Array, duty: Array, q: Array, p: Array, e: Array) -> None:
+def hold_motors(
+    t: float, burst: float, s: Array, m: Array, duty: Array, q: Array, p: Array, e: Array
+) -> None:
     """Voltages, resistances, constants, cogging and drag of the two motors."""
     ratio = p[p_.RATIO]
-    fall = 1.0 - p[p_.MAG_A] * onset(t, p[p_.MAG_T0], p[p_.MAG_RAMP])
+    lost = p[p_.MAG_A] * onset(t, p[p_.MAG_T0], p[p_.MAG_RAMP])
     for side in range(2):
         k0 = p[p_.KA + side]
         r0 = p[p_.RA + side]
@@ -111,7 +117,7 @@ def hold_motors(t: float, burst: float, s: Array, m: Array, duty: Array, q: Arra
         spin = s[3] if side == 0 else -s[5]
         live = max(0.0, duty[side] - p[p_.DEADBAND])
         supply = p[p_.V0] - p[p_.SAG] * (s[6] + s[7])
-        k = k0 * fall
+        k = k0 * (1.0 - lost) if p[p_.MAG_SIDE] == 0.0 or p[p_.MAG_SIDE] == side + 1.0 else k0
         res = r0 * (1.0 + COPPER * m[side])
         if side == 0 and burst > 0.0 and p[p_.BRUSH_A] > 0.0:
             x = (s[2] - p[p_.BRUSH_PH]) / (2.0 * math.pi)
@@ -126,7 +132,9 @@ def hold_motors(t: float, burst: float, s: Array, m: Array, duty: Array, q: Arra
             e[2 + side] -= p[p_.DIODE] * k * spin
         sign = ratio if side == 0 else -ratio
         e[0] += sign * (k - k0) * current
-        if p[p_.DIODE] > 0.0 and duty[side] <= 0.0:  # the open switch hides this current from the sense resistor
+        if (
+            p[p_.DIODE] > 0.0 and duty[side] <= 0.0
+        ):  # the open switch hides this current from the sense resistor
             e[0] += sign * k * current
     wave = sine(p[p_.RIP_A], p[p_.RIP_N], s[2], p[p_.RIP_PH])
     q[r_.Q_KFA] = q[r_.Q_KA] * (1.0 + p[p_.RIP_A] * wave)

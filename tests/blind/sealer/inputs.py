@@ -40,7 +40,7 @@ def inputs(run: Run, values: dict[str, float], seed: int) -> Inputs:
     """The inputs of one run for these effect values; the same seed gives the same noise at any size."""
     n = len(run.command)
     rng = np.random.default_rng(seed)
-    t = run.t_session + d.TICK_S * np.arange(n)
+    t: Array = run.t_session + d.TICK_S * np.arange(n, dtype=np.float64)
     hidden, torque, upset, burst = (np.zeros(n) for _ in range(4))
     if "WIND" in values:
         torque += wind(rng, n, values["WIND"], values["WIND_CORNER"], values["WIND_MEAN"])

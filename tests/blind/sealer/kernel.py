@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
-from tests.blind.sealer.compiled import compiled
 
 from tests.blind.sealer import held as h_
 from tests.blind.sealer import rates as r_
 from tests.blind.sealer import slots as p_
+from tests.blind.sealer.compiled import compiled
 from tests.blind.sealer.slots import Array
 
 SUBSTEPS = 10  # 500 us inside a 5 ms tick
@@ -19,7 +19,7 @@ EARLY = 1  # substeps until a new effort reaches the PWM register (end of the in
 @compiled
 def past(ring: Array, row: int, newest: int, back: float) -> float:
     """Value `back` substeps ago (linear between samples)."""
-    whole = int(math.floor(back))
+    whole = math.floor(back)
     part = back - whole
     a = ring[row, (newest - whole) % RING]
     b = ring[row, (newest - whole - 1) % RING]
@@ -28,12 +28,23 @@ def past(ring: Array, row: int, newest: int, back: float) -> float:
 
 
 @compiled
-def simulate(p: Array, closed: Array, command: Array, hidden: Array, torque: Array, upset: Array, burst: Array,
-             noise: Array, state: Array, memory: Array) -> Array:  # fmt: skip
+def simulate(
+    p: Array,
+    closed: Array,
+    command: Array,
+    hidden: Array,
+    torque: Array,
+    upset: Array,
+    burst: Array,
+    noise: Array,
+    state: Array,
+    memory: Array,
+) -> Array:
     """Rows of one run.
 
     Per tick of 5 ms: closed (1/0), command (counts per tick, or effort when open), hidden (added to the
-    executed command only), torque (N m on the axis), upset (added to the effort), burst (0/1), noise (counts).
+    executed command only), torque (N m on the axis), upset (added to the effort), burst (0/1), noise
+    (counts).
     state and memory are advanced in place.
     """
     ticks = command.shape[0]
@@ -55,7 +66,6 @@ def simulate(p: Array, closed: Array, command: Array, hidden: Array, torque: Arr
     count_before = math.floor(roller)
     accumulator = 0
     error_before = 0
-    summed = 0
     late = 1.0 / step
     omega_before = state[1]
     for tick in range(ticks):
@@ -65,17 +75,17 @@ def simulate(p: Array, closed: Array, command: Array, hidden: Array, torque: Arr
         count_before = count
         if closed[tick] > 0.5:
             wanted = command[tick] + hidden[tick]
-            error = int(round(wanted * 256.0)) - int(velocity) * 256
+            error = round(wanted * 256.0) - int(velocity) * 256
             kp = p[p_.KP_Q12]
             if p[p_.BUG_V] > 0.0 and abs(wanted) > p[p_.BUG_V]:
                 kp *= p[p_.BUG_F]
             accumulator += int(kp) * (error - error_before) + int(p[p_.KI_Q12]) * error
             error_before = error
         else:
-            accumulator = int(round(command[tick] + hidden[tick])) << 20
+            accumulator = round(command[tick] + hidden[tick]) << 20
             error_before = 0
         accumulator = min(max(accumulator, -EFFORT_TOP << 20), EFFORT_TOP << 20)
-        effort = (accumulator >> 20) + int(round(upset[tick]))
+        effort = (accumulator >> 20) + round(upset[tick])
         effort = min(max(effort, -EFFORT_TOP), EFFORT_TOP)
         level = abs(effort) / EFFORT_TOP
         lag = level * p[p_.COUNTER] * (1.0 - p[p_.COUNTER_LOSS])

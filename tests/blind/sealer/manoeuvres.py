@@ -88,7 +88,7 @@ def bench(rng: np.random.Generator, stick: float) -> Run:
         effort = sign * min(2600.0, stick * 1.25)
         points.append(np.full(round(4.0 / d.TICK_S), effort))
         points.append(np.zeros(round(3.0 / d.TICK_S)))
-    return Run("bench", "open", np.round(np.concatenate(points)))
+    return Run("bench", "open", np.round(np.concatenate(points)).astype(np.float64))
 
 
 def mono(rate: float, seconds: float) -> Run:
@@ -96,13 +96,21 @@ def mono(rate: float, seconds: float) -> Run:
     return closed("mono", [(0.0, 0.5), (rate, seconds)])
 
 
-def plan(rng: np.random.Generator, stick: float, poor: bool = False, sessions: int | None = None) -> list[Run]:
+def plan(
+    rng: np.random.Generator, stick: float, poor: bool = False, sessions: int | None = None
+) -> list[Run]:
     """The runs of a case, with session names and start times (seconds)."""
     if poor:
         rate = float(rng.choice([600.0, 1000.0, 3600.0])) * float(rng.choice([-1.0, 1.0]))
         runs = [mono(rate, 60.0) for _ in range(4)]
     else:
-        runs = [steps(rng), sweep(rng), ramp(rng), bench(rng, stick), steps(rng) if rng.random() < 0.5 else track(rng)]
+        runs = [
+            steps(rng),
+            sweep(rng),
+            ramp(rng),
+            bench(rng, stick),
+            steps(rng) if rng.random() < 0.5 else track(rng),
+        ]
         runs.append([steps, sweep, ramp][int(rng.integers(3))](rng))
         order = rng.permutation(len(runs))
         runs = [runs[i] for i in order]

@@ -1,6 +1,8 @@
-"""Residual-to-floor ratio of an effect: its own contribution, less what a re-calibration could take up, over the floor.
+"""Residual-to-floor ratio of an effect: its own contribution, less what a re-calibration could take up,
+over the floor.
 
-Channels: T torque at the axis (N m), E volts of each motor, K difference of encoders (arcsec), S the column itself.
+Channels: T torque at the axis (N m), E volts of each motor, K difference of encoders (arcsec), S the column
+itself.
 """
 
 import numpy as np
@@ -82,13 +84,17 @@ def ratios(drive: Drive, traces: list[Trace], v: dict[str, float], seed: int) ->
     return out
 
 
-def sensor_ratio(traces: list[Trace], v: dict[str, float], errors: list[Array], floor: dict[str, float]) -> float:
+def sensor_ratio(
+    traces: list[Trace], v: dict[str, float], errors: list[Array], floor: dict[str, float]
+) -> float:
     """The S channel: the column's own error over the column's floor."""
     found = [0.0]
     if "SUB_1" in v:
         found.append(float(np.std(np.concatenate(errors))) / floor["position"])
     if "JITTER" in v:
-        found.append(float(np.sqrt(np.mean(join(traces, "omega") ** 2))) / d.ARCSEC * v["JITTER"] / floor["K"])
+        found.append(
+            float(np.sqrt(np.mean(join(traces, "omega") ** 2))) / d.ARCSEC * v["JITTER"] / floor["K"]
+        )
     if "ROLLER_EPS" in v or "SLIP_C" in v:
         found.append(float(np.sqrt(np.mean(join(traces, "e_roller") ** 2))) / floor["velocity"])
     if "DELAY_VEL" in v:

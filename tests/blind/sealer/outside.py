@@ -31,7 +31,9 @@ def sticking_brush(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
 
 def other_axis(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """The other axis moves and its acceleration pushes on this one."""
-    return Drawn("outside_other_axis", "T", ("time",), {"OTHER": 2.0}, {"OTHER_PERIOD": rng.uniform(7.0, 15.0)})
+    return Drawn(
+        "outside_other_axis", "T", ("time",), {"OTHER": 2.0}, {"OTHER_PERIOD": rng.uniform(7.0, 15.0)}
+    )
 
 
 def command_pulse(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:

@@ -1,14 +1,14 @@
 """Right-hand side of the drive: load, two trains with play, two one-way motors, LuGre bristle.
 
-State s: 0 load angle, 1 load rate, 2/3 rotor A angle and rate, 4/5 rotor B, 6/7 currents, 8 bristle, 9/10 second mass.
+State s: 0 load angle, 1 load rate, 2/3 rotor A angle and rate, 4/5 rotor B, 6/7 currents, 8 bristle, 9/10
+second mass.
 Held values q (constant over a step): see the Q_ numbers.
 """
 
 import math
 
-from tests.blind.sealer.compiled import compiled
-
 from tests.blind.sealer import slots as p_
+from tests.blind.sealer.compiled import compiled
 from tests.blind.sealer.slots import Array
 
 STATES = 11
@@ -29,17 +29,18 @@ def friction_level(omega: float, q: Array, p: Array) -> float:
     elif omega < 0.0:
         level *= 1.0 - p[p_.ASYM_C]
     level = level * q[Q_LEVEL] + q[Q_COULOMB_ADD]
-    return max(level, 1.0)
+    return float(max(level, 1.0))
 
 
 @compiled
 def tooth_force(gap: float, rate: float, p: Array) -> float:
-    """Torque through one train at the axis, N m: nothing inside the play, spring and damper on a flank, no glue."""
+    """Torque through one train at the axis, N m: nothing inside the play, spring and damper on a flank, no
+    glue."""
     half = p[p_.HALF_GAP]
     if gap > half:
-        return max(0.0, p[p_.KGEAR] * (gap - half) + p[p_.CGEAR] * rate)
+        return float(max(0.0, p[p_.KGEAR] * (gap - half) + p[p_.CGEAR] * rate))
     if gap < -half:
-        return min(0.0, p[p_.KGEAR] * (gap + half) + p[p_.CGEAR] * rate)
+        return float(min(0.0, p[p_.KGEAR] * (gap + half) + p[p_.CGEAR] * rate))
     return 0.0
 
 

@@ -1,4 +1,5 @@
-"""From the true rows to the columns of the log: encoders, ADC, tachometers, clock, and what goes wrong in them."""
+"""From the true rows to the columns of the log: encoders, ADC, tachometers, clock, and what goes wrong in
+them."""
 
 import numpy as np
 
@@ -16,7 +17,12 @@ def temperature(trace: Trace, seed: int) -> Array:
     """Air temperature of the night, degrees C: slow cosine and a trend over 1.5 h, 0.01 degree steps."""
     rng = np.random.default_rng([seed, 5])
     t = trace.run.start_offset + 0.01 * np.arange(len(trace.rows))
-    slope, swing, period, phase = rng.uniform(-4.0, -1.0), rng.uniform(0.5, 1.5), rng.uniform(250, 500), rng.uniform(0, 6)
+    slope, swing, period, phase = (
+        rng.uniform(-4.0, -1.0),
+        rng.uniform(0.5, 1.5),
+        rng.uniform(250, 500),
+        rng.uniform(0, 6),
+    )
     out: Array = np.round(12.0 + slope * t / 3600.0 + swing * np.cos(d.TURN * t / period + phase), 2)
     return out
 
