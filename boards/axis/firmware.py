@@ -9,6 +9,7 @@ from boards.axis.pi import IncrementalPi
 from boards.axis.pins import AxisPins
 from boards.axis.profile import UNITS_PER_STEP
 from boards.axis.tachometer import RemoteTachometer
+from boards.axis.watch import EncoderWatch
 from boards.core import PeriodicBoard
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.can import FULL_MASK
@@ -49,7 +50,7 @@ class AxisBoard(PeriodicBoard):
 
     __slots__ = ("_counter", "_identifier", "adc", "config", "effort", "effort_command", "fault", "limits",
                  "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence", "split", "stamp_ns",
-                 "tach_a", "tach_b", "uart", "velocity")  # fmt: skip
+                 "tach_a", "tach_b", "uart", "velocity", "watch")  # fmt: skip
 
     def __init__(
         self, name: str, device_type: int, queue: EventQueue, wire: Wire, pins: AxisPins, oscillator:
@@ -76,6 +77,7 @@ class AxisBoard(PeriodicBoard):
         self.stamp_ns = 0
         self.sequence = 0
         self.fault = False
+        self.watch = EncoderWatch()
         self._identifier = MEASUREMENT_BASE + device_type
         remote = (
             MEASUREMENT_BASE + position_type,
@@ -111,6 +113,7 @@ class AxisBoard(PeriodicBoard):
         poscnt = self.qei.pin(t_ns) & 0xFFFF
         self.velocity = velocity = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
         self.poscnt = poscnt
+        self.watch.counts += velocity
         motion = self.motion
         setpoint = motion.setpoint(t_ns, velocity)
         effort = self.effort_command
@@ -192,11 +195,21 @@ class AxisBoard(PeriodicBoard):
         ticks = self.ticks
         if ticks % _TARGET_TICKS == 1:
             motion = self.motion
+            if not motion.fresh(t_ns):
+                self.watch.forget()
+            elif self.watch.disagree(motion.measured(t_ns, self.velocity)) and self.powered():
+                self.trip()
             distance = motion.distance_steps(t_ns, self.velocity)
             data = pack_target(self.device_type, motion.selected, motion.settled, distance)
             self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
         elif ticks % _HEARTBEAT_TICKS == 3:
             self.heartbeat(end_ns)
+
+    def trip(self) -> None:
+        """Latch a fault and take the power off the motors; POWER clears it."""
+        self.fault = True
+        self.motion.off()
+        self.command_effort(0)
 
     def stop(self) -> None:
         """Brake to rest and stay there, in the velocity loop."""
@@ -230,5 +243,5 @@ class AxisBoard(PeriodicBoard):
         if self.limits.reached:
             bits |= Health.LIMIT
         if self.fault:
-            bits |= Health.FAULT
+            bits |= Health.FAULT | Health.SENSOR
         return bits
