@@ -64,7 +64,7 @@ class AxisPort:
     def _late(self, t_ns: int, place: int) -> float:
         """Return a reading of the past from the ring of kept ones; before the start, the first one."""
         grid = self._plant.grid_ns
-        step = max(1, t_ns // grid)
+        step = max(0, t_ns // grid)
         row = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
         place += row - self._base - at.OUT
         return self._view[place] + self._view[place + 1] * max(0, t_ns - step * grid)
@@ -92,7 +92,7 @@ class AxisPort:
             plant.advance(t_ns)
         delay = self._delays["currents"]
         if delay:
-            step = max(1, (t_ns - delay) // plant.grid_ns)
+            step = max(0, (t_ns - delay) // plant.grid_ns)
             row = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
             return float(self._view[row + at.OUT_CURRENT_A + motor])
         return self._view[self._current[motor]]

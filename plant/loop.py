@@ -25,6 +25,18 @@ ADC_COUNTS_PER_A = (
 )  # 0.1 ohm (paper), gain 8 and 5 V (hardware.md 2.3): 6.1 mA per count
 LATENCY_S = 65e-6  # 40 us of interrupt routine and half a PWM period of 50 us, as the axis board takes
 SAMPLE_S = 0.010  # paper, section 3.4
+LOG_COLUMNS = (
+    "t",
+    "setpoint",
+    "effort",
+    "position",
+    "velocity",
+    "adc_a",
+    "adc_b",
+    "tach_a",
+    "tach_b",
+    "aux",
+)
 TRUTH_COLUMNS = (
     "angle",  # rad
     "rate",  # rad/s
@@ -107,10 +119,9 @@ def simulate(
     log[:, at_control.POSITION] %= mask
     log[:, at_control.AUX] %= 2.0 ** int(part.encoders.auxiliary.si)
     log[:, at_control.SETPOINT] = wanted[::2]
-    columns = [np.ascontiguousarray(log[:, k]) for k in range(at_control.LOG_SIZE)]
-    return LogColumns(
-        *columns, {name: np.ascontiguousarray(truth[:, k]) for k, name in enumerate(TRUTH_COLUMNS)}
-    )
+    columns = {name: np.ascontiguousarray(log[:, k]) for k, name in enumerate(LOG_COLUMNS)}
+    beside = {name: np.ascontiguousarray(truth[:, k]) for k, name in enumerate(TRUTH_COLUMNS)}
+    return LogColumns(truth=beside, **columns)
 
 
 def _column(given: float | Floats | None, rows: int, absent: float, name: str) -> Floats:
@@ -157,6 +168,8 @@ def _start(w: Floats, rate: float) -> None:
     w[at.DIRECTION] = np.sign(rate)
     w[at.STRIBECK] = stribeck.py_func(rate, w, at.DECLARED_FRICTION)  # type: ignore[attr-defined]
     w[at.BRISTLE] = np.sign(rate) * w[at.STRIBECK]
+    level = w[at.BRISTLE] * w[at.DECLARED_FRICTION + at.F_SIGMA0]
+    w[at.FRICTION] = level + rate * w[at.DECLARED_FRICTION + at.F_SIGMA2]
     half = 0.5 * w[at.GRID]
     w[at.ANGLE] += half * rate
     for m in range(2):

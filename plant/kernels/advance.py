@@ -8,7 +8,7 @@ from plant.kernels.step import axis_step
 
 @inner
 def advance_axis(w: Floats, steps: int) -> None:
-    """Advance one axis by `steps` grid steps and fill its readings."""
+    """Advance one axis by `steps` grid steps and fill its readings (0 steps: the readings only)."""
     h = w[at.GRID]
     every = int(w[at.RECORD_EVERY])
     delayed = w[at.DELAY_ON] > 0.0
@@ -22,8 +22,10 @@ def advance_axis(w: Floats, steps: int) -> None:
         if delayed:
             read(w)
             keep(w)
-    if not delayed:
+    if not delayed or steps == 0:
         read(w)
+    if delayed and steps == 0:
+        keep(w)
 
 
 @entry

@@ -42,7 +42,7 @@ def reading(w: Floats, place: int, delay: float) -> float:
     if delay <= 0.0:
         return w[at.OUT + place]
     back = w[at.STEP] - delay / w[at.GRID]
-    step = max(1, int(floor(back)))
+    step = max(0, int(floor(back)))
     row = at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
     if place >= at.OUT_CURRENT_A:
         return w[row + place]

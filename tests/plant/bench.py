@@ -1,4 +1,6 @@
-"""Small helpers of the plant's tests: a model without effects, an axis driven for a while, friction vectors."""
+"""Small helpers of the plant's tests: a model without effects, an axis driven for a while, friction
+vectors.
+"""
 
 import numpy as np
 from numpy.typing import NDArray

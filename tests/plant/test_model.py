@@ -1,4 +1,6 @@
-"""Plant files: every number has unit and source, errors name the place, what is written reads back the same."""
+"""Plant files: every number has unit and source, errors name the place, what is written reads back the
+same.
+"""
 
 import dataclasses
 
