@@ -1,4 +1,5 @@
-"""What an experiment needs: an axis that takes commands and leaves logs. The emulator is one, the compiled loop another."""
+"""What an experiment needs: an axis that takes commands and leaves logs. The emulator is one, the compiled
+loop another."""
 
 from typing import Protocol
 
@@ -21,5 +22,6 @@ class BenchMaker(Protocol):
     """Makes a fresh bench: same plant, same seed, at rest."""
 
     def __call__(self, preload: str, gains: tuple[float, float] | None = None) -> Bench:
-        """Return a bench with preload "low" or "high"; other gains (Kp, Ki) than the plant file's when given."""
+        """Return a bench with preload "low" or "high"; other gains (Kp, Ki) than the plant file's when
+        given."""
         ...

@@ -14,8 +14,9 @@ Array = NDArray[np.float64]
 class Log:
     """Samples every 10 ms, all arrays of shape (n,).
 
-    t_s: s since the bench was switched on. counts: incremental encoder, counts in the last 5 ms. effort: 1/3000
-    of the supply, signed. adc_a, adc_b: ADC counts. true_rate: arcsec/s, what no instrument of the telescope saw.
+    t_s: s since the bench was switched on. counts: incremental encoder, counts in the last 5 ms. effort:
+    1/3000 of the supply, signed. adc_a, adc_b: ADC counts. true_rate: arcsec/s, what no instrument of the
+    telescope saw.
     """
 
     t_s: Array
@@ -44,7 +45,9 @@ class Log:
         """Return the log without its first `seconds`: start-up discarded."""
         first = round(seconds / LOG_PERIOD_S)
         if first >= self.t_s.size:
-            raise ValueError(f"a run of {self.t_s.size * LOG_PERIOD_S:.2f} s has nothing after {seconds:.2f} s")
+            raise ValueError(
+                f"a run of {self.t_s.size * LOG_PERIOD_S:.2f} s has nothing after {seconds:.2f} s"
+            )
         return Log(*(column[first:] for column in self._columns()))
 
     def last(self, seconds: float) -> "Log":

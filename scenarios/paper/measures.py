@@ -1,7 +1,7 @@
 """Figures taken from a velocity record, the way the paper states them.
 
-The paper gives "peak errors" without saying over which average. Every figure is therefore computed for a record the
-caller chooses: velocity as logged (counts of 5 ms), true velocity, or means of one second.
+The paper gives "peak errors" without saying over which average. Every figure is therefore computed for a
+record the caller chooses: velocity as logged (counts of 5 ms), true velocity, or means of one second.
 """
 
 from dataclasses import dataclass
@@ -33,7 +33,8 @@ def means(rate: Array, seconds: float = 1.0) -> Array:
 
 @dataclass(frozen=True)
 class ThreeWays:
-    """Peak deviation, percent of the set point: as logged (5 ms counts), true, and of means over one second."""
+    """Peak deviation, percent of the set point: as logged (5 ms counts), true, and of means over one
+    second."""
 
     logged: float
     true: float
@@ -58,9 +59,11 @@ def peaks(log: Log, setpoint: float) -> ThreeWays:
 
 
 def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
-    """Return how often the velocity went from below to above: below (1 - depth) and then above (1 + depth) set points.
+    """Return how often the velocity went from below to above: below (1 - depth) and then above (1 + depth)
+    set points.
 
-    A limit cycle does that again and again; quantisation of a steady motion (7 to 8 percent at 15 arcsec/s) never.
+    A limit cycle does that again and again; quantisation of a steady motion (7 to 8 percent at 15 arcsec/s)
+    never.
     """
     ratio = rate / setpoint
     state, count = 0, 0
@@ -85,8 +88,9 @@ class Line:
 def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float = LOG_PERIOD_S) -> Line:
     """Return the strongest sinusoid of `record` between two frequencies.
 
-    Frequencies are tried on a grid of a tenth of the record's resolution; the amplitude is that of the least-squares
-    sinusoid (with an offset and a trend of its own). Raises ValueError when not one period of `high_hz` fits.
+    Frequencies are tried on a grid of a tenth of the record's resolution; the amplitude is that of the
+    least-squares sinusoid (with an offset and a trend of its own). Raises ValueError when not one period of
+    `high_hz` fits.
     """
     span = record.size * period_s
     if span * high_hz < 1.0:
@@ -127,7 +131,8 @@ def stalled(rate: Array) -> bool:
 
 @dataclass(frozen=True)
 class Step:
-    """A step response: 10-90 % rise time, s; overshoot, percent of the set point; mean and time of settled motion."""
+    """A step response: 10-90 % rise time, s; overshoot, percent of the set point; mean and time of settled
+    motion."""
 
     rise_s: float
     overshoot_percent: float

@@ -1,0 +1,137 @@
+"""All ten experiments, in order, on benches of both preloads: logs, rows, and what the figures need."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plant.parts import PlantModel
+from scenarios.paper import judge_loop, judge_models, runs
+from scenarios.paper.bench import BenchMaker
+from scenarios.paper.friction_map import FrictionFit, MapPoint, drive_torque, fit_friction, steady_point
+from scenarios.paper.linear import linear_axis, reduce_to_dead_time, simulate_loop
+from scenarios.paper.log import Array, Log
+from scenarios.paper.measures import cycles, stalled, step_response
+from scenarios.paper.rows import Row
+from scenarios.paper.rundown import RunDown, fit_inertia
+from scenarios.paper.scales import ARCSEC, LOG_PERIOD_S
+
+STEP_TO = 600.0
+RAMP_ARCSEC_S2 = 7200.0
+"""The firmware's acceleration limit, 2 deg/s2 (Table 1)."""
+
+Progress = Callable[[str], None]
+
+
+@dataclass
+class Record:
+    """Logs and fits that the figures are drawn from; filled as the campaign goes on."""
+
+    tracking: dict[str, Log] = field(default_factory=dict)
+    high: list[runs.HighSpeed] = field(default_factory=list)
+    slew: list[tuple[float, Log]] = field(default_factory=list)
+    low: runs.LowSpeed | None = None
+    points: dict[str, list[MapPoint]] = field(default_factory=dict)
+    left_out: dict[str, list[float]] = field(default_factory=dict)
+    fits: dict[str, FrictionFit] = field(default_factory=dict)
+    run_down: RunDown | None = None
+    step: Log | None = None
+    linear: tuple[Array, Array, Array] | None = None
+
+
+class Campaign:
+    """Runs the experiments on benches made by `bench`; `plants` are the models behind them, by preload."""
+
+    def __init__(self, bench: BenchMaker, plants: dict[str, PlantModel], progress: Progress) -> None:
+        self.bench = bench
+        self.plants = plants
+        self.progress = progress
+        self.record = Record()
+
+    def rows(self) -> list[Row]:
+        """Return all ten rows."""
+        steps: tuple[Callable[[], list[Row]], ...] = (
+            self._tracking, self._high, self._slew, self._low, self._identify, self._linear, self._tuning,
+        )  # fmt: skip
+        found = [row for step in steps for row in step()]
+        return sorted(found, key=lambda row: int(row.id[1:]))
+
+    def _tracking(self) -> list[Row]:
+        for preload in ("low", "high"):
+            self.progress(f"15″/s, {preload} preload")
+            self.record.tracking[preload] = runs.tracking(self.bench(preload))
+        return [judge_loop.e1(self.record.tracking["low"]), judge_loop.e2(self.record.tracking["high"])]
+
+    def _high(self) -> list[Row]:
+        for speed in runs.HIGH:
+            self.progress(f"{speed:g}″/s, closed and open loop")
+            self.record.high.append(runs.high_speed(self.bench("low"), speed))
+        return [judge_loop.e3(self.record.high), judge_loop.e5(self.record.high)]
+
+    def _slew(self) -> list[Row]:
+        for speed in runs.SLOW_SLEW:
+            self.progress(f"{speed / 3600:g}°/s")
+            self.record.slew.append((speed, runs.slow_slew(self.bench("low"), speed)))
+        return [judge_loop.e4(self.record.slew)]
+
+    def _low(self) -> list[Row]:
+        self.progress("100″/s, closed and open loop")
+        self.record.low = runs.low_speed(self.bench("low"))
+        return [judge_loop.e6(self.record.low)]
+
+    def _identify(self) -> list[Row]:
+        for preload, plant in self.plants.items():
+            self._map(preload, plant.axes.ra.motor.torque_constant.si)
+        self.progress("run-down from 2°/s")
+        constant = self.plants["low"].axes.ra.motor.torque_constant.si
+        log = runs.run_down(self.bench("low"))
+        self.record.run_down = fit_inertia(log, self.record.fits["low"], constant)
+        return [judge_models.e7(self.record.fits), judge_models.e8(self.record.run_down)]
+
+    def _map(self, preload: str, torque_constant: float) -> None:
+        """Torque-velocity map of one preload: steady states, and the break-away torque as its point at
+        rest."""
+        self.progress(f"break-away, {preload} preload")
+        log = runs.break_away(self.bench(preload))
+        moving = np.nonzero(log.counts > 2)[0]
+        first = int(moving[0]) if moving.size else log.t_s.size
+        held = drive_torque(log, torque_constant)[max(0, first - round(0.1 / LOG_PERIOD_S)) : first]
+        points = [MapPoint(0.5 * ARCSEC, float(held.max()), float(held.std()))] if held.size else []
+        left_out = []
+        for speed, steady in runs.velocity_map(self.bench(preload), self.progress):
+            # a limit cycle or stick-slip is no steady state: its mean torque belongs to no velocity
+            if stalled(steady.rate) or cycles(steady.true_rate, speed):
+                left_out.append(speed)
+            else:
+                points.append(steady_point(steady, torque_constant))
+        self.record.points[preload] = points
+        self.record.left_out[preload] = left_out
+        self.record.fits[preload] = fit_friction(points)
+
+    def _linear(self) -> list[Row]:
+        self.progress("step to 600″/s")
+        plant = self.plants["low"]
+        self.record.step = log = runs.step(self.bench("low"), STEP_TO)
+        controller = plant.controller
+        self.record.linear = simulate_loop(
+            linear_axis(plant), (controller.kp.si, controller.ki.si), round(controller.pwm_steps.si), STEP_TO,
+            float(log.t_s.size * LOG_PERIOD_S), RAMP_ARCSEC_S2,
+        )  # fmt: skip
+        t, rate, _ = self.record.linear
+        return [
+            judge_models.e9(
+                step_response(log.t_s, log.rate, STEP_TO), step_response(t, rate, STEP_TO), STEP_TO
+            )
+        ]
+
+    def _tuning(self) -> list[Row]:
+        self.progress("loop with the tuning rule's gains")
+        plant = self.plants["low"]
+        model = reduce_to_dead_time(linear_axis(plant), round(plant.controller.pwm_steps.si))
+        rule = judge_models.tuned(model, plant)
+        gains = (rule.gains.kp, rule.gains.ki)
+        tracking = runs.tracking(self.bench("low", gains), 30.0)
+        high = {
+            speed: self.bench("low", gains).closed_loop(speed, 16.0).after(4.0) for speed in (600.0, 1000.0)
+        }
+        return [judge_models.e10(rule, tracking, high)]

@@ -1,0 +1,104 @@
+"""Torque over velocity from steady runs, and the static LuGre curve through it (paper, Fig. 8 and Table
+2)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.paper.log import Array, Log
+from scenarios.paper.scales import ARCSEC, GEAR_RATIO
+
+
+@dataclass(frozen=True)
+class MapPoint:
+    """One steady state. rate: rad/s at the axis. torque: N m at the axis. spread: standard error of it, N
+    m."""
+
+    rate: float
+    torque: float
+    spread: float
+
+
+def drive_torque(log: Log, torque_constant: float) -> Array:
+    """Return what the two motors give at the axis, N m, from the measured currents.
+
+    torque_constant: N m/A, from the motor's data sheet, as the authors took it. B pulls against A.
+    """
+    return np.asarray((log.current_a - log.current_b) * torque_constant * GEAR_RATIO, dtype=np.float64)
+
+
+def steady_point(log: Log, torque_constant: float) -> MapPoint:
+    """Return the mean torque and rate of a steady run: without acceleration the drive torque is the
+    friction."""
+    torque = drive_torque(log, torque_constant)
+    blocks = [part.mean() for part in np.array_split(torque, 10)]
+    return MapPoint(
+        float(log.rate.mean()) * ARCSEC, float(torque.mean()), float(np.std(blocks, ddof=1) / np.sqrt(10.0))
+    )
+
+
+def friction_curve(rate: Array, parameters: Sequence[float] | Array) -> Array:
+    """Return Tc + (Ts - Tc) exp(-(w/vs)^delta) + sigma2 w, N m; paper, equations (3) and (5) at steady state.
+
+    rate: rad/s, > 0. parameters: Tc, Ts (N m), vs (rad/s), delta, sigma2 (N m s/rad).
+    """
+    coulomb, stiction, stribeck_rate, exponent, viscous = parameters
+    fall = np.exp(-((np.abs(rate) / stribeck_rate) ** exponent))
+    return np.asarray(coulomb + (stiction - coulomb) * fall + viscous * np.abs(rate), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class FrictionFit:
+    """Fitted Table 2 (SI at the axis) with the shape exponent, and the rms of the misfit, percent of the
+    torque."""
+
+    coulomb: float
+    stiction: float
+    stribeck_rate: float
+    exponent: float
+    viscous: float
+    misfit_percent: float
+
+    def torque(self, rate: Array) -> Array:
+        """Return the fitted friction, N m, at rates in rad/s."""
+        return friction_curve(
+            rate, (self.coulomb, self.stiction, self.stribeck_rate, self.exponent, self.viscous)
+        )
+
+
+def fit_friction(
+    points: Sequence[MapPoint], exponent_bounds: tuple[float, float] = (0.4, 2.2)
+) -> FrictionFit:
+    """Fit Table 2's four parameters and the exponent to a torque-velocity map, by relative least squares.
+
+    Starts are a grid over vs and delta, so that the result does not depend on a guess. Raises ValueError
+    when there are fewer points than parameters.
+    """
+    if len(points) < 6:
+        raise ValueError(f"a torque-velocity map needs at least 6 steady points, not {len(points)}")
+    from scipy.optimize import least_squares
+
+    rate = np.array([p.rate for p in points])
+    torque = np.array([p.torque for p in points])
+
+    def misfit(x: Array) -> Array:
+        return np.asarray(friction_curve(rate, np.exp(x)) / torque - 1.0, dtype=np.float64)
+
+    low = np.log([1.0, 1.0, 1e-5, exponent_bounds[0], 1.0])
+    high = np.log([1e5, 1e5, 1e-1, exponent_bounds[1], 1e6])
+    best = None
+    for vs in (2e-4, 5e-4, 1.2e-3):
+        for delta in (0.6, 1.0, 1.8):
+            start = np.log(
+                [torque.min(), torque.max(), vs, delta, max(10.0, np.ptp(torque[-3:]) / np.ptp(rate[-3:]))]
+            )
+            start = np.clip(start, low + 1e-6, high - 1e-6)
+            found = least_squares(misfit, start, bounds=(low, high), loss="soft_l1", f_scale=0.05)
+            if best is None or found.cost < best.cost:
+                best = found
+    assert best is not None
+    values = np.exp(best.x)
+    rms = float(np.sqrt(np.mean(misfit(best.x) ** 2)) * 100.0)
+    coulomb, stiction, stribeck_rate, exponent, viscous = (float(v) for v in values)
+    return FrictionFit(coulomb, stiction, stribeck_rate, exponent, viscous, rms)

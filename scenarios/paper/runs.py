@@ -1,0 +1,163 @@
+"""The experiments as the authors ran them: commands to a bench, logs back. No judgement here."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from scenarios.paper.bench import Bench
+from scenarios.paper.log import Log, join
+from scenarios.paper.measures import means, stalled
+from scenarios.paper.scales import LOG_PERIOD_S
+
+TRACKING = 15.0
+"""arcsec/s, the paper's tracking speed (Fig. 13)."""
+HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
+"""arcsec/s, "higher speeds of 600 to 1000 arc sec/s" (paper 4)."""
+SLOW_SLEW = (3600.0, 7200.0, 10800.0)
+"""arcsec/s, "1 to 3 deg/s" (paper 4)."""
+LOW = 100.0
+"""arcsec/s, Fig. 7."""
+
+Progress = Callable[[str], None]
+
+
+def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:
+    """E1, E2: closed loop at 15 arcsec/s from rest; start-up is discarded (hardware.md 2.4: more than 20
+    s)."""
+    return bench.closed_loop(TRACKING, discard + seconds).after(discard)
+
+
+@dataclass(frozen=True)
+class HighSpeed:
+    """One speed of E3 and E5: the loop closed, then opened at the mean effort the loop had needed."""
+
+    setpoint: float
+    closed: Log
+    opened: Log
+
+    @property
+    def open_mean(self) -> float:
+        """Mean velocity in open loop, arcsec/s: there is no set point, so errors refer to this."""
+        return float(self.opened.rate.mean())
+
+
+def high_speed(bench: Bench, setpoint: float, seconds: float = 12.0, settle: float = 4.0) -> HighSpeed:
+    """E3, E5: closed loop at a speed, then open loop at the same mean effort."""
+    closed = bench.closed_loop(setpoint, settle + seconds).after(settle)
+    effort = round(float(closed.effort.mean()))
+    opened = bench.open_loop(effort, settle + seconds).after(settle)
+    return HighSpeed(setpoint, closed, opened)
+
+
+def slow_slew(bench: Bench, setpoint: float, seconds: float = 6.0, settle: float = 7.0) -> Log:
+    """E4: closed loop at 1 to 3 deg/s, after the acceleration."""
+    return bench.closed_loop(setpoint, settle + seconds).after(settle)
+
+
+@dataclass(frozen=True)
+class LowSpeed:
+    """E6: closed loop at 100 arcsec/s and a staircase of open-loop efforts down to standstill.
+
+    steps: (effort, log of the settled part). nearest: the open-loop run whose mean is nearest to 100
+    arcsec/s.
+    """
+
+    closed: Log
+    steps: list[tuple[int, Log]] = field(default_factory=list)
+
+    @property
+    def running(self) -> list[tuple[int, Log]]:
+        """Steps in which the axis never stood still."""
+        return [step for step in self.steps if not stalled(step[1].rate)]
+
+    @property
+    def lowest(self) -> float | None:
+        """Lowest mean velocity kept up in open loop, arcsec/s; None when it never ran."""
+        return min((float(log.rate.mean()) for _, log in self.running), default=None)
+
+    @property
+    def nearest(self) -> Log | None:
+        """The open-loop run nearest to 100 arcsec/s."""
+        return min(
+            (log for _, log in self.running), key=lambda log: abs(float(log.rate.mean()) - LOW), default=None
+        )
+
+
+def low_speed(bench: Bench, dwell: float = 72.0, settle: float = 18.0, start: float = 160.0) -> LowSpeed:
+    """E6: as an operator would look for the lowest open-loop speed.
+
+    Closed loop at 100 arcsec/s first; then from 160 arcsec/s the loop is opened and the effort lowered by
+    the smallest step until the axis stays put. Each effort is kept for `dwell` s, four half turns of the
+    motor at 100 arcsec/s.
+    """
+    closed = bench.closed_loop(LOW, settle + dwell).after(settle)
+    running = bench.closed_loop(start, 10.0).after(4.0)
+    effort = round(float(running.effort.mean()))
+    steps: list[tuple[int, Log]] = []
+    for _ in range(60):
+        log = bench.open_loop(effort, dwell).after(settle)
+        steps.append((effort, log))
+        if stalled(log.rate) or effort <= 1:
+            break
+        # far above: larger strides, an operator would not wait a minute for each
+        excess = float(log.rate.mean()) - 1.5 * LOW
+        effort -= 1 if excess < 0.0 else max(1, round(effort * 0.01))
+    return LowSpeed(closed, steps)
+
+
+MAP_SPEEDS = (
+    5.0, 10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 130.0, 170.0, 220.0, 300.0, 400.0, 600.0, 1000.0,
+    2000.0, 3600.0, 5400.0, 7200.0,
+)  # fmt: skip
+"""arcsec/s, set points of the torque-velocity map (Fig. 8): from below tracking to the slew speed of Table
+1."""
+
+
+def velocity_map(bench: Bench, progress: Progress | None = None) -> list[tuple[float, Log]]:
+    """E7: (set point, log) of steady states from fast to slow, closed loop.
+
+    Slow ones are averaged for longer: at least 18 s, or as long as half a motor turn takes (the disturbances
+    are periodic in it), at most 60 s.
+    """
+    found = []
+    for speed in sorted(MAP_SPEEDS, reverse=True):
+        half_turn = 1_296_000.0 / 360.489 / speed / 2.0
+        seconds = min(60.0, max(8.0, half_turn * max(1, round(8.0 / half_turn))))
+        found.append((speed, bench.closed_loop(speed, 8.0 + seconds).after(8.0)))
+        if progress:
+            progress(f"torque-velocity map, {speed:g}″/s")
+    return found
+
+
+def break_away(bench: Bench, step_s: float = 0.1, limit: int = 3000) -> Log:
+    """E7: from rest the effort rises by 1/3000 every `step_s` until the axis moves; the log ends 1 s
+    later."""
+    logs: list[Log] = []
+    for effort in range(1, limit + 1):
+        logs.append(bench.open_loop(effort, step_s))
+        if logs[-1].counts.max(initial=0.0) > 20.0:
+            break
+    logs.append(bench.open_loop(0, 2.0))
+    return join(logs)
+
+
+def run_down(bench: Bench, setpoint: float = 7200.0) -> Log:
+    """E8: steady state at 2 deg/s, then the input is set to zero; the log starts at that moment."""
+    bench.closed_loop(setpoint, 8.0)
+    return bench.open_loop(0, 1.5)
+
+
+def step(bench: Bench, setpoint: float = 600.0, seconds: float = 3.0) -> Log:
+    """E9: from rest to 600 arcsec/s, closed loop."""
+    return bench.closed_loop(setpoint, seconds)
+
+
+def slow_means(log: Log) -> np.ndarray:
+    """Return means over one second of the velocity as logged, arcsec/s."""
+    return means(log.rate)
+
+
+def duration(log: Log) -> float:
+    """Return how long a log is, s."""
+    return log.t_s.size * LOG_PERIOD_S

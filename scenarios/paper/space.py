@@ -1,0 +1,140 @@
+"""The numbers the paper leaves open, their bounds, and how a point of that space becomes two plant models."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+
+from plant.model import EffectModel, Number, PlantModel, with_effects, with_value
+from scenarios.paper.linear import linear_axis, reduce_to_dead_time
+from scenarios.paper.log import Array
+from scenarios.paper.published import INERTIA, TABLE_2
+from scenarios.paper.scales import GEAR_RATIO
+from scenarios.paper.tuning import simc
+
+
+@dataclass(frozen=True)
+class Free:
+    """One free number: bounds in `unit`, and why these."""
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    why: str
+
+
+SPACE: tuple[Free, ...] = (
+    Free("bristle_stiffness", "N m/rad", 1e6, 1e8, "hardware.md 1.1"),
+    Free(
+        "stiffness_ratio",
+        "1",
+        1.0,
+        7.0,
+        "high over low preload; bristles stiffen with the load, Ts itself by 2.4",
+    ),
+    Free(
+        "bristle_damping", "1", 0.1, 1.0, "share of the passivity bound sigma2 Tc/(Ts - Tc), hardware.md 1.1"
+    ),
+    Free("exponent", "1", 0.5, 2.0, "hardware.md 1.1: 2, 1 and 0.5"),
+    Free("torque_constant", "N m/A", 0.2, 1.24, "hardware.md 1.2, 2.3"),
+    Free("resistance", "ohm", 0.3, 4.0, "hardware.md 2.3: loop resistance"),
+    Free("electrical_time", "s", 0.5e-3, 5e-3, "hardware.md 1.2: L/R"),
+    Free(
+        "rotor_inertia",
+        "kg m2",
+        3e-4,
+        1.5e-3,
+        "hardware.md 1.2, upper part left out: 6e-3 alone would be 780 kg m2",
+    ),
+    Free(
+        "gear_damping", "N m s/rad", 1e3, 1.5e4, "ASSUMPTION: 1 to 15 % of critical of the axis on its trains"
+    ),
+    Free("closed_time", "s", 0.01, 0.3, "closed-loop time constant of the tuning rule"),
+    Free("torque_error", "N m", 0.1, 25.0, "gear_eccentricity, motor, 2nd harmonic; design.md"),
+    Free(
+        "kinematic_error",
+        "arcsec",
+        1.0,
+        60.0,
+        "gear_eccentricity, motor, 2nd harmonic: up to a seventh of the play",
+    ),
+    Free("mesh", "N m", 0.1, 15.0, "gear_mesh, mesh 1: ASSUMPTION"),
+)
+"""Searched on a logarithmic scale. Table 2, Table 1, encoders, supply, counter split and PWM stay as they
+are."""
+
+
+def bounds() -> list[tuple[float, float]]:
+    """Return the bounds of the search vector: logarithms."""
+    return [(log(free.low), log(free.high)) for free in SPACE]
+
+
+def values(x: Sequence[float] | Array) -> dict[str, float]:
+    """Return the free numbers at a search vector."""
+    return {free.name: float(exp(v)) for free, v in zip(SPACE, x, strict=True)}
+
+
+def vector(found: dict[str, float]) -> Array:
+    """Return the search vector of free numbers."""
+    return np.array([log(found[free.name]) for free in SPACE])
+
+
+def _effects(found: dict[str, float], source: str) -> tuple[EffectModel, ...]:
+    eccentricity = {
+        "amplitude": Number(round(found["torque_error"], 3), "N m", source),
+        "kinematic": Number(round(found["kinematic_error"], 3), "arcsec", source),
+    }
+    return (
+        EffectModel("gear_eccentricity", "motor", 2, eccentricity),
+        EffectModel("gear_mesh", "mesh1", 1, {"amplitude": Number(round(found["mesh"], 3), "N m", source)}),
+    )
+
+
+def _rounded(value: float, digits: int = 4) -> float:
+    return float(f"{value:.{digits}g}")
+
+
+def models(bases: dict[str, PlantModel], found: dict[str, float], source: str) -> dict[str, PlantModel]:
+    """Return the low and the high preload plant at a point of the space: one drive, one controller, two
+    frictions.
+
+    bases: the declared plants by preload; what the space does not name is theirs.
+    source: what the plant files shall say about the numbers.
+    """
+    result = {}
+    gains: tuple[float, float] | None = None
+    for preload in ("low", "high"):
+        table = TABLE_2[preload]
+        stiffness = found["bristle_stiffness"] * (found["stiffness_ratio"] if preload == "high" else 1.0)
+        passive = table["viscous"] * table["coulomb"] / (table["stiction"] - table["coulomb"])
+        motor = "axes.ra.motor."
+        base = bases[preload]
+        switch = base.axes.ra.motor.switch_resistance.si + base.axes.ra.motor.sense_resistance.si
+        winding = max(0.05, found["resistance"] - switch)
+        rotor = _rounded(found["rotor_inertia"])
+        numbers = {
+            "axes.ra.friction.bristle_stiffness": _rounded(stiffness),
+            "axes.ra.friction.bristle_damping": _rounded(found["bristle_damping"] * passive),
+            "axes.ra.friction.stribeck_exponent": _rounded(found["exponent"]),
+            motor + "torque_constant": _rounded(found["torque_constant"]),
+            motor + "resistance": _rounded(winding),
+            motor + "inductance": _rounded(found["electrical_time"] * (winding + switch) * 1e3),  # mH
+            motor + "rotor_inertia": rotor,
+            "axes.ra.gear.damping": _rounded(found["gear_damping"]),
+            "axes.ra.inertia": round(INERTIA - 2.0 * rotor * GEAR_RATIO**2, 1),
+        }
+        model = base
+        for path, value in numbers.items():
+            model = with_value(model, path, value, source)
+        model = with_effects(model, "ra", _effects(found, source))
+        if gains is None:  # tuned once, on the low preload, as equation (6) with its parameters gives it
+            rule = simc(
+                reduce_to_dead_time(linear_axis(model), round(model.controller.pwm_steps.si)),
+                found["closed_time"],
+            )
+            gains = _rounded(rule.kp), _rounded(rule.ki)
+        model = with_value(model, "controller.kp", gains[0], source)
+        result[preload] = with_value(model, "controller.ki", gains[1], source)
+    return result
