@@ -63,6 +63,21 @@ def in_parallel(what: str, work: Callable[..., None], orders: list[Order], jobs:
                 bar.advance(task)
 
 
+def find_alone(orders: list[Order], command: str, out: Path) -> None:
+    """Every case that has no answer in a process of its own; one that dies is a case without an answer."""
+    for order in orders:
+        folder = out / "answers" / order.key
+        if (folder / "answer.json").exists():
+            continue
+        try:
+            with ProcessPoolExecutor(1) as pool:
+                pool.submit(find_one, order, command, out).result()
+        except BrokenProcessPool:
+            answer = {"status": 1, "seconds": 0.0, "failure": "the finder's process died"}
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "answer.json").write_text(json.dumps(answer))
+
+
 def digest(paths: Iterable[Path]) -> str:
     """SHA-256 over files in order of their names."""
     total = hashlib.sha256()
@@ -115,8 +130,8 @@ def run(
         (out / "seals.json").write_text(json.dumps(seals, indent=1))
         try:
             in_parallel("find", find_one, orders, jobs, command, out)
-        except BrokenProcessPool:  # a worker died (out of memory): what is left gets one process
-            in_parallel("find", find_one, orders, 1, command, out)
+        except BrokenProcessPool:  # a worker died (out of memory, a crash below Python)
+            find_alone(orders, command, out)
     finally:
         clock.write_text(f"{spent + time.monotonic() - begin:.1f}")
     rows = [judged(order, out) for order in orders]

@@ -2,6 +2,7 @@
 CI."""
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -53,12 +54,21 @@ def test_a_finder_that_breaks_is_a_case_without_an_answer(tmp_path: Path) -> Non
     assert "no idea" in answer["failure"]
 
 
+def dies() -> None:
+    """A finder that takes its process with it."""
+    os._exit(3)
+
+
+def test_a_finder_whose_process_dies_is_a_case_without_an_answer(tmp_path: Path) -> None:
+    results = harness.run(ORDERS, 1004, tmp_path, 2, f"{__name__}:dies")
+    assert [row["answered"] for row in results["cases"]] == [False, False]
+
+
 @pytest.mark.slow
 def test_small_deterministic_subset(tmp_path: Path) -> None:
     """The real finder on ten logs of a development seed: an answer to each, no name where there is
     nothing."""
-    module, _, _ = finder.COMMAND.partition(":")
-    pytest.importorskip(module, reason="the command line is not built yet")
+    pytest.importorskip("plant.calibration.command", reason="the finder is not built yet")
     results = harness.run(cells.quick(), 1900, tmp_path, 1)
     rows = {row["key"]: row for row in results["cases"]}
     failures = {key: row["failure"] for key, row in rows.items() if not row["answered"]}
