@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import click
 
@@ -68,32 +68,37 @@ def run(
 @cli.command()
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the rows to this file.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/paper"), show_default=True)
-@click.pass_context
-def paper(context: click.Context, json_file: Path | None, out: Path) -> None:
-    """Repeat the paper's experiments E1 to E10 and print published against emulated figures."""
-    from scenarios.paper import command
+@click.option("--plant", type=click.Path(path_type=Path), help="Plant file with low preload.")
+@click.option("--plant-high", type=click.Path(path_type=Path), help="Plant file with high preload.")
+@click.option("--markdown", type=click.Path(path_type=Path), help="Write the table to this file.")
+def paper(
+    json_file: Path | None, out: Path, plant: Path | None, plant_high: Path | None, markdown: Path | None
+) -> None:
+    """Repeat the paper's experiments E1 to E10: published against emulated (exit 1 when a row is missed)."""
+    from scenarios.paper.command import paper as command
 
-    sys.exit(command(json_file=json_file, out=out))
+    sys.exit(command(json_file, out, plant, plant_high, markdown))
 
 
 @cli.command()
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option("--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0.")
 @click.option("--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True)
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True)
+@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's (or 1).")
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
-def serve(scenario: Path | None, channel: str, speed: float, seed: int, plant: str | None) -> None:
-    """Pace the network in real time and join it to a python-can interface."""
+@click.option("--duration", type=click.FloatRange(min=0), help="Seconds after which it ends by itself.")
+def serve(
+    scenario: Path | None,
+    channel: str,
+    speed: float,
+    seed: int | None,
+    plant: str | None,
+    duration: float | None,
+) -> None:
+    """Pace the network in real time and join it to a python-can interface; whoever is there commands it."""
     from scenarios import serve as server
 
-    given: dict[str, Any] = {
-        "scenario": scenario,
-        "can": channel,
-        "speed": speed,
-        "seed": seed,
-        "plant": plant,
-    }
-    sys.exit(server.serve(**given))
+    sys.exit(server.serve(scenario, channel, speed, seed, plant, duration))
 
 
 @cli.command()
@@ -110,14 +115,18 @@ def calibrate(logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...
 
 @cli.command()
 @click.option(
-    "--can", "channel", metavar="INTERFACE:CHANNEL", help="Test a served network (default: in process)."
+    "--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Where the network is served."
 )
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
-def conformance(channel: str | None, json_file: Path | None) -> None:
-    """Run the protocol's conformance tests against a network."""
+@click.option(
+    "--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, help="Speed it is served at."
+)
+@click.option("--motion", is_flag=True, help="Include checks that move the telescope.")
+def conformance(channel: str, json_file: Path | None, speed: float, motion: bool) -> None:
+    """Check the boards behind a python-can interface against the protocol."""
     from bus.conformance.cli import conformance_command
 
-    sys.exit(conformance_command(channel, json_file))
+    sys.exit(conformance_command(channel, json_file, speed, motion))
 
 
 @cli.command()

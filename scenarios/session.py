@@ -34,8 +34,8 @@ class Session:
         self.plant = Plant(model, scenario.seed, start_steps(scenario))
         self.recorder = Recorder(folder, scenario, self.plant, _headers(scenario, model))
         faults.stick_sensors(self.plant, scenario.faults)
-        limits = {name: _limits(scenario, name) for name in AXES}
-        self.network: Network = build(config_from(scenario.network, limits), self.plant, scenario.seed)
+        config = config_from(scenario.network, soft_limits(scenario))
+        self.network: Network = build(config, self.plant, scenario.seed)
         self.network.wire.tap(self.recorder.can)
         self.link = HidLink(self.network.hid.write)
         self.network.hid.to_host = self.link.receive
@@ -111,9 +111,10 @@ def start_steps(scenario: Scenario) -> dict[str, float]:
     }
 
 
-def _limits(scenario: Scenario, axis: str) -> tuple[int, int]:
-    scale = getattr(scenario.mount, axis)
-    return scale.low_steps, scale.high_steps
+def soft_limits(scenario: Scenario) -> dict[str, tuple[int, int]]:
+    """Soft limits of each axis, (low, high) in steps."""
+    scales = {name: getattr(scenario.mount, name) for name in AXES}
+    return {name: (scale.low_steps, scale.high_steps) for name, scale in scales.items()}
 
 
 def _headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]:

@@ -1,6 +1,7 @@
 """`schmidt conformance --can INTERFACE:CHANNEL [--json FILE] [--speed X] [--motion]`."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import can
@@ -20,16 +21,22 @@ def conformance_command(
 
     Raises SpecError (a ValueError) when the bus cannot be opened or breaks, or `json_path` cannot be written.
     """
+    with open_bus(spec) as bus:
+        try:
+            return check(bus, json_path, Settings(speed=speed, motion=motion))
+        except can.CanError as error:
+            raise SpecError(f'"{spec}": the bus broke down: {error}') from None
+
+
+def check(bus: can.BusABC, json_path: Path | None, settings: Settings) -> int:
+    """Check the boards on an open bus, print what failed, write the results; 0 or 1 as above."""
     console = Console()
-    with open_bus(spec) as bus, console.status("listening") as status:
+    with console.status("listening") as status:
 
         def show(result: CheckResult) -> None:
             status.update(f"{result.check}: {result.subject}")
 
-        try:
-            results = run(bus, settings=Settings(speed=speed, motion=motion, each=show))
-        except can.CanError as error:
-            raise SpecError(f'"{spec}": the bus broke down: {error}') from None
+        results = run(bus, settings=replace(settings, each=show))
     found = summary(results)
     if json_path is not None:
         try:

@@ -8,10 +8,10 @@ import can
 from bus.conformance.commands import check_commands
 from bus.conformance.link import Link
 from bus.conformance.misuse import check_misuse, check_unknown_identifier
-from bus.conformance.result import CheckResult
+from bus.conformance.result import CheckResult, Level
 from bus.conformance.settings import Settings
 from bus.conformance.telemetry import check_telemetry
-from bus.protocol import Device
+from bus.protocol import Device, Opcode
 from bus.protocol.database import database
 
 if TYPE_CHECKING:
@@ -40,6 +40,12 @@ def run(
 def _checks(link: Link, dbc: "Database", devices: Sequence[Device]) -> Iterator[CheckResult]:
     yield from check_telemetry(link, dbc, {device.name for device in devices})
     for device in devices:
+        if not (link.ask(device, Opcode.PING) or link.ask(device, Opcode.PING)):
+            # Once is enough: waiting for the answer to every command of a board that is not there takes
+            # minutes.
+            subject = f"{device.name} PING"
+            yield CheckResult("answers", subject, Level.MUST, False, "a reply", "none, twice", 0.0)
+            continue
         yield from check_commands(link, device)
         yield from check_misuse(link, device)
         yield from check_unknown_identifier(link, device)
