@@ -48,9 +48,11 @@ class AxisBoard(PeriodicBoard):
         and B.
     """
 
-    __slots__ = ("_counter", "_identifier", "adc", "config", "effort", "effort_command", "fault", "limits",
-                 "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence", "split", "stamp_ns",
-                 "tach_a", "tach_b", "uart", "velocity", "watch")  # fmt: skip
+    __slots__ = (
+        "_counter", "_fade", "_identifier", "adc", "config", "effort", "effort_command",
+        "fault", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
+        "split", "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
+    )  # fmt: skip
 
     def __init__(
         self, name: str, device_type: int, queue: EventQueue, wire: Wire, pins: AxisPins, oscillator:
@@ -69,6 +71,7 @@ class AxisBoard(PeriodicBoard):
         self.tach_a = RemoteTachometer(config.frame_ns)
         self.tach_b = RemoteTachometer(config.frame_ns)
         self.set_split(config.counter_split)
+        self._fade = config.split_fade_counts
         self.velocity = 0
         self.poscnt = 0
         self.effort = 0
@@ -119,7 +122,7 @@ class AxisBoard(PeriodicBoard):
         effort = self.effort_command
         if effort is None:
             effort = self.pi.step(setpoint, velocity)
-        if effort != self.effort:
+        if effort != self.effort or self._fade:
             self.effort = effort
             if effort >= 0:
                 self.pwm.write(end, effort, self._lag(effort, velocity))
@@ -133,7 +136,7 @@ class AxisBoard(PeriodicBoard):
     def _lag(self, effort: int, velocity: int) -> int:
         """Duty register of the lagging motor for |effort|."""
         counter = self._counter[effort]
-        fade = self.config.split_fade_counts
+        fade = self._fade
         if fade:
             return counter * max(0, fade - abs(velocity)) // fade
         return counter

@@ -4,6 +4,10 @@ from boards.axis.motion import POINTING, Motion
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP
 from bus.protocol import AxisMode
 
+_REACTION_TICKS = 30
+"""Time in which the velocity loop begins to follow the braking set point, 150 ms. ASSUMPTION: its settling
+time."""
+
 
 class SoftLimits:
     """Looks at position and speed every 10 ms."""
@@ -27,6 +31,7 @@ class SoftLimits:
     def _braking_steps(self, velocity: int) -> int:
         """Steps the axis needs to stop from `velocity` counts/5 ms."""
         counts_q16 = (velocity << 16) * (velocity << 16) // (2 * self._motion.acceleration)
+        counts_q16 += abs(velocity) * _REACTION_TICKS << 16
         return (counts_q16 << (UNIT_SHIFT - 16)) // UNITS_PER_STEP
 
     def hit(self, velocity: int) -> bool:

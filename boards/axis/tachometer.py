@@ -1,7 +1,8 @@
 """A motor board's counts brought to this board's sampling instants.
 
 Both boards run on their own crystals, so their 10 ms slide past each other: the count is carried on
-with the last difference to the moment of the sample, and the sample is the difference of two such counts.
+to the moment of the sample, and the sample is the difference of two such counts. Carrying on needs a
+rate finer than the whole counts of one frame, so the differences go through a low-pass of four frames.
 """
 
 from bus.protocol import unpack_tach
@@ -11,37 +12,37 @@ _ROUTINE_NS = 40_000
 """From the reading of the counter to the frame in the buffer of the motor board (its interrupt table)."""
 _MISSING_NS = 25_000_000
 """Older data than two frames are not carried on."""
+_RATE_SHIFT = 8
+_UNIT = _TACH_NS << _RATE_SHIFT
 
 
 class RemoteTachometer:
     """Keeps the last TACH frame of one motor."""
 
-    __slots__ = ("_age_ns", "_data", "_last", "_received_ns")
+    __slots__ = ("_age_ns", "_count", "_last", "_latch_ns", "_rate_q8")
 
     def __init__(self, frame_ns: int) -> None:
         self._age_ns = _ROUTINE_NS + frame_ns
-        self._data: bytes | None = None
-        self._received_ns = 0
+        self._latch_ns = -_MISSING_NS
+        self._count = 0
+        self._rate_q8 = 0
         self._last: int | None = None
 
     def take(self, t_ns: int, data: bytes) -> None:
         """A TACH frame has come in."""
-        self._data = data
-        self._received_ns = t_ns
+        _, _, self._count, delta = unpack_tach(data)
+        self._latch_ns = t_ns - self._age_ns
+        self._rate_q8 += ((delta << _RATE_SHIFT) - self._rate_q8) >> 2
 
     def sample(self, t_ns: int) -> int:
         """Counts since the last sample, 10 ms ago; 0 while there is nothing to go by."""
-        data = self._data
-        if data is None:
-            return 0
-        age = t_ns - self._received_ns + self._age_ns
+        age = t_ns - self._latch_ns
         if age > _MISSING_NS:
             self._last = None
             return 0
-        _, _, count, delta = unpack_tach(data)
-        now = count + delta * age // _TACH_NS
+        now = self._count + self._rate_q8 * age // _UNIT
         last = self._last
         self._last = now
         if last is None:
-            return delta
+            return self._rate_q8 >> _RATE_SHIFT
         return (now - last + 0x8000_0000 & 0xFFFF_FFFF) - 0x8000_0000

@@ -45,7 +45,8 @@ class RigidAxis:
 
     def tachometer(self, t_ns: int, _motor: int) -> int:
         self.advance(t_ns)
-        return math.floor(self.angle * GEAR * 4096 / (2 * math.pi))
+        angle = self.angle + self.rate * (t_ns - self.t_ns) * 1e-9
+        return math.floor(angle * GEAR * 4096 / (2 * math.pi))
 
     def current(self, t_ns: int, motor: int) -> float:
         self.advance(t_ns)

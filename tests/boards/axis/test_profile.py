@@ -1,0 +1,56 @@
+from itertools import pairwise
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
+
+COUNTS_PER_TURN, STEPS_PER_TURN = 112_896_000, 1 << 29
+A = 16 << UNIT_SHIFT
+TOP = 3136 << UNIT_SHIFT
+
+
+def test_the_unit_is_exact_for_both_encoders() -> None:
+    assert STEPS_PER_TURN * UNITS_PER_STEP == COUNTS_PER_TURN << UNIT_SHIFT
+
+
+def run(profile: Profile, limit: int = 20_000) -> list[int]:
+    speeds = [profile.speed]
+    while profile.remaining or profile.speed:
+        profile.step()
+        speeds.append(profile.speed)
+        assert len(speeds) < limit
+    return speeds
+
+
+@settings(deadline=None)
+@given(st.integers(-2_000_000, 2_000_000), st.integers(-3136, 3136), st.integers(-7, 7))
+def test_B1_a_move_ends_at_its_target_within_the_acceleration(steps: int, speed: int, rate: int) -> None:
+    profile = Profile(A)
+    profile.top = TOP
+    profile.rate = rate << UNIT_SHIFT
+    profile.take_over(0, speed << UNIT_SHIFT)
+    profile.aim(steps * UNITS_PER_STEP)
+    speeds = run(profile)
+    changes = [abs(after - before) for before, after in pairwise(speeds)]
+    assert max(changes, default=0) <= A
+    assert profile.remaining == 0
+    assert max(map(abs, speeds)) <= max(TOP, abs((speed - rate) << UNIT_SHIFT))
+
+
+def test_B1_braking_takes_the_time_physics_says() -> None:
+    profile = Profile(A)
+    profile.top = TOP
+    distance = 200_000 << UNIT_SHIFT
+    profile.aim(distance)
+    ticks = len(run(profile)) - 1
+    # up and down without reaching the top: 2 sqrt(d / a)
+    assert abs(ticks - 2 * (distance / A) ** 0.5) <= 2
+
+
+def test_taking_over_is_continuous() -> None:
+    profile = Profile(A)
+    profile.top = TOP
+    profile.take_over(1000, 50 << UNIT_SHIFT)
+    assert profile.target - profile.remaining == 1000
+    assert abs(profile.step() - (50 << UNIT_SHIFT)) <= A

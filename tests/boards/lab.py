@@ -1,0 +1,75 @@
+"""A small bench: the RA boards on a wire, a rigid axis behind them, a PC on the bus."""
+
+from dataclasses import dataclass, field
+
+from boards.axis import AxisBoard, AxisConfig, AxisPins
+from boards.motor_velocity import MotorVelocityBoard, MotorVelocityPins
+from boards.position import PositionBoard, PositionPins
+from bus.can import Frame, Wire
+from bus.protocol import Device, Reply, pack_command, unpack_reply
+from bus.time import EventQueue, Oscillator
+from tests.boards.rigid import RigidAxis
+
+CENTRE = 1 << 28
+STEP_ARCSEC = 1_296_000 / (1 << 29)
+RA = Device.AXIS_RA
+
+
+@dataclass
+class Lab:
+    config: AxisConfig = field(default_factory=AxisConfig)
+
+    def __post_init__(self) -> None:
+        self.queue = EventQueue()
+        self.wire = Wire(self.queue)
+        self.plant = RigidAxis(CENTRE)
+        self.frames: list[tuple[int, Frame]] = []
+        self.replies: list[Reply] = []
+        self.packets: list[tuple[int, bytes]] = []
+        self.pc = self.wire.attach("pc")
+        self.pc.on_receive = self._hear
+        plant = self.plant
+        self.axis = AxisBoard(
+            "AXIS_RA", Device.AXIS_RA, self.queue, self.wire,
+            AxisPins(plant.incremental, plant.drive, plant.current), Oscillator(12.0, 77_777_777),
+            self.config, Device.POSITION_RA, (Device.MOTOR_RA_A, Device.MOTOR_RA_B),
+        )  # fmt: skip
+        self.axis.uart.sink = lambda t_ns, packet: self.packets.append((t_ns, packet))
+        self.position = PositionBoard(
+            "POSITION_RA", Device.POSITION_RA, self.queue, self.wire, PositionPins(plant.absolute),
+            Oscillator(-31.0, 1_234_567),
+        )  # fmt: skip
+        motors = [
+            MotorVelocityBoard(
+                device.name, device, self.queue, self.wire,
+                MotorVelocityPins(lambda t_ns, k=k: plant.tachometer(t_ns, k)), Oscillator(5.0 * k, k),
+            )
+            for k, device in enumerate((Device.MOTOR_RA_A, Device.MOTOR_RA_B))
+        ]  # fmt: skip
+        self.boards = [self.axis, self.position, *motors]
+        for board in self.boards:
+            board.begin()
+
+    def _hear(self, t_ns: int, frame: Frame) -> None:
+        self.frames.append((t_ns, frame))
+        if 0x100 <= frame.identifier < 0x200:
+            self.replies.append(unpack_reply(frame.data))
+
+    def run(self, seconds: float) -> None:
+        self.queue.run_until(self.queue.now_ns + round(seconds * 1e9))
+
+    def send(self, device: int, data: bytes) -> None:
+        assert self.pc.send(Frame(0x080 + device, data), self.queue.now_ns)
+
+    def command(self, opcode: int, *arguments: int, device: int = RA) -> Reply:
+        """Send one command and return its one reply."""
+        before = len(self.replies)
+        self.send(device, pack_command(device, opcode, *arguments))
+        self.run(0.005)
+        assert len(self.replies) == before + 1
+        return self.replies[-1]
+
+    @property
+    def angle_arcsec(self) -> float:
+        """True angle from the start."""
+        return self.plant.angle * 206264.806
