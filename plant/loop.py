@@ -1,6 +1,7 @@
 """One axis with its velocity loop in one compiled call: for parameter search and calibration.
 
-Same kernels as the plant, same arithmetic as the axis board; columns as in the axis log. About a thousand times
+Same kernels as the plant, same arithmetic as the axis board; columns as in the axis log. About a thousand
+times
 real time and more; the emulator's boards, bus and clocks are left out.
 """
 
@@ -57,8 +58,10 @@ TRUTH_COLUMNS = (
 class LogColumns:
     """Columns of the axis log (units as in log-format.md: raw counts), and the truth beside them.
 
-    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last 5 ms,
-    adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by TRUTH_COLUMNS.
+    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last
+    5 ms,
+    adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by
+    TRUTH_COLUMNS.
     """
 
     t: Floats
@@ -88,9 +91,12 @@ def simulate(
 ) -> LogColumns:
     """Run `axis` (`ra` or `dec`) for `duration` s and return its log.
 
-    setpoint: arcsec/s, a number or one value per 10 ms sample (closed loop where it is not NaN). effort: 1/3000 of
-    the supply, a number or one value per sample (open loop where there is no set point; between samples the mean of
-    two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s, both motors and the bristle
+    setpoint: arcsec/s, a number or one value per 10 ms sample (closed loop where it is not NaN). effort:
+    1/3000 of
+    the supply, a number or one value per sample (open loop where there is no set point; between samples the
+    mean of
+    two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s, both motors and the
+    bristle
     following. Raises ValueError for shapes that do not fit, or when neither is given.
     """
     if axis not in AXES:

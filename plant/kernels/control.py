@@ -1,7 +1,8 @@
 """The axis board's velocity loop around one axis, in one compiled loop.
 
 The arithmetic is the firmware's: gains in Q12, errors and effort in Q16, effort limited where it accumulates,
-counter torque as a rounded percentage, current read before the new duty. A test compares it with the emulator.
+counter torque as a rounded percentage, current read before the new duty. A test compares it with the
+emulator.
 """
 
 from math import floor
@@ -42,7 +43,7 @@ def reading(w: Floats, place: int, delay: float) -> float:
     if delay <= 0.0:
         return w[at.OUT + place]
     back = w[at.STEP] - delay / w[at.GRID]
-    step = max(0, int(floor(back)))
+    step = max(0, floor(back))
     row = at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
     if place >= at.OUT_CURRENT_A:
         return w[row + place]
@@ -88,7 +89,8 @@ def apply_effort(w: Floats, effort: int, s: Floats) -> None:
 def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Floats, truth: Floats) -> None:
     """Run one axis: two control ticks per log row.
 
-    w: the axis' row of the world. s: settings. setpoint, effort: per tick; Q16 counts per tick (a whole number, or
+    w: the axis' row of the world. s: settings. setpoint, effort: per tick; Q16 counts per tick (a whole
+    number, or
     NaN: open loop) and PWM steps (used in open loop). log, truth: one row per two ticks, filled here.
     """
     tick_steps = int(s[TICK_STEPS])
@@ -98,11 +100,11 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
     ki = int(s[KI])
     held = 0  # Q16 PWM steps
     last_error = 0
-    last_count = int(floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY])))
-    last_a = int(floor(reading(w, at.OUT_TACH_A, s[LATE_TACH])))
-    last_b = int(floor(reading(w, at.OUT_TACH_B, s[LATE_TACH])))
+    last_count = floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY]))
+    last_a = floor(reading(w, at.OUT_TACH_A, s[LATE_TACH]))
+    last_b = floor(reading(w, at.OUT_TACH_B, s[LATE_TACH]))
     for tick in range(2 * log.shape[0]):
-        count = int(floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY])))
+        count = floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY]))
         velocity = count - last_count
         last_count = count
         wanted = setpoint[tick]
@@ -113,7 +115,7 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             last_error = error
         else:
             # bumpless when the loop closes: the set point follows the axis
-            held = int(floor(effort[tick] + 0.5)) << 16
+            held = floor(effort[tick] + 0.5) << 16
             held = max(-limit, min(limit, held))
             last_error = 0
         output = (held + HALF) >> 16
@@ -127,8 +129,8 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             for m in range(2):
                 ampere = reading(w, at.OUT_CURRENT_A + m, s[LATE_CURRENT])
                 row[ADC_A + m] = max(0.0, min(ADC_TOP, floor(ampere * s[AMPERE])))
-            now_a = int(floor(reading(w, at.OUT_TACH_A, s[LATE_TACH])))
-            now_b = int(floor(reading(w, at.OUT_TACH_B, s[LATE_TACH])))
+            now_a = floor(reading(w, at.OUT_TACH_A, s[LATE_TACH]))
+            now_b = floor(reading(w, at.OUT_TACH_B, s[LATE_TACH]))
             row[TACH_A] = now_a - last_a
             row[TACH_B] = now_b - last_b
             last_a = now_a

@@ -1,5 +1,7 @@
 """The focus drive as the paper describes it (section 3.2)."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -43,7 +45,7 @@ def test_P11_steps_and_encoder_agree_when_there_is_time(count: int) -> None:
 def test_P11_four_index_pulses_2_5_mm_apart_within_the_travel() -> None:
     seen = [at for at in range(-800, 801) if port(float(at)).index(0) and not port(float(at - 1)).index(0)]
     assert [round(at * 6.25e-3, 1) for at in seen] == [-3.8, -1.2, 1.2, 3.8]
-    assert {b - a for a, b in zip(seen, seen[1:], strict=False)} == {400}
+    assert {b - a for a, b in pairwise(seen)} == {400}
 
 
 def test_P11_the_end_stops_the_carriage_at_5_mm() -> None:
