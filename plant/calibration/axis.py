@@ -7,20 +7,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from plant.calibration.candidates import axis_lines, axis_torque, modes
+from plant.calibration.candidates import axis_lines, axis_torque, modes, tooth
 from plant.calibration.candidates import electrical as electrical_candidates
 from plant.calibration.candidates import kinematic as kinematic_candidates
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
+from plant.calibration.channels.clock import clock_findings, repair_wraps
 from plant.calibration.channels.electrical import Electrical, electrical_problem
 from plant.calibration.channels.frame import Frame, build_frame, fill
 from plant.calibration.channels.kinematic import Kinematic, auxiliary_problem, kinematic_problem, roller_problem
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
-from plant.calibration.decide.finding import Finding
+from plant.calibration.decide.delays import delay_findings
+from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.parameters import finding_of
 from plant.calibration.decide.select import Selection, select
+from plant.calibration.decide.tolerance import compliance_change, torque_changes
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
@@ -41,6 +44,7 @@ class AxisResult:
     selections: dict[str, Selection] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     held_out: list[str] = field(default_factory=list)
+    calibrated: dict[str, Parameter] = field(default_factory=dict)
 
 
 def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
@@ -74,10 +78,12 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
             ) -> AxisResult:
     """Run every channel the logs have."""
     rng = np.random.default_rng(seed)
+    wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
     frame = build_frame(runs)
     held, held_names = choose_held_out(frame, hold_out)
     m = motion_of(frame, WIDTH)
     result = AxisResult(frame, m, held, None, None, None, held_out=held_names)
+    result.findings += wraps[:1] + clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)[m.pick]
     tell("electrical channel")
     e = result.electrical = electrical_problem(frame, m, held)
@@ -96,6 +102,9 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
         s = select(p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s), rng)
         result.selections["K"] = s
         _collect(result, s)
+        found, stiffness = compliance_change(s, runs[0].header.get("axis", "ra"))
+        result.findings += found
+        result.calibrated |= stiffness
     roller = roller_problem(frame, m, held)
     if roller is not None:
         alpha = m.acceleration[m.pick]
@@ -103,6 +112,7 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
                    + kinematic_candidates.subdivision(context, m.period_s), rng)
         result.selections["S"] = s
         _collect(result, s)
+    result.findings += delay_findings(result.selections)
     tell("torque channel")
     _torque(result, per_ampere, clock, rng)
     return result
@@ -118,8 +128,11 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         p.valid &= result.kinematic.engaged
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
-    f = axis_torque.Friction(m.at(torque.bristle) * torque.friction.coulomb, m.rate[m.pick] * torque.friction.viscous,
-                             per_ampere * m.at(ia), -per_ampere * m.at(ib), p.y - null.residual, clock)
+    ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
+    effort = m.at(fill(frame.columns["effort"], frame.run)[0])
+    f = axis_torque.Friction(m.at(torque.bristle) * torque.friction.coulomb, p.base[:, 3],
+                             m.rate[m.pick] * torque.friction.viscous, np.where(effort > 0, tb, ta), ta, tb,
+                             p.y - null.residual, clock)
     forced = {x.name for x in result.findings}
     if "adc_offset" in forced:
         p.base = np.column_stack([p.base, np.ones(len(p.y))])
@@ -138,10 +151,14 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets), *axis_torque.angle_effects(c), *axis_torque.slow_effects(c, f),
         *axis_lines.gear_lines(c, m.period_s), *axis_lines.motor_lines(c, motors, null.residual, p.train),
         *modes.structural_modes(c, m.acceleration[m.pick], m.period_s)]
+    candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
     candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
     s = select(p, candidates, rng)
     result.selections["T"] = s
     _collect(result, s)
+    found, calibrated = torque_changes(torque, s, frame.runs[0].header.get("preload", "low"))
+    result.findings += found
+    result.calibrated |= calibrated
 
 
 def _collect(result: AxisResult, s: Selection) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,9 @@ class Friction:
     """Declared friction along the log: `bristle` N m signed, `viscous` N m signed; currents as N m; session time s."""
 
     bristle: Array
+    stiction: Array  # what the bristle changes per relative change of Ts
     viscous: Array
+    lagging: Array  # torque of the motor that holds the counter torque, N m signed
     torque_a: Array
     torque_b: Array
     load: Array  # declared model's torque, N m: the measured one would explain itself
@@ -37,7 +40,9 @@ class Friction:
 
 def direction_effects(c: Context, f: Friction) -> list[Candidate]:
     """Asymmetry, load friction, offset and gain of the current reading."""
+    slope = np.gradient(f.torque_a + f.torque_b, float(np.median(np.diff(c.t))))
     out = [
+        Candidate("channel_delay", "clock", slope[:, None], (("delay", "s"),)),
         Candidate("friction_asymmetry", "velocity", np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
                   (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1"))),
         Candidate("friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)),
@@ -65,28 +70,48 @@ def angle_effects(c: Context) -> list[Candidate]:
 
 
 def slow_effects(c: Context, f: Friction) -> list[Candidate]:
-    """Warm-up, preload that changes, brake that drags: friction that knows the time."""
-    span = float(np.ptp(f.clock)) or 1.0
+    """Warm-up, preload that changes, brake that drags: torque that knows the time."""
+    low, high = float(f.clock.min()), float(f.clock.max())
+    span = (high - low) or 1.0
+    since = _since_start(c, f)
     out = []
     for tau in (15.0, 30.0, 60.0, 100.0, 150.0, 220.0, 320.0):
         if tau > 3 * span:
             continue
-        out.append(Candidate("friction_warmup", "time", (f.total * np.exp(-_since_start(c, f) / tau))[:, None],
-                             (("amplitude", "1"),), fixed={"tau": (tau, "s")}))
-    low, high = float(f.clock.min()), float(f.clock.max())
-    for at in np.linspace(0.04, 0.96, 24) * (high - low) + low:
-        on = (f.clock > at).astype(float)
-        fixed = {"onset": (float(at), "s")}
-        out.append(Candidate("preload_change", "time", (f.total * on)[:, None], (("fraction", "1"),), fixed=fixed))
-        out.append(Candidate("brake_drag", "time", (f.sliding * on)[:, None], (("torque", "N m"),), fixed=fixed))
-    for at in np.linspace(-0.5, 0.9, 15) * (high - low) + low:
-        for ramp in (0.2, 0.5, 1.0):
-            shape = np.clip((f.clock - at) / (ramp * (high - low)), 0, 1)
-            if np.ptp(shape) < 0.1:
+        shape = _warmup(f.total, since)
+        out.append(Candidate("friction_warmup", "time", shape(np.array([tau])), (("amplitude", "1"),),
+                             fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
+    preload = f.stiction + f.viscous
+    kinds = (("preload_change", preload, "fraction", "1"), ("brake_drag", f.sliding, "torque", "N m"))
+    for at in np.linspace(0.03, 0.97, 26) * span + low:
+        for name, weight, label, unit in kinds:
+            if not 0.02 < np.mean(f.clock > at) < 0.98:
                 continue
-            out.append(Candidate("preload_change", "time", (f.total * shape)[:, None], (("fraction", "1"),),
-                                 fixed={"onset": (float(at), "s"), "ramp": (ramp * (high - low), "s")}))
+            shape = _onset(weight, f.clock)
+            out.append(Candidate(name, "time", shape(np.array([at])), ((label, unit),),
+                                 fixed={"onset": (float(at), "s")}, shape=shape, steps=(0.02 * span,)))
+    for at in np.linspace(-0.4, 0.9, 14) * span + low:
+        for ramp in (0.2, 0.5, 1.0):
+            for name, weight, label, unit in kinds[:1]:
+                shape = _ramp(weight, f.clock)
+                columns = shape(np.array([at, ramp * span]))
+                if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
+                    out.append(Candidate(name, "time", columns, ((label, unit),), shape=shape,
+                                         steps=(0.02 * span, 0.02 * span),
+                                         fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")}))
     return out
+
+
+def _warmup(weight: Array, since: Array) -> Callable[[Array], Array]:
+    return lambda p: (-weight * np.exp(-since / max(float(p[0]), 1.0)))[:, None]
+
+
+def _onset(weight: Array, clock: Array) -> Callable[[Array], Array]:
+    return lambda p: (weight * (clock > p[0]))[:, None]
+
+
+def _ramp(weight: Array, clock: Array) -> Callable[[Array], Array]:
+    return lambda p: (weight * np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
 
 
 def _since_start(c: Context, f: Friction) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,7 +16,8 @@ class Candidate:
 
     `labels` names one parameter per column, or one amplitude for a whole sine pair (kind "line": columns are cos, sin
     per session). `lower` holds physical bounds: coefficients of a sign that physics excludes are refused.
-    `fixed` are parameters chosen on a grid (a time constant, a time of step), reported as they are.
+    `fixed` are parameters chosen on a grid (a time constant, a time of step); those that `shape` depends on are refined
+    once the candidate is chosen.
     """
 
     name: str
@@ -30,6 +32,8 @@ class Candidate:
     sign: int = 0  # +1: every coefficient must be positive; -1 negative; 0 free
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
     twins: tuple[str, ...] = ()
+    shape: Callable[[Array], Array] | None = None  # columns as a function of the first len(steps) fixed parameters
+    steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
 
     @property
     def key(self) -> tuple[str, str | None, int | None]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from plant.calibration.candidates.candidate import Candidate
@@ -9,35 +11,45 @@ from plant.calibration.channels.electrical import Electrical
 from plant.calibration.readers.run import Array
 
 
+COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
+
+
 def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     """Candidates of the stacked E problem; `clock` (n,) is the session time of one motor's rows."""
-    a, b = (e.motor == 0).astype(float), (e.motor == 1).astype(float)
-    r = e.resistance
-    one = np.ones(len(e.duty))
+    r, k = e.resistance, e.constant
     t = np.concatenate([clock, clock])
-    amp = (("offset", "A"),)
     out = [
-        Candidate("adc_offset", "current", (-r * a)[:, None], amp, stage=None, fixed={"motor": (0, "A=0, B=1")}),
-        Candidate("adc_offset", "current", (-r * b)[:, None], amp, fixed={"motor": (1, "A=0, B=1")}),
-        Candidate("adc_gain", "current", (-r * e.current * a)[:, None], (("gain", "1"),), fixed={"motor": (0, "A=0, B=1")}),
-        Candidate("pwm_deadband", "command", (e.supply * one)[:, None], (("u0", "1"),), sign=1),
-        Candidate("diode_braking", "velocity", (-e.dragged)[:, None], (("constant_share", "V s/rad"),), sign=1),
-        Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("source_resistance", "ohm"),), sign=1),
+        Candidate("pwm_deadband", "command", e.supply[:, None], (("u0", "1"),), sign=1),
+        Candidate("diode_braking", "velocity", (-k * e.dragged)[:, None], (("fraction", "1"),), sign=1),
+        Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("resistance", "ohm"),), sign=1),
+        Candidate("backlash_loss", "reversal", (e.duty * e.supply * e.lagging)[:, None], (("counter_loss", "1"),),
+                  sign=1),
     ]
-    for tau in (20.0, 40.0, 70.0, 100.0, 160.0, 300.0):
-        heat = _heat(e, clock, tau)
-        out.append(Candidate("winding_heating", "time", (e.current * heat)[:, None], (("rise", "ohm/A2"),), sign=1,
-                             fixed={"tau": (tau, "s")}))
+    for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
+        out += [
+            Candidate("adc_offset", "current", (-r * e.ampere_per_count * mask)[:, None], (("offset", "counts"),),
+                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
+            Candidate("adc_gain", "current", (-r * e.current * mask)[:, None], (("gain", "1"),),
+                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
+            Candidate("magnet_weakening", "velocity", (-k * e.pulling * mask)[:, None], (("fraction", "1"),), sign=1,
+                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
+        ]
+    for tau in (20.0, 40.0, 60.0, 90.0, 140.0, 220.0, 350.0):
+        shape = _heating(e, clock)
+        out.append(Candidate("winding_heating", "time", shape(np.array([tau])), (("thermal_resistance", "K/W"),), sign=1,
+                             fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
     low, high = float(clock.min()), float(clock.max())
-    for at in np.linspace(-0.3, 0.95, 16) * (high - low) + low:
+    for at in np.linspace(0.05, 0.95, 16) * (high - low) + low:
         on = (t > at).astype(float)
         if 0.02 < on.mean() < 0.98:
-            out.append(Candidate("magnet_weakening", "time", (e.pulling * on)[:, None], (("change", "V s/rad"),),
-                                 fixed={"onset": (float(at), "s")}))
-    for mask, k in ((a, 0.0), (b, 1.0)):
-        out.append(Candidate("magnet_weakening", "velocity", (e.pulling * mask)[:, None], (("change", "V s/rad"),),
-                             fixed={"motor": (k, "A=0, B=1")}))
+            out.append(Candidate("magnet_weakening", "time", (-k * e.pulling * on)[:, None], (("fraction", "1"),),
+                                 fixed={"onset": (float(at), "s")}, sign=1))
     return out
+
+
+def _heating(e: Electrical, clock: Array) -> Callable[[Array], Array]:
+    """Volts per K/W: R alpha R i (i^2 low-passed), the winding's own loss heating it."""
+    return lambda p: (COPPER * e.resistance**2 * e.current * _heat(e, clock, max(float(p[0]), 1.0)))[:, None]
 
 
 def _heat(e: Electrical, clock: Array, tau: float) -> Array:

@@ -93,3 +93,9 @@ def free_kinematic(c: Context, e: Array, rows: Array, period_s: float, top: floa
         out.append(line(c, "unknown", None, None, float(order), pair(turns * order, c, period_s, None, order),
                         "axis_angle"))
     return out
+
+
+def wind_up_loss(torque: Array, lagging: Array) -> list[Candidate]:
+    """Wind-up of the motor that should hold the counter torque: lost when its torque is."""
+    arcsec = 4.84813681e-6
+    return [Candidate("backlash_loss", "reversal", (torque * lagging / arcsec)[:, None], (("lost_compliance", "rad/(N m)"),))]

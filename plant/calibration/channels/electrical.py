@@ -18,7 +18,8 @@ from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
 
-CLIPPED = 2.5  # counts: below it the converter's noise is cut off at zero and its mean is no longer the current
+CLIPPED = 4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
+DECLARED_R, DECLARED_K = 2.2, 0.39  # ohm, V s/rad; design.md: only used to tell which rows should carry current
 
 
 @dataclass
@@ -31,11 +32,13 @@ class Electrical:
     pulling: Array  # rad/s of the motor, in the way it pulls, zero when dragged
     dragged: Array  # rad/s of the motor while it is dragged backwards, else zero
     sum_power: Array  # A, sum over motors of duty times current
+    lagging: Array  # 1 where the motor holds the counter torque
     motor: Array  # 0 for A, 1 for B
     supply: Array  # V
     resistance: float
     constant: float  # V s/rad
     constant_error: float  # standard error of the constant
+    ampere_per_count: float
 
 
 def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None:
@@ -50,7 +53,7 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
     supply_column = frame.get("supply")
     supply = fill(supply_column, frame.run)[0] if supply_column is not None else np.full(len(effort), frame.scale["supply_V"])
     near = transients(frame, effort)
-    parts: dict[str, list[Array]] = {k: [] for k in ("y", "i", "pull", "drag", "duty", "ok", "lag", "power", "v")}
+    parts: dict[str, list[Array]] = {k: [] for k in ("y", "i", "pull", "drag", "duty", "ok", "lag", "power", "v", "lags")}
     rate = m.rate[m.pick] * ratio
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
     duty = {"a": np.where(effort > 0, effort, -share * effort), "b": np.where(effort > 0, share * effort, -effort)}
@@ -67,10 +70,12 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         slope = np.gradient(volts, frame.period_s)
         parts["lag"].append(m.at(slope))
         bad = near | saturated(frame, i) | (volts <= 0) | ~ti | ~te | ~m.trusted
-        bad |= i < CLIPPED * frame.scale["adc_A_per_count"]
+        expected = (volts - DECLARED_K * ratio * np.maximum(sign * m.rate, 0.0)) / DECLARED_R
+        bad |= expected < CLIPPED * frame.scale["adc_A_per_count"]
         crossing = np.abs(np.sign(m.rate)) < 0.5
         parts["ok"].append((m.smooth((bad | crossing).astype(float))[m.pick] < 1e-9).astype(float))
         parts["power"].append(power)
+        parts["lags"].append((sign * m.at(effort) < 0).astype(float))
     c = {k: np.concatenate(v) for k, v in parts.items()}
     twice = lambda x: np.concatenate([x, x])  # noqa: E731
     base = np.column_stack([c["i"], c["pull"], c["lag"]])
@@ -81,5 +86,5 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
     fit = gls(problem.y, base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))
     motor = np.concatenate([np.zeros(n), np.ones(n)])
-    return Electrical(problem, c["duty"], c["i"], c["pull"], c["drag"], c["power"], motor, c["v"],
-                      float(fit.beta[0]), float(fit.beta[1]), error)
+    return Electrical(problem, c["duty"], c["i"], c["pull"], c["drag"], c["power"], c["lags"], motor, c["v"],
+                      float(fit.beta[0]), float(fit.beta[1]), error, frame.scale["adc_A_per_count"])

@@ -55,3 +55,29 @@ def paired_z(gain: Array, block: int) -> float:
     if len(sums) < 2 or np.std(sums) == 0:
         return 0.0
     return float(np.mean(sums) / (np.std(sums, ddof=1) / np.sqrt(len(sums))))
+
+
+FOLDS = 5
+FOLD_S = 6.0  # s per piece: pieces of one fold are spread over all runs
+
+
+def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
+    """Score two designs on training rows they were not fitted to: pieces of FOLD_S dealt into FOLDS folds."""
+    rows = problem.train
+    use = whitener.usable(rows)
+    if use.sum() < 100:
+        return HeldOut(float("nan"), float("nan"), 0.0, 0.0)
+    piece = np.floor(problem.t / max(FOLD_S, 8 * problem.period_s)).astype(np.int64)
+    fold = (piece % FOLDS)[use]
+    y = whitener.apply(np.where(rows, problem.y, 0.0))[use]
+    left = []
+    for x in (x0, x1):
+        w = whitener.apply(np.where(rows[:, None], x, 0.0))[use]
+        e = np.empty(len(y))
+        for k in range(FOLDS):
+            out = fold == k
+            e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
+        left.append(e)
+    e0, e1 = left
+    b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
+    return HeldOut(b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0)

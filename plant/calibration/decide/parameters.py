@@ -7,8 +7,10 @@ from scipy.special import chndtrix
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.decide.refine import slopes
 from plant.calibration.decide.scan import Contender
 from plant.calibration.decide.select import Selection
+from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.tails import student_reach
 
 
@@ -41,8 +43,24 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
         for k, (name, unit) in enumerate(candidate.labels):
             low, high = interval(float(beta[k]), float(np.sqrt(cov[k, k])), blocks)
             out[name] = Parameter(float(beta[k]), unit, low, high)
-    for name, (value, unit) in candidate.fixed.items():
-        out[name] = Parameter(value, unit, value, value)
+    return out | _nonlinear(selection, index, blocks)
+
+
+def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Parameter]:
+    """Intervals of refined parameters from a joint fit with their slopes; grid parameters are given as they are."""
+    problem, candidate = selection.problem, selection.chosen[index].candidate
+    out = {name: Parameter(value, unit, value, value) for name, (value, unit) in candidate.fixed.items()}
+    if not candidate.steps:
+        return out
+    at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
+    extra = slopes(candidate, selection.after.beta[at:at + candidate.width])
+    x = np.hstack([problem.base, *[c.candidate.columns for c in selection.chosen], extra])
+    fit = gls(problem.y, x, problem.train, problem.ar_order, problem.block)
+    for k, name in enumerate(list(candidate.fixed)[:len(candidate.steps)]):
+        value, unit = candidate.fixed[name]
+        error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
+        low, high = interval(value, error, blocks)
+        out[name] = Parameter(value, unit, low, high)
     return out
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.problem import Problem
+from plant.calibration.decide.refine import refine
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import orthonormal_blocks
@@ -48,7 +49,7 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
         place = (candidates[k].key, candidates[k].domain)
         if seen.get(place, 0) >= 2 or len(chosen) >= CONTENDERS and place in seen:
             continue
-        found = fit_with(problem, base, candidates[k], null)
+        found = fit_with(problem, base, refine(problem, base, null.residual, candidates[k], null.whitener), null)
         if found is not None:
             chosen.append(found)
             seen[place] = seen.get(place, 0) + 1

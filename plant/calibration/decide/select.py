@@ -9,14 +9,15 @@ import numpy as np
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.problem import Problem
 from plant.calibration.decide.gate import gate
-from plant.calibration.decide.heldout import HeldOut, compare
+from plant.calibration.decide.heldout import HeldOut, compare, cross_validate
 from plant.calibration.decide.scan import Contender, Look, fit_with, look
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import Scores
 
-MARGIN = 0.02  # of the held-out mean square; blocked validation needed 2 % to hold its level (effects.md, lesson 3)
-LUCK = 2.0  # z of the held-out gain over blocks
+MARGIN = 0.02  # of the cross-validated mean square; blocked validation needed 2 % to hold its level (effects.md, lesson 3)
+LUCK = 2.0  # z of the cross-validated gain over blocks
+WORSE = 0.001  # of the held-out mean square: rounding, not harm
 MOST = 5  # effects per channel
 
 
@@ -69,9 +70,10 @@ def select(problem: Problem, candidates: list[Candidate], rng: np.random.Generat
         first = first or now
         taken = None
         for contender in now.contenders[:4]:
-            held = compare(problem, base, now.null.beta, np.hstack([base, contender.candidate.columns]),
-                           contender.fit.beta, contender.fit.whitener)
-            why = refuse(contender, held, margin)
+            x = np.hstack([base, contender.candidate.columns])
+            inside = cross_validate(problem, base, x, contender.fit.whitener)
+            held = compare(problem, base, now.null.beta, x, contender.fit.beta, contender.fit.whitener)
+            why = refuse(contender, inside, held, margin)
             if not why:
                 taken = contender
                 break
@@ -105,16 +107,22 @@ def _fit(problem: Problem, picks: list[Contender]) -> Fit:
                problem.block)
 
 
-def refuse(contender: Contender, held: HeldOut, margin: float = MARGIN) -> str:
-    """Why a contender is not accepted; empty when it is."""
+def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float = MARGIN) -> str:
+    """Why a contender is not accepted; empty when it is.
+
+    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an effect that the
+    held-out run does not excite may gain nothing there, but none may make it worse.
+    """
     if contender.bayes <= 0:
         return "gains less than its parameters cost"
-    if not np.isfinite(held.after):
-        return "no held-out rows to test it on"
-    if held.share < margin:
-        return f"held-out mean square changes by {-100 * held.share:.1f} % only"
-    if held.z < LUCK:
-        return f"held-out gain is within luck (z = {held.z:.1f})"
+    if not np.isfinite(inside.after):
+        return "too few rows to test it on"
+    if inside.share < margin:
+        return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
+    if inside.z < LUCK:
+        return f"cross-validated gain is within luck (z = {inside.z:.1f})"
+    if np.isfinite(held.after) and held.share < -WORSE:
+        return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
     return ""
 
 

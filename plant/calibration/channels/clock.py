@@ -1,0 +1,146 @@
+"""What the stamps and the counters themselves say (channel S): jitter, lost packets, repeated samples, wraps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plant.calibration.channels.frame import Frame
+from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.readers.run import Array, Run
+
+JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
+LOST = 0.003  # fraction of rows missing that is worth a word
+PACKET = 25  # rows per RS232 packet, log-format.md
+
+
+def clock_findings(frame: Frame) -> list[Finding]:
+    """Findings on stamps, gaps and repeats."""
+    return [x for x in (_jitter(frame), _loss(frame)) if x is not None]
+
+
+def _jitter(frame: Frame) -> Finding | None:
+    left = []
+    for k in range(len(frame.runs)):
+        rows = (frame.run == k) & frame.present
+        t, c = frame.t[rows], frame.clock[rows]
+        if len(t) > 50:
+            left.append(c - np.polyval(np.polyfit(t - t[0], c, 2), t - t[0]))
+    if not left:
+        return None
+    e = np.concatenate(left)
+    sigma = float(np.std(e))
+    if sigma < JITTER_S:
+        return None
+    n = len(e)
+    half = 1.96 * sigma / np.sqrt(2 * n)
+    return Finding("clock_jitter", "S", "clock", parameters={"sigma": Parameter(sigma, "s", sigma - half, sigma + half)},
+                   evidence=50.0, share=1.0)
+
+
+def _loss(frame: Frame) -> Finding | None:
+    gaps = [g for v in frame.missing.values() for _, g in v]
+    lost = sum(gaps)
+    rows = int(frame.present.sum())
+    repeats = _repeated(frame)
+    fraction = lost / (lost + rows)
+    if fraction < LOST and repeats / max(rows, 1) < LOST:
+        return None
+    whole = np.mean([g % PACKET == 0 for g in gaps]) if gaps else 0.0
+    value = max(fraction, repeats / max(rows, 1))
+    events = max(value * (rows + lost) / PACKET, 1.0)
+    half = 1.96 * np.sqrt(value * (1 - value) / max((rows + lost) / PACKET, 1.0))
+    note = f"{lost} rows missing in {len(gaps)} gaps ({100 * whole:.0f} % of whole packets), {repeats} rows repeated"
+    return Finding("sample_loss", "S", "clock", evidence=10.0 * events, share=1.0, note=note,
+                   parameters={"fraction": Parameter(value, "1", max(value - half, 0.0), value + half)})
+
+
+def _repeated(frame: Frame) -> int:
+    """Rows of packets that repeat the packet before them, or runs of at least five frozen rows while moving."""
+    p = frame.columns["position"]
+    count = 0
+    shifted = np.zeros(len(p), dtype=bool)
+    shifted[PACKET:] = (p[PACKET:] == p[:-PACKET]) & np.isfinite(p[PACKET:])
+    for name in ("velocity", "effort", "current_a", "current_b"):
+        c = frame.get(name)
+        if c is not None:
+            shifted[PACKET:] &= c[PACKET:] == c[:-PACKET]
+    moving = np.abs(np.gradient(np.nan_to_num(p))) > 4e-8
+    still = np.zeros(len(p), dtype=bool)
+    still[1:] = p[1:] == p[:-1]
+    for name in ("velocity", "effort", "current_a"):
+        c = frame.get(name)
+        if c is not None:
+            still[1:] &= c[1:] == c[:-1]
+    near = np.convolve(moving, np.ones(61), "same") > 20
+    both = (shifted | still) & near
+    runs = np.split(both.astype(int), np.flatnonzero(np.diff(both.astype(int))) + 1)
+    for r in runs:
+        if len(r) >= 5 and r[0]:
+            count += len(r)
+    return count
+
+
+def repair_wraps(run: Run) -> Finding | None:
+    """Find and undo a counter that wraps before its declared length, or a column that stops at an end; in place."""
+    position = run.columns["position"]
+    per_count = run.scales["position_arcsec_per_count"] * np.pi / 648000
+    counts = position / per_count
+    step = np.diff(counts)
+    good = np.isfinite(step)
+    if good.sum() < 10:
+        return None
+    usual = float(np.median(np.abs(step[good]))) + 1
+    near = np.zeros(len(step))
+    speed = run.columns.get("velocity")
+    if speed is not None:
+        near = np.nan_to_num(speed[1:]) * np.diff(run.columns["t"]) / per_count
+    jump = np.where(good, step - near, 0.0)
+    big = np.abs(jump) > max(200 * usual, 1e5)
+    if big.any():
+        sizes = np.abs(jump[big])
+        power = int(round(float(np.log2(np.median(sizes)))))
+        if np.all(np.abs(sizes / 2.0**power - np.round(sizes / 2.0**power)) < 0.05):
+            fix = np.concatenate([[0.0], np.cumsum(np.where(big, -np.round(jump / 2.0**power) * 2.0**power, 0.0))])
+            run.columns["position"] = (counts + fix) * per_count
+            run.notes.append(f"position wraps at 2^{power} counts")
+            return Finding("log_wrap", "S", "clock", evidence=50.0, share=1.0,
+                           note=f"{run.name}: position wraps at 2^{power} counts, {int(big.sum())} times")
+    return _other_wraps(run)
+
+
+def _other_wraps(run: Run) -> Finding | None:
+    """Velocity, current or tachometer columns that fold or stop: a step of a power of two against the motion."""
+    for name in ("velocity", "adc_a", "adc_b", "tach_a", "tach_b"):
+        raw = run.raw.get(name)
+        if raw is None:
+            continue
+        x = raw[np.isfinite(raw)]
+        if len(x) < 100:
+            continue
+        found = _folds(x) or _stops(x, name)
+        if found:
+            return Finding("log_wrap", "S", "clock", evidence=50.0, share=1.0, note=f"{run.name}: {name} {found}")
+    return None
+
+
+def _folds(x: Array) -> str:
+    step = np.abs(np.diff(x))
+    typical = float(np.quantile(step, 0.99)) + 1
+    for power in range(7, 17):
+        size = 2.0**power
+        at = np.abs(step - size) < 0.1 * size
+        if size > 8 * typical and at.sum() >= 2 and np.ptp(x) <= 1.05 * size:
+            return f"folds at {int(size)} counts"
+    return ""
+
+
+def _stops(x: Array, name: str) -> str:
+    for end in (x.max(), x.min()):
+        share = float(np.mean(x == end))
+        if end == 0 or (name.startswith("adc") and end >= 1023):
+            continue
+        power = np.log2(abs(end) + (1 if end > 0 else 0))
+        if share > 0.004 and np.sum(np.abs(x) > 0.97 * abs(end)) < 1.3 * np.sum(x == end) and abs(
+                power - round(power)) < 1e-9 and abs(end) > 60:
+            return f"stops at {int(end)} counts"
+    return ""
