@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bus import protocol as p
@@ -63,6 +63,7 @@ def values_of(draw: Any, message: Any, names: list[str] | None = None) -> dict[s
 
 
 @pytest.mark.parametrize("message", MESSAGES, ids=lambda message: message.name)
+@settings(max_examples=25)  # the same layout comes back for every device of a family
 @given(data=st.data())
 def test_L1_packing_is_what_the_dbc_says(message: Any, data: Any) -> None:
     values = values_of(data.draw, message)
@@ -82,6 +83,7 @@ def test_L1_packing_is_what_the_dbc_says(message: Any, data: Any) -> None:
 
 
 @pytest.mark.parametrize("message", COMMANDS, ids=lambda message: message.name)
+@settings(max_examples=40)
 @given(data=st.data())
 def test_L1_commands_are_what_the_dbc_says(message: Any, data: Any) -> None:
     device = p.Device[message.name.removesuffix("_COMMAND")]
