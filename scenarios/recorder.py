@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ from bus.time import generator
 from host.logs import distort
 from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog, Distortion
-from host.logs.files import LogError
+from host.logs.files import BlockFile, LogError
 from host.logs.space import check as check_space
 from host.logs.traces import Trace
 from scenarios.model import Scenario
@@ -48,11 +49,8 @@ class Recorder:
             )
             for name in AXES
         }
-        try:
-            self._can_file: BinaryIO = open(folder / "can.log", "wb")  # noqa: SIM115 (closed with the recorder)
-        except OSError as error:
-            raise LogError(f"{folder / 'can.log'}: cannot be written: {error.strerror}") from None
-        self.can = CandumpWriter(self._can_file)
+        self._can_file = BlockFile(folder / "can.log")
+        self.can = CandumpWriter(cast(BinaryIO, self._can_file))
         self._can_digest = ""
         from plant.plant import TRUTH_COLUMNS
 
@@ -71,7 +69,7 @@ class Recorder:
     def flush(self) -> None:
         """Bring the text logs to disk and see whether there is room for what comes."""
         check_space(self.folder)
-        self._guard(self.can.flush)
+        self.can.flush()
         self.ascii.flush()
         for log in self.axis.values():
             log.file.flush()
@@ -80,14 +78,13 @@ class Recorder:
         """Close everything, whatever fails; returns what could not be written."""
         self._plant.record(None)
         failures: list[str] = []
-        self._can_digest = self.can.hexdigest()
-        closers: list[Any] = [self.can.close, self._can_file.close]
+        closers: list[Callable[[], None]] = [self._close_can, self._can_file.close]
         closers += [file.close for file in self.ascii.files()]
         closers += [log.file.close for log in self.axis.values()]
         closers += [trace.close for trace in (*self.truth.values(), self.host, self.focus)]
         for close in closers:
             try:
-                self._guard(close)
+                close()
             except LogError as error:
                 failures.append(str(error))
         return failures
@@ -98,13 +95,9 @@ class Recorder:
         parts += [self._truth_digest[name].hexdigest() for name in AXES]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
-    def _guard(self, call: Any) -> None:
-        try:
-            call()
-        except OSError as error:
-            raise LogError(
-                f"{self.folder / 'can.log'}: {(error.strerror or 'cannot be written').lower()}"
-            ) from None
+    def _close_can(self) -> None:
+        self.can.close()
+        self._can_digest = self.can.hexdigest()
 
 
 def _distortions(plant: Plant, axis: str, seed: int) -> Distortion | None:

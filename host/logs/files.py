@@ -1,4 +1,4 @@
-"""A text file that grows line by line and stays readable whatever happens to the disk."""
+"""Text files that grow line by line and stay readable whatever happens to the disk."""
 
 from __future__ import annotations
 
@@ -13,24 +13,63 @@ class LogError(ValueError):
     """A log cannot be written; the message says which and why."""
 
 
-class LineFile:
-    """Lines to a file, buffered, with a running SHA-256 of what was written.
+class BlockFile:
+    """Blocks of whole lines to a file, unbuffered.
 
-    When the disk fills up in the middle of a line, the file is cut back to its last whole line.
+    When the disk fills up in the middle of a line, the file is cut back to its last whole line. After a
+    failure it takes nothing more.
     """
 
-    def __init__(self, path: Path, buffer_bytes: int = _BUFFER_BYTES) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
-        self.lines = 0
-        self._digest = hashlib.sha256()
-        self._waiting: list[str] = []
-        self._waiting_bytes = 0
-        self._limit = buffer_bytes
         self._whole = 0  # bytes up to the last whole line on disk
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
         except OSError as error:
-            raise LogError(f"{path}: cannot be written: {error.strerror}") from None
+            raise LogError(f"{path}: cannot be written: {_reason(error)}") from None
+
+    def write(self, data: bytes) -> int:
+        """Write a block; raises `LogError` when it does not fit."""
+        done = 0
+        try:
+            while self._descriptor >= 0 and done < len(data):
+                done += os.write(self._descriptor, data[done:])
+        except OSError as error:
+            self._cut_back(data[:done])
+            raise LogError(f"{self.path}: {_reason(error)}; what is there is readable") from None
+        self._whole += done
+        return done
+
+    def flush(self) -> None:
+        """Nothing is kept back."""
+
+    def close(self) -> None:
+        """Close; a second close does nothing."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+    def _cut_back(self, partial: bytes) -> None:
+        self._whole += partial.rfind(b"\n") + 1
+        try:
+            os.ftruncate(self._descriptor, self._whole)
+        except OSError:
+            pass  # a device such as /dev/full cannot be cut
+        finally:
+            self.close()
+
+
+class LineFile:
+    """Lines to a file, buffered, with a running SHA-256 of what was written."""
+
+    def __init__(self, path: Path, buffer_bytes: int = _BUFFER_BYTES) -> None:
+        self.path = path
+        self.lines = 0
+        self._file = BlockFile(path)
+        self._digest = hashlib.sha256()
+        self._waiting: list[str] = []
+        self._waiting_bytes = 0
+        self._limit = buffer_bytes
 
     def write(self, text: str) -> None:
         """Append whole lines (`text` ends with a newline)."""
@@ -42,40 +81,25 @@ class LineFile:
 
     def flush(self) -> None:
         """Bring everything to the operating system; raises `LogError` when it does not fit."""
-        if not self._waiting or self._descriptor < 0:
+        if not self._waiting:
             return
         data = "".join(self._waiting).encode()
         self._waiting.clear()
         self._waiting_bytes = 0
-        done = 0
-        try:
-            while done < len(data):
-                done += os.write(self._descriptor, data[done:])
-        except OSError as error:
-            self._cut_back(data[:done])
-            raise LogError(
-                f"{self.path}: {(error.strerror or 'cannot be written').lower()}; what is there is readable"
-            ) from None
+        self._file.write(data)
         self._digest.update(data)
-        self._whole += done
 
     def close(self) -> None:
         """Flush and close; a second close does nothing."""
-        if self._descriptor < 0:
-            return
         try:
             self.flush()
         finally:
-            os.close(self._descriptor)
-            self._descriptor = -1
+            self._file.close()
 
     def hexdigest(self) -> str:
         """SHA-256 of all that was flushed."""
         return self._digest.hexdigest()
 
-    def _cut_back(self, partial: bytes) -> None:
-        self._whole += partial.rfind(b"\n") + 1
-        try:
-            os.ftruncate(self._descriptor, self._whole)
-        except OSError:
-            return  # a device such as /dev/full cannot be cut
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or "cannot be written").lower()

@@ -1,4 +1,4 @@
-"""Figures of a run. Each takes an outcome and returns a matplotlib figure, or None when it has nothing to show."""
+"""Figures of a run: each takes an outcome and returns a figure, or None when it has nothing to show."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ def pointing(outcome: Outcome) -> Figure | None:
             ra = ra * np.cos(record.star.declination_rad)
             for name, values, colour in (("RA cos δ", ra, COLOURS["ra"]), ("Dec", dec, COLOURS["dec"])):
                 view.plot(
-                    *thin(t - window[0], values), color=colour, label=f"{name}, {source}", **style  # type: ignore[arg-type]
+                    *thin(t - window[0], values),
+                    color=colour,
+                    label=f"{name}, {source}",
+                    **style,  # type: ignore[arg-type]
                 )
         view.axhspan(-10, 10, color=COLOURS["ok"], alpha=0.07, lw=0)
         reach = max(1.0, *(float(np.nanmax(np.abs(line.get_ydata()))) for line in view.lines)) * 1.15
@@ -66,7 +69,9 @@ def tracking(outcome: Outcome) -> Figure | None:
             continue
         count += 1
         rms, peak = float(np.sqrt(np.mean(error**2))), float(np.max(np.abs(error)))
-        view = axes(figure, 3, 4, (4 * row + 1, 4 * row + 3), ylabel="arcsec/s", xlabel="time, s" if row == 2 else "")
+        view = axes(
+            figure, 3, 4, (4 * row + 1, 4 * row + 3), ylabel="arcsec/s", xlabel="time, s" if row == 2 else ""
+        )
         view.plot(*thin(t, error), color=COLOURS[source], lw=0.6 if source != "mean_1s" else 1.0)
         view.axhline(0, color="#888", lw=0.5)
         title(view, f"{record.step.name}, RA rate error, {label}: rms {rms:.3f}, peak {peak:.2f} arcsec/s")
@@ -104,7 +109,9 @@ def sky(outcome: Outcome) -> Figure | None:
         span = np.linspace(record.start_s, max(last, record.start_s + 1), 50)
         _, _, high, around = observe_many(record.star, outcome.scenario.site, outcome.scenario.clock, span)
         view.plot(around, np.degrees(high), lw=3, solid_capstyle="round", color=COLOURS["star"])
-        view.annotate(record.star.name, (around[-1], np.degrees(high[-1])), textcoords="offset points", xytext=(8, 4))
+        view.annotate(
+            record.star.name, (around[-1], np.degrees(high[-1])), textcoords="offset points", xytext=(8, 4)
+        )
     horizon = np.full(100, np.degrees(outcome.scenario.horizon_rad))
     view.plot(np.linspace(0, 2 * np.pi, 100), horizon, color=COLOURS["bad"], lw=0.8, ls="--")
     view.set_title("Sky over the site")
@@ -125,7 +132,11 @@ def focus(outcome: Outcome) -> Figure | None:
     view.plot(*thin(board["t_s"], board["focus_half_steps"]), color=COLOURS["dec"], lw=0.9, label="board")
     view.legend(loc="best")
     title(view, "Focus")
-    ends = [r.end_s or r.start_s or 0.0 for r in outcome.records if r.step.action == "focus" and r.start_s is not None]
+    ends = [
+        r.end_s or r.start_s or 0.0
+        for r in outcome.records
+        if r.step.action == "focus" and r.start_s is not None
+    ]
     starts = [r.start_s for r in outcome.records if r.step.action == "focus" and r.start_s is not None]
     view.set_xlim(min(starts) - 2, max(ends) + 5)
     return figure
@@ -190,7 +201,9 @@ def _telescope_path(outcome: Outcome) -> tuple[np.ndarray, np.ndarray, np.ndarra
     step = max(1, len(t) // 2000)
     t, hour_angle, declination = t[::step], hour_angle[::step], declination[: len(hour_angle) : step]
     latitude = outcome.scenario.site.latitude_rad
-    sine = np.sin(latitude) * np.sin(declination) + np.cos(latitude) * np.cos(declination) * np.cos(hour_angle)
+    sine = np.sin(latitude) * np.sin(declination) + np.cos(latitude) * np.cos(declination) * np.cos(
+        hour_angle
+    )
     altitude = np.arcsin(np.clip(sine, -1, 1))
     azimuth = np.arctan2(
         -np.cos(declination) * np.sin(hour_angle),

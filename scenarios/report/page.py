@@ -60,7 +60,11 @@ def _timeline(outcome: Outcome) -> list[dict[str, Any]]:
     length = max(outcome.counters["simulated_s"], 1e-9)
     rows = []
     for record in outcome.records:
-        row: dict[str, Any] = {"name": record.step.name, "action": record.step.action, "failed": record.failed}
+        row: dict[str, Any] = {
+            "name": record.step.name,
+            "action": record.step.action,
+            "failed": record.failed,
+        }
         if record.start_s is not None:
             end_s = record.end_s if record.end_s is not None else length
             row |= {

@@ -1,0 +1,92 @@
+"""The command as a user meets it: one clear line, exit status 2, never a traceback."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.scenarios.conftest import ROOT, SHORT, Command
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["run", "none.yaml"], "none.yaml: no such file"),
+        (["run", "bad.yaml"], "bad.yaml:6: unknown field 'set_rat'"),
+        (["run", "short.yaml", "--seed", "-1"], "-1"),
+        (["run", "short.yaml", "--plant", "hihg-preload"], "did you mean 'high_preload'"),
+        (["run"], "SCENARIO"),
+        (["rum"], "rum"),
+        (["effects", "gear_mash"], "did you mean 'gear_mesh'"),
+        (["run", "short.yaml", "--out", "short.yaml/x"], "cannot be made"),
+    ],
+)
+def test_unusable_input_is_one_line_and_status_2(
+    arguments: list[str], words: str, short: Path, schmidt: Command
+) -> None:
+    (short.parent / "bad.yaml").write_text(SHORT.replace("set_rate", "set_rat"))
+    done = schmidt(*arguments)
+    assert done.returncode == 2
+    assert done.stderr.startswith("schmidt: ")
+    assert done.stderr.count("\n") == 1
+    assert words in done.stderr
+
+
+def test_run_prints_verdicts_and_exits_with_them(short: Path, schmidt: Command) -> None:
+    done = schmidt("run", short, "--out", "good")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("ok   programme completed")
+    short.write_text(SHORT + "expect:\n  - bus_load: {at_most: 1 %}\n")
+    done = schmidt("run", short, "--out", "bad")
+    assert done.returncode == 1
+    assert "MISS bus load" in done.stdout
+
+
+def test_effects_lists_the_catalogue(schmidt: Command) -> None:
+    done = schmidt("effects")
+    assert done.returncode == 0
+    assert len(done.stdout.splitlines()) >= 36
+    assert "amplitude" in schmidt("effects", "gear_mesh").stdout
+
+
+def test_an_interrupted_run_leaves_readable_logs(short: Path, tmp_path: Path) -> None:
+    from host.logs import traces
+
+    short.write_text(SHORT.replace("for: 1 s", "for: 4 h"))
+    process = subprocess.Popen(
+        [sys.executable, "-c", "from scenarios.cli import main; main()", "run", "short.yaml", "--out", "run"],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    log = tmp_path / "run" / "can.log"
+    end = time.monotonic() + 60
+    while time.monotonic() < end and not (log.exists() and log.stat().st_size > 200_000):
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 130, error
+    assert "interrupted, logs up to t=" in error
+    assert "Traceback" not in error
+    reached_s = float(error.split("t=")[1].split(" s")[0])
+    for name in ("can.log", "axis-ra.csv", "commands.log", "sensors.log"):
+        assert (tmp_path / "run" / name).read_text().endswith("\n")
+    truth = traces.read(tmp_path / "run" / "truth-ra.parquet", ("angle",), 0.0, 1e9)
+    assert truth["t_s"][-1] == pytest.approx(reached_s, abs=1.1)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
+@pytest.mark.parametrize("name", ["can.log", "commands.log", "axis-ra.csv", "summary.json"])
+def test_a_full_disk_is_one_line(name: str, short: Path, schmidt: Command) -> None:
+    (short.parent / "run").mkdir()
+    (short.parent / "run" / name).symlink_to("/dev/full")
+    done = schmidt("run", short, "--out", "run")
+    assert done.returncode == 2
+    assert "no space left" in done.stderr
+    assert done.stderr.count("\n") == 1
+    others = [path for path in (short.parent / "run").glob("axis-dec.csv") if path.name != name]
+    for path in others:
+        assert path.read_text().endswith("\n")
