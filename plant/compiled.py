@@ -2,17 +2,17 @@
 
 Numba's own cache only notices a change in the file of the compiled function, not in the files of what it
 calls. The cache directory is therefore named by a hash of every compiled source of the plant: a stale cache
-is
-never used.
+is never used.
 
 `entry` is for functions that Python calls (cached on disk), `inner` for those that only compiled code calls
 (compiled with their caller, so they cost nothing when the caller comes from the cache). `entry` is also
-called
-`njit`. SCHMIDT_CACHE_DIR moves the cache.
+called `njit`. SCHMIDT_CACHE_DIR moves the cache.
 """
 
+import atexit
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -63,7 +63,9 @@ def cache_folder() -> Path:
         folder = base / f"compiled-{_fingerprint()}"
         if _writable(folder):
             return folder
-    return Path(tempfile.mkdtemp(prefix="schmidt-compiled-"))
+    folder = Path(tempfile.mkdtemp(prefix="schmidt-compiled-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]

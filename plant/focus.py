@@ -2,8 +2,7 @@
 3.2).
 
 Positions are in half steps from the middle of the travel. Between commands the rotor settles exponentially;
-it is
-evaluated when somebody looks, so the focus costs nothing on the plant's grid.
+it is evaluated when somebody looks, so the focus costs nothing on the plant's grid.
 """
 
 from math import exp, floor

@@ -1,8 +1,7 @@
 """One axis with its velocity loop in one compiled call: for parameter search and calibration.
 
 Same kernels as the plant, same arithmetic as the axis board; columns as in the axis log. About a thousand
-times
-real time and more; the emulator's boards, bus and clocks are left out.
+times real time and more; the emulator's boards, bus and clocks are left out.
 """
 
 from dataclasses import dataclass
@@ -10,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant.effects import structural_mode
+from plant.effects.rows import KINDS
 from plant.gears import ARCSEC, TURN
 from plant.kernels import control as at_control
 from plant.kernels import layout as at
@@ -58,9 +59,8 @@ TRUTH_COLUMNS = (
 class LogColumns:
     """Columns of the axis log (units as in log-format.md: raw counts), and the truth beside them.
 
-    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last
-    5 ms,
-    adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by
+    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last 5
+    ms, adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by
     TRUTH_COLUMNS.
     """
 
@@ -92,12 +92,10 @@ def simulate(
     """Run `axis` (`ra` or `dec`) for `duration` s and return its log.
 
     setpoint: arcsec/s, a number or one value per 10 ms sample (closed loop where it is not NaN). effort:
-    1/3000 of
-    the supply, a number or one value per sample (open loop where there is no set point; between samples the
-    mean of
-    two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s, both motors and the
-    bristle
-    following. Raises ValueError for shapes that do not fit, or when neither is given.
+    1/3000 of the supply, a number or one value per sample (open loop where there is no set point; between
+    samples the mean of two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s,
+    both motors and the bristle following. Raises ValueError for shapes that do not fit, or when neither is
+    given.
     """
     if axis not in AXES:
         raise ValueError(f"simulate: axis '{axis}' is not known; expected ra or dec")
@@ -176,6 +174,10 @@ def _start(w: Floats, rate: float) -> None:
     w[at.BRISTLE] = np.sign(rate) * w[at.STRIBECK]
     level = w[at.BRISTLE] * w[at.DECLARED_FRICTION + at.F_SIGMA0]
     w[at.FRICTION] = level + rate * w[at.DECLARED_FRICTION + at.F_SIGMA2]
+    for r in range(int(w[at.ROWS_ALL])):
+        row = w[at.EFFECTS + r * at.ROW : at.EFFECTS + (r + 1) * at.ROW]
+        if row[at.ROW_KIND] == KINDS[structural_mode.formula]:
+            row[at.ROW_MEMORY + 1 : at.ROW_MEMORY + 3] = rate  # the second mass moves along
     half = 0.5 * w[at.GRID]
     w[at.ANGLE] += half * rate
     for m in range(2):

@@ -91,9 +91,8 @@ class Plant:
         """Hand the truth of both axes to `sink(axis, rows)` every `period_ns`, from now on; None ends it.
 
         rows: float64 (n, 11), columns TRUTH_COLUMNS: t s, angle rad, rate rad/s, currents A, motor angles
-        rad,
-        gear torques and friction N m at the axis, bristle rad. The array is the sink's own. Chunks are of up
-        to 256.
+        rad, gear torques and friction N m at the axis, bristle rad. The array is the sink's own. Chunks are
+        of up to 256.
         """
         if self._sink is not None:
             self.flush()

@@ -56,10 +56,9 @@ def evaluate(
     """Return one value per row, in the unit of the term's hook.
 
     rows: (n, VECTOR) signal vectors in time order. parameters: SI units, all of them. order: cycles per axis
-    turn,
-    for staged effects. constants: those the effect names. memory: 4 numbers to start from. Friction terms
-    need the
-    friction parameters in the vectors and give the change of the steady torque on the axis, N m.
+    turn, for staged effects. constants: those the effect names. memory: 4 numbers to start from. Friction
+    terms need the friction parameters in the vectors and give the change of the steady torque on the axis, N
+    m.
     """
     effect = REGISTRY[name]
     chosen: Term = effect.terms[term]

@@ -1,8 +1,8 @@
 """An effect outside the catalogue: a smooth function of the domain it was found in, given by knots.
 
 Parameters are `target` (where it acts), `domain` (the signal it depends on), `kind` (1 linear, 3 cubic),
-`period`
-(0: none; else the domain wraps, knots within one period), and up to 32 knots x0, y0, x1, y1 … in SI units."""
+`period` (0: none; else the domain wraps, knots within one period), and up to 32 knots x0, y0, x1, y1 … in SI
+units."""
 
 from math import floor
 

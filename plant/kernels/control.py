@@ -90,8 +90,8 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
     """Run one axis: two control ticks per log row.
 
     w: the axis' row of the world. s: settings. setpoint, effort: per tick; Q16 counts per tick (a whole
-    number, or
-    NaN: open loop) and PWM steps (used in open loop). log, truth: one row per two ticks, filled here.
+    number, or NaN: open loop) and PWM steps (used in open loop). log, truth: one row per two ticks, filled
+    here.
     """
     tick_steps = int(s[TICK_STEPS])
     steps = int(s[STEPS])

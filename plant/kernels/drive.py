@@ -1,8 +1,7 @@
 """One motor behind a low-side switch, and one gear train with play.
 
-Motor: v = L di/dt + R i + K w (paper, equation (1)), exact for constant v and w over the step. The switch
-and the
-freewheel diode carry current one way only, so i >= 0: each motor pulls in one direction.
+Motor: v = L di/dt + R i + K w (paper, equation (1)), exact for constant v and w over the step. The switch and
+the freewheel diode carry current one way only, so i >= 0: each motor pulls in one direction.
 """
 
 from plant.compiled import inner
@@ -25,12 +24,9 @@ def back_emf(speed: float, constant: float, applied: float, leads: bool, diode: 
     """Return the voltage that opposes the current, V; `speed` counts positive in the motor's own direction.
 
     Turned against its pull, the leading motor's EMF adds to the applied voltage, but no more than that
-    voltage (a
-    switch that is off conducts nothing), and the lagging motor gives the torque of its duty alone: the
-    paper's
-    superposition. In truth the EMF drives current through the freewheel diode; `diode` 0..1 is the share of
-    that,
-    `drop` the diode's forward voltage.
+    voltage (a switch that is off conducts nothing), and the lagging motor gives the torque of its duty alone:
+    the paper's superposition. In truth the EMF drives current through the freewheel diode; `diode` 0..1 is
+    the share of that, `drop` the diode's forward voltage.
     """
     emf = constant * speed
     if emf >= 0.0:

@@ -2,8 +2,7 @@
 
 All rows are evaluated in one place, at the start of a step, into one sum per hook. (One place also keeps the
 compiler from unfolding the catalogue a dozen times.) Gear torque, currents and acceleration are those of the
-step
-before.
+step before.
 """
 
 from plant.compiled import Floats, inner

@@ -1,8 +1,7 @@
 """LuGre friction: passive, bounded, exact over any step, and the published reference behaviour.
 
 The reference set (sigma0 = 1e5, sigma1 = sqrt(1e5), sigma2 = 0.4, Tc = 1, Ts = 1.5, vs = 1e-3, unit mass) is
-that of
-Canudas de Wit et al. 1995 (hardware.md 1.1).
+that of Canudas de Wit et al. 1995 (hardware.md 1.1).
 """
 
 from math import exp, sqrt
