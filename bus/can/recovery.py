@@ -62,6 +62,6 @@ class Recovery:
         if back:
             wire._forget_routes()
             wire._trouble.check()
-            wire._await_ready()
+            wire._await_ready(not_before_ns=t_ns)
         if self._back_at:
             self._look_again()

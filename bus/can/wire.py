@@ -137,10 +137,11 @@ class Wire:
         self._waiting.remove(offer)
         heapify(self._waiting)
 
-    def _await_ready(self) -> None:
+    def _await_ready(self, not_before_ns: int = 0) -> None:
+        """Have the next start looked at when the first of those waiting is ready."""
         if self._waiting:
             earliest_ns = min(offer.ready_ns for offer in self._waiting)
-            self._call_decide(max(self._free_ns, self.queue.now_ns, earliest_ns))
+            self._call_decide(max(self._free_ns, not_before_ns, earliest_ns))
 
     def _begin(self, winner: Offer, sof_ns: int) -> None:
         self._sending = winner
