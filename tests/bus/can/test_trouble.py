@@ -195,3 +195,51 @@ def test_L1_a_healthy_wire_after_trouble_is_healthy_again() -> None:
         queue.run_until(queue.now_ns + 1_000_000)
     assert all(port.tec == port.rec == 0 for port in wire.ports)
     assert wire.frames == 9
+
+
+actions = st.lists(
+    st.tuples(
+        st.integers(0, 300_000),
+        st.integers(0, 3),
+        st.sampled_from(["send", "send", "send", "off", "on"]),
+        st.sampled_from([1, 2, 3, 0x7FF]),
+    ),
+    max_size=40,
+)
+flips = st.lists(
+    st.one_of(st.none(), st.tuples(st.integers(0, 140), st.sampled_from([None, "n0", "n1", "n3"])))
+)
+
+
+@given(actions, flips)
+def test_L1_whatever_happens_time_goes_on_and_frames_that_can_arrive_do(
+    batch: list[tuple[int, int, str, int]], disturbances: list[tuple[int, str | None] | None]
+) -> None:
+    """Four nodes sending the same few identifiers, going off and on, any bits flipped; n4 only listens."""
+    queue, wire = network(5)
+    left = list(disturbances)
+
+    def disturb(*_: object) -> Flip | None:
+        flip = left.pop() if left else None
+        return None if flip is None else Flip(*flip)
+
+    wire.disturb(disturb)
+    log = listen(wire, 4)
+    kept: list[Frame] = []
+    switched = {node for _, node, what, _ in batch if what != "send"}
+    for number, (t_ns, node, what, identifier) in enumerate(sorted(batch)):
+        queue.run_until(t_ns)
+        port = wire.ports[node]
+        if what == "send":
+            frame = Frame(identifier, bytes([number, node]))
+            if port.send(frame, t_ns + 5000) and node not in switched:
+                kept.append(frame)
+        else:
+            port.online = what == "on"
+    queue.run_until(1_000_000_000)
+    heard = [frame for _, frame in log]
+    # A frame may come twice (an error in the last bit of EOF), never not at all.
+    assert [frame for frame in kept if frame not in heard] == []
+    assert all(0 <= port.rec <= 255 and 0 <= port.tec <= 255 for port in wire.ports)
+    assert wire.load < 1
+    assert all(port.free_buffers == 3 for port in wire.ports if port.online)
