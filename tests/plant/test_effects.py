@@ -229,3 +229,32 @@ def test_diode_braking_slows_the_slew() -> None:
         plant.advance(10 * SECOND)
         rates.append(plant.ra.truth(10 * SECOND)[1])
     assert rates[1] < 0.8 * rates[0]
+
+
+@pytest.mark.parametrize(
+    ("target", "reading"),
+    [
+        ("torque", "truth"), ("motor_torque", "truth"), ("voltage", "truth"), ("command", "truth"),
+        ("incremental", "incremental"), ("absolute", "absolute"), ("auxiliary", "auxiliary"), ("current", "current"),
+    ],
+)  # fmt: skip
+def test_unknown_acts_where_its_function_says(
+    target: str, reading: str, declared: dict[str, np.ndarray]
+) -> None:
+    size = {"torque": 50.0, "motor_torque": 0.1, "voltage": -3.0, "command": -0.05, "current": 0.3}.get(
+        target, 1e-4
+    )
+    function = Function(target, "velocity", "linear", 0.0, ((-0.02, -size), (0.02, size)), "a test")
+    shown = readings(Plant(with_effect(EffectModel("unknown", function=function)), 1, {"ra": 2**28}))
+    different = {word for word in READINGS if not np.array_equal(shown[word], declared[word])}
+    assert reading in different
+    if reading != "truth":
+        assert different == {reading}
+
+
+def test_unknown_written_to_a_file_reads_back() -> None:
+    base = with_effect(instance("unknown"))
+    assert model.loads(model.dumps(base)) == base
+    text = model.dumps(base).replace("domain: axis_angle", "domain: axis_angel")
+    with pytest.raises(model.ModelError, match="did you mean 'axis_angle'"):
+        model.loads(text)
