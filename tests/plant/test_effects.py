@@ -235,7 +235,8 @@ def test_diode_braking_slows_the_slew() -> None:
     ("target", "reading"),
     [
         ("torque", "truth"), ("motor_torque", "truth"), ("voltage", "truth"), ("command", "truth"),
-        ("incremental", "incremental"), ("absolute", "absolute"), ("auxiliary", "auxiliary"), ("current", "current"),
+        ("incremental", "incremental"), ("absolute", "absolute"), ("auxiliary", "auxiliary"),
+        ("current", "current"),
     ],
 )  # fmt: skip
 def test_unknown_acts_where_its_function_says(
