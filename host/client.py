@@ -37,6 +37,9 @@ TRIES = 3
 SILENCE_NS = 3_500_000_000
 """Three heartbeats missed."""
 
+WATCH_NS = 500_000_000
+"""How often heartbeats are looked at; they come once a second."""
+
 Procedure = Generator[None, None, Any]
 
 
@@ -75,7 +78,7 @@ class Client:
         self.logs = logs
         self.devices = devices
         self.now_ns = 0
-        self.on_tick: list[Callable[[int], None]] = []
+        self._watch_ns = 0
         self._waiting: dict[Device, list[_Pending]] = {}
         self._silent: set[Device] = set()
         self._states: dict[Device, tuple[int, int]] = {}
@@ -132,11 +135,11 @@ class Client:
 
     # --- what the event queue calls ---
     def tick(self, t_ns: int) -> None:
-        """Go on: time-outs, retries, heartbeats, whoever registered in `on_tick`, then send."""
+        """Go on: time-outs, retries, heartbeats, then send."""
         self.now_ns = t_ns
-        self._watch(t_ns)
-        for call in self.on_tick:
-            call(t_ns)
+        if t_ns >= self._watch_ns:
+            self._watch_ns = t_ns + WATCH_NS
+            self._watch(t_ns)
         for queue in self._waiting.values():
             if queue:
                 self._serve(t_ns, queue)

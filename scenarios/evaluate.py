@@ -52,6 +52,8 @@ def judge(outcome: Outcome) -> list[Verdict]:
     if outcome.counters.get("interrupted"):
         reason = reason or "the run was interrupted"
     total = len(outcome.records)
+    if done < total and not reason:
+        reason = f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
     verdicts = [Verdict("programme completed", done == total, done, total, "steps", False, reason)]
     return verdicts + [_judge_one(outcome, each) for each in outcome.scenario.expectations]
 

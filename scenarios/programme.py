@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from bus.protocol import Device, Opcode
@@ -41,23 +42,45 @@ class Programme:
         self._client = client
         self._logs = logs
         self._running: dict[int, Procedure] = {}
+        self._waiting = list(range(len(self.records)))
         self._ready_since_s: dict[int, float] = {}
+        self._stopping: Procedure | None = None
 
     @property
     def finished(self) -> bool:
         """All steps have ended, or one has failed."""
-        return self.failed or all(record.end_s is not None for record in self.records)
+        return self.failed or not (self._waiting or self._running)
 
     def tick(self, t_ns: int) -> None:
-        """Start what may start, advance what runs."""
-        if self.finished:
+        """Start what may start, advance what runs; after a failure, stop the axes."""
+        if self.failed:
+            self._stop()
             return
-        t_s = t_ns * 1e-9
-        for index, record in enumerate(self.records):
-            if record.start_s is None and not self.failed and self._may_start(index, t_s):
-                self._start(index, t_s)
+        if self._waiting:
+            self._start_ready(t_ns * 1e-9)
         for index in list(self._running):
-            self._advance(index, t_ns)
+            if not self.failed:
+                self._advance(index, t_ns)
+
+    def _start_ready(self, t_s: float) -> None:
+        in_line = False
+        for index in list(self._waiting):
+            beside = self.records[index].step.after is not None
+            if not beside and in_line:
+                continue  # an earlier step of the line has not even started
+            in_line = in_line or not beside
+            if self._may_start(index, t_s):
+                self._waiting.remove(index)
+                self._start(index, t_s)
+                if self.failed:
+                    return
+
+    def _stop(self) -> None:
+        """Nobody watches a telescope whose programme has failed."""
+        if self._stopping is None:
+            self._stopping = manual.stop(self._client, "both")
+        with suppress(StopIteration, ClientError):
+            next(self._stopping)
 
     def _may_start(self, index: int, t_s: float) -> bool:
         step = self.records[index].step
@@ -112,6 +135,7 @@ class Programme:
         record.failed, record.end_s = reason, t_s
         self.failed = True
         self._running.clear()
+        self._waiting.clear()
         for other in self.records:  # whatever ran beside it ends here as well
             if other.start_s is not None and other.end_s is None:
                 other.end_s, other.failed = t_s, "given up"

@@ -52,6 +52,8 @@ class Pointing:
         self.track: StarTrack | None = None
         self.on_target = False
         self.tracking = False
+        self._errors_ns = -1
+        self._errors: tuple[float, float] | None = None
 
     def errors_arcsec(self) -> tuple[float, float] | None:
         """Star less encoder on both axes, ″ of the axis; None before there is a star or a reading.
@@ -60,19 +62,26 @@ class Pointing:
         """
         if self.track is None:
             return None
+        if self._errors_ns != self.client.now_ns:  # several ask within a tick
+            self._errors_ns = self.client.now_ns
+            self._errors = self._measure(self.track)
+        return self._errors
+
+    def _measure(self, track: StarTrack) -> tuple[float, float] | None:
         errors = []
         for index, encoder in enumerate(ENCODERS):
             reading = self.client.position(encoder)
             if reading is None:
                 return None
             latched_s = (self.client.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
-            errors.append((self.track.steps(latched_s)[index] - reading.position) * STEP_ARCSEC)
+            errors.append((track.steps(latched_s)[index] - reading.position) * STEP_ARCSEC)
         return errors[0], errors[1]
 
     def goto(self, track: StarTrack, classes: tuple[str, ...] = CLASSES) -> Procedure:
         """Bring both axes onto the star, one speed class after the other, and leave them moving with it."""
         self.on_target = self.tracking = False
         self.track = track
+        self._errors_ns = -1
         for name in classes:
             yield from self._send_rates()
             steps = track.steps(self._now_s())

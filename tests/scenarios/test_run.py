@@ -199,3 +199,36 @@ def test_log_effects_reach_the_axis_log(tmp_path: Path) -> None:
     ra, dec = (sum(line[0] not in "#t" for line in lines) for lines in texts)
     assert 0.2 < ra / dec < 0.8
     assert ra % 25 == 0
+
+
+def test_steps_beside_the_line_and_conditions(tmp_path: Path) -> None:
+    """`after` runs beside the line, `at` and `delay` wait, `when` looks at the boards."""
+    text = """\
+name: order
+start_utc: 2026-02-10T14:00:00Z
+steps:
+  - {name: up, power_on: {}}
+  - {name: long, wait: {for: 2 s}}
+  - {name: beside, after: up, delay: 500 ms, focus: {by: 1 half step}}
+  - {name: late, at: 4 s, wait: {for: 100 ms}}
+  - {name: at rest, when: stopped, wait: {for: 50 ms}}
+"""
+    steps = {step["name"]: step for step in go(text, tmp_path).summary["steps"]}
+    assert steps["beside"]["start_s"] == pytest.approx(steps["up"]["end_s"] + 0.5, abs=0.11)
+    assert steps["beside"]["end_s"] < steps["long"]["end_s"]
+    assert steps["late"]["start_s"] == pytest.approx(4.0, abs=0.051)
+    assert steps["at rest"]["start_s"] >= steps["late"]["end_s"]
+
+
+def test_a_step_that_takes_too_long_fails_and_the_axes_are_stopped(tmp_path: Path) -> None:
+    text = SHORT.replace("for: 1 s}", "for: 60 s}\n    timeout: 2 s") + "  - wait: {for: 1 s}\n"
+    result = go(text, tmp_path)
+    assert "go: not done within 2 s" in result.verdicts[0].reason
+    assert "AXIS_RA  STOP  ok" in (tmp_path / "commands.log").read_text()
+    assert result.summary["simulated_s"] < 6
+
+
+def test_the_time_limit_ends_a_run(tmp_path: Path) -> None:
+    result = go("time_limit: 2 s\n" + SHORT.replace("for: 1 s", "for: 60 s"), tmp_path)
+    assert "time limit" in result.verdicts[0].reason
+    assert result.summary["simulated_s"] == pytest.approx(2.0)
