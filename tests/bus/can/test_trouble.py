@@ -243,3 +243,53 @@ def test_L1_whatever_happens_time_goes_on_and_frames_that_can_arrive_do(
     assert all(0 <= port.rec <= 255 and 0 <= port.tec <= 255 for port in wire.ports)
     assert wire.load < 1
     assert all(port.free_buffers == 3 for port in wire.ports if port.online)
+
+
+def end_after(flip: Flip) -> int:
+    """Bit time, from the first start of frame, at which the repeated frame has been delivered."""
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    sent_through(wire, queue, flip)
+    return log[-1][0] // 1000
+
+
+@pytest.mark.parametrize(
+    ("flip", "error_bits"),
+    [
+        # Detected at the bit, then flag 6, delimiter 8, intermission 3.
+        (Flip(50), 51 + 6 + 8 + 3),
+        # Lost arbitration at bit 3, six recessive bits until it is noticed.
+        (Flip(3), 3 + 6 + 1 + 6 + 8 + 3),
+        # CRC error of one receiver: flag from the bit after the ACK delimiter on, answered by the others'.
+        (Flip(60, seen_by="n2"), CRC_DELIMITER + 3 + 12 + 8 + 3),
+    ],
+)
+def test_L1_an_error_costs_its_error_frame(flip: Flip, error_bits: int) -> None:
+    assert end_after(flip) == error_bits + LENGTH
+
+
+def test_L1_a_passive_sender_waits_eight_bits_more() -> None:
+    queue, wire = network(2)
+    log = listen(wire, 1)
+    port = wire.ports[0]
+    port.tec = 140
+    wire.disturb(lambda *_: None)  # makes the wire look at the counters
+    port.send(FRAME, 0)
+    port.send(FRAME, 0)
+    queue.run_until(1_000_000)
+    assert log[1][0] - log[0][0] == (LENGTH + 3 + 8) * 1000
+
+
+@given(st.integers(1, LENGTH - 1))
+def test_L1_after_a_cut_frame_the_bus_is_busy_until_the_error_frame_is_over(bit: int) -> None:
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    wire.ports[0].send(FRAME, 0)
+    wire.ports[2].send(Frame(0x200, b""), 0)
+    queue.run_until(bit * 1000 + 1)
+    wire.ports[0].online = False
+    queue.run_until(1_000_000)
+    start = bit * 1000 + 1 + (6 + 6 + 8 + 3) * 1000
+    assert [(t_ns, frame.identifier) for t_ns, frame in log] == [
+        (start + len(wire_bits(Frame(0x200, b""))) * 1000, 0x200)
+    ]
