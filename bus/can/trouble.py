@@ -33,10 +33,9 @@ _RECESSIVE_TAIL_BITS = 1 + 7
 
 
 class Trouble:
-    """Error handling of one wire. `near` is True while anything but plain sailing is possible."""
+    """Error handling of one wire; tells it when trouble is near."""
 
     def __init__(self, wire: "Wire") -> None:
-        self.near = True
         self.disturb: Callable[[int, Frame, str], Flip | None] | None = None
         self.errors: Counter[str] = Counter()
         self._wire = wire
@@ -47,7 +46,7 @@ class Trouble:
     def check(self) -> None:
         """Look again whether trouble is near."""
         live = [port for port in self._wire.ports if port.online and not port._bus_off]
-        self.near = bool(
+        self._wire._near = bool(
             self.disturb
             or len(live) < 2
             or self._recovery.pending
@@ -98,7 +97,7 @@ class Trouble:
         if parted is None:
             self._twins.append(other)
             self._excluded.append(other.port)
-            self.near = True  # until `delivered` has seen to the second sender
+            self._wire._near = True  # until `delivered` has seen to the second sender
             return one
         index, one_is_recessive = parted
         loser, winner = (one, other) if one_is_recessive else (other, one)

@@ -50,6 +50,11 @@ class Wire:
         self._end_ns = _NEVER
         self._sending: Offer | None = None
         self._eof_ns = INTERMISSION_BITS * self.bit_ns
+        self._near = True
+        """Whether anything but plain sailing is possible; kept by `Trouble`, read for every frame."""
+        self._at = queue.at
+        self._decide_call = self._decide
+        self._deliver_call = self._deliver
         self._trouble = Trouble(self)
 
     def attach(self, name: str) -> Port:
@@ -98,14 +103,14 @@ class Wire:
         t_ns = (ready_ns if ready_ns > self._free_ns else self._free_ns) + self.bit_ns
         if t_ns < self._decide_ns:
             self._decide_ns = t_ns
-            self.queue.at(t_ns, self._decide)
+            self._at(t_ns, self._decide_call)
 
     def _call_decide(self, sof_ns: int) -> None:
         """Have the arbitration of a frame that starts at `sof_ns` decided once its first bit is over."""
         t_ns = sof_ns + self.bit_ns
         if t_ns < self._decide_ns:
             self._decide_ns = t_ns
-            self.queue.at(t_ns, self._decide)
+            self._at(t_ns, self._decide_call)
 
     def _decide(self, t_ns: int) -> None:
         if t_ns != self._decide_ns:
@@ -113,7 +118,7 @@ class Wire:
         self._decide_ns = _NEVER
         sof_ns = t_ns - self.bit_ns
         waiting = self._waiting
-        if self._trouble.near:
+        if self._near:
             self._trouble.decide(sof_ns)
             return
         if not waiting or waiting[0][2] > sof_ns:
@@ -147,7 +152,7 @@ class Wire:
         self._sending = winner
         self._free_ns = free_ns = sof_ns + winner[5] * self.bit_ns
         self._end_ns = end_ns = free_ns - self._eof_ns
-        self.queue.at(end_ns, self._deliver)
+        self._at(end_ns, self._deliver_call)
 
     def _deliver(self, t_ns: int) -> None:
         if t_ns != self._end_ns:
@@ -163,7 +168,7 @@ class Wire:
         if self._waiting:
             self._call_decide(self._free_ns)
         calls = port._routes.get(key)
-        if self._trouble.near:
+        if self._near:
             calls = self._trouble.delivered(offer, t_ns)
         elif calls is None:
             # Found once and kept until filters or nodes change.
