@@ -36,8 +36,8 @@ _MAXIMUM_NODES = 64
 POINTING_BANDWIDTH = 22.0
 """rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors
 against the axis (about 130 rad/s, 5 % damped), which 10 ms of delay would otherwise drive."""
-_POINTING_KI = 0.04
-"""Ki/Kp while the axis slides: 8 rad/s. ASSUMPTION."""
+_POINTING_KI = 0.08
+"""Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
 _CREEP_KI = 0.15
 """Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
 

@@ -61,10 +61,10 @@ class AxisConfig:
     pwm_hz: int = 20_000
     position_gain: float = 6.0
     kp_pointing: float = 1.0
-    ki_pointing: float = 0.04
+    ki_pointing: float = 0.08
     ki_creep: float = 0.15
     creep_rate: int = rate_q16(200.0)
-    correction: int = rate_q16(300.0)
+    correction: int = rate_q16(1500.0)
     lag_steps: int = steps(900.0)
     acceleration: int = rate_q16(7200.0) // _TICKS_PER_S
     classes: tuple[int, ...] = field(default_factory=_classes)

@@ -5,8 +5,8 @@ from boards.axis.profile import UNIT_SHIFT
 _LIMIT = round(40.0 / 1_296_000 * 112_896_000) << UNIT_SHIFT
 """Difference that may build up between two looks, 250 ms apart: 40 arcsec, in Q18 counts. ASSUMPTION.
 
-The age of a position is known to 0.1 ms, 0.7 arcsec at slew; the position loop corrects at up to
-75 arcsec in 250 ms, so a stuck absolute encoder shows as well as a stuck incremental one."""
+The age of a position is known to 0.1 ms, 0.7 arcsec at slew. A position loop whose encoder is stuck
+corrects by far more than this, so a stuck absolute encoder shows as well as a stuck incremental one."""
 
 
 class EncoderWatch:

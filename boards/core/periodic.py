@@ -54,9 +54,11 @@ class PeriodicBoard(Board):
         cpu.top_end_ns = end = t_ns + cost
         if cpu.busy:
             cpu.interrupted(cost)
-        start = self.timer.next_ns()
+        timer = self.timer
+        times = timer.times
+        start = times.pop() if times else timer.next_ns()
         if start < end:
-            start, lost = self.timer.late(start, end)
+            start, lost = timer.late(start, end)
             cpu.top.overruns += lost
         self.ticks += 1
         self.queue.at(start, self._routine)

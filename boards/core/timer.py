@@ -10,12 +10,14 @@ _BLOCK = 64
 class Timer:
     """Start times (true ns) of a periodic interrupt routine: fire time plus a fixed latency.
 
+    times: those worked out so far, last first; `next_ns` without the call for whoever is in a hurry.
+
     oscillator: the board's crystal. period_ns: local time between fires. latency_ns: from fire to
         first instruction.
     offset_ns: local time of the first fire modulo the period.
     """
 
-    __slots__ = ("_local_ns", "_oscillator", "_times", "latency_ns", "period_ns")
+    __slots__ = ("_local_ns", "_oscillator", "latency_ns", "period_ns", "times")
 
     def __init__(self, oscillator: Oscillator, period_ns: int, latency_ns: int, offset_ns: int = 0) -> None:
         if period_ns <= 0:
@@ -23,7 +25,7 @@ class Timer:
         self.period_ns = period_ns
         self.latency_ns = latency_ns
         self._oscillator = oscillator
-        self._times: list[int] = []
+        self.times: list[int] = []
         self.restart(0, offset_ns)
 
     def restart(self, after_ns: int, offset_ns: int = 0) -> None:
@@ -31,13 +33,13 @@ class Timer:
         period = self.period_ns
         local = self._oscillator.local_ns(after_ns) - offset_ns
         self._local_ns = (local // period + 1) * period + offset_ns
-        self._times.clear()
+        self.times.clear()
 
     def next_ns(self) -> int:
         """True time at which the next routine starts."""
-        if not self._times:
+        if not self.times:
             self._refill()
-        return self._times.pop()
+        return self.times.pop()
 
     def late(self, start_ns: int, end_ns: int) -> tuple[int, int]:
         """The processor is busy until `end_ns`, after `start_ns`: (when the routine runs instead,
@@ -50,7 +52,7 @@ class Timer:
         while following < end_ns:
             lost += 1
             following = self.next_ns()
-        self._times.append(following)
+        self.times.append(following)
         return end_ns, lost
 
     def _refill(self) -> None:
@@ -60,4 +62,4 @@ class Timer:
         start = true_ns(first)
         span = true_ns(last) - start
         start += self.latency_ns
-        self._times = [start + k * span // _BLOCK for k in range(_BLOCK - 1, -1, -1)]
+        self.times = [start + k * span // _BLOCK for k in range(_BLOCK - 1, -1, -1)]

@@ -1,0 +1,79 @@
+from boards.core import PeriodicBoard, Source
+from bus.can import Frame, Wire
+from bus.protocol import Opcode, Result, pack_command, unpack_heartbeat, unpack_reply
+from bus.time import EventQueue, Oscillator
+
+DEVICE = 0x35
+MS = 1_000_000
+
+
+class Idle(PeriodicBoard):
+    """A board that does nothing but be there."""
+
+    __slots__ = ("ends",)
+
+    def reset(self) -> None:
+        self.ends: list[int] = []
+
+    def routine(self, t_ns: int) -> None:
+        end = self.enter(t_ns)
+        if end:
+            self.ends.append(end)
+            if self.ticks % 200 == 1:
+                self.heartbeat(end)
+
+
+def bench(tick_cycles: int) -> tuple[EventQueue, Idle, list[Frame]]:
+    queue = EventQueue()
+    wire = Wire(queue)
+    table = (Source("tick", 2, 10, tick_cycles), Source("can", 1, 10, 1000, level=True))
+    board = Idle("idle", DEVICE, queue, wire, Oscillator(0.0, 0), 1_000_000, table, 5 * MS)
+    frames: list[Frame] = []
+    pc = wire.attach("pc")
+    pc.on_receive = lambda _t, frame: frames.append(frame)
+    board.begin()
+    return queue, board, frames
+
+
+def test_B9_ticks_come_in_time_and_their_outputs_at_the_end() -> None:
+    queue, board, _ = bench(tick_cycles=100)
+    queue.run_until(26 * MS)
+    assert board.ends == [k * 5 * MS + 10_000 + 100_000 for k in range(1, 6)]
+    assert board.cpu.overruns == 0
+
+
+def test_B9_a_routine_longer_than_its_period_loses_ticks_and_counts_them() -> None:
+    queue, board, frames = bench(tick_cycles=12_000)
+    queue.run_until(1200 * MS)
+    # 12 ms of work every 5 ms: it runs back to back, and of 240 fires 100 are served
+    assert abs(len(board.ends) - 100) <= 1
+    assert abs(board.cpu.overruns + len(board.ends) - 240) <= 3
+    heartbeat = unpack_heartbeat([f for f in frames if f.identifier == 0x735][-1].data)
+    # by the end of the first routine, from 5 to 17 ms, one fire was remembered and one was lost
+    assert heartbeat.overruns == 1
+
+
+def test_B9_commands_wait_for_the_tick_and_are_answered() -> None:
+    queue, board, frames = bench(tick_cycles=3000)
+    assert board.port.state == "active"
+    queue.run_until(5 * MS + 500_000)
+    board._receive(queue.now_ns, Frame(0x080 + DEVICE, pack_command(DEVICE, Opcode.PING)))
+    queue.run_until(20 * MS)
+    replies = [unpack_reply(f.data) for f in frames if f.identifier == 0x100 + DEVICE]
+    assert [reply.result for reply in replies] == [Result.OK]
+
+
+def test_a_board_without_supply_is_silent_and_boots_afresh() -> None:
+    queue, board, frames = bench(tick_cycles=100)
+    queue.run_until(2500 * MS)
+    board.power_off(queue.now_ns)
+    frames.clear()
+    queue.run_until(5000 * MS)
+    assert not frames
+    board.power_on(queue.now_ns)
+    queue.run_until(5290 * MS)
+    assert not frames
+    queue.run_until(6501 * MS)
+    beats = [unpack_heartbeat(f.data) for f in frames if f.identifier == 0x735]
+    assert [beat.uptime for beat in beats] == [0, 1]
+    assert len(board.ends) == 240
