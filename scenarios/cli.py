@@ -84,9 +84,9 @@ def paper(
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option("--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0.")
 @click.option("--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True)
-@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's (or 1).")
+@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's.")
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
-@click.option("--duration", type=click.FloatRange(min=0), help="Seconds after which it ends by itself.")
+@click.option("--duration", type=click.FloatRange(min=0, min_open=True), help="End after this many seconds.")
 def serve(
     scenario: Path | None,
     channel: str,
@@ -95,10 +95,10 @@ def serve(
     plant: str | None,
     duration: float | None,
 ) -> None:
-    """Pace the network in real time and join it to a python-can interface; whoever is there commands it."""
-    from scenarios import serve as server
+    """Pace the network in real time and join it to a python-can interface; its boards answer to anyone."""
+    from scenarios.serve import serve as command
 
-    sys.exit(server.serve(scenario, channel, speed, seed, plant, duration))
+    sys.exit(command(scenario, channel, speed, seed, plant, duration))
 
 
 @cli.command()

@@ -203,7 +203,9 @@ def bar(scenario: Scenario, terminal: bool) -> Iterator[Callable[[str, float, fl
     total = sum(_estimate_s(step.action, step.arguments) for step in scenario.steps if step.after is None)
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[text]}"))
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("compiling, loading", total=max(total, 1.0), text="")
+        task = progress.add_task(
+            "starting (the first time compiles, some seconds)", total=max(total, 1.0), text=""
+        )
 
         def show(step: str, t_s: float, factor: float) -> None:
             text = f"{t_s:.0f} s simulated, {factor:.0f}× real time" if factor else ""

@@ -22,8 +22,10 @@ from scenarios.recorder import AXES, Recorder
 
 SERIAL = (Device.AXIS_RA, Device.AXIS_DEC, Device.POSITION_RA, Device.POSITION_DEC, Device.FOCUS)
 """The five boards on RS232 (L3)."""
-_FOCUS_START = 40
-"""Half steps either side of the middle within which the focus is found at power-up. ASSUMPTION."""
+_FOCUS_START = 5
+"""The focus is found at most this many electrical periods from the middle. ASSUMPTION."""
+_HALF_STEPS_PER_PERIOD = 8
+"""The rotor rests where the phase that the board starts with holds it."""
 
 
 class Session:
@@ -103,11 +105,11 @@ class Session:
 def start_steps(scenario: Scenario) -> dict[str, float]:
     """Where the telescope stands at first: parked, and the focus somewhere near the middle, by the seed."""
     mount = scenario.mount
-    focus = generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1)
+    periods = int(generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1))
     return {
         "ra": mount.ra.steps(mount.park_hour_angle_rad),
         "dec": mount.dec.steps(mount.park_declination_rad),
-        "focus": float(focus),
+        "focus": float(periods * _HALF_STEPS_PER_PERIOD),
     }
 
 

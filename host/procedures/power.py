@@ -41,9 +41,7 @@ def power_on(client: Client, check: bool = True) -> Procedure:
 
 
 def power_off(client: Client) -> Procedure:
-    """Stop and switch both axes off."""
-    for axis in AXES:
-        yield from client.ask(axis, Opcode.STOP)
+    """Switch both axes off; they should be at rest."""
     for axis in AXES:
         yield from client.ask(axis, Opcode.POWER, 0)
 

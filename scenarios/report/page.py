@@ -30,7 +30,9 @@ def write(outcome: Outcome, verdicts: list[Verdict], summary: dict[str, Any]) ->
         if figure is not None:
             pictures.append({"title": title, "data": _save(figure, outcome.folder / f"{name}.png")})
     loader = jinja2.FileSystemLoader(Path(__file__).parent)
-    template = jinja2.Environment(loader=loader, autoescape=True).get_template("page.html.j2")
+    environment = jinja2.Environment(loader=loader, autoescape=True)
+    environment.filters["figure"] = _figure
+    template = environment.get_template("page.html.j2")
     text = template.render(
         scenario=outcome.scenario,
         verdicts=verdicts,
@@ -46,6 +48,13 @@ def write(outcome: Outcome, verdicts: list[Verdict], summary: dict[str, Any]) ->
         (outcome.folder / "report.html").write_text(text, encoding="utf-8")
     except OSError as error:
         raise LogError(f"{outcome.folder / 'report.html'}: {(error.strerror or '').lower()}") from None
+
+
+def _figure(value: float | None) -> str:
+    """A number for people: four figures, and nothing where rounding errors are all there is."""
+    if value is None:
+        return "–"
+    return "0" if abs(value) < 1e-9 else f"{value:.4g}"
 
 
 def _save(figure: Figure, path: Path) -> str:

@@ -90,3 +90,14 @@ def test_a_full_disk_is_one_line(name: str, short: Path, schmidt: Command) -> No
     others = [path for path in (short.parent / "run").glob("axis-dec.csv") if path.name != name]
     for path in others:
         assert path.read_text().endswith("\n")
+
+
+def test_serve_paces_and_ends_and_names_a_wrong_interface(schmidt: Command) -> None:
+    done = schmidt("serve", "--can", "virtual:test", "--duration", "0.5")
+    assert done.returncode == 0, done.stderr
+    assert "serving 11 boards" in done.stdout
+    done = schmidt("serve", "--can", "vertual:test", "--duration", "0.5")
+    assert done.returncode == 2
+    assert done.stderr.startswith("schmidt: ")
+    assert "vertual" in done.stderr
+    assert "Traceback" not in done.stderr
