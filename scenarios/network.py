@@ -3,11 +3,10 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from math import pi
 from typing import Any
 
-from boards.axis import AxisBoard, AxisConfig, AxisPins
-from boards.axis.config import COUNTS_PER_TURN, STEPS_PER_TURN, TICK_NS
+from boards.axis import AxisBoard, AxisPins
+from boards.axis.config import STEPS_PER_TURN
 from boards.core import Board
 from boards.display import DisplayBoard
 from boards.focus import FocusBoard, FocusConfig, FocusPins
@@ -20,9 +19,8 @@ from bus.can import Wire
 from bus.protocol import Device
 from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
-from plant.gears import RATIO
-from plant.parts import AxisModel, PlantModel
 from plant.plant import Plant
+from scenarios.drive import axis_config
 
 CRYSTAL_PPM = 50.0
 """Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
@@ -30,16 +28,7 @@ CRYSTAL_DRIFT_PPM_PER_HOUR = 0.2
 """Largest drift while the night cools, ASSUMPTION: 0.04 ppm/K2 of an AT cut, a few kelvin an hour."""
 CRYSTAL_PHASE_NS = 1_000_000_000
 """Boards have been switched on within the same second, ASSUMPTION."""
-_FRAME_BITS = 120
-"""Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
 _MAXIMUM_NODES = 64
-POINTING_BANDWIDTH = 22.0
-"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors
-against the axis (about 130 rad/s, 5 % damped), which 10 ms of delay would otherwise drive."""
-_POINTING_KI = 0.08
-"""Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
-_CREEP_KI = 0.15
-"""Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
 
 
 class NetworkError(ValueError):
@@ -136,46 +125,6 @@ def crystal(seed: int, name: str, settings: NodeConfig) -> Oscillator:
         ppm if settings.ppm is None else settings.ppm,
         phase_ns if settings.phase_ns is None else settings.phase_ns,
         drift,
-    )
-
-
-def _inertia(axis: AxisModel) -> float:
-    """Load and both rotors at the axis, kg m2."""
-    return axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2
-
-
-def _unit_gain(model: PlantModel, axis: AxisModel) -> float:
-    """PWM steps that accelerate the axis by 1 count/5 ms in a second."""
-    motor, controller = axis.motor, model.controller
-    ohm = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
-    volts = model.supply.voltage.si * (1.0 - controller.counter_split.si) / controller.pwm_steps.si
-    torque_per_step = volts / ohm * motor.torque_constant.si * RATIO
-    counts_per_rad_s = COUNTS_PER_TURN / (2 * pi) * TICK_NS * 1e-9
-    return _inertia(axis) / (torque_per_step * counts_per_rad_s)
-
-
-def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) -> AxisConfig:
-    """Settings of an axis board that follow from the plant's drive: gains, split, PWM.
-
-    The file's Kp and Ki are those of the RA axis; the other axis gets them scaled by its inertia.
-    """
-    model = plant.model
-    controller = model.controller
-    part: AxisModel = getattr(model.axes, axis)
-    scale = _unit_gain(model, part) / _unit_gain(model, model.axes.ra)
-    pointing = POINTING_BANDWIDTH * _unit_gain(model, part)
-    return AxisConfig(
-        kp=controller.kp.si * scale,
-        ki=controller.ki.si * scale,
-        kp_pointing=pointing,
-        ki_pointing=pointing * _POINTING_KI,
-        ki_creep=pointing * _CREEP_KI,
-        counter_split=round(controller.counter_split.si * 100),
-        pwm_steps=round(controller.pwm_steps.si),
-        pwm_hz=round(controller.pwm_frequency.si),
-        low=limits[0],
-        high=limits[1],
-        frame_ns=_FRAME_BITS * round(1e9 / bitrate),
     )
 
 

@@ -55,10 +55,17 @@ class AxisBoard(PeriodicBoard):
     )  # fmt: skip
 
     def __init__(
-        self, name: str, device_type: int, queue: EventQueue, wire: Wire, pins: AxisPins, oscillator:
-            Oscillator,
-        config: AxisConfig, position_type: int, motor_types: tuple[int, int],
-    ) -> None:  # fmt: skip
+        self,
+        name: str,
+        device_type: int,
+        queue: EventQueue,
+        wire: Wire,
+        pins: AxisPins,
+        oscillator: Oscillator,
+        config: AxisConfig,
+        position_type: int,
+        motor_types: tuple[int, int],
+    ) -> None:
         super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
         self.config = config
         self.qei = Qei(pins.encoder)
@@ -102,6 +109,7 @@ class AxisBoard(PeriodicBoard):
         self.velocity = 0
         self.fault = False
         self.poscnt = self.qei.poscnt(self.queue.now_ns)
+        self.watch.forget()
         self.samples = []
 
     def unpowered(self, t_ns: int) -> None:
@@ -122,12 +130,11 @@ class AxisBoard(PeriodicBoard):
         effort = self.effort_command
         if effort is None:
             effort = self.pi.step(setpoint, velocity)
-        if effort != self.effort or self._fade:
-            self.effort = effort
-            if effort >= 0:
-                self.pwm.write(end, effort, self._lag(effort, velocity))
-            else:
-                self.pwm.write(end, self._lag(-effort, velocity), -effort)
+        self.effort = effort
+        if effort >= 0:
+            self.pwm.write(end, effort, self._lag(effort, velocity))
+        else:
+            self.pwm.write(end, self._lag(-effort, velocity), -effort)
         if self.ticks & 1:
             self._slow(t_ns, end)
         else:
