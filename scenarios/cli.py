@@ -115,18 +115,42 @@ def calibrate(logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...
 
 @cli.command()
 @click.option(
-    "--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Where the network is served."
+    "--can",
+    "channel",
+    metavar="INTERFACE:CHANNEL",
+    help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
 )
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
 @click.option(
     "--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, help="Speed it is served at."
 )
-@click.option("--motion", is_flag=True, help="Include checks that move the telescope.")
-def conformance(channel: str, json_file: Path | None, speed: float, motion: bool) -> None:
-    """Check the boards behind a python-can interface against the protocol."""
-    from bus.conformance.cli import conformance_command
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(min=0, max=1, min_open=True),
+    default=0.02,
+    show_default=True,
+    help="Of the mean period of a message, relative.",
+)
+@click.option(
+    "--motion/--no-motion",
+    default=None,
+    help="Send commands that move the telescope, too. Default: in this process only.",
+)
+def conformance(
+    channel: str | None, json_file: Path | None, speed: float, tolerance: float, motion: bool | None
+) -> None:
+    """Check boards, emulated or real, against the protocol."""
+    from scenarios.conformance import command
 
-    sys.exit(conformance_command(channel, json_file, speed, motion))
+    sys.exit(command(channel, json_file, speed, motion, tolerance))
+
+
+@cli.command()
+def protocol() -> None:
+    """Print the protocol page, made from the DBC."""
+    from bus.protocol.page import page
+
+    click.echo(page())
 
 
 @cli.command()

@@ -1,4 +1,4 @@
-"""`schmidt conformance --can INTERFACE:CHANNEL [--json FILE] [--speed X] [--motion]`."""
+"""`schmidt conformance --can INTERFACE:CHANNEL [--json FILE] [--speed X] [--motion] [--tolerance R]`."""
 
 import json
 from dataclasses import replace
@@ -15,7 +15,11 @@ from bus.external import SpecError, open_bus
 
 
 def conformance_command(
-    spec: str, json_path: Path | None = None, speed: float = 1.0, motion: bool = False
+    spec: str,
+    json_path: Path | None = None,
+    speed: float = 1.0,
+    motion: bool = False,
+    tolerance: float = 0.02,
 ) -> int:
     """Check the boards behind `spec`; 0 when every `must` holds, 1 when one fails.
 
@@ -23,7 +27,7 @@ def conformance_command(
     """
     with open_bus(spec) as bus:
         try:
-            return check(bus, json_path, Settings(speed=speed, motion=motion))
+            return check(bus, json_path, Settings(speed=speed, motion=motion, period_tolerance=tolerance))
         except can.CanError as error:
             raise SpecError(f'"{spec}": the bus broke down: {error}') from None
 
