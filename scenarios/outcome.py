@@ -48,6 +48,16 @@ class Outcome:
         scale = getattr(self.scenario.mount, axis)
         return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
 
+    def overview(self, axis: str, first: str = "rate") -> tuple[Array, Array, Array]:
+        """The whole run in a few thousand points: time, true angle and rate as `truth` gives them.
+
+        Extremes of the column `first` are kept.
+        """
+        order = ("rate", "angle") if first == "rate" else ("angle", "rate")
+        rows = traces.overview(self.folder / f"truth-{axis}.parquet", order)
+        scale = getattr(self.scenario.mount, axis)
+        return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
+
     def host(self, low_s: float, high_s: float) -> dict[str, Array]:
         """The host's own trace."""
         return traces.read(

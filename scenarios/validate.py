@@ -86,6 +86,8 @@ def _describe(document: Document, error: Any) -> tuple[int, int, str] | None:
         text = _choice(field, error)
         if not text:
             return None
+    elif kind == "pattern" and "propertyNames" in error.absolute_schema_path:
+        text = f"{field}: {error.instance!r} is not a parameter's number (see the protocol page)"
     elif kind == "x-quantity":
         text = f"{field}: {error.message}"
     elif kind in ("minimum", "maximum", "exclusiveMinimum"):

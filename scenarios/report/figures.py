@@ -124,8 +124,8 @@ def focus(outcome: Outcome) -> Figure | None:
 
     if not any(record.step.action == "focus" and record.start_s is not None for record in outcome.records):
         return None
-    rows = traces.read(outcome.folder / "focus.parquet", ("true_half_steps",), 0.0, 1e9)
-    board = outcome.host(0.0, 1e9)
+    rows = traces.overview(outcome.folder / "focus.parquet", ("true_half_steps",))
+    board = traces.overview(outcome.folder / "host.parquet", ("focus_half_steps",))
     figure = new_figure(2.8)
     view = axes(figure, 1, 1, 1, ylabel="half steps (6.25 µm)", xlabel="time, s")
     view.plot(*thin(rows["t_s"], rows["true_half_steps"]), color=COLOURS["truth"], lw=2.2, label="true")
@@ -148,7 +148,7 @@ def motion(outcome: Outcome) -> Figure | None:
     view = axes(figure, 1, 1, 1, ylabel="rate, arcsec/s", xlabel="time, s")
     shown = False
     for name in ("ra", "dec"):
-        t, _, rate = outcome.truth(name, 0.0, 1e9)
+        t, _, rate = outcome.overview(name)
         if len(t):
             view.plot(*thin(t, np.degrees(rate) * 3600), color=COLOURS[name], lw=0.8, label=name.upper())
             shown = True
@@ -196,10 +196,11 @@ def _tracked(outcome: Outcome) -> list[Record]:
 
 
 def _telescope_path(outcome: Outcome) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    t, hour_angle, _ = outcome.truth("ra", 0.0, 1e9)
-    _, declination, _ = outcome.truth("dec", 0.0, 1e9)
-    step = max(1, len(t) // 2000)
-    t, hour_angle, declination = t[::step], hour_angle[::step], declination[: len(hour_angle) : step]
+    t, hour_angle, _ = outcome.overview("ra", "angle")
+    t_dec, declination, _ = outcome.overview("dec", "angle")
+    if not len(t) or not len(t_dec):
+        return t, t, t
+    declination = np.interp(t, t_dec, declination)
     latitude = outcome.scenario.site.latitude_rad
     sine = np.sin(latitude) * np.sin(declination) + np.cos(latitude) * np.cos(declination) * np.cos(
         hour_angle

@@ -151,6 +151,23 @@ def test_traces_stream_and_read_back_by_window(tmp_path: Path) -> None:
         trace.append(np.zeros((3, 5)))
 
 
+def test_an_overview_is_short_and_keeps_every_peak(tmp_path: Path) -> None:
+    trace = traces.Trace(tmp_path / "a.parquet", ("t_s", "x", "y"), {})
+    t = np.arange(200_000) * 0.01
+    x = np.sin(t / 50)
+    x[123_457] = 7.0
+    for start in range(0, len(t), 1000):
+        part = slice(start, start + 1000)
+        trace.append(np.stack([t[part], x[part], -x[part]], axis=1))
+    trace.close()
+    rows = traces.overview(tmp_path / "a.parquet", ("x", "y"), points=2000)
+    assert 1500 < len(rows["t_s"]) < 2500
+    assert rows["x"].max() == 7.0
+    assert rows["x"].min() == pytest.approx(-1.0, abs=1e-4)
+    assert np.all(np.diff(rows["t_s"]) > 0)
+    assert np.all(rows["x"] == -rows["y"])
+
+
 ROWS = [(index * 0.01, SAMPLE._replace(velocity=index, effort=-index * 100)) for index in range(25)]
 
 

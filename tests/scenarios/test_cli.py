@@ -101,3 +101,31 @@ def test_serve_paces_and_ends_and_names_a_wrong_interface(schmidt: Command) -> N
     assert done.stderr.startswith("schmidt: ")
     assert "vertual" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+def test_a_terminal_gets_a_progress_bar_and_a_pipe_does_not(
+    short: Path, tmp_path: Path, schmidt: Command
+) -> None:
+    import pty
+
+    assert schmidt("run", short, "--out", "a").stderr == ""
+    leader, follower = pty.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-c", "from scenarios.cli import main; main()", "run", "short.yaml", "--out", "b"],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
+        stderr=follower, stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+    os.close(follower)
+    shown = b""
+    while True:
+        try:
+            piece = os.read(leader, 4096)
+        except OSError:  # the other end is closed
+            break
+        if not piece:
+            break
+        shown += piece
+    assert process.wait(60) == 0
+    os.close(leader)
+    assert b"starting" in shown

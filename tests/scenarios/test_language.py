@@ -149,3 +149,10 @@ def test_a_missing_file_and_a_file_of_bytes_are_named(tmp_path: Path) -> None:
         load(tmp_path / "bytes.yaml")
     with pytest.raises(ScenarioError, match="cannot be read"):
         load(tmp_path)
+
+
+def test_parameters_of_a_board_go_by_number() -> None:
+    network = "network:\n  nodes:\n    AXIS_RA: {parameters: {2: 300}}\n"
+    assert load_text(network + GOOD).network["nodes"]["AXIS_RA"]["parameters"]
+    assert "'kp' is not a parameter's number" in message(network.replace("2: 300", "kp: 3") + GOOD)
+    assert "did you mean 'AXIS_RA'" in message(network.replace("AXIS_RA", "AXIS_RR") + GOOD)
