@@ -70,8 +70,9 @@ class Plant:
         if t_ns < self.next_ns:
             return
         steps = (t_ns - self.now_ns) // self.grid_ns
-        if self._sink is None:
+        if steps < self._room or self._sink is None:  # recording, with room for all of it: the common case
             advance(self.world, steps)
+            self._room -= steps
         else:
             self._advance_recording(steps)
         self.now_ns += steps * self.grid_ns
