@@ -3,18 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from plant.parts import PlantModel
 from scenarios.paper import judge_loop, judge_models, runs
 from scenarios.paper.bench import BenchMaker
-from scenarios.paper.friction_map import FrictionFit, MapPoint, drive_torque, fit_friction, steady_point
+from scenarios.paper.friction_map import FrictionFit, MapPoint, break_away_point, fit_friction, steady_point
 from scenarios.paper.linear import linear_axis, reduce_to_dead_time, simulate_loop
 from scenarios.paper.log import Array, Log
 from scenarios.paper.measures import cycles, stalled, step_response
 from scenarios.paper.rows import Row
 from scenarios.paper.rundown import RunDown, fit_inertia
-from scenarios.paper.scales import ARCSEC, LOG_PERIOD_S
+from scenarios.paper.scales import LOG_PERIOD_S
 
 STEP_TO = 600.0
 RAMP_ARCSEC_S2 = 7200.0
@@ -64,8 +62,9 @@ class Campaign:
 
     def _high(self) -> list[Row]:
         for speed in runs.HIGH:
-            self.progress(f"{speed:g}″/s, closed and open loop")
-            self.record.high.append(runs.high_speed(self.bench("low"), speed))
+            self.progress(f"{speed:g}″/s, closed loop" + (" and open loop" if speed in runs.OPENED else ""))
+            opened = runs.OPENED_S if speed in runs.OPENED else 0.0
+            self.record.high.append(runs.high_speed(self.bench("low"), speed, opened_s=opened))
         return [judge_loop.e3(self.record.high), judge_loop.e5(self.record.high)]
 
     def _slew(self) -> list[Row]:
@@ -86,17 +85,18 @@ class Campaign:
         constant = self.plants["low"].axes.ra.motor.torque_constant.si
         log = runs.run_down(self.bench("low"))
         self.record.run_down = fit_inertia(log, self.record.fits["low"], constant)
-        return [judge_models.e7(self.record.fits), judge_models.e8(self.record.run_down)]
+        return [judge_models.e7(self.record.fits, self._table_units()), judge_models.e8(self.record.run_down)]
+
+    def _table_units(self) -> dict[str, float]:
+        """Return what turns N m at the axis into the unit in which each plant reads Table 2's torques."""
+        return {name: plant.axes.ra.friction.coulomb.value / plant.axes.ra.friction.coulomb.si
+                for name, plant in self.plants.items()}  # fmt: skip
 
     def _map(self, preload: str, torque_constant: float) -> None:
         """Torque-velocity map of one preload: steady states, and the break-away torque as its point at
         rest."""
         self.progress(f"break-away, {preload} preload")
-        log = runs.break_away(self.bench(preload))
-        moving = np.nonzero(log.counts > 2)[0]
-        first = int(moving[0]) if moving.size else log.t_s.size
-        held = drive_torque(log, torque_constant)[max(0, first - round(0.1 / LOG_PERIOD_S)) : first]
-        points = [MapPoint(0.5 * ARCSEC, float(held.max()), float(held.std()))] if held.size else []
+        points = [break_away_point(runs.break_away(self.bench(preload)), torque_constant)]
         left_out = []
         for speed, steady in runs.velocity_map(self.bench(preload), self.progress):
             # a limit cycle or stick-slip is no steady state: its mean torque belongs to no velocity
@@ -106,7 +106,11 @@ class Campaign:
                 points.append(steady_point(steady, torque_constant))
         self.record.points[preload] = points
         self.record.left_out[preload] = left_out
-        self.record.fits[preload] = fit_friction(points)
+        # the shape belongs to the film, not to the load: high preload, whose falling branch the loop cannot
+        # hold,
+        # takes it from low preload
+        known = self.record.fits.get("low")
+        self.record.fits[preload] = fit_friction(points, None if known is None else known.exponent)
 
     def _linear(self) -> list[Row]:
         self.progress("step to 600″/s")

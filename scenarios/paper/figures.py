@@ -59,11 +59,12 @@ def _velocity(axis: Any, log: Log, setpoint: float, title: str, seconds: float |
 def _figure_6(record: Record, folder: Path) -> Path | None:
     if not record.high:
         return None
-    worst = max(
-        record.high, key=lambda run: float(np.max(np.abs(run.opened.rate - run.open_mean))) / run.open_mean
-    )
+    opened = [(run, run.opened) for run in record.high if run.opened is not None]
+    if not opened:
+        return None
+    worst, log = max(opened, key=lambda pair: float(np.max(np.abs(pair[1].rate / pair[0].setpoint - 1.0))))
     figure, axes = _panels(2, "Fig. 6: high speed, low preload")
-    _velocity(axes[0], worst.opened, worst.open_mean, "(a) open loop; line: mean")
+    _velocity(axes[0], log, worst.setpoint, "(a) open loop")
     _velocity(axes[1], worst.closed, worst.setpoint, "(b) closed loop")
     low = min(axis.get_ylim()[0] for axis in axes)
     high = max(axis.get_ylim()[1] for axis in axes)

@@ -38,6 +38,22 @@ def steady_point(log: Log, torque_constant: float) -> MapPoint:
     )
 
 
+def break_away_point(log: Log, torque_constant: float) -> MapPoint:
+    """Return the largest torque before the axis breaks away, and the rate at which it crept then.
+
+    log: effort rising from rest; torque is averaged over 50 ms, against the converter's steps. Friction that
+    is ramped up slowly follows the static curve, so this is a point of the map like the others.
+    """
+    free = np.nonzero(log.counts > 20.0)[0]
+    held = slice(0, max(10, int(free[0]) if free.size else log.t_s.size))
+    torque = np.convolve(drive_torque(log, torque_constant)[held], np.full(5, 0.2), mode="valid")
+    top = int(np.argmax(torque))
+    creeping = float(log.rate[max(0, top - 10) : top + 5].mean())
+    return MapPoint(
+        max(creeping, 0.1) * ARCSEC, float(torque[top]), float(np.std(torque[max(0, top - 10) : top + 1]))
+    )
+
+
 def friction_curve(rate: Array, parameters: Sequence[float] | Array) -> Array:
     """Return Tc + (Ts - Tc) exp(-(w/vs)^delta) + sigma2 w, N m; paper, equations (3) and (5) at steady state.
 
@@ -67,13 +83,16 @@ class FrictionFit:
         )
 
 
-def fit_friction(
-    points: Sequence[MapPoint], exponent_bounds: tuple[float, float] = (0.4, 2.2)
-) -> FrictionFit:
-    """Fit Table 2's four parameters and the exponent to a torque-velocity map, by relative least squares.
+EXPONENTS = (0.4, 2.2)
+"""Bounds of the fitted exponent: hardware.md 1.1 has 0.5 to 2."""
 
-    Starts are a grid over vs and delta, so that the result does not depend on a guess. Raises ValueError
-    when there are fewer points than parameters.
+
+def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:
+    """Fit Table 2's four parameters and the exponent (unless it is given) to a torque-velocity map, by
+    relative least squares.
+
+    Starts are a grid over vs and delta, so that the result does not depend on a guess. Raises ValueError when
+    there are fewer points than parameters.
     """
     if len(points) < 6:
         raise ValueError(f"a torque-velocity map needs at least 6 steady points, not {len(points)}")
@@ -81,19 +100,20 @@ def fit_friction(
 
     rate = np.array([p.rate for p in points])
     torque = np.array([p.torque for p in points])
+    bounds = EXPONENTS if exponent is None else (exponent * (1.0 - 1e-6), exponent * (1.0 + 1e-6))
 
     def misfit(x: Array) -> Array:
         return np.asarray(friction_curve(rate, np.exp(x)) / torque - 1.0, dtype=np.float64)
 
-    low = np.log([1.0, 1.0, 1e-5, exponent_bounds[0], 1.0])
-    high = np.log([1e5, 1e5, 1e-1, exponent_bounds[1], 1e6])
+    low = np.log([1.0, 1.0, 1e-5, bounds[0], 1.0])
+    high = np.log([1e5, 1e5, 1e-1, bounds[1], 1e6])
     best = None
     for vs in (2e-4, 5e-4, 1.2e-3):
-        for delta in (0.6, 1.0, 1.8):
+        for delta in (0.6, 1.0, 1.8) if exponent is None else (exponent,):
             start = np.log(
                 [torque.min(), torque.max(), vs, delta, max(10.0, np.ptp(torque[-3:]) / np.ptp(rate[-3:]))]
             )
-            start = np.clip(start, low + 1e-6, high - 1e-6)
+            start = np.clip(start, low + 1e-9, high - 1e-9)
             found = least_squares(misfit, start, bounds=(low, high), loss="soft_l1", f_scale=0.05)
             if best is None or found.cost < best.cost:
                 best = found

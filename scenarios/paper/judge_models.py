@@ -22,14 +22,18 @@ INTEGRAL_BAND = (1.0 / 1.5, 1.5)
 NAMES = {"viscous": "σ2", "coulomb": "Tc", "stiction": "Ts", "stribeck_rate": "vs"}
 
 
-def e7(fits: Mapping[str, FrictionFit]) -> Row:
+def e7(fits: Mapping[str, FrictionFit], units: Mapping[str, float]) -> Row:
     """Table 2 from the emulator's logs; the row's figure is the largest deviation, as a share of its
-    tolerance."""
+    tolerance.
+
+    units: factors from N m at the axis to the unit in which the plants read Table 2's torques.
+    """
     checks, details, worst, worst_share = [], {}, 0.0, -1.0
     for preload, fit in fits.items():
         found = {}
         for name, printed in TABLE_2[preload].items():
-            value = float(getattr(fit, name))
+            scale = units[preload] if name in ("coulomb", "stiction") else 1.0
+            value = float(getattr(fit, name)) * scale
             off = (value / printed - 1.0) * 100.0
             found[name] = {"published": printed, "emulated": round(value, 7), "off_percent": round(off, 2)}
             checks.append(

@@ -51,19 +51,23 @@ SPACE: tuple[Free, ...] = (
     Free(
         "gear_damping", "N m s/rad", 1e3, 1.5e4, "ASSUMPTION: 1 to 15 % of critical of the axis on its trains"
     ),
-    Free("closed_time", "s", 0.01, 0.3, "closed-loop time constant of the tuning rule"),
-    Free("torque_error", "N m", 0.1, 25.0, "gear_eccentricity, motor, 2nd harmonic; design.md"),
-    Free(
-        "kinematic_error",
-        "arcsec",
-        1.0,
-        60.0,
-        "gear_eccentricity, motor, 2nd harmonic: up to a seventh of the play",
-    ),
+    Free("closed_time", "s", 0.005, 0.08, "of the tuning rule; slower could not carry a position loop"),
+    Free("twice", "N m", 0.5, 120.0, "gear_eccentricity, motor, 2nd harmonic; design.md: 15 to 25"),
+    Free("once", "N m", 0.1, 60.0, "gear_eccentricity, motor, 1st harmonic"),
     Free("mesh", "N m", 0.1, 15.0, "gear_mesh, mesh 1: ASSUMPTION"),
+    Free(
+        "imbalance",
+        "N m",
+        5.0,
+        150.0,
+        "gravity_imbalance: ASSUMPTION, below half of the drive's 336 N m (Table 1)",
+    ),
 )
 """Searched on a logarithmic scale. Table 2, Table 1, encoders, supply, counter split and PWM stay as they
 are."""
+
+
+BALANCED = "ASSUMPTION: balanced in the middle of the absolute encoder's range, 180 deg"
 
 
 def bounds() -> list[tuple[float, float]]:
@@ -82,13 +86,16 @@ def vector(found: dict[str, float]) -> Array:
 
 
 def _effects(found: dict[str, float], source: str) -> tuple[EffectModel, ...]:
-    eccentricity = {
-        "amplitude": Number(round(found["torque_error"], 3), "N m", source),
-        "kinematic": Number(round(found["kinematic_error"], 3), "arcsec", source),
-    }
+    def torque(name: str) -> dict[str, Number]:
+        return {"amplitude": Number(_rounded(found[name], 3), "N m", source)}
+
     return (
-        EffectModel("gear_eccentricity", "motor", 2, eccentricity),
-        EffectModel("gear_mesh", "mesh1", 1, {"amplitude": Number(round(found["mesh"], 3), "N m", source)}),
+        EffectModel("gear_eccentricity", "motor", 2, torque("twice")),
+        EffectModel("gear_eccentricity", "motor", 1, torque("once")),
+        EffectModel(
+            "gravity_imbalance", None, 1, torque("imbalance") | {"phase": Number(90.0, "deg", BALANCED)}
+        ),
+        EffectModel("gear_mesh", "mesh1", 1, torque("mesh")),
     )
 
 

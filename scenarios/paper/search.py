@@ -1,0 +1,179 @@
+"""`python -m scenarios.paper.search --out DIR`: fit what the paper leaves open to all rows at once,
+reproducibly.
+
+Differential evolution over space.py on the compiled loop, started from points that pass the statics, then a
+simplex from the best; seeded, one process. Writes the plant files with their sources, and what was tried.
+The emulator has the last word: run `schmidt paper --plant ... --plant-high ...` on the result.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+import numpy as np
+
+from plant.model import dump, load
+from plant.parts import PlantModel
+from scenarios.paper.bench import Bench
+from scenarios.paper.compiled import CompiledBench
+from scenarios.paper.cost import Term, cost
+from scenarios.paper.log import Array
+from scenarios.paper.proposals import propose
+from scenarios.paper.space import SPACE, bounds, models, values
+from scenarios.paper.statics import shortfalls_of
+
+READINGS = {"printed": (1.0, "low_preload", "high_preload"),
+            "motor": (1.0 / 2.774, "low_preload_motor_units", "high_preload_motor_units")}  # fmt: skip
+"""Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3)."""
+UNREACHABLE = 1000.0
+WORSE = 1e6
+
+
+class TimeUp(Exception):
+    """The search's time is used up."""
+
+
+class Objective:
+    """Cost of a search vector; keeps the best, and a record of every improvement."""
+
+    def __init__(
+        self, reading: str, low_speed: bool, margin: float, seconds: float, tell: Callable[[str], None]
+    ) -> None:
+        self.scale, low, high = READINGS[reading]
+        self.bases = {"low": load(low), "high": load(high)}
+        self.low_speed = low_speed
+        self.margin = margin
+        self.tell = tell
+        self.end = monotonic() + seconds
+        self.best = WORSE
+        self.best_x: Array | None = None
+        self.best_terms: list[Term] = []
+        self.tried = 0
+
+    def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
+        """Return the two plants at a search vector."""
+        return models(self.bases, values(x), source)
+
+    def __call__(self, x: Array) -> float:
+        """Return the cost at `x`; outside the bounds it grows with the distance."""
+        if monotonic() > self.end or self.best == 0.0:
+            raise TimeUp
+        low, high = np.array(bounds()).T
+        beyond = float(np.sum(np.maximum(0.0, low - x) + np.maximum(0.0, x - high)))
+        if beyond > 0.0:
+            return WORSE + beyond
+        failing = float(shortfalls_of(values(x), self.scale, self.low_speed))
+        if failing > 0.0:
+            return UNREACHABLE * (1.0 + failing)
+        plants = self.plants(x)
+
+        def bench(preload: str, gains: tuple[float, float] | None = None) -> Bench:
+            return CompiledBench(plants[preload], 1, gains)
+
+        self.tried += 1
+        found, terms = cost(bench, self.margin, self.low_speed)
+        if found < self.best:
+            self.best, self.best_x, self.best_terms = found, np.array(x), terms
+            worst = sorted((term for term in terms if term.cost > 0.0), key=lambda term: -term.cost)[:4]
+            self.tell(
+                f"{self.tried:5d} {found:8.3f}  " + ", ".join(f"{t.name} {t.figure:.3g}" for t in worst)
+            )
+        return found
+
+
+def start_points(objective: Objective, count: int, random: np.random.Generator) -> Array:
+    """Return `count` points: half of them the best that linear theory proposes, half scattered about
+    these."""
+    proposed = [
+        proposal.x for proposal in propose(random, objective.scale, objective.low_speed, keep=count // 2)
+    ]
+    if not proposed:
+        raise ValueError("linear theory finds no point of the space that could meet the rows")
+    low, high = np.array(bounds()).T
+    scattered = [
+        np.clip(proposed[k % len(proposed)] + 0.1 * random.standard_normal(low.size), low, high)
+        for k in range(count - len(proposed))
+    ]
+    return np.array([*proposed, *scattered])
+
+
+def search(objective: Objective, seed: int, population: int = 32) -> None:
+    """Search until the time is up or a point costs nothing; the result is in `objective`."""
+    from scipy.optimize import differential_evolution, minimize
+
+    random = np.random.default_rng(seed)
+    budget = objective.end - monotonic()
+    final = objective.end
+    try:
+        objective.end = monotonic() + 0.75 * budget
+        differential_evolution(
+            objective, bounds(), init=start_points(objective, population, random), maxiter=10_000, tol=0.0,
+            mutation=(0.4, 0.9), recombination=0.8, polish=False, rng=random,
+        )  # fmt: skip
+    except TimeUp:
+        pass
+    objective.end = final
+    try:
+        while objective.best_x is not None:
+            simplex = objective.best_x + 0.05 * random.standard_normal((len(SPACE) + 1, len(SPACE)))
+            simplex[0] = objective.best_x
+            minimize(objective, simplex[0], method="Nelder-Mead", options={"initial_simplex": simplex})
+    except TimeUp:
+        pass
+
+
+def report(objective: Objective, seed: int, seconds: float) -> dict[str, Any]:
+    """Return what was found, for the JSON file."""
+    assert objective.best_x is not None
+    return {
+        "seed": seed,
+        "tried": objective.tried,
+        "seconds": round(seconds, 1),
+        "cost": objective.best,
+        "values": values(objective.best_x),
+        "bounds": {free.name: [free.low, free.high, free.unit, free.why] for free in SPACE},
+        "terms": [
+            {"name": t.name, "figure": round(t.figure, 4), "cost": round(t.cost, 4)}
+            for t in objective.best_terms
+        ],
+    }
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the search from the command line."""
+    parser = argparse.ArgumentParser(prog="python -m scenarios.paper.search", description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder for plant files and report")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--minutes", type=float, default=12.0)
+    parser.add_argument("--margin", type=float, default=0.1, help="share by which the bands are narrowed")
+    parser.add_argument(
+        "--reading", choices=sorted(READINGS), default="printed", help="friction units of Table 2"
+    )
+    parser.add_argument("--without-e6", action="store_true", help="leave row E6 out")
+    chosen = parser.parse_args(arguments)
+    begin = monotonic()
+    seconds = chosen.minutes * 60.0
+    objective = Objective(
+        chosen.reading, not chosen.without_e6, chosen.margin, seconds, lambda text: print(text, flush=True)
+    )
+    search(objective, chosen.seed)
+    if objective.best_x is None:
+        print("no point of the space could be run at all", file=sys.stderr)
+        return 1
+    found = report(objective, chosen.seed, monotonic() - begin)
+    chosen.out.mkdir(parents=True, exist_ok=True)
+    (chosen.out / "search.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    rows = "E1 to E5 and E10" if chosen.without_e6 else "E1 to E6 and E10"
+    source = f"fitted to rows {rows} by scenarios.paper.search, seed {chosen.seed}"
+    for preload, plant in objective.plants(objective.best_x, source).items():
+        dump(plant, chosen.out / f"{READINGS[chosen.reading][1 if preload == 'low' else 2]}.yaml")
+    print(f"cost {objective.best:.3f} after {objective.tried} points; plant files in {chosen.out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,53 @@
+"""What can be said about a point of the space without running it: arithmetic on steady states."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from scenarios.paper.published import TABLE_2
+from scenarios.paper.scales import ARCSEC, GEAR_RATIO
+
+SUPPLY_V = 24.0
+COUNTER = 0.10
+FASTEST = 10800.0 * ARCSEC
+SLOWEST_OPEN = 100.0 * ARCSEC
+
+
+def motor_damping(found: Mapping[str, Any]) -> Any:
+    """Return (K N)^2 / R, N m s/rad at the axis: how steeply the leading motor's torque falls with speed."""
+    return (found["torque_constant"] * GEAR_RATIO) ** 2 / found["resistance"]
+
+
+def stribeck_slope(rate: float, exponent: Any, drop: float, stribeck_rate: float) -> Any:
+    """Return how steeply sliding friction falls at `rate`, N m s/rad (positive where it falls)."""
+    x = (rate / stribeck_rate) ** exponent
+    return drop * exponent / rate * x * np.exp(-x)
+
+
+def shortfalls(found: Mapping[str, Any], scale: float = 1.0, low_speed: bool = True) -> dict[str, Any]:
+    """Return by how much each necessary condition fails, as a share; 0 where it holds. Numbers or arrays.
+
+    scale: of Tc and Ts against Table 2 in N m (1 as printed, 1/2.774 when read as N mm at the motor).
+    low_speed: whether the axis has to run at 100 arcsec/s in open loop (row E6).
+    """
+    torque_per_volt = found["torque_constant"] * GEAR_RATIO / found["resistance"]
+    low, high = TABLE_2["low"], TABLE_2["high"]
+    drag = low["coulomb"] * scale + low["viscous"] * FASTEST
+    back = found["torque_constant"] * GEAR_RATIO * FASTEST
+    needed = (drag / torque_per_volt + back) / (1.0 - COUNTER)  # the counter motor's back-EMF is left out
+    stall = high["stiction"] * scale / torque_per_volt / (1.0 - COUNTER)
+    slope = stribeck_slope(
+        SLOWEST_OPEN, found["exponent"], (low["stiction"] - low["coulomb"]) * scale, low["stribeck_rate"]
+    )
+    damping = motor_damping(found) + low["viscous"]
+    return {
+        "reaches 3 deg/s at 24 V": np.maximum(0.0, needed / (0.98 * SUPPLY_V) - 1.0),
+        "breaks away at high preload": np.maximum(0.0, stall / (0.9 * SUPPLY_V) - 1.0),
+        "runs at 100 arcsec/s in open loop": np.maximum(0.0, 1.0 - damping / slope) * low_speed,
+    }
+
+
+def shortfalls_of(points: Mapping[str, Any], scale: float = 1.0, low_speed: bool = True) -> Any:
+    """Return the sum of all shortfalls."""
+    return sum(shortfalls(points, scale, low_speed).values())
