@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -9,11 +11,16 @@ import numpy as np
 
 from host.rates import rate_arcsec_s
 from host.sky.angles import ARCSEC_PER_RAD
+from host.sky.catalogue import Star
 from scenarios.model import Expectation
 from scenarios.outcome import Array, Outcome
 from scenarios.programme import Record
 
 MEAN_S = 1.0
+PHASE_S = 1.0
+"""Boards were switched on within the same second (scenarios/network.py)."""
+PIECE_S = 1800.0
+"""Long windows are looked at in pieces of at most this length."""
 _ROWS_PER_MEAN = round(MEAN_S / 0.01)
 
 
@@ -90,19 +97,28 @@ def pointing_errors(
     """Time and the error of both axes in ″ of the axis, star less telescope."""
     if record.star is None:
         raise NoData(f"step {record.step.name!r} has no target")
+    star = record.star
+    parts = [_pointing_piece(outcome, star, *piece, source) for piece in _pieces(low_s, high_s)]
+    t, ra, dec = (np.concatenate(column) for column in zip(*parts, strict=True))
+    if not len(t):
+        raise NoData("nothing was recorded in the window")
+    return t, ra, dec
+
+
+def _pointing_piece(
+    outcome: Outcome, star: Star, low_s: float, high_s: float, source: str
+) -> tuple[Array, Array, Array]:
     if source == "encoder":
         rows = outcome.host(low_s, high_s)
         good = ~np.isnan(rows["ra_error_arcsec"])
-        if not good.any():
-            raise NoData("the host has no encoder readings in the window")
         return rows["t_s"][good], rows["ra_error_arcsec"][good], rows["dec_error_arcsec"][good]
     t, hour_angle, _ = outcome.truth("ra", low_s, high_s)
     t_dec, declination, _ = outcome.truth("dec", low_s, high_s)
     count = min(len(t), len(t_dec))
-    if not count:
-        raise NoData("no truth was recorded in the window")
     t = t[:count]
-    star_ha, star_dec = outcome.star_places(record.star, t)
+    if not count:
+        return t, t, t
+    star_ha, star_dec = outcome.star_places(star, t)
     off = np.remainder(star_ha - hour_angle[:count] + np.pi, 2 * np.pi) - np.pi
     return t, off * ARCSEC_PER_RAD, (star_dec - declination[:count]) * ARCSEC_PER_RAD
 
@@ -120,18 +136,39 @@ def rate_errors(
     outcome: Outcome, record: Record, axis: str, source: str, low_s: float, high_s: float
 ) -> tuple[Array, Array]:
     """Time and rate error in ″/s: `truth`, `counts_5ms` or `mean_1s`."""
+    parts = [_rate_piece(outcome, record, axis, source, *piece) for piece in _pieces(low_s, high_s)]
+    t, error = (np.concatenate(column) for column in zip(*parts, strict=True))
+    if not len(t):
+        raise NoData("nothing was recorded in the window")
+    return t, error
+
+
+def _pieces(low_s: float, high_s: float) -> list[tuple[float, float]]:
+    """A window in pieces that a night's memory has room for."""
+    count = max(1, math.ceil((high_s - low_s) / PIECE_S))
+    edges = np.linspace(low_s, high_s, count + 1)
+    return [
+        (float(a), float(b) if b == edges[-1] else float(np.nextafter(b, a)))
+        for a, b in itertools.pairwise(edges)
+    ]
+
+
+def _rate_piece(
+    outcome: Outcome, record: Record, axis: str, source: str, low_s: float, high_s: float
+) -> tuple[Array, Array]:
     if source == "truth":
         t, _, rate = outcome.truth(axis, low_s, high_s)
         measured = rate * ARCSEC_PER_RAD
     else:
-        rows = outcome.axis_log(axis, low_s, high_s)
+        # Stamps are the board's own time, up to a second ahead: what they call low_s may have been before it.
+        rows = outcome.axis_log(axis, low_s + PHASE_S, high_s)
         t, measured = rows["t"], rate_arcsec_s(1.0) * rows["velocity"]
         if source == "mean_1s":
             count = len(t) // _ROWS_PER_MEAN * _ROWS_PER_MEAN
             t = t[:count].reshape(-1, _ROWS_PER_MEAN).mean(axis=1)
             measured = measured[:count].reshape(-1, _ROWS_PER_MEAN).mean(axis=1)
     if not len(t):
-        raise NoData("nothing was recorded in the window")
+        return t, t
     return t, measured - _wanted_rate(outcome, record, axis, t)
 
 

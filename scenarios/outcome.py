@@ -80,11 +80,16 @@ class Outcome:
         path = self.folder / f"axis-{axis}.csv"
         with path.open() as file:
             header = sum(1 for _ in iter(lambda: file.readline().startswith("#"), False))
-        table = csv.read_csv(
+        parts: list[Array] = [np.empty((2, 0))]
+        with csv.open_csv(
             path,
             read_options=csv.ReadOptions(skip_rows=header),
-            convert_options=csv.ConvertOptions(include_columns=["t", "velocity"]),
-        )
-        t, velocity = (table[name].to_numpy().astype(float) for name in ("t", "velocity"))
-        inside = (t >= low_s) & (t <= high_s)
-        return {"t": t[inside], "velocity": velocity[inside]}
+            convert_options=csv.ConvertOptions(
+                include_columns=["t", "velocity"], column_types={"t": "float64", "velocity": "float64"}
+            ),
+        ) as batches:
+            for batch in batches:
+                rows = np.stack([batch.column(name).to_numpy() for name in ("t", "velocity")])
+                parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
+        t, velocity = np.concatenate(parts, axis=1)
+        return {"t": t, "velocity": velocity}

@@ -1,5 +1,7 @@
-"""Short scenarios for tests, and a way to call the command as a user does."""
+"""Short scenarios for tests, and two ways to call the command: in this process, and as a user does."""
 
+import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,7 +18,8 @@ steps:
     set_rate: {axis: ra, rate: 100 arcsec/s, for: 1 s}
 """
 ROOT = Path(__file__).parents[2]
-Command = Callable[..., "subprocess.CompletedProcess[str]"]
+Done = subprocess.CompletedProcess
+Command = Callable[..., "Done[str]"]
 
 
 @pytest.fixture
@@ -28,12 +31,34 @@ def short(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def schmidt(tmp_path: Path) -> Command:
-    """Run the command in a folder of its own."""
+def schmidt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+    """Run the command in a folder of its own, in this process: Python takes longer to start than most runs."""
+    from scenarios.cli import main
 
-    def call(*arguments: object, **environment: str) -> "subprocess.CompletedProcess[str]":
-        import os
+    def call(*arguments: object) -> "Done[str]":
+        words = [str(each) for each in arguments]
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(sys, "argv", ["schmidt", *words])
+        capsys.readouterr()
+        before = signal.getsignal(signal.SIGTERM)
+        try:
+            main()
+            status = 0
+        except SystemExit as end:
+            status = end.code if isinstance(end.code, int) else int(end.code is not None)
+        finally:
+            signal.signal(signal.SIGTERM, before)
+        output = capsys.readouterr()
+        return subprocess.CompletedProcess(words, status, output.out, output.err)
 
+    return call
+
+
+@pytest.fixture
+def schmidt_process(tmp_path: Path) -> Command:
+    """Run the command in a process and a folder of its own."""
+
+    def call(*arguments: object, **environment: str) -> "Done[str]":
         return subprocess.run(
             [sys.executable, "-c", "from scenarios.cli import main; main()", *map(str, arguments)],
             cwd=tmp_path,

@@ -53,6 +53,7 @@ def test_effects_lists_the_catalogue(schmidt: Command) -> None:
     assert "amplitude" in schmidt("effects", "gear_mesh").stdout
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_leaves_readable_logs(short: Path, tmp_path: Path) -> None:
     from host.logs import traces
 
@@ -103,13 +104,14 @@ def test_serve_paces_and_ends_and_names_a_wrong_interface(schmidt: Command) -> N
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_does_not(
-    short: Path, tmp_path: Path, schmidt: Command
+    short: Path, tmp_path: Path, schmidt_process: Command
 ) -> None:
     import pty
 
-    assert schmidt("run", short, "--out", "a").stderr == ""
+    assert schmidt_process("run", short, "--out", "a").stderr == ""
     leader, follower = pty.openpty()
     process = subprocess.Popen(
         [sys.executable, "-c", "from scenarios.cli import main; main()", "run", "short.yaml", "--out", "b"],

@@ -16,7 +16,7 @@ from scenarios.document import ScenarioError, parse
 from scenarios.load import convert
 from scenarios.plants import plant_model
 from scenarios.targets import check_targets
-from tests.scenarios.conftest import SHORT
+from tests.scenarios.conftest import SHORT, Command
 
 ROOT = Path(__file__).parents[2]
 
@@ -86,12 +86,12 @@ def test_axis_log_rows_are_10_ms_apart_and_agree_with_the_truth(quick: runner.Re
     assert min(reached) - 500 < position < max(reached) + 500
 
 
-@pytest.mark.parametrize("change", ["folder", "speed", "hash seed"])
-def test_one_seed_gives_one_digest(change: str, tmp_path: Path, schmidt: Any) -> None:
+@pytest.mark.parametrize("change", ["folder", "speed", pytest.param("hash seed", marks=pytest.mark.slow)])
+def test_one_seed_gives_one_digest(change: str, tmp_path: Path, schmidt_process: Command) -> None:
     first = go(SHORT, tmp_path / "a").summary["trace_digest"]
     if change == "hash seed":
         (tmp_path / "short.yaml").write_text(SHORT)
-        done = schmidt("run", "short.yaml", "--out", "b", PYTHONHASHSEED="4711")
+        done = schmidt_process("run", "short.yaml", "--out", "b", PYTHONHASHSEED="4711")
         assert done.returncode == 0, done.stderr
         second = json.loads((tmp_path / "b" / "summary.json").read_text())["trace_digest"]
     else:
