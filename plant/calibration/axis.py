@@ -7,15 +7,21 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from plant.calibration.candidates import axis_lines, axis_torque, modes, tooth
+from plant.calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
 from plant.calibration.candidates import electrical as electrical_candidates
 from plant.calibration.candidates import kinematic as kinematic_candidates
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.channels.clock import clock_findings, repair_wraps
+from plant.calibration.channels.command import command_candidates, command_problem, pulses
 from plant.calibration.channels.electrical import Electrical, electrical_problem
 from plant.calibration.channels.frame import Frame, build_frame, fill
-from plant.calibration.channels.kinematic import Kinematic, auxiliary_problem, kinematic_problem, roller_problem
+from plant.calibration.channels.kinematic import (
+    Kinematic,
+    auxiliary_problem,
+    kinematic_problem,
+    roller_problem,
+)
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
@@ -99,7 +105,8 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
     if result.kinematic is not None:
         p = result.kinematic.problem
         stacked = _stack(context)
-        s = select(p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s), rng)
+        s = select(p, kinematic_candidates.motor_encoder_effects(
+            stacked, m.period_s, result.kinematic.motor), rng)
         result.selections["K"] = s
         _collect(result, s)
         found, stiffness = compliance_change(s, runs[0].header.get("axis", "ra"))
@@ -113,6 +120,19 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
         result.selections["S"] = s
         _collect(result, s)
     result.findings += delay_findings(result.selections)
+    command = command_problem(frame, held)
+    if command is not None:
+        p, setpoint = command
+        null = gls(p.y, p.base, p.train, p.ar_order, p.block)
+        s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
+        result.selections["U"] = s
+        _collect(result, s)
+        size, period, score = pulses(p, s.after.residual)
+        if score > 8:
+            result.findings.append(Finding("unknown", "S", "command", evidence=score, share=0.1,
+                                           note=f"pulses on the command, every {period:.2f} s", parameters={
+                "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
+                "period": Parameter(period, "s", 0.98 * period, 1.02 * period)}))
     tell("torque channel")
     _torque(result, per_ampere, clock, rng)
     return result
@@ -151,6 +171,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets), *axis_torque.angle_effects(c), *axis_torque.slow_effects(c, f),
         *axis_lines.gear_lines(c, m.period_s), *axis_lines.motor_lines(c, motors, null.residual, p.train),
         *modes.structural_modes(c, m.acceleration[m.pick], m.period_s)]
+    candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
     candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
     s = select(p, candidates, rng)

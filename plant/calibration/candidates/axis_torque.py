@@ -40,13 +40,14 @@ class Friction:
 
 def direction_effects(c: Context, f: Friction) -> list[Candidate]:
     """Asymmetry, load friction, offset and gain of the current reading."""
-    slope = np.gradient(f.torque_a + f.torque_b, float(np.median(np.diff(c.t))))
     out = [
-        Candidate("channel_delay", "clock", slope[:, None], (("delay", "s"),)),
         Candidate("friction_asymmetry", "velocity", np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
                   (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1"))),
         Candidate("friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)),
         Candidate("load_friction", "current", (f.sliding * np.abs(f.load))[:, None], (("mu", "1"),), sign=1),
+        Candidate("load_friction", "current",
+                  (f.bristle / (float(np.median(np.abs(f.bristle))) + 1e-9) * np.abs(f.load))[:, None], (("mu", "1"),),
+                  sign=1),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
         Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),)),
         Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),)),
@@ -61,12 +62,24 @@ def angle_effects(c: Context) -> list[Candidate]:
                      (("amplitude", "N m"),), kind="line", stage="axis", harmonic=1, order=1.0)]
     span = float(np.ptp(x)) or 1.0
     spring = x - x.mean()
-    for part in (0.02, 0.06, 0.15, 0.3):
-        loop = stop_operator(x, c.session, part * span) / (part * span)
-        out.append(Candidate("cable_wrap", "axis_angle", np.column_stack([spring, np.ones(len(x)), loop]),
-                             (("spring", "N m/rad"), ("neutral_torque", "N m"), ("loop_torque", "N m")),
-                             fixed={"loop_travel": (part * span, "rad")}))
+    for travel in (0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.25):
+        if travel > span:
+            continue
+        shape = _cable(x, spring, c.session)
+        out.append(Candidate("cable_wrap", "axis_angle", shape(np.array([travel])),
+                             (("stiffness", "N m/rad"), ("neutral_torque", "N m"), ("loop", "N m")),
+                             fixed={"loop_travel": (travel, "rad")}, shape=shape, steps=(0.1 * travel,),
+                             positive=(0, 2)))
     return out
+
+
+def _cable(x: Array, spring: Array, session: NDArray[np.int64]) -> Callable[[Array], Array]:
+    def shape(p: Array) -> Array:
+        travel = max(float(p[0]), 1e-4)
+        loop = stop_operator(x, session, travel) / travel
+        return np.column_stack([spring, np.ones(len(x)), loop])
+
+    return shape
 
 
 def slow_effects(c: Context, f: Friction) -> list[Candidate]:
@@ -78,9 +91,12 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
     for tau in (15.0, 30.0, 60.0, 100.0, 150.0, 220.0, 320.0):
         if tau > 3 * span:
             continue
-        shape = _warmup(f.total, since)
-        out.append(Candidate("friction_warmup", "time", shape(np.array([tau])), (("amplitude", "1"),),
-                             fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
+        for weight, labels in ((f.total[:, None], (("amplitude", "1"),)),
+                               (np.column_stack([f.bristle, f.stiction, f.viscous]),
+                                (("amplitude", "1"), ("stiction_rise", "1"), ("viscous_rise", "1")))):
+            shape = _warmup(weight, since)
+            out.append(Candidate("friction_warmup", "time", shape(np.array([tau])), labels,
+                                 fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
     preload = f.stiction + f.viscous
     kinds = (("preload_change", preload, "fraction", "1"), ("brake_drag", f.sliding, "torque", "N m"))
     for at in np.linspace(0.03, 0.97, 26) * span + low:
@@ -103,7 +119,7 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
 
 
 def _warmup(weight: Array, since: Array) -> Callable[[Array], Array]:
-    return lambda p: (-weight * np.exp(-since / max(float(p[0]), 1.0)))[:, None]
+    return lambda p: weight * np.exp(-since / max(float(p[0]), 1.0))[:, None]
 
 
 def _onset(weight: Array, clock: Array) -> Callable[[Array], Array]:

@@ -30,6 +30,7 @@ class Candidate:
     order: float | None = None
     frequency: float | None = None
     sign: int = 0  # +1: every coefficient must be positive; -1 negative; 0 free
+    positive: tuple[int, ...] = ()  # coefficients that must be positive
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
     twins: tuple[str, ...] = ()
     shape: Callable[[Array], Array] | None = None  # columns as a function of the first len(steps) fixed parameters
@@ -47,6 +48,8 @@ class Candidate:
 
     def allowed(self, beta: Array) -> bool:
         """Whether the coefficients respect the physical sign."""
+        if any(beta[k] <= 0 for k in self.positive):
+            return False
         return self.sign == 0 or bool(np.all(np.sign(beta) * self.sign >= 0))
 
     def say(self) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.electrical import Electrical
+from plant.calibration.channels.recursions import lowpass
 from plant.calibration.readers.run import Array
-
 
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
@@ -53,17 +53,6 @@ def _heating(e: Electrical, clock: Array) -> Callable[[Array], Array]:
 
 
 def _heat(e: Electrical, clock: Array, tau: float) -> Array:
-    """Low-passed i^2 of each motor, starting cold with each gap in the clock."""
+    """Low-passed i^2 of each motor, cold at the log's start."""
     n = len(clock)
-    step = np.diff(clock, prepend=clock[0])
-    out = np.zeros(2 * n)
-    for at in (0, n):
-        state = 0.0
-        square = (e.current[at:at + n] ** 2).tolist()
-        values = []
-        for dt, s in zip(step.tolist(), square, strict=True):
-            decay = np.exp(-max(dt, 0.0) / tau)
-            state = s + (state - s) * decay
-            values.append(state)
-        out[at:at + n] = values
-    return out
+    return np.concatenate([lowpass(e.current[:n] ** 2, clock, tau), lowpass(e.current[n:] ** 2, clock, tau)])

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from plant.calibration.candidates.candidate import Candidate, sine_columns
 from plant.calibration.candidates.context import Context
+from plant.calibration.channels.recursions import stop_element
 from plant.calibration.readers.run import Array
 
 
@@ -50,14 +51,8 @@ def stop_operator(angle: Array, run: NDArray[np.int64], radius: float) -> Array:
 
     Zero at the start of a run. The parallel sum of such elements is the Prandtl model of pre-sliding friction.
     """
-    out = np.zeros(len(angle))
-    state, before = 0.0, float(angle[0])
-    values, fresh = angle.tolist(), np.concatenate([[True], np.diff(run) != 0]).tolist()
-    for k, x in enumerate(values):
-        state = 0.0 if fresh[k] else min(max(state + x - before, -radius), radius)
-        before = x
-        out[k] = state
-    return out
+    fresh = np.concatenate([[True], np.diff(run) != 0])
+    return np.asarray(stop_element(np.ascontiguousarray(angle), fresh, float(radius)))
 
 
 def presliding(c: Context) -> list[Candidate]:

@@ -14,7 +14,7 @@ from plant.calibration.readers.run import Array
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
 
 
-def motor_encoder_effects(c: Context, period_s: float) -> list[Candidate]:
+def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Candidate]:
     """Candidates of the stacked K problem in arcsec; `c` holds the stacked columns."""
     out = []
     turns = c.angle / c.turn
@@ -30,8 +30,9 @@ def motor_encoder_effects(c: Context, period_s: float) -> list[Candidate]:
             if span * order < 0.8:
                 continue
             name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
-            out.append(line(c, name, stage, h, order, pair(turns * order, c, period_s, None, order),
-                            "motor_angle" if stage == "motor" else "axis_angle"))
+            columns = pair(turns * order, c, period_s, None, order)
+            for one in (columns, columns * (motor == 0)[:, None], columns * (motor == 1)[:, None]):
+                out.append(line(c, name, stage, h, order, one, "motor_angle" if stage == "motor" else "axis_angle"))
     if c.temperature is not None and np.ptp(c.temperature) > 0.3:
         out.append(Candidate("encoder_thermal_drift", "temperature", (c.temperature - c.temperature.mean())[:, None],
                              (("drift", "arcsec/K"),)))

@@ -1,4 +1,4 @@
-"""Fixed-frequency effects: a second mass on a spring, and pick-up at fixed Hz."""
+"""Fixed-frequency effects: a second mass on a spring."""
 
 from __future__ import annotations
 
@@ -31,25 +31,12 @@ def _resonance(acceleration: Array, period_s: float) -> Callable[[Array], Array]
     def shape(p: Array) -> Array:
         from scipy.signal import bilinear, lfilter
 
-        w, zeta = 2 * np.pi * max(float(p[0]), 0.3), max(float(p[1]), 1e-3)
+        zeta = max(float(p[1]), 1e-3)
+        if zeta > 0.15:
+            zeta = 0.15  # more is no resonance
+        w = 2 / period_s * np.tan(np.pi * min(max(float(p[0]), 0.3), 0.45 / period_s) * period_s)  # prewarped
         b, a = bilinear([2 * zeta * w, w * w], [1.0, 2 * zeta * w, w * w], fs=1 / period_s)
         return np.asarray(lfilter(b, a, acceleration))[:, None]
 
     return shape
 
-
-def fixed_lines(c: Context, e: Array, rows: Array, period_s: float, count: int = 3) -> list[Candidate]:
-    """The strongest lines at fixed Hz: nothing of the catalogue keeps its frequency at every speed but a mode."""
-    x = np.where(rows, e, 0.0)
-    power = np.abs(np.fft.rfft(x)) ** 2
-    hertz = np.fft.rfftfreq(len(x), period_s)
-    power[hertz < 0.5] = 0
-    out = []
-    for _ in range(count):
-        k = int(np.argmax(power))
-        f0 = float(hertz[k])
-        power[max(k - 3, 0):k + 4] = 0
-        phase = 2 * np.pi * f0 * c.t
-        out.append(Candidate("unknown", "time", np.column_stack([np.cos(phase), np.sin(phase)]), (("amplitude", c.unit),),
-                             kind="line", frequency=f0))
-    return out

@@ -10,6 +10,7 @@ from plant.calibration.readers.run import Array, Run
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
 LOST = 0.003  # fraction of rows missing that is worth a word
+RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 PACKET = 25  # rows per RS232 packet, log-format.md
 
 
@@ -117,21 +118,44 @@ def _other_wraps(run: Run) -> Finding | None:
         x = raw[np.isfinite(raw)]
         if len(x) < 100:
             continue
-        found = _folds(x) or _stops(x, name)
+        size = _folds(x, 10 if name.startswith("adc") else 17)
+        if size:
+            _unfold(run, name, size)
+            found = f"folds at {size} counts"
+        else:
+            found = _stops(x, name)
+            if found:
+                run.columns[RENAMED.get(name, name)] = np.where(raw == x.max(), np.nan, np.where(
+                    raw == x.min(), np.nan, run.columns[RENAMED.get(name, name)])) if not name.startswith("adc") else \
+                    np.where(raw == x.max(), np.nan, run.columns[RENAMED.get(name, name)])
         if found:
             return Finding("log_wrap", "S", "clock", evidence=50.0, share=1.0, note=f"{run.name}: {name} {found}")
     return None
 
 
-def _folds(x: Array) -> str:
+def _unfold(run: Run, name: str, size: int) -> None:
+    """Add turns of `size` counts until the column follows the encoder's own rate."""
+    column = RENAMED.get(name, name)
+    raw, si = run.raw[name], run.columns[column]
+    big = np.abs(raw) > 10
+    scale = float(np.nanmedian(si[big] / raw[big])) if big.any() else 0.0
+    if scale <= 0 or name.startswith("adc"):
+        run.columns[column] = np.full(len(si), np.nan) if name.startswith("adc") else si
+        return
+    rate = np.gradient(run.columns["position"], run.columns["t"])
+    expected = rate * (run.scales["gear_ratio"] if name.startswith("tach") else 1.0)
+    run.columns[column] = si + np.round((expected - si) / (size * scale)) * size * scale
+
+
+def _folds(x: Array, length: int) -> int:
     step = np.abs(np.diff(x))
     typical = float(np.quantile(step, 0.99)) + 1
-    for power in range(7, 17):
+    for power in range(7, length):
         size = 2.0**power
         at = np.abs(step - size) < 0.1 * size
         if size > 8 * typical and at.sum() >= 2 and np.ptp(x) <= 1.05 * size:
-            return f"folds at {int(size)} counts"
-    return ""
+            return int(size)
+    return 0
 
 
 def _stops(x: Array, name: str) -> str:

@@ -21,7 +21,7 @@ def rig_problem(runs: list[Run], rig: Rig, hold_out: list[str]) -> tuple[Problem
     join = {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
     files = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
     period = float(np.median(np.diff(parts[0]["t"])))
-    direction = direction_of(join["x"], files, 0.002 * float(np.quantile(join["x"], 0.99) - np.quantile(join["x"], 0.01)))
+    direction = direction_of(join["x"], files, least_travel(join["x"]))
     run = _runs(rig, join, files)
     held = _held(runs, rig, files, run, hold_out)
     base, labels = _base(rig, join, direction)
@@ -35,6 +35,13 @@ def rig_problem(runs: list[Run], rig: Rig, hold_out: list[str]) -> tuple[Problem
                       temperature=join.get("temperature"), stages=stages)
     problem.floor = repeatability(problem, context)
     return problem, context
+
+
+def least_travel(x: Array) -> float:
+    """Travel that counts as motion: above the position's noise, and a ten-thousandth of the range at least."""
+    reach = float(np.quantile(x, 0.99) - np.quantile(x, 0.01))
+    second = x[2:] - 2 * x[1:-1] + x[:-2]
+    return max(1e-4 * reach, 12 * float(np.median(np.abs(second))))
 
 
 def _one(run: Run, rig: Rig, index: int) -> dict[str, Array]:

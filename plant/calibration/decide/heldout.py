@@ -20,6 +20,7 @@ class HeldOut:
     after: float
     z: float
     share: float  # 1 - mean square after / before
+    everywhere: bool = False  # cross-validation only: every fold gained
 
 
 def predict_residual(problem: Problem, x: Array, beta: Array, rows: Mask) -> Array:
@@ -70,7 +71,7 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
     piece = np.floor(problem.t / max(FOLD_S, 8 * problem.period_s)).astype(np.int64)
     fold = (piece % FOLDS)[use]
     y = whitener.apply(np.where(rows, problem.y, 0.0))[use]
-    left = []
+    left: list[Array] = []
     for x in (x0, x1):
         w = whitener.apply(np.where(rows[:, None], x, 0.0))[use]
         e = np.empty(len(y))
@@ -80,4 +81,5 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
         left.append(e)
     e0, e1 = left
     b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
-    return HeldOut(b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0)
+    gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in range(FOLDS) if np.any(fold == k)]
+    return HeldOut(b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0, min(gains) > 0)

@@ -30,7 +30,7 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
     blocks = int(problem.train.sum() / problem.block)
     out: dict[str, Parameter] = {}
     if candidate.kind == "line":
-        for k in range(candidate.width // 2):
+        for k in range(min(candidate.width // 2, 6)):
             name, unit = candidate.labels[0]
             pair = slice(2 * k, 2 * k + 2)
             amplitude, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)

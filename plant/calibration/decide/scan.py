@@ -14,6 +14,8 @@ from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import orthonormal_blocks
 from plant.calibration.statistics.tails import chi2_log10
 
+UNNAMED = 0.85  # a smooth function must beat a named effect clearly: it can imitate most of them
+SURE = 4.0  # standard errors above zero for a coefficient that makes the effect what it is
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
 
 
@@ -47,7 +49,7 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
     seen: dict[object, int] = {}
     for k in np.argsort(-share):
         place = (candidates[k].key, candidates[k].domain)
-        if seen.get(place, 0) >= 2 or len(chosen) >= CONTENDERS and place in seen:
+        if seen.get(place, 0) >= 2 or (len(chosen) >= CONTENDERS and place in seen):
             continue
         found = fit_with(problem, base, refine(problem, base, null.residual, candidates[k], null.whitener), null)
         if found is not None:
@@ -86,9 +88,14 @@ def fit_with(problem: Problem, base: Array, candidate: Candidate, null: Fit) -> 
     if not candidate.allowed(fit.beta[p:]):
         return None
     at = slice(p, p + candidate.width)
+    for k in candidate.positive:
+        if fit.beta[p + k] < SURE * float(np.sqrt(fit.covariance[p + k, p + k])):
+            return None
     gain = fit.loglik - null.loglik * fit.rows / null.rows
     wald = float(fit.beta[at] @ np.linalg.pinv(fit.covariance[at, at], hermitian=True) @ fit.beta[at])
     evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0
     bayes = gain / effect - candidate.width / 2 * float(np.log(fit.rows))
+    if candidate.name == "unknown":
+        bayes *= UNNAMED
     return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, at)

@@ -20,7 +20,7 @@ SIGMA_TOLERANCE = 2.2  # sigma_0 is not published: only a factor beyond 1.7 with
 STIFFNESS = {"ra": 3.08e6, "dec": 2.46e6}  # N m/rad, paper Table 1
 
 
-def beyond(value: float, error: float, declared: float, factor: float, sure: float = 2.0) -> bool:
+def beyond(value: float, error: float, declared: float, factor: float, sure: float = 5.0) -> bool:
     """Whether value differs from declared by more than `factor` either way, and significantly so."""
     if value <= 0 or error <= 0:
         return False
@@ -65,7 +65,7 @@ def torque_changes(torque: Torque, selection: Selection, preload: str) -> tuple[
                              evidence=_evidence(float(beta[1]), d["viscous"], float(error[1]))))
     known = stiction_error < 0.1 * stiction and speed_error < 0.15 * speed
     if known and (beyond(stiction, stiction_error, d["stiction"], TOLERANCE)
-                  or beyond(speed, speed_error, d["stribeck_speed"], TOLERANCE, 3.0)):
+                  or beyond(speed, speed_error, d["stribeck_speed"], TOLERANCE)):
         found.append(Finding("stribeck_change", "T", "velocity", parameters={
             "breakaway": calibrated["stiction"], "stribeck_velocity": calibrated["stribeck_speed"]},
             evidence=_evidence(stiction, d["stiction"], stiction_error)))

@@ -1,0 +1,83 @@
+"""The rig pipeline: any other drive's table, its declared model from the rig file, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant.calibration.candidates import friction, lines, unknown
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.context import Context
+from plant.calibration.channels.problem import Problem
+from plant.calibration.channels.rig import rig_problem
+from plant.calibration.decide.finding import Finding
+from plant.calibration.decide.parameters import finding_of
+from plant.calibration.decide.select import Selection, select
+from plant.calibration.readers.rig import Rig
+from plant.calibration.readers.run import Run
+
+MOST = 10  # effects: a cogging motor shows several orders
+LINES = ("gear_eccentricity", "gear_mesh", "motor_cogging", "bearing_pass")
+
+
+@dataclass
+class BenchResult:
+    """The rig pipeline's findings for the report."""
+
+    problem: Problem
+    context: Context
+    selection: Selection
+    findings: list[Finding]
+    held_out: list[str]
+    not_identifiable: list[str]
+
+
+def analyse_bench(runs: list[Run], rig: Rig, hold_out: list[str], seed: int = 0) -> BenchResult:
+    """Select effects on the rig's response."""
+    problem, c = rig_problem(runs, rig, hold_out)
+    names = {s.name: s.kind or "gear_eccentricity" for s in rig.stages}
+    candidates: list[Candidate] = [
+        *friction.asymmetry(c), *friction.stribeck(c), *friction.presliding(c), *friction.position_friction(c),
+        *friction.slow_changes(c), *lines.stage_lines(c, {s.name: s.harmonics for s in rig.stages}, names),
+        *lines.free_lines(c), *unknown.smooth_functions(c)]
+    s = select(problem, candidates, np.random.default_rng(seed), most=MOST, margin=0.02)
+    findings = [_name(finding_of(s, k), c) for k in range(len(s.chosen))]
+    return BenchResult(problem, c, s, findings, _held_names(problem, runs, rig), _missing(problem, c, rig))
+
+
+def _name(f: Finding, c: Context) -> Finding:
+    """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
+    if f.name == "bearing_pass" and f.order:
+        f.note = f"period {1 / f.order:.5g} {c.angle_unit}"
+        if not c.stages:
+            f.name, f.stage = "gear_eccentricity", None
+            f.equivalent = list(dict.fromkeys([*f.equivalent, *(n for n in LINES if n != f.name)]))
+            f.note += "; no gear table was given, so its stage cannot be named"
+    return f
+
+
+def _held_names(problem: Problem, runs: list[Run], rig: Rig) -> list[str]:
+    names = []
+    for k in np.unique(problem.run[problem.held]):
+        rows = (problem.run == k) & problem.held
+        whole = rows.sum() == (problem.run == k).sum()
+        file = runs[int(problem.session[rows][0])].name
+        names.append(file if whole else f"{file} run {int(k) + 1} from {problem.t[rows].min():.4g} s")
+    return names
+
+
+def _missing(problem: Problem, c: Context, rig: Rig) -> list[str]:
+    """Parameters of the declared model whose columns the data do not move apart, before any fit."""
+    x = problem.base[problem.train]
+    size = np.linalg.norm(x, axis=0)
+    out = [label for (label, _), s in zip(problem.base_labels, size, strict=True) if s == 0]
+    keep = size > 0
+    if keep.sum() > 1:
+        z = x[:, keep] / size[keep]
+        inverse = np.linalg.pinv(z.T @ z, hermitian=True)
+        labels = [label for (label, _), k in zip(problem.base_labels, keep, strict=True) if k]
+        out += [f"{label} (collinear)" for label, v in zip(labels, np.diag(inverse), strict=True) if v > 100]
+    if min(np.mean(c.direction > 0), np.mean(c.direction < 0)) < 0.05:
+        out.append("anything odd in direction: one direction only")
+    return out

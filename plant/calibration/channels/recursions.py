@@ -1,0 +1,36 @@
+"""Compiled recursions over a log: first-order lag with uneven steps, and the elastoplastic (stop) element."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from plant.calibration.readers.run import Array
+from plant.compiled import entry
+
+
+@entry
+def lowpass(x: Array, clock: Array, tau: float) -> Array:
+    """First-order low pass of x (n,) with time constant `tau` s, starting at zero; steps of `clock` may be uneven."""
+    out = np.empty(len(x))
+    state = 0.0
+    for k in range(len(x)):
+        dt = clock[k] - clock[k - 1] if k > 0 else 0.0
+        state = x[k] + (state - x[k]) * np.exp(-max(dt, 0.0) / tau)
+        out[k] = state
+    return out
+
+
+@entry
+def stop_element(x: Array, fresh: Any, radius: float) -> Array:
+    """Elastoplastic element: follows x with slope 1, saturates at +-radius, zero where `fresh`."""
+    out = np.empty(len(x))
+    state = 0.0
+    for k in range(len(x)):
+        if fresh[k] or k == 0:
+            state = 0.0
+        else:
+            state = min(max(state + x[k] - x[k - 1], -radius), radius)
+        out[k] = state
+    return out
