@@ -10,14 +10,14 @@ import numpy.typing as npt
 
 from host.logs.files import LogError
 
-_ROWS_PER_GROUP = 1 << 15
+_ROWS_PER_GROUP = 1 << 13
 
 
 class Trace:
     """One Parquet file of float64 columns.
 
     The file gets its footer at `close`, also when a run is interrupted. Pieces are joined to row groups of
-    about 32 000 rows before they are written.
+    about 8 000 rows before they are written.
     """
 
     def __init__(self, path: Path, columns: tuple[str, ...], units: dict[str, str]) -> None:

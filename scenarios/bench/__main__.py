@@ -78,8 +78,10 @@ def show(figures: dict[str, Any], console: Console) -> None:
         ("cost per node, 4 to 64 nodes", " ".join(f"{each:.2f}" for each in per_node) + " ms/s", "flat"),
         ("memory", f"{memory['resident_MiB']:.0f} MiB, {memory['MiB_per_hour']:+.1f} MiB/h", ""),
         ("  ten-hour night", f"{memory['ten_hours_MiB']:.0f} MiB", "≤ 500 MB"),
-        ("first command, compiling", f"{start['first_run_s']:.1f} s", "≤ 15 s"),
-        ("later command", f"{start['later_run_s']:.1f} s (--version {start['version_s']:.1f} s)", "≤ 2 s"),
+        ("first command until it simulates", f"{start['first_run_s']:.1f} s", "≤ 15 s"),
+        ("later command until it simulates", f"{start['later_run_s']:.1f} s", "≤ 2 s"),
+        ("  a short run with its report", f"{start['short_run_with_report_s']:.1f} s", ""),
+        ("  schmidt --version", f"{start['version_s']:.1f} s", ""),
     )
     for row in rows:
         table.add_row(*row)

@@ -32,7 +32,7 @@ def short(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def schmidt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
-    """Run the command in a folder of its own, in this process: Python takes longer to start than most runs."""
+    """Run the command in a folder of its own, in this process: Python starts slower than most runs."""
     from scenarios.cli import main
 
     def call(*arguments: object) -> "Done[str]":
