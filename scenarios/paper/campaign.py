@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from plant.parts import PlantModel
 from scenarios.paper import judge_loop, judge_models, runs
 from scenarios.paper.bench import BenchMaker
@@ -83,9 +85,10 @@ class Campaign:
             self._map(preload, plant.axes.ra.motor.torque_constant.si)
         self.progress("run-down from 2°/s")
         constant = self.plants["low"].axes.ra.motor.torque_constant.si
-        log = runs.run_down(self.bench("low"))
-        self.record.run_down = fit_inertia(log, self.record.fits["low"], constant)
-        return [judge_models.e7(self.record.fits, self._table_units()), judge_models.e8(self.record.run_down)]
+        fit = self.record.fits["low"]
+        downs = [fit_inertia(runs.run_down(self.bench("low"), way), fit, constant) for way in (1, -1)]
+        self.record.run_down = downs[0]
+        return [judge_models.e7(self.record.fits, self._table_units()), judge_models.e8(downs)]
 
     def _table_units(self) -> dict[str, float]:
         """Return what turns N m at the axis into the unit in which each plant reads Table 2's torques."""
@@ -96,14 +99,15 @@ class Campaign:
         """Torque-velocity map of one preload: steady states, and the break-away torque as its point at
         rest."""
         self.progress(f"break-away, {preload} preload")
-        points = [break_away_point(runs.break_away(self.bench(preload)), torque_constant)]
+        ways = [runs.break_away(self.bench(preload), way) for way in (1, -1)]
+        points = [break_away_point(ways[0], ways[1], torque_constant)]
         left_out = []
-        for speed, steady in runs.velocity_map(self.bench(preload), self.progress):
+        for speed, forward, backward in runs.velocity_map(self.bench(preload), self.progress):
             # a limit cycle or stick-slip is no steady state: its mean torque belongs to no velocity
-            if stalled(steady.rate) or cycles(steady.true_rate, speed):
+            if any(stalled(log.rate) or cycles(np.abs(log.true_rate), speed) for log in (forward, backward)):
                 left_out.append(speed)
             else:
-                points.append(steady_point(steady, torque_constant))
+                points.append(steady_point(forward, backward, torque_constant))
         self.record.points[preload] = points
         self.record.left_out[preload] = left_out
         # the shape belongs to the film, not to the load: high preload, whose falling branch the loop cannot

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scenarios.paper.log import Array, Log
+from scenarios.paper.runs import BROKEN_AWAY
 from scenarios.paper.scales import ARCSEC, GEAR_RATIO
 
 
@@ -28,30 +29,42 @@ def drive_torque(log: Log, torque_constant: float) -> Array:
     return np.asarray((log.current_a - log.current_b) * torque_constant * GEAR_RATIO, dtype=np.float64)
 
 
-def steady_point(log: Log, torque_constant: float) -> MapPoint:
-    """Return the mean torque and rate of a steady run: without acceleration the drive torque is the
-    friction."""
-    torque = drive_torque(log, torque_constant)
-    blocks = [part.mean() for part in np.array_split(torque, 10)]
+def steady_point(forward: Log, backward: Log, torque_constant: float) -> MapPoint:
+    """Return the mean torque and rate of two steady runs, there and back: without acceleration half the
+    difference of the drive torques is the friction, whatever the balance of the axis adds to both."""
+    torque, spread, rate = [], [], []
+    for log in (forward, backward):
+        driven = drive_torque(log, torque_constant)
+        blocks = [part.mean() for part in np.array_split(driven, 10)]
+        torque.append(float(driven.mean()))
+        spread.append(float(np.std(blocks, ddof=1) / np.sqrt(10.0)))
+        rate.append(float(log.rate.mean()))
     return MapPoint(
-        float(log.rate.mean()) * ARCSEC, float(torque.mean()), float(np.std(blocks, ddof=1) / np.sqrt(10.0))
+        (rate[0] - rate[1]) / 2.0 * ARCSEC,
+        (torque[0] - torque[1]) / 2.0,
+        float(np.hypot(spread[0], spread[1]) / 2.0),
     )
 
 
-def break_away_point(log: Log, torque_constant: float) -> MapPoint:
+def break_away_point(forward: Log, backward: Log, torque_constant: float) -> MapPoint:
     """Return the largest torque before the axis breaks away, and the rate at which it crept then.
 
-    log: effort rising from rest; torque is averaged over 50 ms, against the converter's steps. Friction that
-    is ramped up slowly follows the static curve, so this is a point of the map like the others.
+    forward, backward: effort rising from rest, either way; torque is averaged over 50 ms, against the
+    converter's steps. Friction that is ramped up slowly follows the static curve, so this is a point of the
+    map like the others.
     """
-    free = np.nonzero(log.counts > 20.0)[0]
-    held = slice(0, max(10, int(free[0]) if free.size else log.t_s.size))
-    torque = np.convolve(drive_torque(log, torque_constant)[held], np.full(5, 0.2), mode="valid")
-    top = int(np.argmax(torque))
-    creeping = float(log.rate[max(0, top - 10) : top + 5].mean())
-    return MapPoint(
-        max(creeping, 0.1) * ARCSEC, float(torque[top]), float(np.std(torque[max(0, top - 10) : top + 1]))
-    )
+    found = []
+    for log, sign in ((forward, 1.0), (backward, -1.0)):
+        free = np.nonzero(sign * log.counts > BROKEN_AWAY)[0]
+        held = slice(0, max(10, int(free[0]) if free.size else log.t_s.size))
+        torque = np.convolve(sign * drive_torque(log, torque_constant)[held], np.full(5, 0.2), mode="valid")
+        top = int(np.argmax(torque))
+        before = slice(max(0, top - 10), top + 5)
+        found.append(
+            (sign * float(log.rate[before].mean()), float(torque[top]), float(np.std(torque[before])))
+        )
+    rate, level, spread = (sum(values) / 2.0 for values in zip(*found, strict=True))
+    return MapPoint(max(rate, 0.1) * ARCSEC, level, spread)
 
 
 def friction_curve(rate: Array, parameters: Sequence[float] | Array) -> Array:

@@ -1,6 +1,6 @@
 """Verdicts on E7 to E10: identification, linear model, tuning rule."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from plant.parts import PlantModel
@@ -49,24 +49,21 @@ def e7(fits: Mapping[str, FrictionFit], units: Mapping[str, float]) -> Row:
     return Row("E7", worst, passed, reason, details)
 
 
-def e8(result: RunDown) -> Row:
-    """Moment of inertia from the run-down."""
-    off = (result.inertia / INERTIA - 1.0) * 100.0
+def e8(results: Sequence[RunDown]) -> Row:
+    """Moment of inertia from run-downs in both directions: their mean."""
+    inertia = sum(result.inertia for result in results) / len(results)
+    stop = sum(result.stop_s for result in results) / len(results)
+    off = (inertia / INERTIA - 1.0) * 100.0
+    each = ", ".join(f"{result.inertia:.0f}" for result in results)
     passed, reason = verdict(
         [
             (
                 abs(off) <= INERTIA_TOLERANCE,
-                f"J = {result.inertia:.0f} kg m² ({off:+.1f} %), at rest after {result.stop_s:.2f} s",
+                f"J = {inertia:.0f} kg m² ({off:+.1f} %; {each}), at rest after {stop:.2f} s",
             )
         ]
     )
-    return Row(
-        "E8",
-        result.inertia * 1e3,
-        passed,
-        reason,
-        {"off_percent": round(off, 2), "stop_s": round(result.stop_s, 3)},
-    )
+    return Row("E8", inertia * 1e3, passed, reason, {"off_percent": round(off, 2), "stop_s": round(stop, 3)})
 
 
 def e9(full: Step, linear: Step, setpoint: float) -> Row:

@@ -88,9 +88,9 @@ class Line:
 def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float = LOG_PERIOD_S) -> Line:
     """Return the strongest sinusoid of `record` between two frequencies.
 
-    Frequencies are tried on a grid of a tenth of the record's resolution; the amplitude is that of the
-    least-squares sinusoid (with an offset and a trend of its own). Raises ValueError when not one period of
-    `high_hz` fits.
+    Strongest is the one that explains most of what an offset and a trend leave: its amplitude alone would
+    favour slow sinusoids that offset and trend cancel again. Frequencies are tried on a grid of a tenth of
+    the record's resolution. Raises ValueError when not one period of `high_hz` fits.
     """
     span = record.size * period_s
     if span * high_hz < 1.0:
@@ -101,15 +101,15 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
     y = record[: count * width].reshape(count, width).mean(axis=1)
     t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
     t = t - t.mean()
-    best = Line(low_hz, -1.0)
+    still = np.column_stack([np.ones_like(t), t / span])
+    rest = y - still @ np.linalg.lstsq(still, y, rcond=None)[0]
+    best, most = Line(low_hz, 0.0), -1.0
     for f in np.arange(low_hz, high_hz, 0.1 / span):
-        basis = np.column_stack(
-            [np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t), np.ones_like(t), t / span]
-        )
-        coefficient = np.linalg.lstsq(basis, y, rcond=None)[0]
-        amplitude = float(np.hypot(coefficient[0], coefficient[1]))
-        if amplitude > best.amplitude:
-            best = Line(float(f), amplitude)
+        swing = np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
+        coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
+        explained = float(rest @ rest - np.sum((rest - swing @ coefficient) ** 2))
+        if explained > most:
+            best, most = Line(float(f), float(np.hypot(coefficient[0], coefficient[1]))), explained
     return best
 
 
@@ -117,10 +117,10 @@ def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PER
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
     t = np.arange(record.size) * period_s
     t = t - t.mean()
-    basis = np.column_stack(
-        [np.cos(2 * np.pi * frequency_hz * t), np.sin(2 * np.pi * frequency_hz * t), np.ones_like(t), t]
-    )
-    coefficient = np.linalg.lstsq(basis, record, rcond=None)[0]
+    still = np.column_stack([np.ones_like(t), t])
+    rest = record - still @ np.linalg.lstsq(still, record, rcond=None)[0]
+    swing = np.column_stack([np.cos(2 * np.pi * frequency_hz * t), np.sin(2 * np.pi * frequency_hz * t)])
+    coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
     return float(np.hypot(coefficient[0], coefficient[1]))
 
 

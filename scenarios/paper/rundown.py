@@ -31,7 +31,8 @@ def fit_inertia(log: Log, friction: FrictionFit, torque_constant: float) -> RunD
     from the map and the samples still resolve the motion. Raises ValueError when the axis did not run down
     within the log.
     """
-    rate = log.rate * ARCSEC
+    sign = 1.0 if log.rate[0] >= 0.0 else -1.0
+    rate = sign * log.rate * ARCSEC
     start = float(rate[:2].mean())
     rest = np.nonzero(rate < 0.02 * start)[0]
     if start <= 0.0 or not rest.size:
@@ -43,7 +44,7 @@ def fit_inertia(log: Log, friction: FrictionFit, torque_constant: float) -> RunD
         raise ValueError(f"only {used.size} samples of the run-down are usable; at least 4 are needed")
     part = slice(int(used[0]), int(used[-1]) + 1)
     t, w = log.t_s[part], rate[part]
-    net = friction.torque(w) - drive_torque(log, torque_constant)[part]
+    net = friction.torque(w) - sign * drive_torque(log, torque_constant)[part]
     impulse = np.concatenate([[0.0], np.cumsum(0.5 * (net[1:] + net[:-1]) * np.diff(t))])
     # J (w0 - w) = impulse + c: slope of impulse over w, offset free
     slope = np.polyfit(w, impulse, 1)[0]

@@ -113,6 +113,8 @@ def low_speed(bench: Bench, dwell: float = 72.0, settle: float = 18.0, start: fl
     return LowSpeed(closed, steps)
 
 
+BROKEN_AWAY = 20.0
+"""Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
 MAP_SPEEDS = (
     5.0, 10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 130.0, 170.0, 220.0, 300.0, 400.0, 600.0, 1000.0,
     2000.0, 3600.0, 5400.0, 7200.0,
@@ -121,37 +123,38 @@ MAP_SPEEDS = (
 1."""
 
 
-def velocity_map(bench: Bench, progress: Progress | None = None) -> list[tuple[float, Log]]:
-    """E7: (set point, log) of steady states from fast to slow, closed loop.
+def velocity_map(bench: Bench, progress: Progress | None = None) -> list[tuple[float, Log, Log]]:
+    """E7: (set point, forward, backward): steady states from fast to slow, closed loop, in both directions.
 
-    Slow ones are averaged for longer: at least 18 s, or as long as half a motor turn takes (the disturbances
-    are periodic in it), at most 60 s.
+    Both directions, because the balance of the axis adds to one what it takes from the other. Slow ones are
+    averaged for longer: half a motor turn (the disturbances are periodic in it), 6 s at least and 36 s at
+    most.
     """
     found = []
     for speed in sorted(MAP_SPEEDS, reverse=True):
         half_turn = 1_296_000.0 / 360.489 / speed / 2.0
-        seconds = min(60.0, max(8.0, half_turn * max(1, round(8.0 / half_turn))))
-        found.append((speed, bench.closed_loop(speed, 8.0 + seconds).after(8.0)))
+        seconds = min(36.0, max(6.0, half_turn * max(1, round(6.0 / half_turn))))
+        settle = 10.0 if speed < 30.0 else 6.0
+        pair = [bench.closed_loop(sign * speed, settle + seconds).after(settle) for sign in (1.0, -1.0)]
+        found.append((speed, pair[0], pair[1]))
         if progress:
             progress(f"torque-velocity map, {speed:g}″/s")
     return found
 
 
-def break_away(bench: Bench, step_s: float = 0.1, limit: int = 3000) -> Log:
-    """E7: from rest the effort rises by 1/3000 every `step_s` until the axis moves; the log ends 1 s
-    later."""
+def break_away(bench: Bench, direction: int, step_s: float = 0.05, limit: int = 3000) -> Log:
+    """E7: from rest the effort rises by 1/3000 every `step_s` until the axis is gone. direction: 1 or -1."""
     logs: list[Log] = []
     for effort in range(1, limit + 1):
-        logs.append(bench.open_loop(effort, step_s))
-        if logs[-1].counts.max(initial=0.0) > 20.0:
+        logs.append(bench.open_loop(direction * effort, step_s))
+        if np.max(np.abs(logs[-1].counts), initial=0.0) > BROKEN_AWAY:
             break
-    logs.append(bench.open_loop(0, 2.0))
     return join(logs)
 
 
-def run_down(bench: Bench, setpoint: float = 7200.0) -> Log:
+def run_down(bench: Bench, direction: int, setpoint: float = 7200.0) -> Log:
     """E8: steady state at 2 deg/s, then the input is set to zero; the log starts at that moment."""
-    bench.closed_loop(setpoint, 8.0)
+    bench.closed_loop(direction * setpoint, 8.0)
     return bench.open_loop(0, 1.5)
 
 

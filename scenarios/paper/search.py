@@ -10,6 +10,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -33,22 +34,22 @@ UNREACHABLE = 1000.0
 WORSE = 1e6
 
 
-class TimeUp(Exception):
-    """The search's time is used up."""
+class Enough(Exception):
+    """The search may try no more points, or need not."""
 
 
 class Objective:
     """Cost of a search vector; keeps the best, and a record of every improvement."""
 
     def __init__(
-        self, reading: str, low_speed: bool, margin: float, seconds: float, tell: Callable[[str], None]
+        self, reading: str, low_speed: bool, margin: float, most: int, tell: Callable[[str], None]
     ) -> None:
         self.scale, low, high = READINGS[reading]
         self.bases = {"low": load(low), "high": load(high)}
         self.low_speed = low_speed
         self.margin = margin
         self.tell = tell
-        self.end = monotonic() + seconds
+        self.most = most
         self.best = WORSE
         self.best_x: Array | None = None
         self.best_terms: list[Term] = []
@@ -60,8 +61,8 @@ class Objective:
 
     def __call__(self, x: Array) -> float:
         """Return the cost at `x`; outside the bounds it grows with the distance."""
-        if monotonic() > self.end or self.best == 0.0:
-            raise TimeUp
+        if self.tried >= self.most or self.best == 0.0:
+            raise Enough
         low, high = np.array(bounds()).T
         beyond = float(np.sum(np.maximum(0.0, low - x) + np.maximum(0.0, x - high)))
         if beyond > 0.0:
@@ -102,28 +103,23 @@ def start_points(objective: Objective, count: int, random: np.random.Generator) 
 
 
 def search(objective: Objective, seed: int, population: int = 32) -> None:
-    """Search until the time is up or a point costs nothing; the result is in `objective`."""
+    """Search until all points are used up or one costs nothing; the result is in `objective`."""
     from scipy.optimize import differential_evolution, minimize
 
     random = np.random.default_rng(seed)
-    budget = objective.end - monotonic()
-    final = objective.end
-    try:
-        objective.end = monotonic() + 0.75 * budget
+    most = objective.most
+    objective.most = round(0.7 * most)
+    with suppress(Enough):
         differential_evolution(
             objective, bounds(), init=start_points(objective, population, random), maxiter=10_000, tol=0.0,
             mutation=(0.4, 0.9), recombination=0.8, polish=False, rng=random,
         )  # fmt: skip
-    except TimeUp:
-        pass
-    objective.end = final
-    try:
+    objective.most = most
+    with suppress(Enough):
         while objective.best_x is not None:
             simplex = objective.best_x + 0.05 * random.standard_normal((len(SPACE) + 1, len(SPACE)))
             simplex[0] = objective.best_x
             minimize(objective, simplex[0], method="Nelder-Mead", options={"initial_simplex": simplex})
-    except TimeUp:
-        pass
 
 
 def report(objective: Objective, seed: int, seconds: float) -> dict[str, Any]:
@@ -148,7 +144,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m scenarios.paper.search", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder for plant files and report")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--minutes", type=float, default=12.0)
+    parser.add_argument("--points", type=int, default=900, help="how many points are run, about one a second")
     parser.add_argument("--margin", type=float, default=0.1, help="share by which the bands are narrowed")
     parser.add_argument(
         "--reading", choices=sorted(READINGS), default="printed", help="friction units of Table 2"
@@ -156,9 +152,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--without-e6", action="store_true", help="leave row E6 out")
     chosen = parser.parse_args(arguments)
     begin = monotonic()
-    seconds = chosen.minutes * 60.0
     objective = Objective(
-        chosen.reading, not chosen.without_e6, chosen.margin, seconds, lambda text: print(text, flush=True)
+        chosen.reading,
+        not chosen.without_e6,
+        chosen.margin,
+        chosen.points,
+        lambda text: print(text, flush=True),
     )
     search(objective, chosen.seed)
     if objective.best_x is None:

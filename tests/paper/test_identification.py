@@ -1,0 +1,98 @@
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scenarios.paper.friction_map import (
+    FrictionFit,
+    MapPoint,
+    break_away_point,
+    fit_friction,
+    friction_curve,
+    steady_point,
+)
+from scenarios.paper.published import TABLE_2
+from scenarios.paper.rundown import fit_inertia
+from scenarios.paper.runs import MAP_SPEEDS
+from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC
+from tests.paper.synthetic import current_for, log_of
+
+K = 0.8  # N m/A
+RATES = np.array(sorted(MAP_SPEEDS)) * ARCSEC
+
+
+def table(preload: str, exponent: float) -> tuple[float, ...]:
+    printed = TABLE_2[preload]
+    return printed["coulomb"], printed["stiction"], printed["stribeck_rate"], exponent, printed["viscous"]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.sampled_from(["low", "high"]), st.floats(0.55, 2.0), st.integers(0, 1000))
+def test_E7_the_fit_returns_the_parameters_the_map_was_made_with(preload, exponent, seed):
+    truth = table(preload, exponent)
+    noise = 1.0 + 0.002 * np.random.default_rng(seed).standard_normal(RATES.size)
+    points = [
+        MapPoint(float(w), float(t), 1.0)
+        for w, t in zip(RATES, friction_curve(RATES, truth) * noise, strict=True)
+    ]
+    found = fit_friction(points, exponent)
+    for value, true in zip((found.coulomb, found.stiction, found.stribeck_rate), truth[:3], strict=True):
+        assert value == pytest.approx(true, rel=0.06)
+    assert found.viscous == pytest.approx(truth[4], rel=0.03)
+
+
+def test_E7_the_exponent_is_found_when_it_is_not_given():
+    truth = table("low", 1.3)
+    points = [
+        MapPoint(float(w), float(t), 1.0) for w, t in zip(RATES, friction_curve(RATES, truth), strict=True)
+    ]
+    assert fit_friction(points).exponent == pytest.approx(1.3, rel=0.01)
+
+
+def test_E7_a_map_of_a_few_points_is_refused():
+    with pytest.raises(ValueError, match="at least 6"):
+        fit_friction([MapPoint(1e-3, 300.0, 1.0)] * 5)
+
+
+def test_E7_a_steady_point_is_mean_torque_at_mean_rate():
+    rate = np.full(1000, 600.0)
+    # balance pushes both ways alike: 40 N m more forward, 40 less backward
+    forward = log_of(rate, current=current_for(np.full(1000, 290.0), K))
+    backward = dataclasses.replace(
+        log_of(-rate), adc_b=current_for(np.full(1000, 210.0), K) / ADC_A_PER_COUNT
+    )
+    point = steady_point(forward, backward, K)
+    assert point.torque == pytest.approx(250.0)
+    assert point.rate == pytest.approx(600.0 * ARCSEC)
+
+
+def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
+    torque = np.concatenate([np.linspace(0.0, 600.0, 1000), np.full(200, 250.0)])
+    rate = np.concatenate([np.zeros(990), np.full(10, 5.0), np.full(200, 2000.0)])
+    backward = dataclasses.replace(log_of(-rate), adc_b=current_for(torque, K) / ADC_A_PER_COUNT)
+    point = break_away_point(log_of(rate, current=current_for(torque, K)), backward, K)
+    assert 590.0 < point.torque <= 600.0
+    assert point.rate < 10.0 * ARCSEC
+
+
+@pytest.mark.parametrize("inertia", [1200.0, 1760.0, 2200.0])
+def test_E8_run_down_gives_the_inertia_it_was_integrated_with(inertia):
+    fit = FrictionFit(*table("low", 1.0), 0.0)
+    dt, w, rates = 1e-5, 2.0 * 3600 * ARCSEC, []
+    for k in range(60_000):
+        if k % 1000 == 0:
+            rates.append(w)
+        w = max(0.0, w - float(fit.torque(np.array([max(w, 1e-9)]))[0]) / inertia * dt)
+        if k > 40_000 and w == 0.0 and k % 1000 == 999:
+            break
+    for sign in (1.0, -1.0):
+        found = fit_inertia(log_of(sign * np.array(rates) / ARCSEC), fit, K)
+        assert found.inertia == pytest.approx(inertia, rel=0.02)
+
+
+def test_E8_an_axis_that_does_not_stop_is_refused():
+    fit = FrictionFit(*table("low", 1.0), 0.0)
+    with pytest.raises(ValueError, match="did not come to rest"):
+        fit_inertia(log_of(np.full(100, 7200.0)), fit, K)
