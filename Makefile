@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 WORKERS ?= $(shell $(PYTHON) -c "import os; print(min(4, os.cpu_count() or 1))")
 
-.PHONY: run test fast slow lint paper bench blind fit clean
+.PHONY: run test fast slow guest lint paper bench blind fit clean
 
 run: $(READY)
 	$(BIN)/schmidt run scenarios/observing-night.yaml --out out/observing-night
@@ -15,10 +15,14 @@ run: $(READY)
 test: lint fast slow
 
 fast: $(READY)
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not guest"
 
 slow: $(READY)
-	$(BIN)/python -m pytest -n $(WORKERS) -m slow
+	$(BIN)/python -m pytest -n $(WORKERS) -m "slow and not guest"
+
+# In a Linux guest with vcan, under emulation; skips with a message where qemu is not installed.
+guest: $(READY)
+	$(BIN)/python -m pytest -rs -m guest
 
 lint: $(READY)
 	$(BIN)/ruff check .

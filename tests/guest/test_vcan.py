@@ -9,7 +9,7 @@ import pytest
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parent.parent
-SPEED = "0.08"
+SPEED = "0.06"
 """The guest's processor is emulated, about fifteen times slower, and so is whatever else the machine does."""
 
 pytestmark = [pytest.mark.guest, pytest.mark.slow, pytest.mark.timeout(1500)]
