@@ -39,6 +39,8 @@ TRIM_S = 20.0
 """A mean error is taken out over this time by way of the rate, so that nothing jerks. ASSUMPTION."""
 TRIM_ARCSEC_S = 0.1
 """Largest such change of the rate: a tenth of the 1 ″/s that the paper asks for. ASSUMPTION."""
+LOST_ARCSEC = 60.0
+"""An axis this far off does not follow, and no shift of its target will help. ASSUMPTION."""
 NUDGE_ARCSEC = 5.0
 """A mean error beyond half the 10″ objective is taken out at once. ASSUMPTION."""
 
@@ -114,6 +116,8 @@ class Pointing:
                 yield
             for index, axis in enumerate(AXES):
                 mean = sums[index] / max(count, 1)
+                if abs(mean) > LOST_ARCSEC:
+                    raise ClientError(f"{axis.name}: does not follow {self._name()}, {mean:.0f}″ off")
                 trims[index] = min(max(mean / TRIM_S, -TRIM_ARCSEC_S), TRIM_ARCSEC_S)
                 if abs(mean) > NUDGE_ARCSEC:
                     yield from self.client.ask(axis, Opcode.NUDGE, round(mean / STEP_ARCSEC))
@@ -164,6 +168,9 @@ class Pointing:
             if reading is None or abs(reading.position - goal) * STEP_ARCSEC > arcsec:
                 return False
         return True
+
+    def _name(self) -> str:
+        return self.track.star.name if self.track is not None else "its target"
 
     def _now_s(self) -> float:
         return self.client.now_ns * 1e-9
