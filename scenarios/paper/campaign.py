@@ -8,7 +8,15 @@ import numpy as np
 from plant.parts import PlantModel
 from scenarios.paper import judge_loop, judge_models, runs
 from scenarios.paper.bench import BenchMaker
-from scenarios.paper.friction_map import FrictionFit, MapPoint, break_away_point, fit_friction, steady_point
+from scenarios.paper.friction_map import (
+    DataSheet,
+    FrictionFit,
+    MapPoint,
+    break_away_point,
+    data_sheet,
+    fit_friction,
+    steady_point,
+)
 from scenarios.paper.linear import linear_axis, reduce_to_dead_time, simulate_loop
 from scenarios.paper.log import Array, Log
 from scenarios.paper.measures import cycles, stalled, step_response
@@ -77,16 +85,16 @@ class Campaign:
 
     def _low(self) -> list[Row]:
         self.progress("100″/s, closed and open loop")
-        self.record.low = runs.low_speed(self.bench("low"))
+        self.record.low = runs.low_speed(lambda: self.bench("low"))
         return [judge_loop.e6(self.record.low)]
 
     def _identify(self) -> list[Row]:
         for preload, plant in self.plants.items():
-            self._map(preload, plant.axes.ra.motor.torque_constant.si)
+            self._map(preload, data_sheet(plant))
         self.progress("run-down from 2°/s")
-        constant = self.plants["low"].axes.ra.motor.torque_constant.si
+        sheet = data_sheet(self.plants["low"])
         fit = self.record.fits["low"]
-        downs = [fit_inertia(runs.run_down(self.bench("low"), way), fit, constant) for way in (1, -1)]
+        downs = [fit_inertia(runs.run_down(self.bench("low"), way), fit, sheet) for way in (1, -1)]
         self.record.run_down = downs[0]
         return [judge_models.e7(self.record.fits, self._table_units()), judge_models.e8(downs)]
 
@@ -95,19 +103,19 @@ class Campaign:
         return {name: plant.axes.ra.friction.coulomb.value / plant.axes.ra.friction.coulomb.si
                 for name, plant in self.plants.items()}  # fmt: skip
 
-    def _map(self, preload: str, torque_constant: float) -> None:
+    def _map(self, preload: str, sheet: DataSheet) -> None:
         """Torque-velocity map of one preload: steady states, and the break-away torque as its point at
         rest."""
         self.progress(f"break-away, {preload} preload")
         ways = [runs.break_away(self.bench(preload), way) for way in (1, -1)]
-        points = [break_away_point(ways[0], ways[1], torque_constant)]
+        points = [break_away_point(ways[0], ways[1], sheet)]
         left_out = []
         for speed, forward, backward in runs.velocity_map(self.bench(preload), self.progress):
             # a limit cycle or stick-slip is no steady state: its mean torque belongs to no velocity
             if any(stalled(log.rate) or cycles(np.abs(log.true_rate), speed) for log in (forward, backward)):
                 left_out.append(speed)
             else:
-                points.append(steady_point(forward, backward, torque_constant))
+                points.append(steady_point(forward, backward, sheet))
         self.record.points[preload] = points
         self.record.left_out[preload] = left_out
         # the shape belongs to the film, not to the load: high preload, whose falling branch the loop cannot

@@ -12,9 +12,18 @@ from math import log
 
 from scenarios.paper import judge_loop as judge
 from scenarios.paper.bench import BenchMaker
-from scenarios.paper.log import Log
-from scenarios.paper.measures import line_amplitude, peak_percent, stalled, strongest_line
-from scenarios.paper.runs import HIGH, LOW, OPENED, OPENED_S, SLOW_SLEW, high_speed, slow_slew, tracking
+from scenarios.paper.measures import line_amplitude, peak_percent, strongest_line
+from scenarios.paper.runs import (
+    HIGH,
+    LOW,
+    OPENED,
+    OPENED_S,
+    SLOW_SLEW,
+    high_speed,
+    low_speed,
+    slow_slew,
+    tracking,
+)
 
 HOPELESS = 12.0
 LEFT = 100.0
@@ -69,27 +78,10 @@ def terms(bench: BenchMaker, margin: float = 0.0, low_speed: bool = True) -> Ite
 
 
 def _low_speed(bench: BenchMaker) -> Iterator[Term]:
-    """Yield the terms of E6: efforts about the one the loop needs at 100 arcsec/s, each on a fresh bench."""
-    closed = bench("low").closed_loop(LOW, 50.0).after(14.0)
-    effort = round(float(closed.effort.mean()))
-    runs: dict[int, Log] = {}
-
-    def try_effort(u: int) -> bool:
-        """Run one effort from above; return whether the axis kept moving."""
-        trial = bench("low")
-        trial.closed_loop(1.4 * LOW, 4.0)
-        runs[u] = trial.open_loop(u, 45.0).after(9.0)
-        return not stalled(runs[u].rate)
-
-    if try_effort(effort):
-        for u in range(effort - 1, max(1, effort - 6), -1):
-            if not try_effort(u):
-                break
-    else:
-        for u in range(effort + 1, effort + 5):
-            if try_effort(u):
-                break
-    moving = [log for log in runs.values() if not stalled(log.rate)]
+    """Yield the terms of E6."""
+    run = low_speed(lambda: bench("low"), 36.0, 9.0)
+    closed = run.closed
+    moving = [log for _, log in run.running]
     if not moving:
         yield Term("E6 open loop stalls", 0.0, 5.0)
         return

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from plant.parts import PlantModel
 from scenarios.paper.log import Array, Log
 from scenarios.paper.runs import BROKEN_AWAY
-from scenarios.paper.scales import ARCSEC, GEAR_RATIO
+from scenarios.paper.scales import ARCSEC, EFFORT_SCALE, GEAR_RATIO
 
 
 @dataclass(frozen=True)
@@ -21,20 +22,47 @@ class MapPoint:
     spread: float
 
 
-def drive_torque(log: Log, torque_constant: float) -> Array:
-    """Return what the two motors give at the axis, N m, from the measured currents.
+@dataclass(frozen=True)
+class DataSheet:
+    """What the authors knew of the drive: torque constant, N m/A; largest current ripple V/(2 L f), A;
+    counter split."""
 
-    torque_constant: N m/A, from the motor's data sheet, as the authors took it. B pulls against A.
+    torque_constant: float
+    ripple: float
+    split: float
+
+
+def data_sheet(plant: PlantModel) -> DataSheet:
+    """Return the data sheet of a plant's RA drive."""
+    motor, controller = plant.axes.ra.motor, plant.controller
+    ripple = plant.supply.voltage.si / (2.0 * motor.inductance.si * controller.pwm_frequency.si)
+    return DataSheet(motor.torque_constant.si, ripple, controller.counter_split.si)
+
+
+def drive_torque(log: Log, sheet: DataSheet) -> Array:
+    """Return what the two motors give at the axis, N m, from the measured currents. B pulls against A.
+
+    The converter samples at the falling edge of the PWM, "where the motor current peaks" (paper 3.3): half
+    the ripple, V D (1 - D) / (2 L f), is known from the duty and taken off.
     """
-    return np.asarray((log.current_a - log.current_b) * torque_constant * GEAR_RATIO, dtype=np.float64)
+    lead = np.abs(log.effort) / EFFORT_SCALE
+    lag = lead * sheet.split
+    forward = log.effort >= 0.0
+
+    def mean(current: Array, duty: Array) -> Array:
+        return np.maximum(0.0, current - sheet.ripple * duty * (1.0 - duty))
+
+    a = mean(log.current_a, np.where(forward, lead, lag))
+    b = mean(log.current_b, np.where(forward, lag, lead))
+    return np.asarray((a - b) * sheet.torque_constant * GEAR_RATIO, dtype=np.float64)
 
 
-def steady_point(forward: Log, backward: Log, torque_constant: float) -> MapPoint:
+def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
     """Return the mean torque and rate of two steady runs, there and back: without acceleration half the
     difference of the drive torques is the friction, whatever the balance of the axis adds to both."""
     torque, spread, rate = [], [], []
     for log in (forward, backward):
-        driven = drive_torque(log, torque_constant)
+        driven = drive_torque(log, sheet)
         blocks = [part.mean() for part in np.array_split(driven, 10)]
         torque.append(float(driven.mean()))
         spread.append(float(np.std(blocks, ddof=1) / np.sqrt(10.0)))
@@ -46,7 +74,7 @@ def steady_point(forward: Log, backward: Log, torque_constant: float) -> MapPoin
     )
 
 
-def break_away_point(forward: Log, backward: Log, torque_constant: float) -> MapPoint:
+def break_away_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
     """Return the largest torque before the axis breaks away, and the rate at which it crept then.
 
     forward, backward: effort rising from rest, either way; torque is averaged over 50 ms, against the
@@ -57,7 +85,7 @@ def break_away_point(forward: Log, backward: Log, torque_constant: float) -> Map
     for log, sign in ((forward, 1.0), (backward, -1.0)):
         free = np.nonzero(sign * log.counts > BROKEN_AWAY)[0]
         held = slice(0, max(10, int(free[0]) if free.size else log.t_s.size))
-        torque = np.convolve(sign * drive_torque(log, torque_constant)[held], np.full(5, 0.2), mode="valid")
+        torque = np.convolve(sign * drive_torque(log, sheet)[held], np.full(5, 0.2), mode="valid")
         top = int(np.argmax(torque))
         before = slice(max(0, top - 10), top + 5)
         found.append(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.paper.friction_map import FrictionFit, drive_torque
+from scenarios.paper.friction_map import DataSheet, FrictionFit, drive_torque
 from scenarios.paper.log import Array, Log
 from scenarios.paper.scales import ARCSEC
 
@@ -21,7 +21,7 @@ class RunDown:
     rate: Array
 
 
-def fit_inertia(log: Log, friction: FrictionFit, torque_constant: float) -> RunDown:
+def fit_inertia(log: Log, friction: FrictionFit, sheet: DataSheet) -> RunDown:
     """Return the inertia that explains a run-down.
 
     log: begins when the torque was taken away. The equation of motion is integrated, J (w0 - w) = sum of
@@ -44,7 +44,7 @@ def fit_inertia(log: Log, friction: FrictionFit, torque_constant: float) -> RunD
         raise ValueError(f"only {used.size} samples of the run-down are usable; at least 4 are needed")
     part = slice(int(used[0]), int(used[-1]) + 1)
     t, w = log.t_s[part], rate[part]
-    net = friction.torque(w) - sign * drive_torque(log, torque_constant)[part]
+    net = friction.torque(w) - sign * drive_torque(log, sheet)[part]
     impulse = np.concatenate([[0.0], np.cumsum(0.5 * (net[1:] + net[:-1]) * np.diff(t))])
     # J (w0 - w) = impulse + c: slope of impulse over w, offset free
     slope = np.polyfit(w, impulse, 1)[0]

@@ -91,28 +91,37 @@ class LowSpeed:
         )
 
 
-def low_speed(bench: Bench, dwell: float = 72.0, settle: float = 18.0, start: float = 160.0) -> LowSpeed:
-    """E6: as an operator would look for the lowest open-loop speed.
+def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 12.0) -> LowSpeed:
+    """E6: as an operator would look for the lowest open-loop speed. bench: makes a fresh one, at the same
+    place.
 
-    Closed loop at 100 arcsec/s first; then from 160 arcsec/s the loop is opened and the effort lowered by
-    the smallest step until the axis stays put. Each effort is kept for `dwell` s, four half turns of the
-    motor at 100 arcsec/s.
+    Closed loop at 100 arcsec/s first. Then, for one effort after the other, from 140 arcsec/s into open loop
+    for `dwell` s after `settle` s: from the effort that the loop needed downwards in the smallest steps
+    until the axis stays put, or upwards until it keeps moving.
     """
-    closed = bench.closed_loop(LOW, settle + dwell).after(settle)
-    running = bench.closed_loop(start, 10.0).after(4.0)
-    effort = round(float(running.effort.mean()))
+    closed = bench().closed_loop(LOW, settle + dwell).after(settle)
+    effort = round(float(closed.effort.mean()))
     steps: list[tuple[int, Log]] = []
-    for _ in range(60):
-        log = bench.open_loop(effort, dwell).after(settle)
-        steps.append((effort, log))
-        if stalled(log.rate) or effort <= 1:
-            break
-        # far above: larger strides, an operator would not wait a minute for each
-        excess = float(log.rate.mean()) - 1.5 * LOW
-        effort -= 1 if excess < 0.0 else max(1, round(effort * 0.01))
+
+    def moves(tried: int) -> bool:
+        trial = bench()
+        trial.closed_loop(1.4 * LOW, 4.0)
+        steps.append((tried, trial.open_loop(tried, settle + dwell).after(settle)))
+        return not stalled(steps[-1][1].rate)
+
+    if moves(effort):
+        for tried in range(effort - 1, max(0, effort - TRIALS), -1):
+            if not moves(tried):
+                break
+    else:
+        for tried in range(effort + 1, effort + TRIALS):
+            if moves(tried):
+                break
     return LowSpeed(closed, steps)
 
 
+TRIALS = 10
+"""Efforts tried on each side at most."""
 BROKEN_AWAY = 20.0
 """Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
 MAP_SPEEDS = (

@@ -40,7 +40,13 @@ SPACE: tuple[Free, ...] = (
     Free("exponent", "1", 0.5, 2.0, "hardware.md 1.1: 2, 1 and 0.5"),
     Free("torque_constant", "N m/A", 0.2, 1.24, "hardware.md 1.2, 2.3"),
     Free("resistance", "ohm", 0.3, 4.0, "hardware.md 2.3: loop resistance"),
-    Free("electrical_time", "s", 0.5e-3, 5e-3, "hardware.md 1.2: L/R"),
+    Free(
+        "electrical_time",
+        "s",
+        0.5e-3,
+        8e-3,
+        "L/R; hardware.md 1.2: L of 2 to 20 mH",
+    ),
     Free(
         "rotor_inertia",
         "kg m2",

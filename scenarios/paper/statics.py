@@ -40,10 +40,13 @@ def shortfalls(found: Mapping[str, Any], scale: float = 1.0, low_speed: bool = T
     slope = stribeck_slope(
         SLOWEST_OPEN, found["exponent"], (low["stiction"] - low["coulomb"]) * scale, low["stribeck_rate"]
     )
+    inductance = found["electrical_time"] * found["resistance"]
     damping = motor_damping(found) + low["viscous"]
     return {
         "reaches 3 deg/s at 24 V": np.maximum(0.0, needed / (0.98 * SUPPLY_V) - 1.0),
         "breaks away at high preload": np.maximum(0.0, stall / (0.9 * SUPPLY_V) - 1.0),
+        "inductance of 2 to 20 mH (hardware.md 1.2)": np.maximum(0.0, 2e-3 / inductance - 1.0)
+        + np.maximum(0.0, inductance / 20e-3 - 1.0),
         "runs at 100 arcsec/s in open loop": np.maximum(0.0, 1.0 - damping / slope) * low_speed,
     }
 

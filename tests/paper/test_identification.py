@@ -6,9 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenarios.paper.friction_map import (
+    DataSheet,
     FrictionFit,
     MapPoint,
     break_away_point,
+    drive_torque,
     fit_friction,
     friction_curve,
     steady_point,
@@ -16,10 +18,11 @@ from scenarios.paper.friction_map import (
 from scenarios.paper.published import TABLE_2
 from scenarios.paper.rundown import fit_inertia
 from scenarios.paper.runs import MAP_SPEEDS
-from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC
+from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, GEAR_RATIO
 from tests.paper.synthetic import current_for, log_of
 
 K = 0.8  # N m/A
+SHEET = DataSheet(K, 0.0, 0.1)
 RATES = np.array(sorted(MAP_SPEEDS)) * ARCSEC
 
 
@@ -63,7 +66,7 @@ def test_E7_a_steady_point_is_mean_torque_at_mean_rate():
     backward = dataclasses.replace(
         log_of(-rate), adc_b=current_for(np.full(1000, 210.0), K) / ADC_A_PER_COUNT
     )
-    point = steady_point(forward, backward, K)
+    point = steady_point(forward, backward, SHEET)
     assert point.torque == pytest.approx(250.0)
     assert point.rate == pytest.approx(600.0 * ARCSEC)
 
@@ -72,7 +75,7 @@ def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
     torque = np.concatenate([np.linspace(0.0, 600.0, 1000), np.full(200, 250.0)])
     rate = np.concatenate([np.zeros(990), np.full(10, 5.0), np.full(200, 2000.0)])
     backward = dataclasses.replace(log_of(-rate), adc_b=current_for(torque, K) / ADC_A_PER_COUNT)
-    point = break_away_point(log_of(rate, current=current_for(torque, K)), backward, K)
+    point = break_away_point(log_of(rate, current=current_for(torque, K)), backward, SHEET)
     assert 590.0 < point.torque <= 600.0
     assert point.rate < 10.0 * ARCSEC
 
@@ -88,11 +91,23 @@ def test_E8_run_down_gives_the_inertia_it_was_integrated_with(inertia):
         if k > 40_000 and w == 0.0 and k % 1000 == 999:
             break
     for sign in (1.0, -1.0):
-        found = fit_inertia(log_of(sign * np.array(rates) / ARCSEC), fit, K)
+        found = fit_inertia(log_of(sign * np.array(rates) / ARCSEC), fit, SHEET)
         assert found.inertia == pytest.approx(inertia, rel=0.02)
 
 
 def test_E8_an_axis_that_does_not_stop_is_refused():
     fit = FrictionFit(*table("low", 1.0), 0.0)
     with pytest.raises(ValueError, match="did not come to rest"):
-        fit_inertia(log_of(np.full(100, 7200.0)), fit, K)
+        fit_inertia(log_of(np.full(100, 7200.0)), fit, SHEET)
+
+
+def test_E7_half_the_current_ripple_is_taken_off_the_peaks():
+    # D = 0.25: ripple 0.4 A * 0.25 * 0.75 = 75 mA above the mean; counter motor D = 0.025
+    mean_a, mean_b = 1.0, 0.2
+    n = 10
+    log = dataclasses.replace(
+        log_of(np.full(n, 600.0), effort=np.full(n, 750.0), current=np.full(n, mean_a + 0.4 * 0.25 * 0.75)),
+        adc_b=np.full(n, (mean_b + 0.4 * 0.025 * 0.975) / ADC_A_PER_COUNT),
+    )
+    torque = drive_torque(log, DataSheet(K, 0.4, 0.1))
+    assert torque == pytest.approx(np.full(n, (mean_a - mean_b) * K * GEAR_RATIO))
