@@ -46,12 +46,15 @@ class Trouble:
     def check(self) -> None:
         """Look again whether trouble is near."""
         live = [port for port in self._wire.ports if port.online and not port._bus_off]
-        self._wire._near = bool(
+        near = bool(
             self.disturb
             or len(live) < 2
             or self._recovery.pending
             or any(port.tec or port.rec for port in live)
         )
+        if near and not self._wire._near:
+            self._wire.trouble_nears()
+        self._wire._near = near
 
     def listeners(self, sender: Port) -> list[Port]:
         """Nodes that hear (and acknowledge) what `sender` sends."""

@@ -52,7 +52,12 @@ class Wire:
         self._eof_ns = INTERMISSION_BITS * self.bit_ns
         self._near = True
         """Whether anything but plain sailing is possible; kept by `Trouble`, read for every frame."""
-        self._at = queue.at
+        self._decided_ns = 0
+        """When the first bit of what is being sent is over; until then it is a plan."""
+        self._idle_ns = 0
+        """When the bus falls free before what is being sent."""
+        self._push = queue.push
+        self._ticket = queue.ticket
         self._decide_call = self._decide
         self._deliver_call = self._deliver
         self._trouble = Trouble(self)
@@ -99,44 +104,69 @@ class Wire:
         if ready_ns < now:
             ready_ns = now
         self._tickets = ticket = self._tickets + 1
-        heappush(self._waiting, _tuple(Offer, (key, ticket, ready_ns, port, frame, bits)))
-        t_ns = (ready_ns if ready_ns > self._free_ns else self._free_ns) + self.bit_ns
-        if t_ns < self._decide_ns:
-            self._decide_ns = t_ns
-            self._at(t_ns, self._decide_call)
+        offer = _tuple(Offer, (key, ticket, ready_ns, port, frame, bits))
+        plan = self._sending
+        if self._near or self._decide_ns != _NEVER:
+            heappush(self._waiting, offer)
+            self._call_decide(ready_ns if ready_ns > self._free_ns else self._free_ns)
+        elif plan is None:
+            self._begin(offer, ready_ns if ready_ns > self._free_ns else self._free_ns)
+        else:
+            heappush(self._waiting, offer)
+            decided_ns = self._decided_ns
+            if ready_ns <= decided_ns and (key <= plan[0] or ready_ns < decided_ns - self.bit_ns):
+                self._unplan()
+                self._plan()
+
+    def _plan(self) -> None:
+        """Find out who sends next if nobody else comes: somebody waits, and there is no plan yet.
+
+        While all is well the outcome of an arbitration can be told in advance, and told again when somebody
+        comes before the first bit is over. That costs one event a frame instead of two.
+        """
+        waiting = self._waiting
+        sof_ns = self._free_ns
+        if waiting[0][2] <= sof_ns:
+            winner = heappop(waiting)
+        else:
+            # The first in line may come later than the start of frame: look at everyone.
+            sof_ns = max(sof_ns, min(offer[2] for offer in waiting))
+            winner = min(offer for offer in waiting if offer[2] <= sof_ns + self.bit_ns)
+            self._remove(winner)
+        if waiting and waiting[0][0] == winner[0] and waiting[0][3] is not winner[3]:
+            heappush(waiting, winner)
+            self._call_decide(sof_ns)  # two nodes, one identifier: that is trouble, when the time comes
+        else:
+            self._begin(winner, sof_ns)
+
+    def _unplan(self) -> None:
+        """Put a plan back whose first bit is not over yet."""
+        plan = self._sending
+        if plan is not None and self.queue.now_ns <= self._decided_ns:
+            heappush(self._waiting, plan)
+            self._sending = None
+            self._end_ns = _NEVER
+            self._free_ns = self._idle_ns
+
+    def trouble_nears(self) -> None:
+        """From now on arbitration is decided when it happens."""
+        self._unplan()
+        self._near = True
+        self._await_ready()
 
     def _call_decide(self, sof_ns: int) -> None:
         """Have the arbitration of a frame that starts at `sof_ns` decided once its first bit is over."""
         t_ns = sof_ns + self.bit_ns
         if t_ns < self._decide_ns:
             self._decide_ns = t_ns
-            self._at(t_ns, self._decide_call)
+            self.queue.at(t_ns, self._decide_call)
 
     def _decide(self, t_ns: int) -> None:
         if t_ns != self._decide_ns:
             return  # overtaken by an earlier start
         self._decide_ns = _NEVER
-        sof_ns = t_ns - self.bit_ns
-        waiting = self._waiting
-        if self._near:
-            self._trouble.decide(sof_ns)
-            return
-        if not waiting or waiting[0][2] > sof_ns:
-            # The first in line came later than the start of frame, or is not ready at all: look at
-            # everyone.
-            ready = [offer for offer in waiting if offer[2] <= t_ns]
-            if not ready or min(offer[2] for offer in ready) > sof_ns:
-                self._await_ready()
-                return
-            winner = min(ready)
-            self._remove(winner)
-        else:
-            winner = heappop(waiting)
-        if waiting and waiting[0][0] == winner[0] and waiting[0][3] is not winner[3]:
-            heappush(waiting, winner)
-            self._trouble.decide(sof_ns)
-            return
-        self._begin(winner, sof_ns)
+        self._trouble.decide(t_ns - self.bit_ns)
+        self._decided_ns = t_ns - 1  # what has begun here is no plan any more
 
     def _remove(self, offer: Offer) -> None:
         self._waiting.remove(offer)
@@ -150,13 +180,16 @@ class Wire:
 
     def _begin(self, winner: Offer, sof_ns: int) -> None:
         self._sending = winner
-        self._free_ns = free_ns = sof_ns + winner[5] * self.bit_ns
+        bit_ns = self.bit_ns
+        self._decided_ns = sof_ns + bit_ns
+        self._idle_ns = self._free_ns
+        self._free_ns = free_ns = sof_ns + winner[5] * bit_ns
         self._end_ns = end_ns = free_ns - self._eof_ns
-        self._at(end_ns, self._deliver_call)
+        self._push((end_ns, self._ticket(), self._deliver_call))
 
     def _deliver(self, t_ns: int) -> None:
         if t_ns != self._end_ns:
-            return  # the sender went off in the middle
+            return  # another plan, or the sender went off in the middle
         self._end_ns = _NEVER
         offer = self._sending
         assert offer is not None
@@ -165,8 +198,11 @@ class Wire:
         self.frames += 1
         self.bits += bits
         port._free += 1
-        if self._waiting:
-            self._call_decide(self._free_ns)
+        if self._waiting and self._decide_ns == _NEVER:
+            if self._near:
+                self._call_decide(self._free_ns)
+            else:
+                self._plan()
         calls = port._routes.get(key)
         if self._near:
             calls = self._trouble.delivered(offer, t_ns)
@@ -194,10 +230,13 @@ class Wire:
 
     def _switched(self, port: Port) -> None:
         """`port` was switched on or off."""
+        self._unplan()
         self._waiting = [offer for offer in self._waiting if offer.port is not port]
         heapify(self._waiting)
         if self._sending is not None and self._sending.port is port:
             self._trouble.cut(self.queue.now_ns)
         port._free = TX_BUFFERS if port.online else 0
         self._trouble.restart(port)
+        if self._sending is None:
+            self._await_ready()
         self._forget_routes()
