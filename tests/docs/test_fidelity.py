@@ -1,0 +1,132 @@
+"""FIDELITY.md against the code: every row id is there, what it names exists, its figures are the code's."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from boards.axis import interrupts as axis
+from boards.axis.config import AxisConfig
+from boards.core.board import BOOT_NS
+from boards.core.interrupts import InterruptController, Line, Source
+from boards.display import interrupts as display
+from boards.focus import interrupts as focus
+from boards.focus.config import FocusConfig
+from boards.gateway import interrupts as gateway
+from boards.gateway.firmware import HOLD_NS
+from boards.motor_velocity import interrupts as motor
+from boards.position import interrupts as position
+from boards.silicon.endat import EndatEncoder, EndatMaster
+from boards.silicon.pwm import FCY_HZ, PWM_HZ, steps_for
+from boards.silicon.uart import BAUD, Uart
+from bus.protocol import Device
+from bus.protocol.serial import packet_bytes
+from bus.time import EventQueue
+from host import client
+from host.sky.site import NAINITAL
+from plant import loop, model
+from plant.effects import NAMES
+from plant.units import to_si
+from scenarios import model as scenario_model
+from scenarios.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
+from scenarios.paper.published import INERTIA
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "FIDELITY.md").read_text(encoding="utf-8")
+ROWS = {"P": 13, "B": 9, "L": 3, "H": 7, "E": 10}
+"""Rows of the requirements: letter and last number."""
+IDS = [f"{letter}{number}" for letter, last in ROWS.items() for number in range(1, last + 1)]
+
+
+def of(table: tuple[Source, ...], fcy_hz: int, name: str) -> Line:
+    return InterruptController(EventQueue(), fcy_hz, table).lines[name]
+
+
+AXIS = of(axis.TABLE, axis.FCY_HZ, "control")
+POSITION = of(position.TABLE, position.FCY_HZ, "sample")
+GATEWAY = of(gateway.TABLE, gateway.FCY_HZ, "usb")
+PLANT = model.load("low_preload")
+RA, DEC, FOCUS = PLANT.axes.ra, PLANT.axes.dec, PLANT.focus
+LOOP_OHM = RA.motor.switch_resistance.si + RA.motor.sense_resistance.si
+FIGURES = {
+    "| interrupt latency, dsPIC30F |": f"{AXIS.latency_ns} ns",
+    "| interrupt latency, PIC18 |": f"{POSITION.latency_ns} ns (gateway {GATEWAY.latency_ns} ns)",
+    "| axis control routine |": f"{AXIS.cost_ns} ns",
+    "| axis, answer to a command |": f"{of(axis.TABLE, axis.FCY_HZ, 'can').cost_ns} ns",
+    "| position routine, EnDat included |": f"{POSITION.cost_ns} ns",
+    "| EnDat transfer |": f"{EndatMaster(EndatEncoder(lambda t: t)).latch_to_data_ns} ns",
+    "| motor velocity routine |": f"{of(motor.TABLE, motor.FCY_HZ, 'sample').cost_ns} ns",
+    "| focus sample, step routine |": ", ".join(
+        f"{of(focus.TABLE, focus.FCY_HZ, name).cost_ns} ns" for name in ("sample", "step")
+    ),
+    "| display refresh |": f"{of(display.TABLE, display.FCY_HZ, 'refresh').cost_ns} ns",
+    "| gateway, unpacking a report |": f"{GATEWAY.cost_ns} ns",
+    "| gateway hold |": f"{HOLD_NS} ns",
+    "| PWM |": f"{1_000_000_000 // PWM_HZ} ns",
+    "| serial packet, axis |": f"{Uart(EventQueue()).duration_ns(packet_bytes(Device.AXIS_RA))} ns | "
+    f"{packet_bytes(Device.AXIS_RA)} bytes × 10 bits at {BAUD} baud (position "
+    f"{packet_bytes(Device.POSITION_RA)} bytes, focus {packet_bytes(Device.FOCUS)})",
+    "| plant grid |": f"{PLANT.numerics.grid.si * 1e6:g} µs",
+    "| boot |": f"{BOOT_NS // 1_000_000} ms",
+    "| host |": f"ticks of {client.TICK_NS // 1_000_000} ms, answer within "
+    f"{client.REPLY_TIMEOUT_NS // 1_000_000} ms",
+    "| velocity loop of the search and calibration |": f"{loop.LATENCY_S * 1e6:g} µs",
+    "| P1 | RA axis |": f"inertia {INERTIA:g} kg m²",
+    "| P1 | Dec axis |": f"inertia {DEC.inertia.si:g} kg m²",
+    "| P1 | both trains | stiffness": f"{RA.gear.stiffness.si * 1e3:.3g}".replace("e+0", "e") + " / ",
+    "| P4 | loop |": f"R + {LOOP_OHM:g} Ω",
+    "| P4 | supply |": f"{PLANT.supply.voltage.si:g} V",
+    "| P5 | bearings, Dec |": f"by {DEC.friction.viscous.si / RA.friction.viscous.si:.2f}",
+    "| P6 | disturbances |": f"{len(NAMES) - 1} named effects",
+    "| P9 | CP-850 |": f"{RA.encoders.tachometer.si:g} counts",
+    "| P11 | focus | encoder": f"{FOCUS.encoder.si:g} counts",
+    "| P12 | LVDT |": f"0–{FOCUS.lvdt_full_scale.si:g} V over ±5 mm, {FOCUS.lvdt_gain_error.si:.0%} gain, "
+    f"{FOCUS.lvdt_offset.si * 1e3:g} mV offset, {FOCUS.lvdt_nonlinearity.si:.1%} bend",
+    "| B1 | axis: PWM |": f"{steps_for(FCY_HZ, PWM_HZ)} steps at {PWM_HZ // 1000} kHz "
+    f"and {FCY_HZ // 10**6} MIPS",
+    "| B5 | focus: stepper |": f"ramp {FocusConfig().start_rate}–{FocusConfig().top_rate} half steps/s",
+    "| B9 | all: crystal |": f"±{CRYSTAL_PPM:g} ppm, ±{CRYSTAL_DRIFT_PPM_PER_HOUR:g} ppm/h",
+    "| P1 | site |": f"height {NAINITAL.height_m:g} m, {NAINITAL.temperature_c:g} °C, "
+    f"{NAINITAL.humidity:.0%} humidity",
+    "| P1 | mount | travel": f"±{scenario_model.HOUR_ANGLE_LIMIT_RAD / to_si(1, 'deg'):.0f}°",
+}
+"""How a row begins, and a figure that it must hold."""
+
+
+def row(start: str) -> str:
+    found = [text for text in PAGE.splitlines() if text.startswith(start)]
+    assert len(found) == 1, f"{len(found)} rows start with {start!r}"
+    return found[0]
+
+
+@pytest.mark.parametrize("start", FIGURES)
+def test_figures_are_those_of_the_code(start: str) -> None:
+    assert FIGURES[start].replace("%", " %") in row(start).replace("  %", " %")
+
+
+def test_rates_of_the_speed_classes_are_those_of_the_code() -> None:
+    scale = 1_296_000 / 112_896_000 * 200 / 65536
+    slew, set_, guide, fine, track = (round(rate * scale, 3) for rate in AxisConfig().classes)
+    text = row("| B2 | axis: speeds |")
+    assert f"slew {slew:g}, track {track:g}″/s" in text
+    assert f"set {set_:g}, guide {guide:g}, fine {fine:g}″/s" in text
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_every_requirement_has_a_row(name: str) -> None:
+    assert re.search(rf"^\| {name} \| ", PAGE, re.MULTILINE), f"FIDELITY.md has no row for {name}"
+
+
+def test_every_file_it_names_exists() -> None:
+    named = set(re.findall(r"`((?:[\w.-]+/)+[\w.-]+)`", PAGE))
+    assert len(named) > 20
+    missing = sorted(name for name in named if not (ROOT / name).exists())
+    assert not missing, f"FIDELITY.md names files that do not exist: {', '.join(missing)}"
+
+
+def test_every_test_it_names_exists() -> None:
+    text = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
+    known = set(re.findall(r"def (test_\w+)", text))
+    named = set(re.findall(r"(?<![\w/])(test_\w+)(?!\w|\.py)", PAGE))
+    assert len(named) > 50
+    assert not named - known, f"FIDELITY.md names tests that do not exist: {', '.join(sorted(named - known))}"
