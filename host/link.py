@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from struct import Struct
 
 from bus.protocol import HEARTBEAT_KIND, SUMMARY_KIND
 from bus.protocol.report import REPORT_BYTES, SLOTS, pack_report
 
 _NOT_MEASUREMENT = 0x80
-_STARTS = range(0, REPORT_BYTES, 8)
+_slots = Struct("8s" * SLOTS).unpack
 
 Subscriber = Callable[[int, bytes], None]
 
@@ -47,15 +48,15 @@ class HidLink:
         self.reports += 1
         self.last_report_ns = t_ns
         subscribers = self._subscribers
-        for start in _STARTS:
-            device = report[start]
+        measurements, measured_ns = self.measurements, self.measured_ns
+        for data in _slots(report):
+            device = data[0]
             if not device:
                 continue
-            data = report[start : start + 8]
             if device < _NOT_MEASUREMENT:
-                self.measurements[device] = data
-                self.measured_ns[device] = t_ns
-                if device in subscribers:
+                measurements[device] = data
+                measured_ns[device] = t_ns
+                if subscribers and device in subscribers:
                     subscribers[device](t_ns, data)
             else:
                 self._other(t_ns, device & 0x7F, data)

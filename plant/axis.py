@@ -1,5 +1,6 @@
 """One axis as the boards see it: duty cycles in, encoder counts and currents out."""
 
+from collections.abc import Callable
 from math import floor
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,11 @@ class AxisPort:
     rate.
 
     Motor 0 is A, which pulls in +, motor 1 is B, which pulls in -.
+
+    incremental: counts of the roller encoder since start, unbounded. absolute: position of the on-shaft
+    absolute encoder, 29 bit. auxiliary: position of the geared one, 17 bit. tachometer_a, tachometer_b: counts
+    of the motors' encoders since start, unbounded. All (t_ns) -> int; a stuck sensor is another callable put
+    here.
     """
 
     def __init__(
@@ -22,14 +28,14 @@ class AxisPort:
         self._plant = plant
         self._view = plant.view
         self._base = row * at.WIDTH
-        self._delays = delays_ns
-        self._absolute_mask = (1 << absolute_bits) - 1
-        self._auxiliary_mask = (1 << auxiliary_bits) - 1
+        self._current_delay_ns = delays_ns["currents"]
         out = self._base + at.OUT
-        self._incremental = out + at.OUT_INCREMENTAL
-        self._absolute = out + at.OUT_ABSOLUTE
-        self._auxiliary = out + at.OUT_AUXILIARY
-        self._tach = (out + at.OUT_TACH_A, out + at.OUT_TACH_B)
+        late = delays_ns["position"]
+        self.incremental = self._pin(at.OUT_INCREMENTAL, delays_ns["velocity"])
+        self.absolute = self._pin(at.OUT_ABSOLUTE, late, (1 << absolute_bits) - 1)
+        self.auxiliary = self._pin(at.OUT_AUXILIARY, late, (1 << auxiliary_bits) - 1)
+        self.tachometer_a = self._pin(at.OUT_TACH_A, delays_ns["tachometers"])
+        self.tachometer_b = self._pin(at.OUT_TACH_B, delays_ns["tachometers"])
         self._current = (out + at.OUT_CURRENT_A, out + at.OUT_CURRENT_B)
         self._duty = self._base + at.DUTY
         self._mean = self._base + at.MEAN_DUTY
@@ -51,53 +57,48 @@ class AxisPort:
         view[duty] = duty_a
         view[duty + 1] = duty_b
 
-    def _value(self, t_ns: int, place: int, delay_ns: int) -> float:
-        """Return a reading at `t_ns`, or a delayed one."""
-        plant = self._plant
-        if t_ns >= plant.next_ns:
-            plant.advance(t_ns)
-        view = self._view
-        if delay_ns:
-            return self._late(t_ns - delay_ns, place)
-        return view[place] + view[place + 1] * (t_ns - plant.now_ns)
+    def _pin(self, reading: int, delay_ns: int, mask: int = -1) -> Callable[[int], int]:
+        """Return a counter's pin. Made once: it is read hundreds of times a second."""
+        plant, view = self._plant, self._view
+        place = self._base + at.OUT + reading
+        slope = place + 1
 
-    def _late(self, t_ns: int, place: int) -> float:
+        def now(t_ns: int) -> int:
+            if t_ns >= plant.next_ns:
+                plant.advance(t_ns)
+            return floor(view[place] + view[slope] * (t_ns - plant.now_ns)) & mask
+
+        def late(t_ns: int) -> int:
+            plant.advance(t_ns)
+            return floor(self._late(t_ns - delay_ns, reading)) & mask
+
+        return late if delay_ns else now
+
+    def _late(self, t_ns: int, reading: int) -> float:
         """Return a reading of the past from the ring of kept ones; before the start, the first one."""
         grid = self._plant.grid_ns
         step = max(0, t_ns // grid)
-        row = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
-        place += row - self._base - at.OUT
+        place = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE + reading
         return self._view[place] + self._view[place + 1] * max(0, t_ns - step * grid)
-
-    def incremental(self, t_ns: int) -> int:
-        """Return the counts of the roller encoder since start, unbounded."""
-        return floor(self._value(t_ns, self._incremental, self._delays["velocity"]))
-
-    def absolute(self, t_ns: int) -> int:
-        """Return the position of the on-shaft absolute encoder, 29 bit."""
-        return floor(self._value(t_ns, self._absolute, self._delays["position"])) & self._absolute_mask
-
-    def auxiliary(self, t_ns: int) -> int:
-        """Return the position of the geared auxiliary encoder, 17 bit."""
-        return floor(self._value(t_ns, self._auxiliary, self._delays["position"])) & self._auxiliary_mask
 
     def tachometer(self, t_ns: int, motor: int) -> int:
         """Return the counts of a motor's encoder since start, unbounded."""
-        return floor(self._value(t_ns, self._tach[motor], self._delays["tachometers"]))
+        return (self.tachometer_b if motor else self.tachometer_a)(t_ns)
 
     def current(self, t_ns: int, motor: int) -> float:
         """Return a motor's current at the PWM's falling edge, A, as the sense chain sees it."""
         plant = self._plant
         if t_ns >= plant.next_ns:
             plant.advance(t_ns)
-        delay = self._delays["currents"]
-        if delay:
-            step = max(0, (t_ns - delay) // plant.grid_ns)
+        if self._current_delay_ns:
+            step = max(0, (t_ns - self._current_delay_ns) // plant.grid_ns)
             row = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
             return float(self._view[row + at.OUT_CURRENT_A + motor])
         return self._view[self._current[motor]]
 
     def truth(self, t_ns: int) -> tuple[float, float]:
         """Return the true angle, rad, and rate, rad/s."""
-        angle = self._value(t_ns, self._base + at.OUT + at.OUT_ANGLE, 0)
-        return angle, self._view[self._base + at.RATE]
+        self._plant.advance(t_ns)
+        view, place = self._view, self._base + at.OUT + at.OUT_ANGLE
+        angle = view[place] + view[place + 1] * (t_ns - self._plant.now_ns)
+        return angle, view[self._base + at.RATE]

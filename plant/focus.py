@@ -55,6 +55,8 @@ class FocusPort:
 
     def position(self, t_ns: int) -> float:
         """Return the true position, half steps."""
+        if self._rest == self._goal:
+            return self._goal
         since = max(0, t_ns - self._since_ns)
         return self._goal + (self._rest - self._goal) * exp(-since / self._settling_ns)
 

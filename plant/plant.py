@@ -69,14 +69,16 @@ class Plant:
         """
         if t_ns < self.next_ns:
             return
-        steps = (t_ns - self.now_ns) // self.grid_ns
-        if steps < self._room or self._sink is None:  # recording, with room for all of it: the common case
+        now, grid = self.now_ns, self.grid_ns
+        steps = (t_ns - now) // grid
+        room = self._room - steps
+        if room > 0 or self._sink is None:  # recording, with room for all of it: the common case
             advance(self.world, steps)
-            self._room -= steps
+            self._room = room
         else:
             self._advance_recording(steps)
-        self.now_ns += steps * self.grid_ns
-        self.next_ns = self.now_ns + self.grid_ns
+        self.now_ns = now = now + steps * grid
+        self.next_ns = now + grid
 
     def _advance_recording(self, steps: int) -> None:
         """Advance in parts that fit the ring of truth, draining it in chunks."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 from boards.axis import AxisBoard, AxisPins
@@ -169,8 +168,8 @@ class _Wiring:
 
     def motor(self, device: Device) -> Board:
         _, port = self.port(device)
-        motor = 0 if device.name.endswith("A") else 1
-        return self.velocity(device.name, int(device), partial(_tachometer, port, motor))
+        encoder = port.tachometer_a if device.name.endswith("A") else port.tachometer_b
+        return self.velocity(device.name, int(device), encoder)
 
     def velocity(self, name: str, device_type: int, encoder: Callable[[int], int]) -> Board:
         crystal = self.crystal(name)
@@ -202,10 +201,6 @@ _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
 )
 
 
-def _tachometer(port: AxisPort, motor: int, t_ns: int) -> int:
-    return port.tachometer(t_ns, motor)
-
-
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     """The network, every board running from time 0 on; raises NetworkError for settings no network can
     have."""
@@ -219,7 +214,8 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
         boards[device.name] = make(wiring, device)
     for device_type in SPARE_TYPES[: max(0, config.size - len(ORDER))]:
         name = f"MOTOR_{device_type:02X}"
-        boards[name] = wiring.velocity(name, device_type, partial(_tachometer, plant.ra, device_type & 1))
+        encoder = plant.ra.tachometer_b if device_type & 1 else plant.ra.tachometer_a
+        boards[name] = wiring.velocity(name, device_type, encoder)
     unknown = set(config.nodes) - set(boards)
     if unknown:
         raise NetworkError(

@@ -49,7 +49,7 @@ class AxisBoard(PeriodicBoard):
     """
 
     __slots__ = (
-        "_counter", "_fade", "_identifier", "adc", "config", "effort", "effort_command",
+        "_fade", "_identifier", "adc", "config", "effort", "effort_command",
         "fault", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
         "split", "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
     )  # fmt: skip
@@ -142,7 +142,7 @@ class AxisBoard(PeriodicBoard):
 
     def _lag(self, effort: int, velocity: int) -> int:
         """Duty register of the lagging motor for |effort|."""
-        counter = self._counter[effort]
+        counter = (effort * self.split + 50) // 100
         fade = self._fade
         if fade:
             return counter * max(0, fade - abs(velocity)) // fade
@@ -151,7 +151,6 @@ class AxisBoard(PeriodicBoard):
     def set_split(self, percent: int) -> None:
         """Share of the effort that the lagging motor gets."""
         self.split = percent
-        self._counter = [(effort * percent + 50) // 100 for effort in range(self.config.pwm_steps + 1)]
 
     def command_effort(self, effort: int | None) -> None:
         """Fixed effort in PWM steps, or None: the loop decides."""

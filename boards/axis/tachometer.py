@@ -5,7 +5,7 @@ to the moment of the sample, and the sample is the difference of two such counts
 rate finer than the whole counts of one frame, so the differences go through a low-pass of four frames.
 """
 
-from bus.protocol import unpack_tach
+from bus.protocol.tach import tach_fields
 
 _TACH_NS = 10_000_000
 _ROUTINE_NS = 40_000
@@ -30,7 +30,7 @@ class RemoteTachometer:
 
     def take(self, t_ns: int, data: bytes) -> None:
         """A TACH frame has come in."""
-        _, _, self._count, delta = unpack_tach(data)
+        _, _, self._count, delta = tach_fields(data)
         self._latch_ns = t_ns - self._age_ns
         self._rate_q8 += ((delta << _RATE_SHIFT) - self._rate_q8) >> 2
 

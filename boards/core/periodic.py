@@ -61,5 +61,6 @@ class PeriodicBoard(Board):
             start, lost = timer.late(start, end)
             cpu.top.overruns += lost
         self.ticks += 1
-        self.queue.at(start, self._routine)
+        queue = self.queue
+        queue.push((start, queue.ticket(), self._routine))  # never in the past: `late` sees to that
         return end

@@ -51,7 +51,7 @@ class GatewayBoard(PeriodicBoard):
         self.hid = HidEndpoint()
         self.hid.from_host = self._take_report
         self.hold_ns = HOLD_NS
-        self.ring: deque[bytes] = deque()
+        self.ring: list[bytes] = []
         self.lost = 0
         self.foreign = 0
         self._flush_ns = _NEVER
@@ -81,16 +81,15 @@ class GatewayBoard(PeriodicBoard):
         identifier, data, extended, remote = frame
         if extended or remote:
             return
-        if identifier == self._own_command:
+        if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE:
+            self._put(t_ns, data)
+        elif identifier == self._own_command:
             self._take_command(t_ns, data)
-            return
-        if len(data) != 8 or identifier - data[0] != MEASUREMENT_BASE:
+        else:
             try:
-                data = slot(frame)
+                self._put(t_ns, slot(frame))
             except ReportError:
                 self.foreign += 1
-                return
-        self._put(t_ns, data)
 
     def _put(self, t_ns: int, data: bytes) -> None:
         ring = self.ring
@@ -116,7 +115,8 @@ class GatewayBoard(PeriodicBoard):
             return
         self._flush_ns = _NEVER
         ring = self.ring
-        report = pack_report([ring.popleft() for _ in range(min(len(ring), SLOTS))])
+        report = pack_report(ring[:SLOTS])
+        del ring[:SLOTS]
         if ring:
             self._arm(t_ns + (FRAME_NS if len(ring) >= SLOTS else self.hold_ns))
         if self.hid.to_host is not None:

@@ -27,7 +27,7 @@ def steps_for(fcy_hz: int, pwm_hz: int) -> int:
 class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
-    __slots__ = ("_duties", "_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "steps")
+    __slots__ = ("_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "steps")
 
     def __init__(
         self,
@@ -42,7 +42,6 @@ class MotorPwm:
         self.pdc_a = 0
         self.pdc_b = 0
         self._phase_ns = phase_ns
-        self._duties = [k / steps for k in range(steps + 1)]
 
     def write(self, t_ns: int, pdc_a: int, pdc_b: int) -> None:
         """Write both duty registers at `t_ns`: they count from the next period on. Negative values are a
@@ -52,13 +51,12 @@ class MotorPwm:
         self.pdc_a = pdc_a
         self.pdc_b = pdc_b
         steps = self.steps
-        duties = self._duties
         period = self.period_ns
         # The period boundary at or after t_ns; the time base runs on the board's crystal, whose 1e-5 is
         # below 1 ns here.
         loads = t_ns + (self._phase_ns - t_ns) % period
         self.drive(
             loads,
-            duties[pdc_a] if pdc_a <= steps else 1.0,
-            duties[pdc_b] if pdc_b <= steps else 1.0,
+            pdc_a / steps if pdc_a <= steps else 1.0,
+            pdc_b / steps if pdc_b <= steps else 1.0,
         )

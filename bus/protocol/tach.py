@@ -4,6 +4,8 @@ from struct import Struct
 from typing import NamedTuple
 
 _tach = Struct("<BBih")
+tach_fields = _tach.unpack
+"""The signals of eight bytes as a plain tuple, for receivers that take thousands."""
 
 
 class Tach(NamedTuple):
