@@ -48,7 +48,7 @@ def axis_answer(runs: list[Run], hold_out: list[str], out: Path, plant: Path | N
     if "E" in result.selections:
         v.calibrated |= calibrated(result.selections["E"], ("electrical_lag",))
     for key, s in result.selections.items():
-        if np.isfinite(s.held.before):
+        if key in SENSORS and np.isfinite(s.held.before):
             v.error[SENSORS[key]] = error_row(s)
     _before_within_tolerance(v, result, effects, preload)
     v.controls = _controls(result, effects)

@@ -96,7 +96,8 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                                 (("amplitude", "1"), ("stiction_rise", "1"), ("viscous_rise", "1")))):
             shape = _warmup(weight, since)
             out.append(Candidate("friction_warmup", "time", shape(np.array([tau])), labels,
-                                 fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
+                                 fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,),
+                                 least=60.0 if weight.shape[1] > 1 else 0.0))
     preload = f.stiction + f.viscous
     kinds = (("preload_change", preload, "fraction", "1"), ("brake_drag", f.sliding, "torque", "N m"))
     for at in np.linspace(0.03, 0.97, 26) * span + low:

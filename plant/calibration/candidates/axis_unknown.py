@@ -27,19 +27,20 @@ def unknown_torques(c: Context, f: Friction, e: Array, rows: Array, period_s: fl
                          tuple((f"loop_{k}", c.unit) for k in range(len(loops)))))
     for r, loop in zip((3e-4, 1e-3, 3e-3, 8e-3, 0.02), loops, strict=True):
         out.append(Candidate("unknown", "reversal", loop[:, None], (("loop", c.unit),), fixed={"travel": (r, "rad")}))
-    out += fixed_lines(c, e, rows, period_s)
+    out += fixed_lines(c, e, rows, period_s, f.clock)
     return out
 
 
-def fixed_lines(c: Context, e: Array, rows: Array, period_s: float, count: int = 3) -> list[Candidate]:
+def fixed_lines(c: Context, e: Array, rows: Array, period_s: float, clock: Array,
+                count: int = 3) -> list[Candidate]:
     """The strongest lines at fixed Hz with their next four harmonics: periodic in time, at every speed."""
-    span = float(np.ptp(c.t))
+    span = float(np.ptp(clock))
     x = np.where(rows, e, 0.0)
-    hertz, power = order_spectrum(x, c.t, rows.astype(float), 0.5 / period_s)
+    hertz, power = order_spectrum(x, clock, rows.astype(float), min(0.5 / period_s, 2e5 / max(float(np.ptp(clock)), 1.0)))
     power = np.where(hertz < max(0.05, 4 / span), 0.0, power)
     out = []
     for f0 in peaks(hertz, power, count, 3.0 / span):
-        x = 2 * np.pi * float(f0) * c.t
+        x = 2 * np.pi * float(f0) * clock
         one = np.column_stack([np.cos(x), np.sin(x)])
         out.append(Candidate("unknown", "time", one, (("amplitude", c.unit),), kind="line", frequency=float(f0),
                              fixed={"frequency": (float(f0), "Hz")}))

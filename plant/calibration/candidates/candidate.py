@@ -30,6 +30,7 @@ class Candidate:
     order: float | None = None
     frequency: float | None = None
     sign: int = 0  # +1: every coefficient must be positive; -1 negative; 0 free
+    least: float = 0.0  # -log10 p below which this flexible a form is not believed
     positive: tuple[int, ...] = ()  # coefficients that must be positive
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
     twins: tuple[str, ...] = ()

@@ -47,6 +47,22 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     return out
 
 
+def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
+    """`unknown` over the angle of either motor, as a resistance and as a voltage: six harmonics of the motor turn.
+
+    `angle` (n,) per motor in turns.
+    """
+    out = []
+    for k, key in enumerate("ab"):
+        x = 2 * np.pi * np.concatenate([angle[key], angle[key]])
+        waves = np.column_stack([g(h * x) for h in range(1, 7) for g in (np.cos, np.sin)])
+        mask = (e.motor == k).astype(float)
+        for weight in (mask, mask * e.current):
+            out.append(Candidate("unknown", "motor_angle", waves * weight[:, None], (("amplitude", "V"),), kind="line",
+                                 stage="motor", harmonic=1, fixed={"motor": (float(k), "0 A, 1 B")}))
+    return out
+
+
 def _heating(e: Electrical, clock: Array) -> Callable[[Array], Array]:
     """Volts per K/W: R alpha R i (i^2 low-passed), the winding's own loss heating it."""
     return lambda p: (COPPER * e.resistance**2 * e.current * _heat(e, clock, max(float(p[0]), 1.0)))[:, None]

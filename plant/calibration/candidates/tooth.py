@@ -52,7 +52,7 @@ def damaged_teeth(c: Context, e: Array, rows: NDArray[np.bool_], period_s: float
             out.append(Candidate("damaged_tooth", "axis_angle" if stage != "motor" else "motor_angle",
                                  shape(np.array([centre, width])), (("amplitude", c.unit),), stage=stage, harmonic=None,
                                  order=order, fixed={"phase": (centre, "turn"), "width": (width, "turn")},
-                                 shape=shape, steps=(0.003, 0.1 * width)))
+                                 shape=shape, steps=(0.003, 0.1 * width), least=20.0))
     return out
 
 

@@ -96,7 +96,8 @@ def repair_wraps(run: Run) -> Finding | None:
     if speed is not None:
         near = np.nan_to_num(speed[1:]) * np.diff(run.columns["t"]) / per_count
     jump = np.where(good, step - near, 0.0)
-    big = np.abs(jump) > max(200 * usual, 1e5)
+    late = np.diff(run.columns["t"]) > 1.5 * run.scales["sample_period_s"]
+    big = (np.abs(jump) > max(200 * usual, 1e5)) & ~late
     if big.any():
         sizes = np.abs(jump[big])
         power = int(round(float(np.log2(np.median(sizes)))))

@@ -53,8 +53,8 @@ def linear_columns(m: Motion) -> Array:
 def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Friction, Array, Array]:
     """Fit the declared model to `torque` (n_analysis,) on `rows`.
 
-    Returns the parameters, the base columns (acceleration, rate, bristle and its three log-derivatives times the
-    Coulomb torque), and the bristle at full rate.
+    Returns the parameters, the base columns (acceleration, rate, bristle, its three log-derivatives times the Coulomb
+    torque, and the bristle's rate for sigma_1), and the bristle at full rate.
     """
     from scipy.optimize import least_squares
 
@@ -85,14 +85,42 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
             break  # what is left is mostly the sensors' noise: no better minimum to look for
     assert best is not None
     p = best.x
+    for _ in range(POLISH):
+        shape, base, beta = _linearised(m, p, linear, torque, sub)
+        e = np.abs(torque - base @ solve(base[sub], torque[sub]))
+        inside = sub & (e < 6 * max(float(np.median(e[sub])), 1e-9))
+        step = np.clip(solve(base[inside], torque[inside])[3:6], -0.3, 0.3)
+        if not np.all(np.isfinite(step)) or np.abs(step).max() < 1e-4:
+            break
+        trial = np.clip(p + step, low + 1e-3, high - 1e-3)
+        if _median_error(m, trial, linear, torque, sub) > _median_error(m, p, linear, torque, sub):
+            break
+        p = trial
+    shape, base, beta = _linearised(m, p, linear, torque, sub)
+    return (Friction(float(np.exp(p[0])), float(np.exp(p[1])), float(np.exp(p[2])), float(beta[2]), float(beta[1]),
+                     float(beta[0])), base, shape)
+
+
+POLISH = 6  # Gauss-Newton steps on the rows that the model already fits
+
+
+def _linearised(m: Motion, p: Array, linear: Array, torque: Array, rows: Mask) -> tuple[Array, Array, Array]:
+    """Bristle at full rate, base columns with derivatives to the log parameters, coefficients of the first three."""
     shape = shape_columns(m, p)
-    x = columns(p)
-    beta = solve(x[sub], torque[sub])
+    x = np.column_stack([linear, m.at(shape)])
+    beta = solve(x[rows], torque[rows])
     derivative = []
     for k in range(3):
         h = np.zeros(3)
-        h[k] = 0.05
-        derivative.append(m.at((shape_columns(m, p + h) - shape_columns(m, p - h)) / 0.1) * beta[2])
-    base = np.column_stack([x, *derivative])
-    return (Friction(float(np.exp(p[0])), float(np.exp(p[1])), float(np.exp(p[2])), float(beta[2]), float(beta[1]),
-                     float(beta[0])), base, shape)
+        h[k] = 0.03
+        derivative.append(m.at((shape_columns(m, p + h) - shape_columns(m, p - h)) / 0.06) * beta[2])
+    slip = np.zeros(len(shape))
+    slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * _dt(m)) / float(np.exp(p[2]))  # dz/dt of the bristle, rad/s
+    slip[m.fresh] = 0.0
+    return shape, np.column_stack([x, *derivative, m.at(slip)]), beta
+
+
+def _median_error(m: Motion, p: Array, linear: Array, torque: Array, rows: Mask) -> float:
+    x = np.column_stack([linear, m.at(shape_columns(m, p))])
+    e = torque[rows] - x[rows] @ solve(x[rows], torque[rows])
+    return float(np.mean(np.minimum(np.abs(e), 8 * np.median(np.abs(e)))))

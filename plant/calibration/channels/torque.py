@@ -70,7 +70,7 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     preload = frame.runs[0].header.get("preload", "low")
     friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
     labels = [("inertia", "kg m2"), ("viscous", "N m s/rad"), ("coulomb", "N m"), ("log_stiction_ratio", "1"),
-              ("log_stribeck_speed", "1"), ("log_stiffness", "1")]
+              ("log_stribeck_speed", "1"), ("log_stiffness", "1"), ("sigma_1", "N m s/rad")]
     # the currents may be late by a fraction of a row against the encoder: a nuisance, an effect only when it is large
     base = np.column_stack([base, m.at(np.gradient(per_ampere * (fa - fb), frame.period_s))])
     labels.append(("current_delay", "s"))

@@ -18,6 +18,8 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
     ("magnet_weakening", "E"): ("adc_gain",),
     ("structural_mode", "T"): ("damaged_tooth",),
     ("brake_drag", "T"): ("friction_warmup",),
+    ("unknown", "T"): ("wind_torque",),
+    ("cable_wrap", "T"): ("preload_change", "friction_warmup"),
 }
 SUPERFLUOUS = 0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
 
@@ -71,7 +73,7 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
     for f in findings:
         names = CONSEQUENCES.get((f.name, f.channel), ())
         for k, other in enumerate(findings):
-            if other is not f and other.name in names and other.share <= max(f.share, 0.3):
+            if other is not f and other.name in names and (other.share <= max(f.share, 0.3) or other.name == "wind_torque"):
                 drop.add(k)
     tooth = [f for f in findings if f.name == "damaged_tooth"]
     for k, other in enumerate(findings):

@@ -12,6 +12,7 @@ from plant.calibration.channels.declared import DECLARED
 from plant.calibration.channels.torque import Torque
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.select import Selection
+from plant.calibration.statistics.regression import Fit
 from plant.calibration.statistics.tails import student_reach
 
 TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an estimate
@@ -27,11 +28,14 @@ def beyond(value: float, error: float, declared: float, factor: float, sure: flo
     return abs(np.log(value / declared)) - np.log(factor) > 0 and abs(value - declared) > sure * error
 
 
-def torque_changes(torque: Torque, selection: Selection, preload: str) -> tuple[list[Finding], dict[str, Parameter]]:
-    """Friction findings beyond tolerance, and every calibrated parameter with its interval."""
-    beta, cov = selection.after.beta, selection.after.covariance
+def torque_changes(torque: Torque, after: Fit, rows: int, preload: str) -> tuple[list[Finding], dict[str, Parameter]]:
+    """Friction findings beyond tolerance, and every calibrated parameter with its interval.
+
+    `after` is a fit whose first columns are the torque problem's base, on `rows` rows.
+    """
+    beta, cov = after.beta, after.covariance
     error = np.sqrt(np.maximum(np.diag(cov), 0.0))
-    blocks = max(int(torque.problem.train.sum() / torque.problem.block), 5)
+    blocks = max(rows // torque.problem.block, 5)
     reach = student_reach(blocks - 2)
     d = DECLARED[preload]
     coulomb = float(beta[2])
