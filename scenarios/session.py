@@ -38,7 +38,7 @@ class Session:
         faults.stick_sensors(self.plant, scenario.faults)
         config = config_from(scenario.network, soft_limits(scenario))
         self.network: Network = build(config, self.plant, scenario.seed)
-        self.network.wire.tap(self.recorder.can)
+        self.network.wire.tap(self.recorder.can.take)
         self.link = HidLink(self.network.hid.write)
         self.network.hid.to_host = self.link.receive
         self.client = Client(self.link, self.recorder.ascii)

@@ -36,7 +36,7 @@ class CurrentAdc:
     def read(self, t_ns: int, motor: int) -> int:
         """The last conversion of the motor's channel, 0..1023."""
         counts = int(self.pin(t_ns, motor) * self._counts_per_a)
-        return 0 if counts < 0 else FULL_SCALE if counts > FULL_SCALE else counts
+        return counts if 0 <= counts <= FULL_SCALE else 0 if counts < 0 else FULL_SCALE
 
 
 class VoltageAdc:

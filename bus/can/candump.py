@@ -7,6 +7,7 @@ from typing import BinaryIO, Protocol
 from bus.can.frame import Frame
 
 _BATCH = 1024
+_SECOND_NS = 1_000_000_000
 
 
 class _Digest(Protocol):
@@ -36,26 +37,33 @@ class CandumpWriter:
         self._epoch_ns = epoch_s * 1_000_000_000
         self._digest: _Digest = sha256()
         self._batch: list[tuple[int, Frame]] = []
+        self._names: dict[int, str] = {}
+        """Channel and identifier as they are printed, per standard identifier."""
 
-    def __call__(self, t_ns: int, frame: Frame, _sender: str = "") -> None:
+    def take(self, t_ns: int, frame: Frame, _sender: str = "") -> None:
         """Take one frame."""
-        self._batch.append((t_ns, frame))
-        if len(self._batch) >= _BATCH:
+        batch = self._batch
+        batch.append((t_ns, frame))
+        if len(batch) >= _BATCH:
             self._write()
+
+    __call__ = take
 
     def _write(self) -> None:
         epoch_ns, channel = self._epoch_ns, self._channel
         lines = []
+        names = self._names
         for t_ns, frame in self._batch:
+            t_ns += epoch_ns
             identifier, data, extended, remote = frame
-            if extended or remote:
-                lines.append(line(t_ns + epoch_ns, frame, channel) + "\n")
+            if extended or remote or t_ns < _SECOND_NS:
+                lines.append(line(t_ns, frame, channel) + "\n")
                 continue
-            second, microsecond = divmod((t_ns + epoch_ns) // 1000, 1_000_000)
-            body = data.hex().upper()
-            # An f-string takes a quarter longer, and this is done for every frame of a night.
-            text = "(%d.%06d) %s %03X#%s\n" % (second, microsecond, channel, identifier, body)  # noqa: UP031
-            lines.append(text)
+            # Pieces of text where they will do: this is done for every frame of a night.
+            if identifier not in names:
+                names[identifier] = f"{channel} {identifier:03X}"
+            time_us = str(t_ns // 1000)
+            lines.append(f"({time_us[:-6]}.{time_us[-6:]}) {names[identifier]}#{data.hex().upper()}\n")
         block = "".join(lines).encode()
         self._digest.update(block)
         if self._file is not None:

@@ -64,25 +64,22 @@ _CRC0, _CRC1, _CRC2, _CRC3 = _shares()
 """Rows follow one another: entry of state s and value v at s << 16 | v, or s << 15 | v for the CRC."""
 
 
-_headers: dict[tuple[int, bool], tuple[int, int, int]] = {}
-"""What `_header` found, per (identifier, extended)."""
-_HEADERS_KEPT = 8192
+_headers: dict[int, tuple[int, int, int]] = {}
+"""What `_header` found, per standard identifier."""
 
 
-def _header(identifier: int, extended: bool) -> tuple[int, int, int]:
-    """Of an eight-byte data frame's header: CRC share, stuffing state << 16, bits so far (tail and CRC
-    included)."""
-    frame = Frame(identifier, bytes(8), extended)
+def _header(identifier: int) -> tuple[int, int, int]:
+    """Of an eight-byte standard data frame's header: CRC share, stuffing state << 16, bits so far (tail and
+    CRC included)."""
+    frame = Frame(identifier, bytes(8))
     check(frame)
     bits = header_bits(frame)
     state, inserted = _START, 0
     for bit in bits:
         state, more = _step(state, bit)
         inserted += more
-    if len(_headers) >= _HEADERS_KEPT:  # only a sweep over extended identifiers gets here
-        _headers.clear()
     found = crc15(bits + [0] * 64), state << 16, len(bits) + inserted + 64 + 15 + TAIL_BITS
-    _headers[identifier, extended] = found
+    _headers[identifier] = found
     return found
 
 
@@ -92,9 +89,14 @@ def frame_bits(frame: Frame) -> int:
     Raises FrameError when CAN 2.0 cannot carry the frame.
     """
     identifier, data, extended, remote = frame
-    if len(data) != 8 or remote:
+    if len(data) != 8 or extended or remote:
         return _any_bits(frame)
-    crc, state, bits = _headers.get((identifier, extended)) or _header(identifier, extended)
+    return plain_bits(identifier, data)
+
+
+def plain_bits(identifier: int, data: bytes) -> int:
+    """The same for the frames that there are most of: standard identifier, eight bytes."""
+    crc, state, bits = _headers.get(identifier) or _header(identifier)
     a, b, c, d = _words(data)
     table = _STUFF_WORD
     crc ^= _CRC0[a] ^ _CRC1[b] ^ _CRC2[c] ^ _CRC3[d]
@@ -107,7 +109,7 @@ def frame_bits(frame: Frame) -> int:
 
 
 def _any_bits(frame: Frame) -> int:
-    """The same for frames of any length, bit by bit."""
+    """The same for any frame, bit by bit."""
     check(frame)
     bits = header_bits(frame)
     if not frame.remote:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from bus.can.frame import Frame, arbitration_key
-from bus.can.length import frame_bits
+from bus.can.length import frame_bits, plain_bits
 
 if TYPE_CHECKING:
     from bus.can.wire import Wire
@@ -14,6 +14,10 @@ TX_BUFFERS = 3
 
 State = Literal["active", "passive", "bus_off"]
 Receive = Callable[[int, Frame], None]
+
+
+Entry = tuple[int, int, int, "Port", Frame, int]
+"""An `Offer` as the wire keeps it: a plain tuple costs a third, and every frame needs one."""
 
 
 class Offer(NamedTuple):
@@ -119,8 +123,11 @@ class Port:
         """
         if not self._free:
             return False
-        bits = frame_bits(frame)
+        identifier, data, extended, remote = frame
+        if extended or remote or len(data) != 8:
+            bits, key = frame_bits(frame), arbitration_key(frame)
+        else:
+            bits, key = plain_bits(identifier, data), identifier << 21
         self._free -= 1
-        key = arbitration_key(frame) if frame[2] or frame[3] else frame[0] << 21
         self._wire._offer(key, ready_ns, self, frame, bits)
         return True

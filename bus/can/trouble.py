@@ -21,7 +21,7 @@ from bus.can.disturbance import (
     seen_by_receiver,
 )
 from bus.can.frame import Frame
-from bus.can.port import Offer, Port, Receive
+from bus.can.port import Entry, Offer, Port, Receive
 from bus.can.recovery import Recovery
 
 if TYPE_CHECKING:
@@ -68,14 +68,13 @@ class Trouble:
         """Arbitration and outcome of the frame that starts at `sof_ns`, with everything that can befall
         it."""
         wire = self._wire
+        waiting = [Offer(*entry) for entry in wire._waiting]
         ready = [
             offer
-            for offer in wire._waiting
+            for offer in waiting
             if max(offer.ready_ns, offer.port._quiet_ns) <= sof_ns + wire.bit_ns and not offer.port._bus_off
         ]
-        starts = [
-            max(offer.ready_ns, offer.port._quiet_ns) for offer in wire._waiting if not offer.port._bus_off
-        ]
+        starts = [max(offer.ready_ns, offer.port._quiet_ns) for offer in waiting if not offer.port._bus_off]
         if not ready or min(starts) > sof_ns:
             if starts:
                 wire._call_decide(max(wire._free_ns, min(starts)))
@@ -195,9 +194,10 @@ class Trouble:
             self._wire._forget_routes()
             self._recovery.add(port)
 
-    def delivered(self, offer: Offer, t_ns: int) -> tuple[Receive, ...]:
+    def delivered(self, entry: Entry, t_ns: int) -> tuple[Receive, ...]:
         """A good frame ended: counters go down. Returns who gets it."""
         wire = self._wire
+        offer = Offer(*entry)
         self._recovery.quiet_since_ns = t_ns - _RECESSIVE_TAIL_BITS * wire.bit_ns
         senders = [offer.port]
         for twin in self._twins:
@@ -219,8 +219,8 @@ class Trouble:
     def cut(self, t_ns: int) -> None:
         """The sender went off in the middle of its frame: six recessive bits later everyone else objects."""
         wire = self._wire
-        offer, wire._sending = wire._sending, None
-        assert offer is not None
+        assert wire._sending is not None
+        offer, wire._sending = Offer(*wire._sending), None
         begun_ns = wire._free_ns - offer.bits * wire.bit_ns
         bits = 6 + ERROR_FLAG_BITS + ERROR_DELIMITER_BITS + INTERMISSION_BITS
         wire._free_ns = t_ns + bits * wire.bit_ns

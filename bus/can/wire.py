@@ -6,15 +6,13 @@ from heapq import heapify, heappop, heappush
 from bus.can.bits import INTERMISSION_BITS
 from bus.can.disturbance import Flip
 from bus.can.frame import Frame
-from bus.can.port import TX_BUFFERS, Offer, Port, Receive
+from bus.can.port import TX_BUFFERS, Entry, Port, Receive
 from bus.can.trouble import Trouble
 from bus.time import EventQueue
 
 Tap = Callable[[int, Frame, str], None]
 Disturb = Callable[[int, Frame, str], Flip | None]
 _NEVER = 1 << 62
-# A NamedTuple's own constructor takes three times as long, and this is done for every frame.
-_tuple = tuple.__new__
 _NS_PER_S = 1_000_000_000
 MAX_BITRATE = 1_000_000
 """bit/s; CAN 2.0."""
@@ -42,13 +40,13 @@ class Wire:
         self.frames = 0
         self.bits = 0
         self.ports: list[Port] = []
-        self._waiting: list[Offer] = []
+        self._waiting: list[Entry] = []
         self._taps: list[Tap] = []
         self._tickets = 0
         self._free_ns = 0
         self._decide_ns = _NEVER
         self._end_ns = _NEVER
-        self._sending: Offer | None = None
+        self._sending: Entry | None = None
         self._eof_ns = INTERMISSION_BITS * self.bit_ns
         self._near = True
         """Whether anything but plain sailing is possible; kept by `Trouble`, read for every frame."""
@@ -104,7 +102,7 @@ class Wire:
         if ready_ns < now:
             ready_ns = now
         self._tickets = ticket = self._tickets + 1
-        offer = _tuple(Offer, (key, ticket, ready_ns, port, frame, bits))
+        offer = (key, ticket, ready_ns, port, frame, bits)
         plan = self._sending
         if self._near or self._decide_ns != _NEVER:
             heappush(self._waiting, offer)
@@ -126,6 +124,10 @@ class Wire:
         """
         waiting = self._waiting
         sof_ns = self._free_ns
+        if len(waiting) == 1:
+            winner = waiting.pop()
+            self._begin(winner, winner[2] if winner[2] > sof_ns else sof_ns)
+            return
         if waiting[0][2] <= sof_ns:
             winner = heappop(waiting)
         else:
@@ -168,17 +170,17 @@ class Wire:
         self._trouble.decide(t_ns - self.bit_ns)
         self._decided_ns = t_ns - 1  # what has begun here is no plan any more
 
-    def _remove(self, offer: Offer) -> None:
+    def _remove(self, offer: Entry) -> None:
         self._waiting.remove(offer)
         heapify(self._waiting)
 
     def _await_ready(self, not_before_ns: int = 0) -> None:
         """Have the next start looked at when the first of those waiting is ready."""
         if self._waiting:
-            earliest_ns = min(offer.ready_ns for offer in self._waiting)
+            earliest_ns = min(offer[2] for offer in self._waiting)
             self._call_decide(max(self._free_ns, not_before_ns, earliest_ns))
 
-    def _begin(self, winner: Offer, sof_ns: int) -> None:
+    def _begin(self, winner: Entry, sof_ns: int) -> None:
         self._sending = winner
         bit_ns = self.bit_ns
         self._decided_ns = sof_ns + bit_ns
@@ -198,15 +200,17 @@ class Wire:
         self.frames += 1
         self.bits += bits
         port._free += 1
+        near = self._near
         if self._waiting and self._decide_ns == _NEVER:
-            if self._near:
+            if near:
                 self._call_decide(self._free_ns)
             else:
                 self._plan()
-        calls = port._routes.get(key)
-        if self._near:
+        if near:
             calls = self._trouble.delivered(offer, t_ns)
-        elif calls is None:
+        elif key in port._routes:
+            calls = port._routes[key]
+        else:
             # Found once and kept until filters or nodes change.
             calls = port._routes[key] = self._calls(self._trouble.listeners(port), frame)
         for tap in self._taps:
@@ -231,9 +235,9 @@ class Wire:
     def _switched(self, port: Port) -> None:
         """`port` was switched on or off."""
         self._unplan()
-        self._waiting = [offer for offer in self._waiting if offer.port is not port]
+        self._waiting = [offer for offer in self._waiting if offer[3] is not port]
         heapify(self._waiting)
-        if self._sending is not None and self._sending.port is port:
+        if self._sending is not None and self._sending[3] is port:
             self._trouble.cut(self.queue.now_ns)
         port._free = TX_BUFFERS if port.online else 0
         self._trouble.restart(port)

@@ -10,6 +10,7 @@ quantities (row L3).
 
 from binascii import crc_hqx
 from collections.abc import Sequence
+from itertools import starmap
 from struct import Struct
 from typing import NamedTuple
 
@@ -98,9 +99,7 @@ def pack_packet(device: int, sequence: int, stamp: int, samples: Sequence[Sequen
     if len(samples) != SAMPLES:
         raise SerialError(f"a packet holds {SAMPLES} samples, got {len(samples)}")
     pack = _LAYOUTS[device][0].pack
-    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + b"".join(
-        [pack(*row) for row in samples]
-    )
+    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + b"".join(starmap(pack, samples))
     return SYNC + body + _crc.pack(crc_hqx(body, _CRC_START))
 
 
@@ -156,4 +155,4 @@ def _decode(body: bytes) -> Packet:
     device, sequence, stamp = _head.unpack_from(body)
     layout, kind = _LAYOUTS[device]
     rows = layout.iter_unpack(body[_head.size :])
-    return Packet(device, sequence, stamp, tuple(kind(*row) for row in rows))
+    return Packet(device, sequence, stamp, tuple(map(kind._make, rows)))
