@@ -1,0 +1,127 @@
+"""ARCHITECTURE.md against the code: signatures of the contract, files it names, dependencies both ways."""
+
+import ast
+import inspect
+import re
+import sys
+import tomllib
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.metadata import packages_distributions
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+ROOMS = ("bus", "boards", "plant", "host", "scenarios", "tests")
+_CLASS = re.compile(r"^    class (\w+)[^#]*#\s+([\w/]+\.py)")
+_DEF = re.compile(r"\bdef (\w+)\(((?:[^()]|\([^()]*\))*)\)")
+_PATH = re.compile(r"#\s+([\w/]+\.py)")
+WITHOUT_IMPORT = {
+    "pytest-xdist", "pytest-timeout", "mypy", "ruff", "import-linter", "types-PyYAML", "types-jsonschema",
+}  # fmt: skip
+"""Tools of the tests: run, not imported."""
+
+
+def module(path: str) -> Any:
+    return import_module(path.removesuffix(".py").replace("/", "."))
+
+
+def names(arguments: str) -> list[str]:
+    """Names of the parameters as the page has them."""
+    parts = re.split(r",(?![^\[]*\])", arguments)
+    found = [match.group(1) for part in parts if (match := re.match(r"\s*\*{0,2}(\w+)", part))]
+    return [name for name in found if name != "self"]
+
+
+def contract() -> Iterator[tuple[str, Any, list[str]]]:
+    """(what, the object, names of its parameters on the page) for every `def` in the contract."""
+    owner: Any = None
+    for line in PAGE.splitlines():
+        if found := _CLASS.match(line):
+            owner = getattr(module(found[2]), found[1])
+        elif not line.startswith("        "):
+            owner = None
+        for name, arguments in _DEF.findall(line):
+            if owner is not None:
+                yield f"{owner.__name__}.{name}", getattr(owner, name), names(arguments)
+            elif path := _PATH.search(line):
+                yield f"{path[1]}: {name}", getattr(module(path[1]), name), names(arguments)
+            else:
+                raise AssertionError(f"ARCHITECTURE.md: no file given for {name}")
+
+
+def test_signatures_of_the_contract_are_those_of_the_code() -> None:
+    seen = 0
+    for what, found, told in contract():
+        true = [name for name in inspect.signature(found).parameters if name != "self"]
+        assert told == true, f"ARCHITECTURE.md, {what}: ({', '.join(told)}), the code has ({', '.join(true)})"
+        seen += 1
+    assert seen > 40
+
+
+def test_every_file_it_names_exists() -> None:
+    named = {name for name in re.findall(r"`((?:[\w.-]+/)+[\w.-]*)`", PAGE) if "NAME" not in name}
+    rooms = [ROOT / room for room in ROOMS]
+    folders = [ROOT, *rooms, *(path for room in rooms for path in room.rglob("*") if path.is_dir())]
+    missing = sorted(name for name in named if not any((folder / name).exists() for folder in folders))
+    assert len(named) > 40
+    assert not missing, f"ARCHITECTURE.md names what does not exist: {', '.join(missing)}"
+
+
+def declared() -> dict[str, set[str]]:
+    """Requirements of pyproject.toml without versions: those of every installation, and the extras'."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = [each for group in project["optional-dependencies"].values() for each in group]
+    return {
+        "always": {re.split(r"[<>=!~ ]", each)[0] for each in project["dependencies"]},
+        "extras": {re.split(r"[<>=!~ ]", each)[0] for each in extras},
+    }
+
+
+def table() -> dict[str, str]:
+    """Package and reason, from the section Dependencies."""
+    section = PAGE.split("\n## Dependencies\n")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (`.*?) \| (.+) \|$", section, re.MULTILINE)
+    return {package: reason for cell, reason in rows for package in re.findall(r"`([^`]+)`", cell)}
+
+
+def imported(folders: tuple[str, ...]) -> set[str]:
+    """Top-level modules from outside that the rooms import anywhere."""
+    found: set[str] = set()
+    for path in (path for folder in folders for path in (ROOT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                found |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                found.add(node.module.split(".")[0])
+    return found - set(sys.stdlib_module_names) - set(ROOMS)
+
+
+def bare(package: str) -> str:
+    return re.sub(r"\[.*\]", "", package).lower().replace("_", "-")
+
+
+def test_every_dependency_has_a_reason_and_every_reason_a_dependency() -> None:
+    packages = declared()
+    assert set(table()) == packages["always"] | packages["extras"]
+
+
+def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None:
+    providers = packages_distributions()
+    packages = declared()
+    for folders, allowed in (
+        (ROOMS[:-1], packages["always"]),
+        (ROOMS, packages["always"] | packages["extras"]),
+    ):
+        for name in imported(folders):
+            from_ = {bare(each) for each in providers.get(name, [name])}
+            optional = name == "pysindy"
+            assert optional or from_ & {bare(each) for each in allowed}, (
+                f"{name} is imported, but not declared"
+            )
+    used = {bare(each) for name in imported(ROOMS) for each in providers.get(name, [name])}
+    for package, reason in table().items():
+        told_unused = reason.startswith("nothing yet")
+        if package not in WITHOUT_IMPORT and package != "pysindy":
+            assert (bare(package) in used) != told_unused, f"{package}: {reason}"
