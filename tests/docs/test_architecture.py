@@ -6,8 +6,8 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
-from importlib.metadata import packages_distributions
 from pathlib import Path
 from typing import Any
 
@@ -83,23 +83,33 @@ def table() -> dict[str, str]:
     """Package and reason, from the section Dependencies."""
     section = PAGE.split("\n## Dependencies\n")[1].split("\n## ")[0]
     rows = re.findall(r"^\| (`.*?) \| (.+) \|$", section, re.MULTILINE)
-    return {package: reason for cell, reason in rows for package in re.findall(r"`([^`]+)`", cell)}
+    return {each: reason for cell, reason in rows for each in re.findall(r"`([^`]+)`", cell)}
 
 
-def imported(folders: tuple[str, ...]) -> set[str]:
-    """Top-level modules from outside that the rooms import anywhere."""
+@cache
+def imported_by(room: str) -> frozenset[str]:
+    """Top-level modules from outside that a room imports anywhere."""
     found: set[str] = set()
-    for path in (path for folder in folders for path in (ROOT / folder).rglob("*.py")):
+    for path in (ROOT / room).rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 found |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 found.add(node.module.split(".")[0])
-    return found - set(sys.stdlib_module_names) - set(ROOMS)
+    return frozenset(found - set(sys.stdlib_module_names) - set(ROOMS))
 
 
-def bare(package: str) -> str:
-    return re.sub(r"\[.*\]", "", package).lower().replace("_", "-")
+def imported(rooms: tuple[str, ...]) -> set[str]:
+    return {name for room in rooms for name in imported_by(room)}
+
+
+def bare(requirement: str) -> str:
+    return re.sub(r"\[.*\]", "", requirement).lower().replace("_", "-")
+
+
+def package(name: str) -> str:
+    """The package that an imported module comes from."""
+    return {"yaml": "pyyaml", "can": "python-can", "erfa": "pyerfa", "serial": "pyserial"}.get(name, name)
 
 
 def test_every_dependency_has_a_reason_and_every_reason_a_dependency() -> None:
@@ -108,20 +118,13 @@ def test_every_dependency_has_a_reason_and_every_reason_a_dependency() -> None:
 
 
 def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None:
-    providers = packages_distributions()
     packages = declared()
-    for folders, allowed in (
-        (ROOMS[:-1], packages["always"]),
-        (ROOMS, packages["always"] | packages["extras"]),
-    ):
-        for name in imported(folders):
-            from_ = {bare(each) for each in providers.get(name, [name])}
-            optional = name == "pysindy"
-            assert optional or from_ & {bare(each) for each in allowed}, (
-                f"{name} is imported, but not declared"
-            )
-    used = {bare(each) for name in imported(ROOMS) for each in providers.get(name, [name])}
-    for package, reason in table().items():
-        told_unused = reason.startswith("nothing yet")
-        if package not in WITHOUT_IMPORT and package != "pysindy":
-            assert (bare(package) in used) != told_unused, f"{package}: {reason}"
+    always, everything = packages["always"], packages["always"] | packages["extras"]
+    for folders, allowed in ((ROOMS[:-1], always | {"pysindy"}), (ROOMS, everything)):
+        unknown = {package(name) for name in imported(folders)} - {bare(each) for each in allowed}
+        assert not unknown, f"imported, but not declared: {', '.join(sorted(unknown))}"
+    used = {package(name) for name in imported(ROOMS)}
+    for each, reason in table().items():
+        if each not in WITHOUT_IMPORT and each != "pysindy":
+            told_unused = reason.startswith("nothing yet")
+            assert (bare(each) in used) != told_unused, f"{each}: {reason}"
