@@ -89,7 +89,7 @@ class Outcome:
             ),
         ) as batches:
             for batch in batches:
-                rows = np.stack([batch.column(name).to_numpy() for name in ("t", "velocity")])
+                rows = np.stack([np.from_dlpack(batch.column(name)) for name in ("t", "velocity")])
                 parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
         t, velocity = np.concatenate(parts, axis=1)
         return {"t": t, "velocity": velocity}

@@ -51,11 +51,14 @@ class Trace:
             return
         import pyarrow as pa
 
-        rows = np.concatenate(self._pieces)
+        columns = np.ascontiguousarray(np.concatenate(self._pieces).T)
+        count = columns.shape[1]
         self._pieces.clear()
         self._rows = 0
         try:
-            self._writer.write_table(pa.table([pa.array(column) for column in rows.T], schema=self._schema))
+            # not pa.array, which imports pandas to see what it has been given: half a second
+            buffers = [pa.Array.from_buffers(pa.float64(), count, [None, pa.py_buffer(c)]) for c in columns]
+            self._writer.write_table(pa.table(buffers, schema=self._schema))
         except OSError as error:
             raise LogError(f"{self.path}: {_reason(error)}") from None
 
@@ -81,7 +84,7 @@ def read(
 
     wanted = list(dict.fromkeys(("t_s", *columns)))
     table = pq.read_table(path, columns=wanted, filters=[("t_s", ">=", low_s), ("t_s", "<=", high_s)])
-    return {name: table[name].to_numpy() for name in wanted}
+    return {name: _column(table[name]) for name in wanted}
 
 
 def overview(path: Path, columns: tuple[str, ...], points: int = 4000) -> dict[str, npt.NDArray[np.float64]]:
@@ -97,10 +100,15 @@ def overview(path: Path, columns: tuple[str, ...], points: int = 4000) -> dict[s
         width = max(1, -(-2 * file.metadata.num_rows // points))
         for group in range(file.num_row_groups):
             table = file.read_row_group(group, columns=wanted)
-            rows = np.stack([table[name].to_numpy() for name in wanted], axis=1)
+            rows = np.stack([_column(table[name]) for name in wanted], axis=1)
             pieces.append(rows[_extremes(rows[:, 1], width)])
     joined = np.concatenate(pieces) if pieces else np.empty((0, len(wanted)))
     return {name: joined[:, index] for index, name in enumerate(wanted)}
+
+
+def _column(column: Any) -> npt.NDArray[np.float64]:
+    """A column without gaps as an array; `to_numpy` would import pandas first, half a second."""
+    return np.concatenate([np.empty(0), *(np.from_dlpack(chunk) for chunk in column.chunks)])
 
 
 def _extremes(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.intp]:
