@@ -117,6 +117,11 @@ def test_every_requirement_has_a_row(name: str) -> None:
     assert re.search(rf"^\| {name} \| ", PAGE, re.MULTILINE), f"FIDELITY.md has no row for {name}"
 
 
+def test_every_effect_is_on_the_page() -> None:
+    missing = [name for name in NAMES if f"`{name}`" not in PAGE.split("## Effects")[1].split("\n## ")[0]]
+    assert not missing
+
+
 def test_every_file_it_names_exists() -> None:
     named = set(re.findall(r"`((?:[\w.-]+/)+[\w.-]+)`", PAGE))
     assert len(named) > 20
