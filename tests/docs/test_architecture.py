@@ -11,9 +11,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from bus.protocol import Device, Opcode
+from bus.protocol.database import database
+
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
 ROOMS = ("bus", "boards", "plant", "host", "scenarios", "tests")
+NAMED = {opcode.value: opcode.name for opcode in Opcode}
 _CLASS = re.compile(r"^    class (\w+)[^#]*#\s+([\w/]+\.py)")
 _DEF = re.compile(r"\bdef (\w+)\(((?:[^()]|\([^()]*\))*)\)")
 _PATH = re.compile(r"#\s+([\w/]+\.py)")
@@ -58,6 +62,23 @@ def test_signatures_of_the_contract_are_those_of_the_code() -> None:
         assert told == true, f"ARCHITECTURE.md, {what}: ({', '.join(told)}), the code has ({', '.join(true)})"
         seen += 1
     assert seen > 40
+
+
+def test_device_types_opcodes_and_periods_are_those_of_the_protocol() -> None:
+    section = PAGE.split("\n## The protocol")[1].split("\n## ")[0]
+    devices = section.split("Device types: ")[1].split("(Reserved")[0]
+    assert {name: int(number, 16) for name, number in re.findall(r"(\w+) (0x\d+)", devices)} == {
+        device.name: device.value for device in Device
+    }
+    opcodes = section.split("Opcodes (")[1].split("Results:")[0]
+    told = {int(number, 16): name for number, name in re.findall(r"(0x\d+) ([A-Z_]+)", opcodes)}
+    assert {number: name.removeprefix("FOCUS_") for number, name in NAMED.items()} == told
+    for message in database().messages:
+        kind = message.name.rpartition("_")[2]
+        row = next(line for line in section.splitlines() if f"`<NODE>_{kind}`" in line)
+        period = message.cycle_time or 0
+        words = f"| {period // 1000} s |" if period and not period % 1000 else f"| {period} ms |"
+        assert words in row if period else " ms |" not in row, f"{message.name}: {period} ms"
 
 
 def test_every_file_it_names_exists() -> None:
