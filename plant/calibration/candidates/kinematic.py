@@ -54,10 +54,10 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
         if not 0.002 < on.mean() < 0.6:
             continue
         out.append(Candidate("roller_slip", "velocity", (-w * on)[:, None], (("creep", "1"),), stage="roller",
-                             fixed={"limit": (limit, "rad/s2")}))
+                             fixed={"limit": (limit, "rad/s2")}, sign=1))
         over = np.sign(acceleration) * np.maximum(size - limit, 0.0) * arcsec
         out.append(Candidate("roller_slip", "velocity", -over[:, None], (("slip", "s"),), stage="roller",
-                             fixed={"limit": (limit, "rad/s2")}))
+                             fixed={"limit": (limit, "rad/s2")}, sign=1))
     for h in (1, 2):
         order = STAGES["roller"] * h
         if span * order > 0.8:

@@ -22,6 +22,13 @@ CLIPPED = 4.0  # counts expected: below it the converter's noise is cut off at z
 DECLARED_R, DECLARED_K = 2.2, 0.39  # ohm, V s/rad; design.md: only used to tell which rows should carry current
 
 
+RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
+TRUNCATION = (0.25, 0.8)  # counts that a converter which rounds down reads too low, 0.5 at even spread
+SURE = 4.0  # standard errors
+MORE = 25.0  # log likelihood that the converter must explain beyond what a supply that gives way explains
+AS_GOOD = 0.1  # of its gain, that it may explain less where it is to stand for all of it
+
+
 @dataclass
 class Electrical:
     """The E problem and the columns its candidates are made of, all (2 n,): motor A's rows, then motor B's."""
@@ -83,8 +90,40 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
     problem = Problem("E", "V", c["y"], base, labels, twice(frame.t[m.pick]), twice(frame.run[m.pick]),
                       twice(frame.session[m.pick]), c["ok"] > 0, twice(held[m.pick]), m.period_s, ar_order=4,
                       block_s=3.0, sensor="voltage")
-    fit = gls(problem.y, base, problem.train, 4, problem.block)
+    _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
+    fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))
     motor = np.concatenate([np.zeros(n), np.ones(n)])
     return Electrical(problem, c["duty"], c["i"], c["pull"], c["drag"], c["power"], c["lags"], motor, c["v"],
                       float(fit.beta[0]), float(fit.beta[1]), error, frame.scale["adc_A_per_count"])
+
+
+def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: float) -> None:
+    """Add how the converter samples to the base, where the log shows it.
+
+    Sampled at the falling edge of the PWM (paper 3.3) the current reads V d (1-d) / (2 L f) above its mean, and a
+    converter that rounds down half a count below. Both are declared, both are bounded; a log sampled otherwise keeps
+    its base, and what looks like a ripple but fits better as a supply that gives way is left to that effect.
+    """
+    ripple, offset = -supply * duty * (1 - duty), np.full(len(duty), ampere)
+    sag = duty * power
+
+    def fit(*columns: Array) -> tuple[float, Array, Array]:
+        f = gls(p.y, np.column_stack([p.base, *columns]), p.train, p.ar_order, p.block)
+        return f.loglik, f.beta, np.sqrt(np.maximum(np.diag(f.covariance), 1e-300))
+
+    at = p.base.shape[1]
+
+    def sound(beta: Array, error: Array) -> bool:
+        counts = float(beta[at + 1] / beta[0])
+        return bool(RIPPLE[0] < beta[at] < RIPPLE[1] and TRUNCATION[0] < counts < TRUNCATION[1]
+                    and beta[at] > SURE * error[at] and beta[at + 1] > SURE * error[at + 1])
+
+    other = fit(sag, offset)[0]
+    without = fit()[0]
+    alone, beta, error = fit(ripple, offset)
+    both, beta2, error2 = fit(ripple, offset, sag)
+    as_good = other - alone < AS_GOOD * (alone - without)
+    if (as_good and sound(beta, error)) or (both > other + MORE and sound(beta2, error2)):
+        p.base = np.column_stack([p.base, ripple, offset])
+        p.base_labels += [("current_ripple", "1"), ("conversion_offset", "ohm")]

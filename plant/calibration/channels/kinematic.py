@@ -105,7 +105,12 @@ def _offsets(segment: Array, n: int, valid: Mask) -> Array:
 
 
 def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
-    """Incremental velocity - rate of the absolute encoder, in arcsec/s; base: the counting window's delay."""
+    """Incremental velocity - rate of the absolute encoder, in arcsec/s.
+
+    Base: the counting window's delay, and its next order. The counts are those of the window at each row, the rate is a
+    mean over all of the time between rows, and a position that was carried on to its row's time lags by a part of the
+    acceleration: all three are a number times the jerk.
+    """
     if frame.get("velocity") is None:
         return None
     velocity, trusted = fill(frame.columns["velocity"], frame.run)
@@ -113,9 +118,10 @@ def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
     y = (m.at(velocity) - m.rate[pick]) / ARCSEC
     effort, _ = fill(frame.columns["effort"], frame.run)
     near = m.smooth(transients(frame, effort).astype(float))[pick] > 1e-9
-    base = (m.acceleration[pick] / ARCSEC)[:, None]
-    return Problem("S", "arcsec/s", y, base, [("velocity_delay", "s")], frame.t[pick], frame.run[pick],
-                   frame.session[pick], (m.trusted & trusted)[pick] & ~near, held[pick], m.period_s, ar_order=4,
+    jerk = np.gradient(m.acceleration, frame.period_s)
+    base = np.column_stack([m.acceleration[pick], jerk[pick]]) / ARCSEC
+    return Problem("S", "arcsec/s", y, base, [("velocity_delay", "s"), ("window_curvature", "s2")], frame.t[pick],
+                   frame.run[pick], frame.session[pick], (m.trusted & trusted)[pick] & ~near, held[pick], m.period_s, ar_order=4,
                    block_s=3.0, sensor="velocity")
 
 
