@@ -52,8 +52,8 @@ class MotorPwm:
         self.pdc_b = pdc_b
         steps = self.steps
         period = self.period_ns
-        # The period boundary at or after t_ns; the time base runs on the board's crystal, whose 1e-5 is
-        # below 1 ns here.
+        # The period boundary at or after t_ns. Simplified: the time base runs on true time, not on the
+        # board's crystal.
         loads = t_ns + (self._phase_ns - t_ns) % period
         self.drive(
             loads,
