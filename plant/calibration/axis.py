@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from pathlib import Path
+
 import numpy as np
 
 from plant.calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
@@ -25,12 +27,14 @@ from plant.calibration.channels.kinematic import (
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
+from plant.calibration.declaredplant import Declared, declared_numbers
 from plant.calibration.decide.broadband import pick_up, wind
 from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.parameters import finding_of
 from plant.calibration.decide.select import Selection, design, select
 from plant.calibration.decide.tolerance import compliance_change, torque_changes
+from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
@@ -62,6 +66,7 @@ def white_noise(e: Array, p: Problem) -> float:
 class AxisResult:
     """Everything the axis pipeline found, for the decision and the report."""
 
+    declared: Declared
     frame: Frame
     motion: Motion
     held: Mask
@@ -101,15 +106,16 @@ def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
     return held, names_out
 
 
-def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[[str], None] = lambda s: None
-            ) -> AxisResult:
+def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[[str], None] = lambda s: None,
+            plant: Path | None = None) -> AxisResult:
     """Run every channel the logs have."""
     rng = np.random.default_rng(seed)
     wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
     frame = build_frame(runs)
     held, held_names = choose_held_out(frame, hold_out)
     m = motion_of(frame, WIDTH)
-    result = AxisResult(frame, m, held, None, None, None, held_out=held_names)
+    numbers = declared_numbers(runs, plant)
+    result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
     result.findings += wraps[:1] + clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)[m.pick]
     tell("electrical channel")
@@ -132,7 +138,7 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
             stacked, m.period_s, result.kinematic.motor), rng)
         result.selections["K"] = s
         _collect(result, s)
-        found, stiffness = compliance_change(s, runs[0].header.get("axis", "ra"))
+        found, stiffness = compliance_change(s, numbers)
         result.findings += found
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, held)
@@ -188,6 +194,10 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     p, c = torque.problem, torque.context
     if result.kinematic is not None:
         p.valid &= result.kinematic.engaged
+    for _, stage, harmonic in result.declared.lines:
+        order = STAGES[stage] * harmonic
+        p.base = np.hstack([p.base, axis_lines.pair(m.theta[m.pick] / (2 * np.pi) * order, c, m.period_s, None, order)])
+        p.base_labels += [(f"declared {stage} {harmonic}", "N m")] * 2
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
     ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
@@ -199,7 +209,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     if "adc_offset" in forced:
         p.base = np.column_stack([p.base, np.ones(len(p.y))])
         p.base_labels.append(("offset_torque", "N m"))
-    stiffness = 3.08e6 if frame.runs[0].header.get("axis") == "ra" else 2.46e6
+    stiffness = result.declared.stiffness
     if "K" in result.selections and result.selections["K"].after.beta[0] > 1e-8:
         stiffness = 1.0 / float(result.selections["K"].after.beta[0])
     theta = m.theta[m.pick]
@@ -229,8 +239,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         result.findings.append(blowing)
     everything = replace(p, valid=whole)
     all_rows = gls(p.y, design(everything, [x.candidate for x in s.chosen]), everything.train, p.ar_order, p.block)
-    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()),
-                                       frame.runs[0].header.get("preload", "low"))
+    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared)
     result.findings += found
     result.calibrated |= calibrated
 

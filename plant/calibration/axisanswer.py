@@ -10,8 +10,6 @@ import numpy as np
 
 from plant.calibration.answers import calibrated, error_row, gate_rows, refusals
 from plant.calibration.axis import AxisResult, analyse
-from plant.calibration.channels.declared import DECLARED
-from plant.calibration.channels.frame import build_frame
 from plant.calibration.decide.controls import controls
 from plant.calibration.decide.finding import Finding
 from plant.calibration.decide.merge import merge
@@ -38,7 +36,7 @@ def axis_answer(runs: list[Run], hold_out: list[str], out: Path, plant: Path | N
         v = Verdict("nothing", [], reasons=[reason], not_identifiable=["everything: " + reason])
         write_plant(out / "plant.yaml", axis, preload, {}, [], plant, "nothing")
         return v, [], title
-    result = analyse(runs, hold_out, tell=tell)
+    result = analyse(runs, hold_out, tell=tell, plant=plant)
     effects = merge(result.findings)
     verdict, separating = judge(effects)
     v = Verdict(verdict, effects, held_out=result.held_out, separating=separating,
@@ -50,7 +48,7 @@ def axis_answer(runs: list[Run], hold_out: list[str], out: Path, plant: Path | N
     for key, s in result.selections.items():
         if key in SENSORS and np.isfinite(s.held.before):
             v.error[SENSORS[key]] = error_row(s)
-    _before_within_tolerance(v, result, effects, preload)
+    _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
     remarks = write_plant(out / "plant.yaml", axis, preload, v.calibrated, effects, plant, runs[0].name)
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *remarks]
@@ -75,10 +73,8 @@ def too_little(runs: list[Run]) -> str:
 def not_identifiable(result: AxisResult) -> list[str]:
     """Parameters this motion cannot tell, from the coverage of the motion and the conditioning; not from the fit."""
     out = []
-    frame = build_frame(result.frame.runs)
     rate = np.abs(result.motion.rate[result.motion.pick])
-    preload = frame.runs[0].header.get("preload", "low")
-    vs = DECLARED[preload]["stribeck_speed"]
+    vs = result.declared.stribeck_speed
     moving = rate > 5e-6
     slow, quick = np.mean((rate > 0.05 * vs) & (rate < 0.8 * vs)), np.mean(rate > 2.5 * vs)
     if slow < 0.004 or quick < 0.02:
@@ -101,31 +97,31 @@ def not_identifiable(result: AxisResult) -> list[str]:
     return out
 
 
-def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Finding], preload: str) -> None:
+def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Finding]) -> None:
     """A declared number that is another one: "before" may only re-calibrate within the tolerance of the declared one."""
-    from plant.calibration.decide.tolerance import SIGMA_0, SIGMA_TOLERANCE, STIFFNESS, TOLERANCE
+    from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
 
-    d = DECLARED[preload]
+    d = result.declared
     changed = {e.name for e in effects}
     t = result.selections.get("T")
     if t is not None and result.torque is not None:
         f = result.torque.friction
         fixed: dict[int, float] = {}
         if "coulomb_change" in changed:
-            fixed[2] = float(np.clip(t.after.beta[2], d["coulomb"] / TOLERANCE, d["coulomb"] * TOLERANCE))
+            fixed[2] = float(np.clip(t.after.beta[2], d.coulomb / TOLERANCE, d.coulomb * TOLERANCE))
         if "viscous_change" in changed:
-            fixed[1] = float(np.clip(t.after.beta[1], d["viscous"] / TOLERANCE, d["viscous"] * TOLERANCE))
+            fixed[1] = float(np.clip(t.after.beta[1], d.viscous / TOLERANCE, d.viscous * TOLERANCE))
         if "stribeck_change" in changed:
-            low, high = np.log(d["stiction"] / TOLERANCE / f.coulomb), np.log(d["stiction"] * TOLERANCE / f.coulomb)
+            low, high = np.log(d.stiction / TOLERANCE / f.coulomb), np.log(d.stiction * TOLERANCE / f.coulomb)
             fixed[3] = float(np.clip(np.log(f.ratio), low, high) - np.log(f.ratio))
         if "presliding" in changed:
-            low, high = np.log(SIGMA_0 / SIGMA_TOLERANCE / f.coulomb), np.log(SIGMA_0 * SIGMA_TOLERANCE / f.coulomb)
+            low, high = np.log(d.sigma_0 / SIGMA_TOLERANCE / f.coulomb), np.log(d.sigma_0 * SIGMA_TOLERANCE / f.coulomb)
             fixed[5] = float(np.clip(np.log(f.stiffness), low, high) - np.log(f.stiffness))
         if fixed and "torque" in v.error:
             v.error["torque"]["before"] = _constrained(t, fixed)
     k = result.selections.get("K")
     if k is not None and "shaft_compliance" in changed and "position" in v.error:
-        declared = STIFFNESS[result.frame.runs[0].header["axis"]]
+        declared = d.stiffness
         value = float(np.clip(k.after.beta[0], 1 / declared / TOLERANCE, TOLERANCE / declared))
         v.error["position"]["before"] = _constrained(k, {0: value})
 

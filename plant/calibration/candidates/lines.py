@@ -8,6 +8,7 @@ from plant.calibration.candidates.candidate import Candidate, sine_columns
 from plant.calibration.candidates.context import Context
 
 NAMES = {"axis": "gravity_imbalance", "mesh1": "gear_mesh", "mesh2": "gear_mesh", "mesh3": "gear_mesh"}
+FREE_TURNS = 5.0  # cycles within the travel before an order that no stage has is a line and not a bend
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 
 
@@ -41,7 +42,7 @@ def free_lines(c: Context, count: int = 220, top: float | None = None) -> list[C
         return []
     quickest = float(np.quantile(np.abs(c.speed), 0.9)) * float(np.median(np.diff(c.t)))
     highest = min(top or 1e9, 0.4 / quickest if quickest > 0 else 1e9, count / (2 * span))
-    rates = np.arange(1.5, highest * span, 0.5) / span
+    rates = np.arange(FREE_TURNS, highest * span, 0.5) / span
     taken = [r * h for r in c.stages.values() for h in (1, 2, 3)]
     out = []
     for rate in rates[:count]:

@@ -10,6 +10,7 @@ from plant.calibration.readers.run import Array, Run
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
 LOST = 0.003  # fraction of rows missing that is worth a word
+PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 PACKET = 25  # rows per RS232 packet, log-format.md
 
@@ -160,12 +161,16 @@ def _folds(x: Array, length: int) -> int:
 
 
 def _stops(x: Array, name: str) -> str:
-    for end in (x.max(), x.min()):
-        share = float(np.mean(x == end))
+    """A column that piles up at one end: noise would spread it over the neighbouring counts."""
+    if name.startswith("tach"):
+        return ""  # a count or two at constant speed pile up by themselves
+    for end, inward in ((x.max(), -1.0), (x.min(), 1.0)):
         if end == 0 or (name.startswith("adc") and end >= 1023):
             continue
         power = np.log2(abs(end) + (1 if end > 0 else 0))
-        if share > 0.004 and np.sum(np.abs(x) > 0.97 * abs(end)) < 1.3 * np.sum(x == end) and abs(
-                power - round(power)) < 1e-9 and abs(end) > 60:
+        if name == "velocity" and abs(power - round(power)) > 1e-9:
+            continue  # a constant speed piles up too: only an end of a power of two is a stop
+        piled, next_to = int(np.sum(x == end)), int(np.sum(x == end + inward))
+        if piled >= PILE and piled > 3 * next_to + 20:
             return f"stops at {int(end)} counts"
     return ""

@@ -12,6 +12,7 @@ from plant.calibration.errors import CalibrationInputError
 from plant.calibration.readers.rig import Rig
 from plant.calibration.readers.run import Array, Run
 
+STANDSTILL = 0.005  # of the usual top speed: slower is standing
 MIN_ROWS = 200  # fewer rows than this say nothing about ten parameters
 
 
@@ -22,11 +23,14 @@ def rig_problem(runs: list[Run], rig: Rig, hold_out: list[str]) -> tuple[Problem
     files = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
     period = float(np.median(np.diff(parts[0]["t"])))
     direction = direction_of(join["x"], files, least_travel(join["x"]))
+    moving = direction != 0
+    if "inertia" in rig.estimate:  # a driven axis also stands still: there its friction has no direction
+        direction = np.tanh(join["v"] / (STANDSTILL * float(np.quantile(np.abs(join["v"]), 0.95)) or 1.0))
     run = _runs(rig, join, files)
     held = _held(runs, rig, files, run, hold_out)
     base, labels = _base(rig, join, direction)
     problem = Problem("T", rig.response["unit"], join["y"], base, labels, join["t"], run, files,
-                      np.isfinite(join["y"]) & (direction != 0) & (join["ok"] > 0), held, period, ar_order=6,
+                      np.isfinite(join["y"]) & moving & (join["ok"] > 0), held, period, ar_order=0,
                       block_s=max(20 * period, float(np.ptp(join["t"])) / 60), sensor="torque")
     stages = {s.name: 1 / s.period for s in rig.stages if s.period}
     unit = rig.columns["position"].unit

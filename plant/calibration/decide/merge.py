@@ -19,6 +19,7 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
     ("structural_mode", "T"): ("damaged_tooth",),
     ("brake_drag", "T"): ("friction_warmup",),
     ("unknown", "T"): ("wind_torque",),
+    ("encoder_eccentricity", "K"): ("roller_ratio",),
     ("cable_wrap", "T"): ("preload_change", "friction_warmup"),
 }
 SUPERFLUOUS = 0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
@@ -75,6 +76,10 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
         for k, other in enumerate(findings):
             if other is not f and other.name in names and (other.share <= max(f.share, 0.3) or other.name == "wind_torque"):
                 drop.add(k)
+    explained = max((f.share for f in findings if f.channel == "T" and f.name != "wind_torque"), default=0.0)
+    for k, other in enumerate(findings):
+        if other.name == "wind_torque" and explained > 0.4:
+            drop.add(k)
     tooth = [f for f in findings if f.name == "damaged_tooth"]
     for k, other in enumerate(findings):
         if other.name in ("gear_eccentricity", "gear_mesh") and other.channel == "K" and tooth:

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from plant.calibration.channels.declared import DECLARED
 from plant.calibration.channels.torque import Torque
+from plant.calibration.declaredplant import Declared
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.select import Selection
 from plant.calibration.statistics.regression import Fit
 from plant.calibration.statistics.tails import student_reach
 
 TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an estimate
-SIGMA_0 = 5.9e6  # N m/rad; design.md, the near miss that reaches the paper's rows together
 SIGMA_TOLERANCE = 2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
-STIFFNESS = {"ra": 3.08e6, "dec": 2.46e6}  # N m/rad, paper Table 1
 
 
 def beyond(value: float, error: float, declared: float, factor: float, sure: float = 5.0) -> bool:
@@ -28,7 +26,7 @@ def beyond(value: float, error: float, declared: float, factor: float, sure: flo
     return abs(np.log(value / declared)) - np.log(factor) > 0 and abs(value - declared) > sure * error
 
 
-def torque_changes(torque: Torque, after: Fit, rows: int, preload: str) -> tuple[list[Finding], dict[str, Parameter]]:
+def torque_changes(torque: Torque, after: Fit, rows: int, d: Declared) -> tuple[list[Finding], dict[str, Parameter]]:
     """Friction findings beyond tolerance, and every calibrated parameter with its interval.
 
     `after` is a fit whose first columns are the torque problem's base, on `rows` rows.
@@ -37,7 +35,6 @@ def torque_changes(torque: Torque, after: Fit, rows: int, preload: str) -> tuple
     error = np.sqrt(np.maximum(np.diag(cov), 0.0))
     blocks = max(rows // torque.problem.block, 5)
     reach = student_reach(blocks - 2)
-    d = DECLARED[preload]
     coulomb = float(beta[2])
     f = torque.friction
     logs = {"ratio": (np.log(f.ratio), 3), "speed": (np.log(f.stribeck_speed), 4), "stiffness": (np.log(f.stiffness), 5)}
@@ -61,25 +58,25 @@ def torque_changes(torque: Torque, after: Fit, rows: int, preload: str) -> tuple
         "sigma_0": span(sigma_0, sigma_error, "N m/rad"),
     }
     found = []
-    if beyond(coulomb, float(error[2]), d["coulomb"], TOLERANCE):
+    if beyond(coulomb, float(error[2]), d.coulomb, TOLERANCE):
         found.append(Finding("coulomb_change", "T", "velocity", parameters={"coulomb": calibrated["coulomb"]},
-                             evidence=_evidence(coulomb, d["coulomb"], float(error[2]))))
-    if beyond(float(beta[1]), float(error[1]), d["viscous"], TOLERANCE):
+                             evidence=_evidence(coulomb, d.coulomb, float(error[2]))))
+    if beyond(float(beta[1]), float(error[1]), d.viscous, TOLERANCE):
         found.append(Finding("viscous_change", "T", "velocity", parameters={"sigma_2": calibrated["viscous"]},
-                             evidence=_evidence(float(beta[1]), d["viscous"], float(error[1]))))
+                             evidence=_evidence(float(beta[1]), d.viscous, float(error[1]))))
     known = stiction_error < 0.1 * stiction and speed_error < 0.15 * speed
-    if known and (beyond(stiction, stiction_error, d["stiction"], TOLERANCE)
-                  or beyond(speed, speed_error, d["stribeck_speed"], TOLERANCE)):
+    if known and (beyond(stiction, stiction_error, d.stiction, TOLERANCE)
+                  or beyond(speed, speed_error, d.stribeck_speed, TOLERANCE)):
         found.append(Finding("stribeck_change", "T", "velocity", parameters={
             "breakaway": calibrated["stiction"], "stribeck_velocity": calibrated["stribeck_speed"]},
-            evidence=_evidence(stiction, d["stiction"], stiction_error)))
-    if sigma_error < 0.2 * sigma_0 and beyond(sigma_0, sigma_error, SIGMA_0, SIGMA_TOLERANCE):
+            evidence=_evidence(stiction, d.stiction, stiction_error)))
+    if sigma_error < 0.2 * sigma_0 and beyond(sigma_0, sigma_error, d.sigma_0, SIGMA_TOLERANCE):
         found.append(Finding("presliding", "T", "reversal", parameters={"sigma_0": calibrated["sigma_0"]},
-                             evidence=_evidence(sigma_0, SIGMA_0, sigma_error)))
+                             evidence=_evidence(sigma_0, d.sigma_0, sigma_error)))
     return found, calibrated
 
 
-def compliance_change(selection: Selection, axis: str) -> tuple[list[Finding], dict[str, Parameter]]:
+def compliance_change(selection: Selection, d: Declared) -> tuple[list[Finding], dict[str, Parameter]]:
     """Stiffness of one train from the wind-up line."""
     value, error = float(selection.after.beta[0]), float(np.sqrt(selection.after.covariance[0, 0]))
     if value <= 0:
@@ -89,9 +86,10 @@ def compliance_change(selection: Selection, axis: str) -> tuple[list[Finding], d
     reach = student_reach(blocks - 2) * spread
     p = Parameter(stiffness, "N m/rad", stiffness - reach, stiffness + reach)
     found = []
-    if error < 0.05 * value and beyond(stiffness, spread, STIFFNESS[axis], TOLERANCE):
+    declared = min((d.stiffness * r for r in d.readings), key=lambda k: abs(float(np.log(stiffness / k))))
+    if error < 0.05 * value and beyond(stiffness, spread, declared, TOLERANCE):
         found.append(Finding("shaft_compliance", "K", "current", parameters={"stiffness": p},
-                             evidence=_evidence(stiffness, STIFFNESS[axis], spread)))
+                             evidence=_evidence(stiffness, declared, spread)))
     return found, {"stiffness": p}
 
 
