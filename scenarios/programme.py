@@ -43,6 +43,7 @@ class Programme:
         self._logs = logs
         self._running: dict[int, Procedure] = {}
         self._waiting = list(range(len(self.records)))
+        self._before = [self._predecessors(index) for index in self._waiting]
         self._ready_since_s: dict[int, float] = {}
         self._stopping: Procedure | None = None
 
@@ -84,16 +85,22 @@ class Programme:
 
     def _may_start(self, index: int, t_s: float) -> bool:
         step = self.records[index].step
-        if step.after is not None:
-            before = [record for record in self.records[:index] if record.step.name == step.after]
-        else:
-            # in line: everything before, except what runs beside the line because of its `after`
-            before = [record for record in self.records[:index] if record.step.after is None]
-        if any(record.end_s is None for record in before) or (step.at_s is not None and t_s < step.at_s):
+        if step.at_s is not None and t_s < step.at_s:
             return False
+        for record in reversed(self._before[index]):  # the last one is the likeliest not to have ended
+            if record.end_s is None:
+                return False
         if t_s - self._ready_since_s.setdefault(index, t_s) < step.delay_s:
             return False
         return step.when is None or self._holds(step.when)
+
+    def _predecessors(self, index: int) -> list[Record]:
+        """What has to end before a step may start."""
+        after = self.records[index].step.after
+        if after is not None:
+            return [record for record in self.records[:index] if record.step.name == after]
+        # in line: everything before, except what runs beside the line because of its `after`
+        return [record for record in self.records[:index] if record.step.after is None]
 
     def _holds(self, condition: str) -> bool:
         axes = [self._client.motion(axis) for axis in power.AXES]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import cast
 
 from bus.protocol.serial import NO_SETPOINT, SAMPLE_NS, STAMP_UNIT_NS, AxisSample, Packet
 from host.logs.files import LineFile
@@ -46,21 +47,21 @@ class AxisLog:
             self._turns += 1
         self._last_stamp = packet.stamp
         start = (packet.stamp + self._turns * _WRAP) * _STAMP_S
-        rows: list[Row] = [
-            (start + index * _SAMPLE_S, sample)
-            for index, sample in enumerate(packet.samples)
-            if isinstance(sample, AxisSample)
-        ]
+        samples = cast(tuple[AxisSample, ...], packet.samples)
+        rows: list[Row] = [(start + index * _SAMPLE_S, sample) for index, sample in enumerate(samples)]
         if self._distort is not None:
             rows = self._distort(rows)
         self.rows += len(rows)
         if rows:
-            self.file.write("".join([_line(t, *sample) for t, sample in rows]))
+            self.file.write(_lines(rows))
 
 
-def _line(
-    t: float, effort: int, position: int, velocity: int, adc_a: int, adc_b: int, tach_a: int, tach_b: int,
-    aux: int, setpoint: int,
-) -> str:  # fmt: skip
-    wanted = "" if setpoint == NO_SETPOINT else f"{setpoint * _SETPOINT_ARCSEC_S:.6f}"
-    return f"{t:.6f},{wanted},{effort},{position},{velocity},{adc_a},{adc_b},{tach_a},{tach_b},{aux}\n"
+def _lines(rows: list[Row]) -> str:
+    """The rows of a packet as text. In one piece: there are two hundred rows a second."""
+    lines = []
+    for t, (effort, position, velocity, adc_a, adc_b, tach_a, tach_b, aux, setpoint) in rows:
+        wanted = "" if setpoint == NO_SETPOINT else f"{setpoint * _SETPOINT_ARCSEC_S:.6f}"
+        lines.append(
+            f"{t:.6f},{wanted},{effort},{position},{velocity},{adc_a},{adc_b},{tach_a},{tach_b},{aux}\n"
+        )
+    return "".join(lines)
