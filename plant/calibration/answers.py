@@ -26,7 +26,8 @@ SENSORS = ("torque", "voltage", "position", "velocity")
 
 
 def white_floor(s: Selection) -> float:
-    """rms of what changes from sample to sample in the final residual on held-out rows: the sensors' noise."""
+    """rms of what changes from sample to sample in the final residual on held-out rows: the sensors'
+    noise."""
     p = s.problem
     rows = p.test if p.test.sum() > 50 else p.valid
     e = np.where(rows, s.after.residual, np.nan)
@@ -39,7 +40,12 @@ def white_floor(s: Selection) -> float:
 def error_row(s: Selection, floor: float | None = None) -> dict[str, Any]:
     """One row of the error table."""
     left = white_floor(s) if floor is None or floor <= 0 else floor
-    return {"unit": s.problem.unit, "before": s.held.before, "after": s.held.after, "floor": min(left, s.held.after)}
+    return {
+        "unit": s.problem.unit,
+        "before": s.held.before,
+        "after": s.held.after,
+        "floor": min(left, s.held.after),
+    }
 
 
 def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]:
@@ -57,7 +63,10 @@ def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]
 
 def gate_rows(selections: dict[str, Selection]) -> dict[str, dict[str, float]]:
     """Threshold and statistic of every channel."""
-    return {k: {"threshold": s.scores.threshold, "statistic": min(s.statistic, 1e6)} for k, s in selections.items()}
+    return {
+        k: {"threshold": s.scores.threshold, "statistic": min(s.statistic, 1e6)}
+        for k, s in selections.items()
+    }
 
 
 def refusals(selections: dict[str, Selection]) -> list[tuple[str, str, str]]:
@@ -76,13 +85,27 @@ def guide(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: bool) ->
     title = f"Guide log, {runs[0].header.get('mount', 'unnamed mount')}"
     found = analyse_guide(runs, rig, hold_out)
     if isinstance(found, str):
-        return Verdict("nothing", [], reasons=[found], not_identifiable=["everything: the log is too short"]), [], title
+        return (
+            Verdict("nothing", [], reasons=[found], not_identifiable=["everything: the log is too short"]),
+            [],
+            title,
+        )
     s = found.selection
     effects = merge(found.findings)
     verdict, separating = judge(effects)
-    v = Verdict(verdict, effects, {"position": error_row(s, found.problem.floor)}, found.held_out,
-                calibrated(s, ("offset",)), found.not_identifiable, _worm_controls(found), separating,
-                [n for r in runs for n in r.notes][:2], gate_rows({"position": s}), refusals({"position": s}))
+    v = Verdict(
+        verdict,
+        effects,
+        {"position": error_row(s, found.problem.floor)},
+        found.held_out,
+        calibrated(s, ("offset",)),
+        found.not_identifiable,
+        _worm_controls(found),
+        separating,
+        [n for r in runs for n in r.notes][:2],
+        gate_rows({"position": s}),
+        refusals({"position": s}),
+    )
     return v, _guide_plots(found) if plots else [], title
 
 
@@ -100,14 +123,24 @@ def _worm_controls(found: Any) -> list[dict[str, Any]]:
             for step, word in ((1, "more"), (-1, "less")):
                 rate = c.frequency + step / SIDEREAL_DAY_S
                 if step and abs(step / SIDEREAL_DAY_S) * float(np.ptp(s.problem.t)) < 0.3:
-                    out.append({"what": f"one tooth {word}: {1 / rate:.2f} s", "accepted": False,
-                                "note": "this log is too short to tell one tooth from the next"})
+                    out.append(
+                        {
+                            "what": f"one tooth {word}: {1 / rate:.2f} s",
+                            "accepted": False,
+                            "note": "this log is too short to tell one tooth from the next",
+                        }
+                    )
                     continue
                 wrong = replace(c, columns=harmonics(s.problem, rate, max(c.width // 2, 1)))
                 out.append({"what": f"one tooth {word}: {1 / rate:.2f} s", "accepted": _better(s, k, wrong)})
             for factor in (0.9, 1.1):
                 wrong = replace(c, columns=harmonics(s.problem, c.frequency * factor, max(c.width // 2, 1)))
-                out.append({"what": f"wrong period: {1 / (c.frequency * factor):.1f} s", "accepted": _better(s, k, wrong)})
+                out.append(
+                    {
+                        "what": f"wrong period: {1 / (c.frequency * factor):.1f} s",
+                        "accepted": _better(s, k, wrong),
+                    }
+                )
         out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(s, k)})
     return out
 
@@ -119,12 +152,26 @@ def _guide_plots(found: Any) -> list[dict[str, str]]:
     out = []
     if s.chosen and s.chosen[0].candidate.frequency:
         f0 = s.chosen[0].candidate.frequency
-        out.append({"image": draw.domain_plot(s, (p.t * f0) % 1.0, "phase of the period, turns",
-                                              "Residual over the period that explains it"),
-                    "alt": f"Residual over the phase of {1 / f0:.2f} s"})
-    out.append({"image": draw.order_plot(s, p.t, found.stages, "Spectrum with the known periods drawn in", "Hz"),
-                "alt": "Amplitude spectrum before and after, known periods dotted"})
-    out.append({"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out drive error"})
+        out.append(
+            {
+                "image": draw.domain_plot(
+                    s,
+                    (p.t * f0) % 1.0,
+                    "phase of the period, turns",
+                    "Residual over the period that explains it",
+                ),
+                "alt": f"Residual over the phase of {1 / f0:.2f} s",
+            }
+        )
+    out.append(
+        {
+            "image": draw.order_plot(s, p.t, found.stages, "Spectrum with the known periods drawn in", "Hz"),
+            "alt": "Amplitude spectrum before and after, known periods dotted",
+        }
+    )
+    out.append(
+        {"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out drive error"}
+    )
     out.append({"image": draw.gate_plot(s, "Gate"), "alt": "Largest score of this log against surrogates"})
     return out
 
@@ -138,18 +185,44 @@ def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer
     s, c = found.selection, found.context
     verdict, separating = judge(found.findings)
     turns = c.angle
-    v = Verdict(verdict, found.findings, {"torque": error_row(s, found.problem.floor)}, found.held_out, calibrated(s),
-                found.not_identifiable, controls(s, None, float(np.ptp(turns))) + _stage_controls(found),
-                separating, [], gate_rows({"T": s}), refusals({"T": s}))
+    v = Verdict(
+        verdict,
+        found.findings,
+        {"torque": error_row(s, found.problem.floor)},
+        found.held_out,
+        calibrated(s),
+        found.not_identifiable,
+        controls(s, None, float(np.ptp(turns))) + _stage_controls(found),
+        separating,
+        [],
+        gate_rows({"T": s}),
+        refusals({"T": s}),
+    )
     pictures = []
     if plots:
         for k, chosen in enumerate(s.chosen[:3]):
-            x, label = _domain(chosen.candidate.domain, c, chosen.candidate.order if chosen.candidate.kind == "line" else None)
-            pictures.append({"image": draw.domain_plot(s, x, label, chosen.candidate.say(), k),
-                             "alt": f"Residual over {label}: {chosen.candidate.say()}"})
-        pictures.append({"image": draw.order_plot(s, turns, c.stages, "Spectrum over order", f"cycles per {c.angle_unit}"),
-                         "alt": "Spectrum over order with the gear table"})
-        pictures.append({"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out residual"})
+            x, label = _domain(
+                chosen.candidate.domain,
+                c,
+                chosen.candidate.order if chosen.candidate.kind == "line" else None,
+            )
+            pictures.append(
+                {
+                    "image": draw.domain_plot(s, x, label, chosen.candidate.say(), k),
+                    "alt": f"Residual over {label}: {chosen.candidate.say()}",
+                }
+            )
+        pictures.append(
+            {
+                "image": draw.order_plot(
+                    s, turns, c.stages, "Spectrum over order", f"cycles per {c.angle_unit}"
+                ),
+                "alt": "Spectrum over order with the gear table",
+            }
+        )
+        pictures.append(
+            {"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out residual"}
+        )
         pictures.append({"image": draw.gate_plot(s, "Gate"), "alt": "Largest score against surrogates"})
     return v, pictures, rig.name
 
@@ -170,16 +243,22 @@ def _stage_controls(found: Any) -> list[dict[str, Any]]:
             for shift in (1.5, -1.5):
                 order = x.order + shift / span
                 wrong = replace(x, columns=sine_columns(c.angle * order, c.session), shape=None)
-                out.append({"what": f"order {order:.4g} in place of {x.order:.4g}", "accepted": _better(s, k, wrong)})
+                out.append(
+                    {"what": f"order {order:.4g} in place of {x.order:.4g}", "accepted": _better(s, k, wrong)}
+                )
     return out
 
 
 def _domain(name: str, c: Any, order: float | None) -> tuple[Array, str]:
     if order is not None:
         return (c.angle / c.turn * order) % 1.0, f"phase of order {order:.5g}, turns"
-    table = {"axis_angle": (c.angle, f"position, {c.angle_unit}"), "motor_angle": (c.angle, f"position, {c.angle_unit}"),
-             "velocity": (c.speed, f"speed, {c.angle_unit}/s"), "reversal": (c.since, f"travel since reversal, {c.angle_unit}"),
-             "time": (c.t, "time, s")}
+    table = {
+        "axis_angle": (c.angle, f"position, {c.angle_unit}"),
+        "motor_angle": (c.angle, f"position, {c.angle_unit}"),
+        "velocity": (c.speed, f"speed, {c.angle_unit}/s"),
+        "reversal": (c.since, f"travel since reversal, {c.angle_unit}"),
+        "time": (c.t, "time, s"),
+    }
     if name == "temperature" and c.temperature is not None:
         return c.temperature, "temperature, degC"
     if name == "current" and c.load is not None:
@@ -187,8 +266,14 @@ def _domain(name: str, c: Any, order: float | None) -> tuple[Array, str]:
     return table.get(name, (c.t, "time, s"))
 
 
-def axis(runs: list[Run], hold_out: list[str], out: Path, plant: Path | None, plots: bool, tell: Callable[[str], None]
-         ) -> Answer:
+def axis(
+    runs: list[Run],
+    hold_out: list[str],
+    out: Path,
+    plant: Path | None,
+    plots: bool,
+    tell: Callable[[str], None],
+) -> Answer:
     """Answer for logs of one axis of the telescope."""
     from plant.calibration.axisanswer import axis_answer
 

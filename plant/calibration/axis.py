@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-
 from pathlib import Path
 
 import numpy as np
@@ -27,13 +26,13 @@ from plant.calibration.channels.kinematic import (
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
-from plant.calibration.declaredplant import Declared, declared_numbers
 from plant.calibration.decide.broadband import pick_up, wind
 from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.parameters import finding_of
 from plant.calibration.decide.select import Selection, design, select
 from plant.calibration.decide.tolerance import compliance_change, torque_changes
+from plant.calibration.declaredplant import Declared, declared_numbers
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
@@ -43,16 +42,24 @@ K_DECLARED = 0.39  # N m/A; design.md, the near miss that reaches the paper's ro
 
 
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
-FINE_MARGIN = 0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
-LEAST_COMMAND = 0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
+FINE_MARGIN = (
+    0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
+)
+LEAST_COMMAND = (
+    0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
+)
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
 
 def largest_amplitude(s: Selection) -> float:
     """Largest sine amplitude of the first chosen effect."""
     at = s.problem.base.shape[1]
-    beta = s.after.beta[at:at + s.chosen[0].candidate.width]
-    return float(np.sqrt(beta[0::2] ** 2 + beta[1::2] ** 2).max()) if len(beta) % 2 == 0 else float(np.abs(beta).max())
+    beta = s.after.beta[at : at + s.chosen[0].candidate.width]
+    return (
+        float(np.sqrt(beta[0::2] ** 2 + beta[1::2] ** 2).max())
+        if len(beta) % 2 == 0
+        else float(np.abs(beta).max())
+    )
 
 
 def white_noise(e: Array, p: Problem) -> float:
@@ -80,7 +87,8 @@ class AxisResult:
 
 
 def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
-    """Held-out rows: the runs named, else one whole run whose speeds the others cover, else the end of a single run."""
+    """Held-out rows: the runs named, else one whole run whose speeds the others cover, else the end of a
+    single run."""
     n = len(frame.runs)
     if names:
         chosen = [k for k, r in enumerate(frame.runs) if {r.name, r.path.name, str(r.path)} & set(names)]
@@ -101,13 +109,18 @@ def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
     for k, r in enumerate(frame.runs):
         rows = np.flatnonzero(frame.run == k)
         cut = rows[int(0.7 * len(rows))]
-        held[cut:rows[-1] + 1] = True
+        held[cut : rows[-1] + 1] = True
         names_out.append(f"{r.name} from {frame.t[cut] - frame.t[rows[0]]:.0f} s")
     return held, names_out
 
 
-def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[[str], None] = lambda s: None,
-            plant: Path | None = None) -> AxisResult:
+def analyse(
+    runs: list[Run],
+    hold_out: list[str],
+    seed: int = 0,
+    tell: Callable[[str], None] = lambda s: None,
+    plant: Path | None = None,
+) -> AxisResult:
     """Run every channel the logs have."""
     rng = np.random.default_rng(seed)
     wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
@@ -123,8 +136,12 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
     per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
     if e is not None and e.problem.train.sum() > 200:
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
-        s = select(e.problem, electrical_candidates.electrical_effects(e, clock)
-                   + electrical_candidates.brush_effects(e, {"a": turns, "b": turns}), rng)
+        s = select(
+            e.problem,
+            electrical_candidates.electrical_effects(e, clock)
+            + electrical_candidates.brush_effects(e, {"a": turns, "b": turns}),
+            rng,
+        )
         result.selections["E"] = s
         per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
         _collect(result, s)
@@ -134,8 +151,9 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
     if result.kinematic is not None:
         p = result.kinematic.problem
         stacked = _stack(context)
-        s = select(p, kinematic_candidates.motor_encoder_effects(
-            stacked, m.period_s, result.kinematic.motor), rng)
+        s = select(
+            p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s, result.kinematic.motor), rng
+        )
         result.selections["K"] = s
         _collect(result, s)
         found, stiffness = compliance_change(s, numbers)
@@ -144,8 +162,12 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
     roller = roller_problem(frame, m, held)
     if roller is not None:
         alpha = m.acceleration[m.pick]
-        s = select(roller, kinematic_candidates.roller_effects(context, alpha, m.period_s)
-                   + kinematic_candidates.subdivision(context, m.period_s), rng)
+        s = select(
+            roller,
+            kinematic_candidates.roller_effects(context, alpha, m.period_s)
+            + kinematic_candidates.subdivision(context, m.period_s),
+            rng,
+        )
         result.selections["S"] = s
         _collect(result, s)
     _fine(result, rng)
@@ -160,17 +182,28 @@ def analyse(runs: list[Run], hold_out: list[str], seed: int = 0, tell: Callable[
             _collect(result, s)
         size, period, score = pulses(p, s.after.residual)
         if score > 8:
-            result.findings.append(Finding("unknown", "S", "command", evidence=score, share=0.1,
-                                           note=f"pulses on the command, every {period:.2f} s", parameters={
-                "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
-                "period": Parameter(period, "s", 0.98 * period, 1.02 * period)}))
+            result.findings.append(
+                Finding(
+                    "unknown",
+                    "S",
+                    "command",
+                    evidence=score,
+                    share=0.1,
+                    note=f"pulses on the command, every {period:.2f} s",
+                    parameters={
+                        "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
+                        "period": Parameter(period, "s", 0.98 * period, 1.02 * period),
+                    },
+                )
+            )
     tell("torque channel")
     _torque(result, per_ampere, clock, rng)
     return result
 
 
 def _fine(result: AxisResult, rng: np.random.Generator) -> None:
-    """What only the log's full rate shows: interpolation error of the absolute encoder, pick-up on the currents."""
+    """What only the log's full rate shows: interpolation error of the absolute encoder, pick-up on the
+    currents."""
     frame = result.frame
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
@@ -196,15 +229,24 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         p.valid &= result.kinematic.engaged
     for _, stage, harmonic in result.declared.lines:
         order = STAGES[stage] * harmonic
-        p.base = np.hstack([p.base, axis_lines.pair(m.theta[m.pick] / (2 * np.pi) * order, c, m.period_s, None, order)])
+        p.base = np.hstack(
+            [p.base, axis_lines.pair(m.theta[m.pick] / (2 * np.pi) * order, c, m.period_s, None, order)]
+        )
         p.base_labels += [(f"declared {stage} {harmonic}", "N m")] * 2
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
     ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
     effort = m.at(fill(frame.columns["effort"], frame.run)[0])
-    f = axis_torque.Friction(m.at(torque.bristle) * torque.friction.coulomb, p.base[:, 3],
-                             m.rate[m.pick] * torque.friction.viscous, np.where(effort > 0, tb, ta), ta, tb,
-                             p.y - null.residual, clock)
+    f = axis_torque.Friction(
+        m.at(torque.bristle) * torque.friction.coulomb,
+        p.base[:, 3],
+        m.rate[m.pick] * torque.friction.viscous,
+        np.where(effort > 0, tb, ta),
+        ta,
+        tb,
+        p.y - null.residual,
+        clock,
+    )
     forced = {x.name for x in result.findings}
     if "adc_offset" in forced:
         p.base = np.column_stack([p.base, np.ones(len(p.y))])
@@ -215,14 +257,22 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     theta = m.theta[m.pick]
     ratio = frame.scale["gear_ratio"]
     motors = axis_lines.Motors(
-        {"a": (theta + f.torque_a / stiffness) * ratio / (2 * np.pi),
-         "b": (theta + f.torque_b / stiffness) * ratio / (2 * np.pi)},
-        {"a": f.torque_a, "b": f.torque_b}, m.period_s)
+        {
+            "a": (theta + f.torque_a / stiffness) * ratio / (2 * np.pi),
+            "b": (theta + f.torque_b / stiffness) * ratio / (2 * np.pi),
+        },
+        {"a": f.torque_a, "b": f.torque_b},
+        m.period_s,
+    )
     offsets = ("adc_offset",) if result.electrical is not None and "adc_offset" not in forced else ()
     candidates: list[Candidate] = [
-        *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets), *axis_torque.angle_effects(c), *axis_torque.slow_effects(c, f),
-        *axis_lines.gear_lines(c, m.period_s), *axis_lines.motor_lines(c, motors, null.residual, p.train),
-        *modes.structural_modes(c, m.acceleration[m.pick], m.period_s)]
+        *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets),
+        *axis_torque.angle_effects(c),
+        *axis_torque.slow_effects(c, f),
+        *axis_lines.gear_lines(c, m.period_s),
+        *axis_lines.motor_lines(c, motors, null.residual, p.train),
+        *modes.structural_modes(c, m.acceleration[m.pick], m.period_s),
+    ]
     candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
     candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
@@ -238,7 +288,9 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
         result.findings.append(blowing)
     everything = replace(p, valid=whole)
-    all_rows = gls(p.y, design(everything, [x.candidate for x in s.chosen]), everything.train, p.ar_order, p.block)
+    all_rows = gls(
+        p.y, design(everything, [x.candidate for x in s.chosen]), everything.train, p.ar_order, p.block
+    )
     found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared)
     result.findings += found
     result.calibrated |= calibrated
@@ -253,18 +305,40 @@ def _kinematic_context(frame: Frame, m: Motion) -> Context:
     pick = m.pick
     zero = np.zeros(len(pick))
     temperature = frame.get("temperature")
-    return Context(frame.t[pick], m.theta[pick], m.rate[pick], np.sign(m.rate[pick]), zero, frame.run[pick],
-                   frame.session[pick], "arcsec", "rad", 2 * np.pi, zero,
-                   temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None)
+    return Context(
+        frame.t[pick],
+        m.theta[pick],
+        m.rate[pick],
+        np.sign(m.rate[pick]),
+        zero,
+        frame.run[pick],
+        frame.session[pick],
+        "arcsec",
+        "rad",
+        2 * np.pi,
+        zero,
+        temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
+    )
 
 
 def _stack(c: Context) -> Context:
     def twice(x: Array) -> Array:
         return np.concatenate([x, x])
 
-    return Context(twice(c.t), twice(c.angle), twice(c.speed), twice(c.direction), twice(c.since),
-                   np.concatenate([c.run, c.run]), np.concatenate([c.session, c.session]), c.unit, c.angle_unit,
-                   c.turn, twice(c.friction), temperature=twice(c.temperature) if c.temperature is not None else None)
+    return Context(
+        twice(c.t),
+        twice(c.angle),
+        twice(c.speed),
+        twice(c.direction),
+        twice(c.since),
+        np.concatenate([c.run, c.run]),
+        np.concatenate([c.session, c.session]),
+        c.unit,
+        c.angle_unit,
+        c.turn,
+        twice(c.friction),
+        temperature=twice(c.temperature) if c.temperature is not None else None,
+    )
 
 
 __all__ = ["AxisResult", "Problem", "analyse", "auxiliary_problem", "choose_held_out"]

@@ -1,4 +1,5 @@
-"""The answer for axis logs: verdict, error table, what is not identifiable, controls, pictures, plant.yaml."""
+"""The answer for axis logs: verdict, error table, what is not identifiable, controls, pictures,
+plant.yaml."""
 
 from __future__ import annotations
 
@@ -21,12 +22,20 @@ from plant.calibration.readers.run import Run
 from plant.calibration.statistics.regression import gls
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters
-LEAST_PRESENT = 0.25  # of the rows between first and last stamp; with fewer, nothing is a measured motion any more
+LEAST_PRESENT = (
+    0.25  # of the rows between first and last stamp; with fewer, nothing is a measured motion any more
+)
 SENSORS = {"T": "torque", "S": "velocity", "K": "position", "E": "electrical", "U": "command"}
 
 
-def axis_answer(runs: list[Run], hold_out: list[str], out: Path, plant: Path | None, plots: bool,
-                tell: Callable[[str], None]) -> tuple[Verdict, list[dict[str, str]], str]:
+def axis_answer(
+    runs: list[Run],
+    hold_out: list[str],
+    out: Path,
+    plant: Path | None,
+    plots: bool,
+    tell: Callable[[str], None],
+) -> tuple[Verdict, list[dict[str, str]], str]:
     """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason."""
     axis = runs[0].header["axis"]
     preload = runs[0].header.get("preload", "low")
@@ -39,9 +48,15 @@ def axis_answer(runs: list[Run], hold_out: list[str], out: Path, plant: Path | N
     result = analyse(runs, hold_out, tell=tell, plant=plant)
     effects = merge(result.findings)
     verdict, separating = judge(effects)
-    v = Verdict(verdict, effects, held_out=result.held_out, separating=separating,
-                not_identifiable=not_identifiable(result), thresholds=gate_rows(result.selections),
-                refused=refusals(result.selections))
+    v = Verdict(
+        verdict,
+        effects,
+        held_out=result.held_out,
+        separating=separating,
+        not_identifiable=not_identifiable(result),
+        thresholds=gate_rows(result.selections),
+        refused=refusals(result.selections),
+    )
     v.calibrated = dict(result.calibrated)
     if "E" in result.selections:
         v.calibrated |= calibrated(result.selections["E"], ("electrical_lag",))
@@ -71,7 +86,8 @@ def too_little(runs: list[Run]) -> str:
 
 
 def not_identifiable(result: AxisResult) -> list[str]:
-    """Parameters this motion cannot tell, from the coverage of the motion and the conditioning; not from the fit."""
+    """Parameters this motion cannot tell, from the coverage of the motion and the conditioning; not from
+    the fit."""
     out = []
     rate = np.abs(result.motion.rate[result.motion.pick])
     vs = result.declared.stribeck_speed
@@ -98,7 +114,8 @@ def not_identifiable(result: AxisResult) -> list[str]:
 
 
 def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Finding]) -> None:
-    """A declared number that is another one: "before" may only re-calibrate within the tolerance of the declared one."""
+    """A declared number that is another one: "before" may only re-calibrate within the tolerance of the
+    declared one."""
     from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
 
     d = result.declared
@@ -115,7 +132,10 @@ def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Findi
             low, high = np.log(d.stiction / TOLERANCE / f.coulomb), np.log(d.stiction * TOLERANCE / f.coulomb)
             fixed[3] = float(np.clip(np.log(f.ratio), low, high) - np.log(f.ratio))
         if "presliding" in changed:
-            low, high = np.log(d.sigma_0 / SIGMA_TOLERANCE / f.coulomb), np.log(d.sigma_0 * SIGMA_TOLERANCE / f.coulomb)
+            low, high = (
+                np.log(d.sigma_0 / SIGMA_TOLERANCE / f.coulomb),
+                np.log(d.sigma_0 * SIGMA_TOLERANCE / f.coulomb),
+            )
             fixed[5] = float(np.clip(np.log(f.stiffness), low, high) - np.log(f.stiffness))
         if fixed and "torque" in v.error:
             v.error["torque"]["before"] = _constrained(t, fixed)
@@ -147,7 +167,9 @@ def _controls(result: AxisResult, effects: list[Finding]) -> list[dict[str, Any]
     span = float(np.ptp(theta))
     for key, s in result.selections.items():
         if any(c.candidate.name in names for c in s.chosen):
-            turns = theta if key in ("T", "S") else np.concatenate([theta, theta]) if key in ("E", "K") else None
+            turns = (
+                theta if key in ("T", "S") else np.concatenate([theta, theta]) if key in ("E", "K") else None
+            )
             out += [{**c, "channel": key} for c in controls(s, turns, span)]
     return out
 
@@ -173,17 +195,41 @@ def _plots(result: AxisResult, effects: list[Finding]) -> list[dict[str, str]]:
                 x, label = np.degrees(theta), "axis angle, degrees"
             else:
                 x, label = s.problem.t, "time, s"
-            out.append({"image": draw.domain_plot(s, x, label, f"{c.say()} in channel {key}", k),
-                        "alt": f"Residual over the domain that explains it: {c.say()}, channel {key}"})
+            out.append(
+                {
+                    "image": draw.domain_plot(s, x, label, f"{c.say()} in channel {key}", k),
+                    "alt": f"Residual over the domain that explains it: {c.say()}, channel {key}",
+                }
+            )
     if t is not None and torque is not None:
-        out.append({"image": draw.order_plot(t, torque.context.angle / (2 * np.pi), STAGES,
-                                             "Torque residual over order, gear table dotted", "cycles per axis turn"),
-                    "alt": "Spectrum over order with the gear table drawn in"})
-    best = max(result.selections.items(), key=lambda kv: (len(kv[1].chosen) > 0, kv[1].held.share, kv[0] == "T"),
-               default=(None, None))
+        out.append(
+            {
+                "image": draw.order_plot(
+                    t,
+                    torque.context.angle / (2 * np.pi),
+                    STAGES,
+                    "Torque residual over order, gear table dotted",
+                    "cycles per axis turn",
+                ),
+                "alt": "Spectrum over order with the gear table drawn in",
+            }
+        )
+    best = max(
+        result.selections.items(),
+        key=lambda kv: (len(kv[1].chosen) > 0, kv[1].held.share, kv[0] == "T"),
+        default=(None, None),
+    )
     if best[1] is not None:
-        out.append({"image": draw.trace_plot(best[1], f"Held-out trace before and after, channel {best[0]}"),
-                    "alt": "Held-out residual before and after"})
-        out.append({"image": draw.gate_plot(best[1], f"Gate, channel {best[0]}"),
-                    "alt": "Largest score of this log against surrogates"})
+        out.append(
+            {
+                "image": draw.trace_plot(best[1], f"Held-out trace before and after, channel {best[0]}"),
+                "alt": "Held-out residual before and after",
+            }
+        )
+        out.append(
+            {
+                "image": draw.gate_plot(best[1], f"Gate, channel {best[0]}"),
+                "alt": "Largest score of this log against surrogates",
+            }
+        )
     return out

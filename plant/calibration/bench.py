@@ -39,15 +39,24 @@ def analyse_bench(runs: list[Run], rig: Rig, hold_out: list[str], seed: int = 0)
     problem, c = rig_problem(runs, rig, hold_out)
     names = {s.name: s.kind or "gear_eccentricity" for s in rig.stages}
     candidates: list[Candidate] = [
-        *friction.asymmetry(c), *friction.stribeck(c), *friction.presliding(c), *friction.position_friction(c),
-        *friction.slow_changes(c), *lines.stage_lines(c, {s.name: s.harmonics for s in rig.stages}, names),
-        *lines.free_lines(c)]
+        *friction.asymmetry(c),
+        *friction.stribeck(c),
+        *friction.presliding(c),
+        *friction.position_friction(c),
+        *friction.slow_changes(c),
+        *lines.stage_lines(c, {s.name: s.harmonics for s in rig.stages}, names),
+        *lines.free_lines(c),
+    ]
     rng = np.random.default_rng(seed)
     s = select(problem, candidates, rng, most=MOST, margin=0.02)
     findings = [_name(finding_of(s, k), c) for k in range(len(s.chosen))]
     # only what the catalogue leaves may be called unknown: a smooth function can imitate most of its names
-    more = select(replace(problem, base=design(problem, [x.candidate for x in s.chosen])), unknown.smooth_functions(c),
-                  rng, most=1)
+    more = select(
+        replace(problem, base=design(problem, [x.candidate for x in s.chosen])),
+        unknown.smooth_functions(c),
+        rng,
+        most=1,
+    )
     if more.chosen:
         findings.append(finding_of(more, 0))
         s.held = HeldOut(s.held.before, more.held.after, s.held.z, 1 - (more.held.after / s.held.before) ** 2)

@@ -17,19 +17,28 @@ from plant.calibration.readers.table import read_table
 Plots = list[dict[str, str]]
 
 
-def calibrate(logs: list[Path], rig: Path | None = None, hold_out: list[str] | None = None, out: Path = Path("."),
-              plant: Path | None = None, plots: bool = True) -> int:
+def calibrate(
+    logs: list[Path],
+    rig: Path | None = None,
+    hold_out: list[str] | None = None,
+    out: Path = Path("."),
+    plant: Path | None = None,
+    plots: bool = True,
+) -> int:
     """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
 
     Returns 0 whenever there is an answer, "nothing" and "unknown" included. Raises CalibrationInputError (a
-    ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant file;
+    ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
+    file;
     `plots=False` leaves the pictures out of the report.
     """
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     if not logs:
         raise CalibrationInputError("calibrate", "give at least one log")
-    with Progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True) as bar:
+    with Progress(
+        SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True
+    ) as bar:
         task = bar.add_task("reading")
         tell: Callable[[str], None] = lambda text: bar.update(task, description=text)  # noqa: E731
         declared = load_rig(rig) if rig is not None else None
@@ -53,7 +62,7 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
             try:
                 text = path.read_text(encoding="utf-8", errors="strict")
             except UnicodeDecodeError as error:
-                line = error.object[:error.start].count(b"\n") + 1
+                line = error.object[: error.start].count(b"\n") + 1
                 raise CalibrationInputError(path, "is not UTF-8 text", line) from None
             except OSError as error:
                 raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
@@ -67,17 +76,25 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
             kinds["rig"] = path
             runs.append(read_table(path, rig))
         else:
-            raise CalibrationInputError(path, "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
-                                              "another drive's file needs --rig FILE", 1)
+            raise CalibrationInputError(
+                path,
+                "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
+                "another drive's file needs --rig FILE",
+                1,
+            )
     if len(kinds) > 1:
         a, b = list(kinds)[:2]
-        raise CalibrationInputError(kinds[b], f"is a {b} log, {kinds[a]} is a {a} log: calibrate one kind at a time")
+        raise CalibrationInputError(
+            kinds[b], f"is a {b} log, {kinds[a]} is a {a} log: calibrate one kind at a time"
+        )
     kind = next(iter(kinds))
     if kind == "axis":
         axes = {r.header["axis"]: r.path for r in runs}
         if len(axes) > 1:
             (a, first), (b, second) = list(axes.items())[:2]
-            raise CalibrationInputError(second, f"is an axis log of {b}, {first} one of {a}: calibrate one axis at a time")
+            raise CalibrationInputError(
+                second, f"is an axis log of {b}, {first} one of {a}: calibrate one axis at a time"
+            )
     return kind, runs
 
 
@@ -88,14 +105,26 @@ def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None
     for name in hold_out:
         if name not in known:
             near = difflib.get_close_matches(name, known, n=1, cutoff=0.3)
-            hint = f"; nearest is '{near[0]}'" if near else f"; there are {', '.join(sorted(r.name for r in runs))}"
+            hint = (
+                f"; nearest is '{near[0]}'"
+                if near
+                else f"; there are {', '.join(sorted(r.name for r in runs))}"
+            )
             raise CalibrationInputError("--hold-out", f"no run is called '{name}'{hint}")
     if hold_out and all({r.name, r.path.name, str(r.path)} & set(hold_out) for r in runs):
         raise CalibrationInputError("--hold-out", "every run is held out: nothing is left to fit")
 
 
-def answer(kind: str, runs: list[Run], rig: Rig | None, hold_out: list[str], out: Path, plant: Path | None,
-           plots: bool, tell: Callable[[str], None]) -> tuple[Verdict, Plots, str]:
+def answer(
+    kind: str,
+    runs: list[Run],
+    rig: Rig | None,
+    hold_out: list[str],
+    out: Path,
+    plant: Path | None,
+    plots: bool,
+    tell: Callable[[str], None],
+) -> tuple[Verdict, Plots, str]:
     """Verdict, pictures and title for runs of one kind."""
     from plant.calibration import answers
 
@@ -115,5 +144,6 @@ def write_report(verdict: Verdict, pictures: Plots, title: str, runs: list[Run],
     data = as_dict(verdict)
     (out / "report.json").write_text(json.dumps(data, indent=1, default=float) + "\n", encoding="utf-8")
     subtitle = f"{len(runs)} run{'s' if len(runs) != 1 else ''}: " + ", ".join(
-        f"{r.name} ({r.duration_s:.0f} s, {r.rows} rows)" for r in runs[:12])
+        f"{r.name} ({r.duration_s:.0f} s, {r.rows} rows)" for r in runs[:12]
+    )
     (out / "report.html").write_text(page(data, pictures, title, subtitle), encoding="utf-8")

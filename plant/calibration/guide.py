@@ -1,4 +1,5 @@
-"""The guide-log pipeline: drive error of a guided mount over time, its worm and what the worm does not explain."""
+"""The guide-log pipeline: drive error of a guided mount over time, its worm and what the worm does not
+explain."""
 
 from __future__ import annotations
 
@@ -19,11 +20,28 @@ from plant.calibration.readers.run import Array, Run
 SIDEREAL_DAY_S = 86164.0905
 #: mount name in the log -> teeth of its RA worm wheel (makers' data sheets)
 MOUNTS = (
-    (r"astro.?physics|\bAP ?(900|1100|1200|1600)|GTO", (225,)), (r"HEQ5|SkyScan.*HEQ", (135, 180)),
-    (r"EQ6|AZ-?EQ|Atlas|CGEM", (180,)), (r"EQ8", (435,)), (r"G11|Gemini|Losmandy", (360,)),
-    (r"CEM60|CEM70", (216,)), (r"CGX|AVX|CGE", (180,)), (r"Paramount|MYT|TheSkyX|TheSky", (576, 375)),
+    (r"astro.?physics|\bAP ?(900|1100|1200|1600)|GTO", (225,)),
+    (r"HEQ5|SkyScan.*HEQ", (135, 180)),
+    (r"EQ6|AZ-?EQ|Atlas|CGEM", (180,)),
+    (r"EQ8", (435,)),
+    (r"G11|Gemini|Losmandy", (360,)),
+    (r"CEM60|CEM70", (216,)),
+    (r"CGX|AVX|CGE", (180,)),
+    (r"Paramount|MYT|TheSkyX|TheSky", (576, 375)),
 )
-COMMON = (130, 135, 144, 180, 192, 216, 225, 288, 359, 360, 435)  # wheels of mounts in use, tried when none is named
+COMMON = (
+    130,
+    135,
+    144,
+    180,
+    192,
+    216,
+    225,
+    288,
+    359,
+    360,
+    435,
+)  # wheels of mounts in use, tried when none is named
 LEAST_TURNS = 2.0  # worm turns in the training span below which a worm cannot be told from drift
 HARMONICS = 8
 
@@ -41,18 +59,24 @@ class GuideResult:
 
 
 def guide_problem(runs: list[Run], hold_out: list[str]) -> tuple[Problem, list[str]]:
-    """Drive error over time, with an offset per segment and a drift per section; raises when it is too short."""
+    """Drive error over time, with an offset per segment and a drift per section; raises when it is too
+    short."""
     y, t, run, segment, held = [], [], [], [], []
     names, count, offset = [], 0, 0.0
     units = {r.header.get("unit", "arcsec") for r in runs}
     if len(units) > 1:
-        raise CalibrationInputError(runs[0].path, "logs with and without a pixel scale cannot be put together")
+        raise CalibrationInputError(
+            runs[0].path, "logs with and without a pixel scale cannot be put together"
+        )
     period = float(np.median(np.concatenate([np.diff(r.columns["t"]) for r in runs if r.rows > 2])))
     for k, r in enumerate(runs):
         grid = np.arange(r.columns["t"][0], r.columns["t"][-1] + 1e-9, period)
         near = np.searchsorted(r.columns["t"], grid)
         near = np.clip(near, 1, r.rows - 1)
-        close = np.minimum(np.abs(r.columns["t"][near] - grid), np.abs(r.columns["t"][near - 1] - grid)) < 1.5 * period
+        close = (
+            np.minimum(np.abs(r.columns["t"][near] - grid), np.abs(r.columns["t"][near - 1] - grid))
+            < 1.5 * period
+        )
         value = np.interp(grid, r.columns["t"], r.columns["ra"])
         y.append(np.where(close, value, np.nan))
         t.append(grid - grid[0] + offset)
@@ -65,7 +89,7 @@ def guide_problem(runs: list[Run], hold_out: list[str]) -> tuple[Problem, list[s
             test[:] = bool({r.name, r.path.name, str(r.path)} & set(hold_out))
             names += [r.name] if test.all() else []
         elif len(runs) < 3:
-            test[int(0.6 * len(grid)):] = True
+            test[int(0.6 * len(grid)) :] = True
             names.append(f"{r.name} from {0.6 * (grid[-1] - grid[0]):.0f} s")
         elif k == len(runs) - 1:
             test[:] = True
@@ -86,17 +110,34 @@ def guide_problem(runs: list[Run], hold_out: list[str]) -> tuple[Problem, list[s
         if (m & hh).all():
             fresh.append(columns[-1])
     valid = np.isfinite(yy)
-    problem = Problem("K", next(iter(units)), np.where(valid, yy, 0.0), np.column_stack(columns), labels, tt, rr, rr,
-                      valid, hh, period, ar_order=3, block_s=max(12 * period, 40.0), sensor="position",
-                      fresh=np.column_stack(fresh))
+    problem = Problem(
+        "K",
+        next(iter(units)),
+        np.where(valid, yy, 0.0),
+        np.column_stack(columns),
+        labels,
+        tt,
+        rr,
+        rr,
+        valid,
+        hh,
+        period,
+        ar_order=3,
+        block_s=max(12 * period, 40.0),
+        sensor="position",
+        fresh=np.column_stack(fresh),
+    )
     steps = np.diff(yy)
     steps = steps[np.isfinite(steps)]
-    problem.floor = float(np.median(np.abs(steps - np.median(steps))) * 1.4826 / np.sqrt(2)) if len(steps) else 0.0
+    problem.floor = (
+        float(np.median(np.abs(steps - np.median(steps))) * 1.4826 / np.sqrt(2)) if len(steps) else 0.0
+    )
     return problem, names
 
 
 def worms(runs: list[Run], rig: Rig | None) -> dict[str, float]:
-    """Turns per second of every periodic part that is known: from the rig, the mount's name, else usual wheels."""
+    """Turns per second of every periodic part that is known: from the rig, the mount's name, else usual
+    wheels."""
     if rig is not None:
         return {s.name: 1.0 / s.period_s for s in rig.stages if s.period_s}
     mount = " ".join(r.header.get("mount", "") for r in runs)
@@ -131,18 +172,38 @@ def analyse_guide(runs: list[Run], rig: Rig | None, hold_out: list[str], seed: i
             continue
         for count in (1, 2, 5, HARMONICS):
             if rate * count < 0.4 / problem.period_s:
-                candidates.append(Candidate(
-                    "gear_eccentricity", "axis_angle", harmonics(problem, rate, count), (("amplitude", problem.unit),),
-                    kind="line", stage=name, harmonic=1, order=rate * SIDEREAL_DAY_S, frequency=rate))
+                candidates.append(
+                    Candidate(
+                        "gear_eccentricity",
+                        "axis_angle",
+                        harmonics(problem, rate, count),
+                        (("amplitude", problem.unit),),
+                        kind="line",
+                        stage=name,
+                        harmonic=1,
+                        order=rate * SIDEREAL_DAY_S,
+                        frequency=rate,
+                    )
+                )
     known = [h * r for r in stages.values() for h in range(1, HARMONICS + 1)]
     for rate in np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span):
         if all(abs(rate - k) * span > 0.4 for k in known):
-            candidates.append(Candidate("unknown", "time", harmonics(problem, float(rate), 2),
-                                        (("amplitude", problem.unit),), kind="line", frequency=float(rate)))
+            candidates.append(
+                Candidate(
+                    "unknown",
+                    "time",
+                    harmonics(problem, float(rate), 2),
+                    (("amplitude", problem.unit),),
+                    kind="line",
+                    frequency=float(rate),
+                )
+            )
     s = select(problem, candidates, np.random.default_rng(seed), most=2)
     findings = [finding_of(s, k) for k in range(len(s.chosen))]
     for f in findings:
-        others = [n for n, r in stages.items() if f.frequency and n != f.stage and abs(r - f.frequency) * span < 0.5]
+        others = [
+            n for n, r in stages.items() if f.frequency and n != f.stage and abs(r - f.frequency) * span < 0.5
+        ]
         if others:
             f.note = "within this log's resolution also " + ", ".join(others[:3])
     missing = [f"{n}: fewer than {LEAST_TURNS:.0f} turns in the log" for n in short]

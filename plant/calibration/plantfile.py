@@ -11,25 +11,44 @@ from plant.calibration.decide.finding import Finding, Parameter
 
 #: calibrated name -> (path below axes.<axis>, factor to SI is handled by the plant's units)
 PATHS = {
-    "coulomb": "friction.coulomb", "stiction": "friction.stiction", "viscous": "friction.viscous",
-    "stribeck_speed": "friction.stribeck_rate", "sigma_0": "friction.bristle_stiffness",
-    "torque_constant": "motor.torque_constant", "resistance": "motor.resistance",
+    "coulomb": "friction.coulomb",
+    "stiction": "friction.stiction",
+    "viscous": "friction.viscous",
+    "stribeck_speed": "friction.stribeck_rate",
+    "sigma_0": "friction.bristle_stiffness",
+    "torque_constant": "motor.torque_constant",
+    "resistance": "motor.resistance",
 }
 #: effect -> {plant parameter: (finding parameter, factor)}
 MAPS: dict[str, dict[str, tuple[str, float]]] = {
-    "gear_eccentricity": {"amplitude": ("amplitude", 1), "kinematic": ("kinematic", 1), "phase": ("phase", 1)},
+    "gear_eccentricity": {
+        "amplitude": ("amplitude", 1),
+        "kinematic": ("kinematic", 1),
+        "phase": ("phase", 1),
+    },
     "gear_mesh": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
     "gravity_imbalance": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
     "bearing_pass": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
     "motor_cogging": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
     "torque_ripple": {"ripple": ("ripple", 1), "phase": ("phase", 1)},
-    "friction_asymmetry": {"coulomb_asymmetry": ("coulomb_asymmetry", 1), "viscous_asymmetry": ("viscous_asymmetry", 1)},
+    "friction_asymmetry": {
+        "coulomb_asymmetry": ("coulomb_asymmetry", 1),
+        "viscous_asymmetry": ("viscous_asymmetry", 1),
+    },
     "load_friction": {"coefficient": ("mu", 1)},
     "friction_warmup": {"depth": ("amplitude", -1), "time_constant": ("tau", 1)},
     "preload_change": {"change": ("fraction", 1), "start": ("onset", 1), "duration": ("ramp", 1)},
     "brake_drag": {"torque": ("torque", 1), "start": ("onset", 1)},
-    "cable_wrap": {"stiffness": ("stiffness", 1), "hysteresis": ("loop", 1), "width": ("loop_travel", 180 / np.pi)},
-    "structural_mode": {"frequency": ("frequency", 1), "damping": ("damping", 1), "inertia": ("inertia_2", 1)},
+    "cable_wrap": {
+        "stiffness": ("stiffness", 1),
+        "hysteresis": ("loop", 1),
+        "width": ("loop_travel", 180 / np.pi),
+    },
+    "structural_mode": {
+        "frequency": ("frequency", 1),
+        "damping": ("damping", 1),
+        "inertia": ("inertia_2", 1),
+    },
     "damaged_tooth": {"amplitude": ("amplitude", 1), "width": ("width", 2 * np.pi * 0.2)},
     "supply_sag": {"resistance": ("resistance", 1)},
     "winding_heating": {"thermal_resistance": ("thermal_resistance", 1), "time_constant": ("tau", 1)},
@@ -40,7 +59,11 @@ MAPS: dict[str, dict[str, tuple[str, float]]] = {
     "magnet_weakening": {"loss": ("fraction", 1)},
     "roller_ratio": {"error": ("scale", 1e6)},
     "encoder_thermal_drift": {"drift": ("drift", 1)},
-    "encoder_eccentricity": {"amplitude": ("amplitude", 1), "phase": ("phase", 1), "second": ("amplitude_2", 1)},
+    "encoder_eccentricity": {
+        "amplitude": ("amplitude", 1),
+        "phase": ("phase", 1),
+        "second": ("amplitude_2", 1),
+    },
     "clock_jitter": {"deviation": ("sigma", 1)},
     "channel_delay": {"delay": ("delay", 1)},
     "sample_loss": {"packet_loss": ("fraction", 1)},
@@ -49,8 +72,15 @@ MAPS: dict[str, dict[str, tuple[str, float]]] = {
 }
 
 
-def write_plant(out: Path, axis: str, preload: str, calibrated: dict[str, Parameter], effects: list[Finding],
-                base: Path | None, name: str) -> list[str]:
+def write_plant(
+    out: Path,
+    axis: str,
+    preload: str,
+    calibrated: dict[str, Parameter],
+    effects: list[Finding],
+    base: Path | None,
+    name: str,
+) -> list[str]:
     """Write `out` and return remarks on what could not be put into it.
 
     The base is `base`, or the project's plant file of that preload without its declared effects on this axis.
@@ -76,7 +106,9 @@ def write_plant(out: Path, axis: str, preload: str, calibrated: dict[str, Parame
         full = f"axes.{axis}.inertia"
         old = numbers(model)[full]
         load_inertia = max(calibrated["inertia"].value - rotors, 10.0)
-        model = with_value(model, full, load_inertia / to_si(1.0, old.unit), f"fitted to {name}, less the rotors")
+        model = with_value(
+            model, full, load_inertia / to_si(1.0, old.unit), f"fitted to {name}, less the rotors"
+        )
     declared = list(getattr(model.axes, axis).effects) if base is not None else []
     made = []
     for f in effects:

@@ -11,10 +11,13 @@ from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.orders import order_spectrum, peaks
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
+from plant.calibration.statistics.whitening import Mask
 
 SHAFTS = ("shaft2", "roller", "shaft1", "motor")
 MESHES = ("mesh3", "mesh2", "mesh1")
-COGGING = 72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
+COGGING = (
+    72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
+)
 FREE = 4  # free orders tried per spectrum
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
@@ -37,15 +40,25 @@ def pair(turns: Array, c: Context, period_s: float, weight: Array | None = None,
     return np.column_stack([w * np.cos(x), w * np.sin(x)])
 
 
-def line(c: Context, name: str, stage: str | None, harmonic: int | None, order: float, columns: Array, domain: str
-         ) -> Candidate:
+def line(
+    c: Context, name: str, stage: str | None, harmonic: int | None, order: float, columns: Array, domain: str
+) -> Candidate:
     """A line candidate in the context's unit."""
-    return Candidate(name, domain, columns, (("amplitude", c.unit),), kind="line", stage=stage, harmonic=harmonic,
-                     order=order)
+    return Candidate(
+        name,
+        domain,
+        columns,
+        (("amplitude", c.unit),),
+        kind="line",
+        stage=stage,
+        harmonic=harmonic,
+        order=order,
+    )
 
 
 def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: int = 0) -> list[Candidate]:
-    """First and second harmonic of every shaft, first of every mesh; `extra` teeth for the negative controls."""
+    """First and second harmonic of every shaft, first of every mesh; `extra` teeth for the negative
+    controls."""
     out = []
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
@@ -56,14 +69,17 @@ def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: 
                 continue
             name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
             domain = "motor_angle" if stage == "motor" else "axis_angle"
-            out.append(line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain))
+            out.append(
+                line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain)
+            )
     return out
 
 
-def motor_lines(c: Context, motors: Motors, e: Array, rows: Array, keep: int = 6) -> list[Candidate]:
+def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6) -> list[Candidate]:
     """Cogging (independent of current) and ripple (proportional to it) of either motor at every small order.
 
-    Only the `keep` strongest of each kind in the residual `e` become candidates: high orders are all but orthogonal to
+    Only the `keep` strongest of each kind in the residual `e` become candidates: high orders are all but
+    orthogonal to
     the declared model, so that a plain projection ranks them.
     """
     found: dict[str, list[tuple[float, Candidate]]] = {"motor_cogging": [], "torque_ripple": []}
@@ -75,7 +91,10 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Array, keep: int = 6
             plain = pair(motors.turns[key] * n, c, motors.period_s, None, order)
             if np.mean(plain[:, 0] ** 2) < 0.02:
                 continue
-            for name, columns in (("motor_cogging", plain), ("torque_ripple", plain * motors.torque[key][:, None])):
+            for name, columns in (
+                ("motor_cogging", plain),
+                ("torque_ripple", plain * motors.torque[key][:, None]),
+            ):
                 score = float(np.sum((columns.T @ x) ** 2) / np.sum(columns[rows] ** 2))
                 found[name].append((score, line(c, name, "motor", n, order, columns, "motor_angle")))
     out = []
@@ -91,13 +110,23 @@ def both_motor_lines(c: Context, motors: Motors, harmonics: list[int]) -> list[C
         order = n * STAGES["motor"]
         a, b = (pair(motors.turns[k] * n, c, motors.period_s, None, order) for k in "ab")
         out.append(line(c, "motor_cogging", "motor", n, order, np.hstack([a, b]), "motor_angle"))
-        out.append(line(c, "torque_ripple", "motor", n, order,
-                        np.hstack([a * motors.torque["a"][:, None], b * motors.torque["b"][:, None]]), "motor_angle"))
+        out.append(
+            line(
+                c,
+                "torque_ripple",
+                "motor",
+                n,
+                order,
+                np.hstack([a * motors.torque["a"][:, None], b * motors.torque["b"][:, None]]),
+                "motor_angle",
+            )
+        )
     return out
 
 
-def free_lines(c: Context, e: Array, rows: Array, period_s: float) -> list[Candidate]:
-    """The strongest orders of the residual that no stage explains: even (bearing) and odd in direction (friction)."""
+def free_lines(c: Context, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
+    """The strongest orders of the residual that no stage explains: even (bearing) and odd in direction
+    (friction)."""
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     known = np.array([v * h for k, v in STAGES.items() for h in (1, 2, 3) if k != "aux"])
@@ -111,5 +140,7 @@ def free_lines(c: Context, e: Array, rows: Array, period_s: float) -> list[Candi
             for shift in (-0.2, 0.0, 0.2):
                 o = order + shift / span
                 w = None if name == "bearing_pass" else weight
-                out.append(line(c, name, None, None, float(o), pair(turns * o, c, period_s, w, o), "axis_angle"))
+                out.append(
+                    line(c, name, None, None, float(o), pair(turns * o, c, period_s, w, o), "axis_angle")
+                )
     return out

@@ -1,4 +1,5 @@
-"""Torque effects of the telescope drive that are no lines: friction, slow changes, imbalance, sensors of current."""
+"""Torque effects of the telescope drive that are no lines: friction, slow changes, imbalance, sensors of
+current."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ from plant.calibration.readers.run import Array
 
 @dataclass
 class Friction:
-    """Declared friction along the log: `bristle` N m signed, `viscous` N m signed; currents as N m; session time s."""
+    """Declared friction along the log: `bristle` N m signed, `viscous` N m signed; currents as N m; session
+    time s."""
 
     bristle: Array
     stiction: Array  # what the bristle changes per relative change of Ts
@@ -40,36 +42,63 @@ class Friction:
 
 def direction_effects(c: Context, f: Friction) -> list[Candidate]:
     """Asymmetry, load friction, offset and gain of the current reading."""
-    out = [
-        Candidate("friction_asymmetry", "velocity", np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
-                  (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1"))),
-        Candidate("friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)),
+    return [
+        Candidate(
+            "friction_asymmetry",
+            "velocity",
+            np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
+            (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1")),
+        ),
+        Candidate(
+            "friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)
+        ),
         Candidate("load_friction", "current", (f.sliding * np.abs(f.load))[:, None], (("mu", "1"),), sign=1),
-        Candidate("load_friction", "current",
-                  (f.bristle / (float(np.median(np.abs(f.bristle))) + 1e-9) * np.abs(f.load))[:, None], (("mu", "1"),),
-                  sign=1),
+        Candidate(
+            "load_friction",
+            "current",
+            (f.bristle / (float(np.median(np.abs(f.bristle))) + 1e-9) * np.abs(f.load))[:, None],
+            (("mu", "1"),),
+            sign=1,
+        ),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
         Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),)),
         Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),)),
     ]
-    return out
 
 
 def angle_effects(c: Context) -> list[Candidate]:
     """Imbalance at the absolute angle; cable wrap as a spring with a loop."""
     x = c.angle
-    out = [Candidate("gravity_imbalance", "axis_angle", np.column_stack([np.cos(x), np.sin(x)]),
-                     (("amplitude", "N m"),), kind="line", stage="axis", harmonic=1, order=1.0)]
+    out = [
+        Candidate(
+            "gravity_imbalance",
+            "axis_angle",
+            np.column_stack([np.cos(x), np.sin(x)]),
+            (("amplitude", "N m"),),
+            kind="line",
+            stage="axis",
+            harmonic=1,
+            order=1.0,
+        )
+    ]
     span = float(np.ptp(x)) or 1.0
     spring = x - x.mean()
     for travel in (0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.25):
         if travel > span:
             continue
         shape = _cable(x, spring, c.session)
-        out.append(Candidate("cable_wrap", "axis_angle", shape(np.array([travel])),
-                             (("stiffness", "N m/rad"), ("neutral_torque", "N m"), ("loop", "N m")),
-                             fixed={"loop_travel": (travel, "rad")}, shape=shape, steps=(0.1 * travel,),
-                             positive=(0, 2)))
+        out.append(
+            Candidate(
+                "cable_wrap",
+                "axis_angle",
+                shape(np.array([travel])),
+                (("stiffness", "N m/rad"), ("neutral_torque", "N m"), ("loop", "N m")),
+                fixed={"loop_travel": (travel, "rad")},
+                shape=shape,
+                steps=(0.1 * travel,),
+                positive=(0, 2),
+            )
+        )
     return out
 
 
@@ -91,13 +120,26 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
     for tau in (15.0, 30.0, 60.0, 100.0, 150.0, 220.0, 320.0):
         if tau > 3 * span:
             continue
-        for weight, labels in ((f.total[:, None], (("amplitude", "1"),)),
-                               (np.column_stack([f.bristle, f.stiction, f.viscous]),
-                                (("amplitude", "1"), ("stiction_rise", "1"), ("viscous_rise", "1")))):
+        for weight, labels in (
+            (f.total[:, None], (("amplitude", "1"),)),
+            (
+                np.column_stack([f.bristle, f.stiction, f.viscous]),
+                (("amplitude", "1"), ("stiction_rise", "1"), ("viscous_rise", "1")),
+            ),
+        ):
             shape = _warmup(weight, since)
-            out.append(Candidate("friction_warmup", "time", shape(np.array([tau])), labels,
-                                 fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,),
-                                 least=60.0 if weight.shape[1] > 1 else 0.0))
+            out.append(
+                Candidate(
+                    "friction_warmup",
+                    "time",
+                    shape(np.array([tau])),
+                    labels,
+                    fixed={"tau": (tau, "s")},
+                    shape=shape,
+                    steps=(0.05 * tau,),
+                    least=60.0 if weight.shape[1] > 1 else 0.0,
+                )
+            )
     preload = f.stiction + f.viscous
     kinds = (("preload_change", preload, "fraction", "1"), ("brake_drag", f.sliding, "torque", "N m"))
     for at in np.linspace(0.03, 0.97, 26) * span + low:
@@ -105,17 +147,34 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
             if not 0.02 < np.mean(f.clock > at) < 0.98:
                 continue
             shape = _onset(weight, f.clock)
-            out.append(Candidate(name, "time", shape(np.array([at])), ((label, unit),),
-                                 fixed={"onset": (float(at), "s")}, shape=shape, steps=(0.02 * span,)))
+            out.append(
+                Candidate(
+                    name,
+                    "time",
+                    shape(np.array([at])),
+                    ((label, unit),),
+                    fixed={"onset": (float(at), "s")},
+                    shape=shape,
+                    steps=(0.02 * span,),
+                )
+            )
     for at in np.linspace(-0.4, 0.9, 14) * span + low:
         for ramp in (0.2, 0.5, 1.0):
             for name, weight, label, unit in kinds[:1]:
                 shape = _ramp(weight, f.clock)
                 columns = shape(np.array([at, ramp * span]))
                 if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
-                    out.append(Candidate(name, "time", columns, ((label, unit),), shape=shape,
-                                         steps=(0.02 * span, 0.02 * span),
-                                         fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")}))
+                    out.append(
+                        Candidate(
+                            name,
+                            "time",
+                            columns,
+                            ((label, unit),),
+                            shape=shape,
+                            steps=(0.02 * span, 0.02 * span),
+                            fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
+                        )
+                    )
     return out
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant.calibration.readers.run import Array
 
@@ -14,9 +16,11 @@ from plant.calibration.readers.run import Array
 class Candidate:
     """One effect at one place: `columns` (n, k) in the channel's unit per unit of each coefficient.
 
-    `labels` names one parameter per column, or one amplitude for a whole sine pair (kind "line": columns are cos, sin
+    `labels` names one parameter per column, or one amplitude for a whole sine pair (kind "line": columns
+    are cos, sin
     per session). `lower` holds physical bounds: coefficients of a sign that physics excludes are refused.
-    `fixed` are parameters chosen on a grid (a time constant, a time of step); those that `shape` depends on are refined
+    `fixed` are parameters chosen on a grid (a time constant, a time of step); those that `shape` depends on
+    are refined
     once the candidate is chosen.
     """
 
@@ -34,7 +38,9 @@ class Candidate:
     positive: tuple[int, ...] = ()  # coefficients that must be positive
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
     twins: tuple[str, ...] = ()
-    shape: Callable[[Array], Array] | None = None  # columns as a function of the first len(steps) fixed parameters
+    shape: Callable[[Array], Array] | None = (
+        None  # columns as a function of the first len(steps) fixed parameters
+    )
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
 
     @property
@@ -59,7 +65,7 @@ class Candidate:
         return self.name + place + (f", harmonic {self.harmonic}" if self.harmonic else "")
 
 
-def sine_columns(phase_cycles: Array, session: Array, weight: Array | None = None) -> Array:
+def sine_columns(phase_cycles: Array, session: NDArray[Any], weight: Array | None = None) -> Array:
     """cos and sin of a phase in cycles, a pair per session (phase is a nuisance of the session)."""
     w = 1.0 if weight is None else weight
     c, s = w * np.cos(2 * np.pi * phase_cycles), w * np.sin(2 * np.pi * phase_cycles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,9 +13,11 @@ from plant.calibration.readers.run import Array
 
 @dataclass
 class Context:
-    """Columns (n,) in the drive's units; `angle` in position units, `turn` position units per turn of the output.
+    """Columns (n,) in the drive's units; `angle` in position units, `turn` position units per turn of the
+    output.
 
-    `direction` is -1, 0 or 1, `since` the travel since the last reversal (signed), `friction` the declared friction
+    `direction` is -1, 0 or 1, `since` the travel since the last reversal (signed), `friction` the declared
+    friction
     without its sign (a weight), `load` the transmitted torque. Columns a log does not have are None.
     """
 
@@ -64,7 +67,7 @@ def direction_of(angle: Array, run: NDArray[np.int64], travel: float) -> Array:
     marks = np.flatnonzero(turning_points(angle, run, travel))
     edges = np.concatenate([[0], marks, [len(angle)]])
     out = np.zeros(len(angle))
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in itertools.pairwise(edges):
         if b > a:
             moved = angle[b - 1 if b == len(angle) or run[b] != run[b - 1] else b] - angle[a]
             out[a:b] = np.sign(moved) if abs(moved) > travel else 0.0

@@ -22,33 +22,73 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
         Candidate("pwm_deadband", "command", e.supply[:, None], (("u0", "1"),), sign=1),
         Candidate("diode_braking", "velocity", (-k * e.dragged)[:, None], (("fraction", "1"),), sign=1),
         Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("resistance", "ohm"),), sign=1),
-        Candidate("backlash_loss", "reversal", (e.duty * e.supply * e.lagging)[:, None], (("counter_loss", "1"),),
-                  sign=1),
+        Candidate(
+            "backlash_loss",
+            "reversal",
+            (e.duty * e.supply * e.lagging)[:, None],
+            (("counter_loss", "1"),),
+            sign=1,
+        ),
     ]
     for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
         out += [
-            Candidate("adc_offset", "current", (-r * e.ampere_per_count * mask)[:, None], (("offset", "counts"),),
-                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
-            Candidate("adc_gain", "current", (-r * e.current * mask)[:, None], (("gain", "1"),),
-                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
-            Candidate("magnet_weakening", "velocity", (-k * e.pulling * mask)[:, None], (("fraction", "1"),), sign=1,
-                      fixed={"motor": (float(name == "b"), "0 A, 1 B")}),
+            Candidate(
+                "adc_offset",
+                "current",
+                (-r * e.ampere_per_count * mask)[:, None],
+                (("offset", "counts"),),
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
+            Candidate(
+                "adc_gain",
+                "current",
+                (-r * e.current * mask)[:, None],
+                (("gain", "1"),),
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
+            Candidate(
+                "magnet_weakening",
+                "velocity",
+                (-k * e.pulling * mask)[:, None],
+                (("fraction", "1"),),
+                sign=1,
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
         ]
     for tau in (20.0, 40.0, 60.0, 90.0, 140.0, 220.0, 350.0):
         shape = _heating(e, clock)
-        out.append(Candidate("winding_heating", "time", shape(np.array([tau])), (("thermal_resistance", "K/W"),), sign=1,
-                             fixed={"tau": (tau, "s")}, shape=shape, steps=(0.05 * tau,)))
+        out.append(
+            Candidate(
+                "winding_heating",
+                "time",
+                shape(np.array([tau])),
+                (("thermal_resistance", "K/W"),),
+                sign=1,
+                fixed={"tau": (tau, "s")},
+                shape=shape,
+                steps=(0.05 * tau,),
+            )
+        )
     low, high = float(clock.min()), float(clock.max())
     for at in np.linspace(0.05, 0.95, 16) * (high - low) + low:
         on = (t > at).astype(float)
         if 0.02 < on.mean() < 0.98:
-            out.append(Candidate("magnet_weakening", "time", (-k * e.pulling * on)[:, None], (("fraction", "1"),),
-                                 fixed={"onset": (float(at), "s")}, sign=1))
+            out.append(
+                Candidate(
+                    "magnet_weakening",
+                    "time",
+                    (-k * e.pulling * on)[:, None],
+                    (("fraction", "1"),),
+                    fixed={"onset": (float(at), "s")},
+                    sign=1,
+                )
+            )
     return out
 
 
 def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
-    """`unknown` over the angle of either motor, as a resistance and as a voltage: six harmonics of the motor turn.
+    """`unknown` over the angle of either motor, as a resistance and as a voltage: six harmonics of the
+    motor turn.
 
     `angle` (n,) per motor in turns.
     """
@@ -58,8 +98,18 @@ def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
         waves = np.column_stack([g(h * x) for h in range(1, 7) for g in (np.cos, np.sin)])
         mask = (e.motor == k).astype(float)
         for weight in (mask, mask * e.current):
-            out.append(Candidate("unknown", "motor_angle", waves * weight[:, None], (("amplitude", "V"),), kind="line",
-                                 stage="motor", harmonic=1, fixed={"motor": (float(k), "0 A, 1 B")}))
+            out.append(
+                Candidate(
+                    "unknown",
+                    "motor_angle",
+                    waves * weight[:, None],
+                    (("amplitude", "V"),),
+                    kind="line",
+                    stage="motor",
+                    harmonic=1,
+                    fixed={"motor": (float(k), "0 A, 1 B")},
+                )
+            )
     return out
 
 

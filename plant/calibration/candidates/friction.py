@@ -1,4 +1,5 @@
-"""Friction families: asymmetry, Stribeck, pre-sliding, position, load, warm-up, preload (effects.md, channel T)."""
+"""Friction families: asymmetry, Stribeck, pre-sliding, position, load, warm-up, preload (effects.md,
+channel T)."""
 
 from __future__ import annotations
 
@@ -25,8 +26,14 @@ def asymmetry(c: Context) -> list[Candidate]:
     per = f"{c.unit} s/{c.angle_unit}"
     out = [Candidate("friction_asymmetry", "velocity", one[:, None], (("coulomb_asymmetry", c.unit),))]
     if np.std(speed) > 0.1 * np.mean(speed):
-        out.append(Candidate("friction_asymmetry", "velocity", np.column_stack([one, speed]),
-                             (("coulomb_asymmetry", c.unit), ("viscous_asymmetry", per))))
+        out.append(
+            Candidate(
+                "friction_asymmetry",
+                "velocity",
+                np.column_stack([one, speed]),
+                (("coulomb_asymmetry", c.unit), ("viscous_asymmetry", per)),
+            )
+        )
     return out
 
 
@@ -41,15 +48,23 @@ def stribeck(c: Context) -> list[Candidate]:
         if low < 0.005 or top < 2.5 * vs:
             continue
         shape = c.direction * np.exp(-((speed / vs) ** 2))
-        out.append(Candidate("stribeck_change", "velocity", shape[:, None], (("stribeck_torque", c.unit),),
-                             fixed={"stribeck_speed": (vs, f"{c.angle_unit}/s")}))
+        out.append(
+            Candidate(
+                "stribeck_change",
+                "velocity",
+                shape[:, None],
+                (("stribeck_torque", c.unit),),
+                fixed={"stribeck_speed": (vs, f"{c.angle_unit}/s")},
+            )
+        )
     return out
 
 
 def stop_operator(angle: Array, run: NDArray[np.int64], radius: float) -> Array:
     """The elastoplastic loop: follows the travel with slope 1 and saturates at +-radius; shape like `angle`.
 
-    Zero at the start of a run. The parallel sum of such elements is the Prandtl model of pre-sliding friction.
+    Zero at the start of a run. The parallel sum of such elements is the Prandtl model of pre-sliding
+    friction.
     """
     fresh = np.concatenate([[True], np.diff(run) != 0])
     return np.asarray(stop_element(np.ascontiguousarray(angle), fresh, float(radius)))
@@ -86,19 +101,36 @@ def position_friction(c: Context, harmonics: int = 3) -> list[Candidate]:
     period = min(span, c.turn)
     for h in range(1, harmonics + 1):
         x = c.angle * h / period
-        out.append(Candidate("position_friction", "axis_angle", sine_columns(x, np.zeros_like(c.session), c.direction),
-                             (("amplitude", c.unit),), kind="line", order=c.turn * h / period, stage="axis",
-                             harmonic=h))
+        out.append(
+            Candidate(
+                "position_friction",
+                "axis_angle",
+                sine_columns(x, np.zeros_like(c.session), c.direction),
+                (("amplitude", c.unit),),
+                kind="line",
+                order=c.turn * h / period,
+                stage="axis",
+                harmonic=h,
+            )
+        )
     for stage, per_unit in c.stages.items():
         if stage == "axis":
             continue
         for h in (1, 2):
             if span * per_unit * h < 1.5:
                 continue
-            out.append(Candidate("position_friction", "axis_angle",
-                                 sine_columns(c.angle * per_unit * h, c.session, c.direction),
-                                 (("amplitude", c.unit),), kind="line", stage=stage, harmonic=h,
-                                 order=per_unit * h * c.turn))
+            out.append(
+                Candidate(
+                    "position_friction",
+                    "axis_angle",
+                    sine_columns(c.angle * per_unit * h, c.session, c.direction),
+                    (("amplitude", c.unit),),
+                    kind="line",
+                    stage=stage,
+                    harmonic=h,
+                    order=per_unit * h * c.turn,
+                )
+            )
     return out
 
 
@@ -106,8 +138,15 @@ def load_friction(c: Context) -> list[Candidate]:
     """mu |transmitted torque| against the motion."""
     if c.load is None:
         return []
-    return [Candidate("load_friction", "current", (c.direction * np.abs(c.load))[:, None],
-                      (("coefficient", "1"),), sign=1)]
+    return [
+        Candidate(
+            "load_friction",
+            "current",
+            (c.direction * np.abs(c.load))[:, None],
+            (("coefficient", "1"),),
+            sign=1,
+        )
+    ]
 
 
 def slow_changes(c: Context) -> list[Candidate]:
@@ -118,17 +157,43 @@ def slow_changes(c: Context) -> list[Candidate]:
     start = _time_in_session(c)
     for part in (0.05, 0.1, 0.2, 0.4, 0.8):
         tau = part * span
-        out.append(Candidate("friction_warmup", "time", (weight * np.exp(-start / tau))[:, None],
-                             (("relative_rise", "1"),), fixed={"tau": (tau, "s")}, sign=0))
+        out.append(
+            Candidate(
+                "friction_warmup",
+                "time",
+                (weight * np.exp(-start / tau))[:, None],
+                (("relative_rise", "1"),),
+                fixed={"tau": (tau, "s")},
+                sign=0,
+            )
+        )
     if c.temperature is not None and np.ptp(c.temperature) > 0.5:
-        out.append(Candidate("friction_warmup", "temperature",
-                             (weight * (c.temperature - c.temperature.mean()))[:, None],
-                             (("relative_per_degree", "1/K"),)))
+        out.append(
+            Candidate(
+                "friction_warmup",
+                "temperature",
+                (weight * (c.temperature - c.temperature.mean()))[:, None],
+                (("relative_per_degree", "1/K"),),
+            )
+        )
     for at in np.linspace(0.08, 0.92, 22) * span + c.t[0]:
-        out.append(Candidate("preload_change", "time", (weight * (c.t > at))[:, None], (("relative_change", "1"),),
-                             fixed={"time": (float(at), "s")}))
-    out.append(Candidate("preload_change", "time", (weight * (c.t - c.t.mean()) / span)[:, None],
-                         (("relative_trend", "1"),)))
+        out.append(
+            Candidate(
+                "preload_change",
+                "time",
+                (weight * (c.t > at))[:, None],
+                (("relative_change", "1"),),
+                fixed={"time": (float(at), "s")},
+            )
+        )
+    out.append(
+        Candidate(
+            "preload_change",
+            "time",
+            (weight * (c.t - c.t.mean()) / span)[:, None],
+            (("relative_trend", "1"),),
+        )
+    )
     return out
 
 

@@ -10,6 +10,7 @@ from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.orders import order_spectrum, peaks
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
+from plant.calibration.statistics.whitening import Mask
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
 
@@ -20,10 +21,22 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     x = c.angle
-    for columns in (np.column_stack([np.cos(x), np.sin(x)]),
-                    np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)])):
-        out.append(Candidate("encoder_eccentricity", "axis_angle", columns, (("amplitude", "arcsec"),), kind="line",
-                             stage="axis", harmonic=1, order=1.0))
+    for columns in (
+        np.column_stack([np.cos(x), np.sin(x)]),
+        np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+    ):
+        out.append(
+            Candidate(
+                "encoder_eccentricity",
+                "axis_angle",
+                columns,
+                (("amplitude", "arcsec"),),
+                kind="line",
+                stage="axis",
+                harmonic=1,
+                order=1.0,
+            )
+        )
     for stage in (*SHAFTS, *MESHES):
         for h in (1, 2):
             order = STAGES[stage] * h
@@ -32,12 +45,26 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
             name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
             columns = pair(turns * order, c, period_s, None, order)
             for one in (columns, columns * (motor == 0)[:, None], columns * (motor == 1)[:, None]):
-                out.append(line(c, name, stage, h, order, one, "motor_angle" if stage == "motor" else "axis_angle"))
+                out.append(
+                    line(c, name, stage, h, order, one, "motor_angle" if stage == "motor" else "axis_angle")
+                )
     if c.temperature is not None and np.ptp(c.temperature) > 0.3:
-        out.append(Candidate("encoder_thermal_drift", "temperature", (c.temperature - c.temperature.mean())[:, None],
-                             (("drift", "arcsec/K"),)))
-    out.append(Candidate("encoder_thermal_drift", "time", ((c.t - c.t.mean()) / (np.ptp(c.t) or 1.0))[:, None],
-                         (("drift", "arcsec"),)))
+        out.append(
+            Candidate(
+                "encoder_thermal_drift",
+                "temperature",
+                (c.temperature - c.temperature.mean())[:, None],
+                (("drift", "arcsec/K"),),
+            )
+        )
+    out.append(
+        Candidate(
+            "encoder_thermal_drift",
+            "time",
+            ((c.t - c.t.mean()) / (np.ptp(c.t) or 1.0))[:, None],
+            (("drift", "arcsec"),),
+        )
+    )
     return out
 
 
@@ -53,20 +80,56 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
         on = size > limit
         if not 0.002 < on.mean() < 0.6:
             continue
-        out.append(Candidate("roller_slip", "velocity", (-w * on)[:, None], (("creep", "1"),), stage="roller",
-                             fixed={"limit": (limit, "rad/s2")}, sign=1))
+        out.append(
+            Candidate(
+                "roller_slip",
+                "velocity",
+                (-w * on)[:, None],
+                (("creep", "1"),),
+                stage="roller",
+                fixed={"limit": (limit, "rad/s2")},
+                sign=1,
+            )
+        )
         over = np.sign(acceleration) * np.maximum(size - limit, 0.0) * arcsec
-        out.append(Candidate("roller_slip", "velocity", -over[:, None], (("slip", "s"),), stage="roller",
-                             fixed={"limit": (limit, "rad/s2")}, sign=1))
+        out.append(
+            Candidate(
+                "roller_slip",
+                "velocity",
+                -over[:, None],
+                (("slip", "s"),),
+                stage="roller",
+                fixed={"limit": (limit, "rad/s2")},
+                sign=1,
+            )
+        )
     for h in (1, 2):
         order = STAGES["roller"] * h
         if span * order > 0.8:
-            out.append(line(c, "encoder_eccentricity", "roller", h, order, pair(turns * order, c, period_s, w, order),
-                            "axis_angle"))
+            out.append(
+                line(
+                    c,
+                    "encoder_eccentricity",
+                    "roller",
+                    h,
+                    order,
+                    pair(turns * order, c, period_s, w, order),
+                    "axis_angle",
+                )
+            )
     x = c.angle
-    out.append(Candidate("encoder_eccentricity", "axis_angle",
-                         w[:, None] * np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
-                         (("amplitude", "1"),), kind="line", stage="axis", harmonic=1, order=1.0))
+    out.append(
+        Candidate(
+            "encoder_eccentricity",
+            "axis_angle",
+            w[:, None] * np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+            (("amplitude", "1"),),
+            kind="line",
+            stage="axis",
+            harmonic=1,
+            order=1.0,
+        )
+    )
     return out
 
 
@@ -78,11 +141,20 @@ def subdivision(c: Context, period_s: float) -> list[Candidate]:
     two = pair(turns * 2 * LINES, c, period_s, w, 2 * LINES)
     if np.mean(one**2) < 1e-3 * np.mean(w**2):
         return []
-    return [Candidate("encoder_subdivision", "axis_angle", np.hstack([one, two]), (("amplitude", "rad/rad"),),
-                      kind="line", order=float(LINES), harmonic=1)]
+    return [
+        Candidate(
+            "encoder_subdivision",
+            "axis_angle",
+            np.hstack([one, two]),
+            (("amplitude", "rad/rad"),),
+            kind="line",
+            order=float(LINES),
+            harmonic=1,
+        )
+    ]
 
 
-def free_kinematic(c: Context, e: Array, rows: Array, period_s: float, top: float = 3000.0) -> list[Candidate]:
+def free_kinematic(c: Context, e: Array, rows: Mask, period_s: float, top: float = 3000.0) -> list[Candidate]:
     """Strongest orders of the difference that no stage explains."""
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
@@ -91,12 +163,28 @@ def free_kinematic(c: Context, e: Array, rows: Array, period_s: float, top: floa
     for order in peaks(orders, power, 2, 1.5 / span if span else 1.0):
         if min(abs(order - v * h) for v in STAGES.values() for h in (1, 2)) * span < 0.8:
             continue
-        out.append(line(c, "unknown", None, None, float(order), pair(turns * order, c, period_s, None, order),
-                        "axis_angle"))
+        out.append(
+            line(
+                c,
+                "unknown",
+                None,
+                None,
+                float(order),
+                pair(turns * order, c, period_s, None, order),
+                "axis_angle",
+            )
+        )
     return out
 
 
 def wind_up_loss(torque: Array, lagging: Array) -> list[Candidate]:
     """Wind-up of the motor that should hold the counter torque: lost when its torque is."""
     arcsec = 4.84813681e-6
-    return [Candidate("backlash_loss", "reversal", (torque * lagging / arcsec)[:, None], (("lost_compliance", "rad/(N m)"),))]
+    return [
+        Candidate(
+            "backlash_loss",
+            "reversal",
+            (torque * lagging / arcsec)[:, None],
+            (("lost_compliance", "rad/(N m)"),),
+        )
+    ]

@@ -12,8 +12,9 @@ FREE_TURNS = 5.0  # cycles within the travel before an order that no stage has i
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 
 
-def stage_lines(c: Context, harmonics: dict[str, int] | None = None, names: dict[str, str] | None = None
-                ) -> list[Candidate]:
+def stage_lines(
+    c: Context, harmonics: dict[str, int] | None = None, names: dict[str, str] | None = None
+) -> list[Candidate]:
     """A sine pair per session at every harmonic of every stage that the log travels far enough for."""
     out = []
     span = float(np.ptp(c.angle))
@@ -23,9 +24,18 @@ def stage_lines(c: Context, harmonics: dict[str, int] | None = None, names: dict
             if span * rate < ENOUGH or not resolvable(c, rate):
                 continue
             name = (names or NAMES).get(stage, "gear_eccentricity")
-            out.append(Candidate(name, "motor_angle" if stage == "motor" else "axis_angle",
-                                 sine_columns(c.angle * rate, c.session), (("amplitude", c.unit),), kind="line",
-                                 stage=stage, harmonic=h, order=rate * c.turn))
+            out.append(
+                Candidate(
+                    name,
+                    "motor_angle" if stage == "motor" else "axis_angle",
+                    sine_columns(c.angle * rate, c.session),
+                    (("amplitude", c.unit),),
+                    kind="line",
+                    stage=stage,
+                    harmonic=h,
+                    order=rate * c.turn,
+                )
+            )
     return out
 
 
@@ -48,6 +58,14 @@ def free_lines(c: Context, count: int = 220, top: float | None = None) -> list[C
     for rate in rates[:count]:
         if any(abs(rate - r) * span < 0.6 for r in taken):
             continue
-        out.append(Candidate("bearing_pass", "axis_angle", sine_columns(c.angle * rate, c.session),
-                             (("amplitude", c.unit),), kind="line", order=float(rate * c.turn)))
+        out.append(
+            Candidate(
+                "bearing_pass",
+                "axis_angle",
+                sine_columns(c.angle * rate, c.session),
+                (("amplitude", c.unit),),
+                kind="line",
+                order=float(rate * c.turn),
+            )
+        )
     return out

@@ -21,9 +21,19 @@ def structural_modes(c: Context, acceleration: Array, period_s: float) -> list[C
         if f0 > 0.4 / period_s:
             continue
         for zeta in (0.01, 0.03, 0.08):
-            out.append(Candidate("structural_mode", "time", shape(np.array([f0, zeta])), (("inertia_2", "kg m2"),),
-                                 fixed={"frequency": (f0, "Hz"), "damping": (zeta, "1")}, sign=1, frequency=f0,
-                                 shape=shape, steps=(0.03 * f0, 0.3 * zeta)))
+            out.append(
+                Candidate(
+                    "structural_mode",
+                    "time",
+                    shape(np.array([f0, zeta])),
+                    (("inertia_2", "kg m2"),),
+                    fixed={"frequency": (f0, "Hz"), "damping": (zeta, "1")},
+                    sign=1,
+                    frequency=f0,
+                    shape=shape,
+                    steps=(0.03 * f0, 0.3 * zeta),
+                )
+            )
     return out
 
 
@@ -39,4 +49,3 @@ def _resonance(acceleration: Array, period_s: float) -> Callable[[Array], Array]
         return np.asarray(lfilter(b, a, acceleration))[:, None]
 
     return shape
-

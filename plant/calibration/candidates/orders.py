@@ -1,4 +1,5 @@
-"""Spectra over order: a residual folded into fine bins of angle and Fourier transformed, to find the few orders worth a fit."""
+"""Spectra over order: a residual folded into fine bins of angle and Fourier transformed, to find the few
+orders worth a fit."""
 
 from __future__ import annotations
 
@@ -11,7 +12,8 @@ from plant.calibration.readers.run import Array
 def order_spectrum(e: Array, angle: Array, weight: Array, top: float, fine: int = 4) -> tuple[Array, Array]:
     """(orders, z-scores): |sum w e exp(-i 2 pi order angle)|^2 over its expectation for white e.
 
-    `angle` in turns, `weight` (n,) the amplitude with which a line enters (sign of motion, current, 1). Orders run from
+    `angle` in turns, `weight` (n,) the amplitude with which a line enters (sign of motion, current, 1).
+    Orders run from
     one cycle per travel to `top`, `fine` per resolution cell.
     """
     span = float(np.ptp(angle))

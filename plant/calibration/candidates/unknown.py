@@ -13,7 +13,9 @@ def spline_columns(x: Array, knots: int, period: float | None = None) -> Array:
     """Cubic B-splines of x over its range (or periodic), `knots` columns without the constant."""
     if period:
         z = (x / period) % 1.0
-        return np.column_stack([f(2 * np.pi * h * z) for h in range(1, knots // 2 + 1) for f in (np.cos, np.sin)])
+        return np.column_stack(
+            [f(2 * np.pi * h * z) for h in range(1, knots // 2 + 1) for f in (np.cos, np.sin)]
+        )
     from scipy.interpolate import BSpline
 
     low, high = float(np.min(x)), float(np.max(x))
@@ -29,8 +31,13 @@ def smooth_functions(c: Context, knots: int = 8) -> list[Candidate]:
     """`unknown` over angle, speed, travel since reversal, time, and each of them odd in direction."""
     domains: list[tuple[str, Array]] = [("axis_angle", c.angle), ("velocity", c.speed), ("time", c.t)]
     if np.mean(c.direction > 0) > 0.05 and np.mean(c.direction < 0) > 0.05:
-        domains.append(("reversal", np.sign(c.since) * np.log1p(np.abs(c.since) / (np.quantile(
-            np.abs(c.since), 0.5) * 0.05 + 1e-30))))
+        domains.append(
+            (
+                "reversal",
+                np.sign(c.since)
+                * np.log1p(np.abs(c.since) / (np.quantile(np.abs(c.since), 0.5) * 0.05 + 1e-30)),
+            )
+        )
     if c.current is not None:
         domains.append(("current", c.current))
     if c.effort is not None:

@@ -1,4 +1,5 @@
-"""What the stamps and the counters themselves say (channel S): jitter, lost packets, repeated samples, wraps."""
+"""What the stamps and the counters themselves say (channel S): jitter, lost packets, repeated samples,
+wraps."""
 
 from __future__ import annotations
 
@@ -35,8 +36,14 @@ def _jitter(frame: Frame) -> Finding | None:
         return None
     n = len(e)
     half = 1.96 * sigma / np.sqrt(2 * n)
-    return Finding("clock_jitter", "S", "clock", parameters={"sigma": Parameter(sigma, "s", sigma - half, sigma + half)},
-                   evidence=50.0, share=1.0)
+    return Finding(
+        "clock_jitter",
+        "S",
+        "clock",
+        parameters={"sigma": Parameter(sigma, "s", sigma - half, sigma + half)},
+        evidence=50.0,
+        share=1.0,
+    )
 
 
 def _loss(frame: Frame) -> Finding | None:
@@ -51,13 +58,22 @@ def _loss(frame: Frame) -> Finding | None:
     value = max(fraction, repeats / max(rows, 1))
     events = max(value * (rows + lost) / PACKET, 1.0)
     half = 1.96 * np.sqrt(value * (1 - value) / max((rows + lost) / PACKET, 1.0))
-    note = f"{lost} rows missing in {len(gaps)} gaps ({100 * whole:.0f} % of whole packets), {repeats} rows repeated"
-    return Finding("sample_loss", "S", "clock", evidence=10.0 * events, share=1.0, note=note,
-                   parameters={"fraction": Parameter(value, "1", max(value - half, 0.0), value + half)})
+    gone = f"{lost} rows missing in {len(gaps)} gaps ({100 * whole:.0f} % of whole packets)"
+    note = f"{gone}, {repeats} rows repeated"
+    return Finding(
+        "sample_loss",
+        "S",
+        "clock",
+        evidence=10.0 * events,
+        share=1.0,
+        note=note,
+        parameters={"fraction": Parameter(value, "1", max(value - half, 0.0), value + half)},
+    )
 
 
 def _repeated(frame: Frame) -> int:
-    """Rows of packets that repeat the packet before them, or runs of at least five frozen rows while moving."""
+    """Rows of packets that repeat the packet before them, or runs of at least five frozen rows while
+    moving."""
     p = frame.columns["position"]
     count = 0
     shifted = np.zeros(len(p), dtype=bool)
@@ -83,7 +99,8 @@ def _repeated(frame: Frame) -> int:
 
 
 def repair_wraps(run: Run) -> Finding | None:
-    """Find and undo a counter that wraps before its declared length, or a column that stops at an end; in place."""
+    """Find and undo a counter that wraps before its declared length, or a column that stops at an end; in
+    place."""
     position = run.columns["position"]
     per_count = run.scales["position_arcsec_per_count"] * np.pi / 648000
     counts = position / per_count
@@ -101,18 +118,27 @@ def repair_wraps(run: Run) -> Finding | None:
     big = (np.abs(jump) > max(200 * usual, 1e5)) & ~late
     if big.any():
         sizes = np.abs(jump[big])
-        power = int(round(float(np.log2(np.median(sizes)))))
+        power = round(float(np.log2(np.median(sizes))))
         if np.all(np.abs(sizes / 2.0**power - np.round(sizes / 2.0**power)) < 0.05):
-            fix = np.concatenate([[0.0], np.cumsum(np.where(big, -np.round(jump / 2.0**power) * 2.0**power, 0.0))])
+            fix = np.concatenate(
+                [[0.0], np.cumsum(np.where(big, -np.round(jump / 2.0**power) * 2.0**power, 0.0))]
+            )
             run.columns["position"] = (counts + fix) * per_count
             run.notes.append(f"position wraps at 2^{power} counts")
-            return Finding("log_wrap", "S", "clock", evidence=50.0, share=1.0,
-                           note=f"{run.name}: position wraps at 2^{power} counts, {int(big.sum())} times")
+            return Finding(
+                "log_wrap",
+                "S",
+                "clock",
+                evidence=50.0,
+                share=1.0,
+                note=f"{run.name}: position wraps at 2^{power} counts, {int(big.sum())} times",
+            )
     return _other_wraps(run)
 
 
 def _other_wraps(run: Run) -> Finding | None:
-    """Velocity, current or tachometer columns that fold or stop: a step of a power of two against the motion."""
+    """Velocity, current or tachometer columns that fold or stop: a step of a power of two against the
+    motion."""
     for name in ("velocity", "adc_a", "adc_b", "tach_a", "tach_b"):
         raw = run.raw.get(name)
         if raw is None:
@@ -127,11 +153,19 @@ def _other_wraps(run: Run) -> Finding | None:
         else:
             found = _stops(x, name)
             if found:
-                run.columns[RENAMED.get(name, name)] = np.where(raw == x.max(), np.nan, np.where(
-                    raw == x.min(), np.nan, run.columns[RENAMED.get(name, name)])) if not name.startswith("adc") else \
-                    np.where(raw == x.max(), np.nan, run.columns[RENAMED.get(name, name)])
+                run.columns[RENAMED.get(name, name)] = (
+                    np.where(
+                        raw == x.max(),
+                        np.nan,
+                        np.where(raw == x.min(), np.nan, run.columns[RENAMED.get(name, name)]),
+                    )
+                    if not name.startswith("adc")
+                    else np.where(raw == x.max(), np.nan, run.columns[RENAMED.get(name, name)])
+                )
         if found:
-            return Finding("log_wrap", "S", "clock", evidence=50.0, share=1.0, note=f"{run.name}: {name} {found}")
+            return Finding(
+                "log_wrap", "S", "clock", evidence=50.0, share=1.0, note=f"{run.name}: {name} {found}"
+            )
     return None
 
 

@@ -1,7 +1,9 @@
 """The command residual: change of effort less what the incremental PI law makes of set point and velocity.
 
-The loop runs at 5 ms and every second tick is logged. The velocity of the tick between is what the absolute encoder
-moved over the row less what the logged tick counted. The gains are fitted: dU = Kp (E - E'') + Ki (E + E'), with
+The loop runs at 5 ms and every second tick is logged. The velocity of the tick between is what the absolute
+encoder
+moved over the row less what the logged tick counted. The gains are fitted: dU = Kp (E - E'') + Ki (E + E'),
+with
 E, E', E'' the errors of the logged tick, the one before and the one before that.
 """
 
@@ -19,12 +21,12 @@ from plant.calibration.channels.torque import transients
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
 
-
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
 
 def command_problem(frame: Frame, held: Mask) -> tuple[Problem, Array] | None:
-    """The problem at the log's full rate, and the set point in arcsec/s; None without set point or velocity."""
+    """The problem at the log's full rate, and the set point in arcsec/s; None without set point or
+    velocity."""
     setpoint, velocity = frame.get("setpoint"), frame.get("velocity")
     if setpoint is None or velocity is None:
         return None
@@ -48,20 +50,38 @@ def command_problem(frame: Frame, held: Mask) -> tuple[Problem, Array] | None:
     same[1:] = frame.run[1:] == frame.run[:-1]
     base = np.column_stack([error, middle, before, before2])
     effort = fill(frame.columns["effort"], frame.run)[0]
-    limit = np.abs(effort) > 0.98 * np.nanmax(np.abs(effort)) if np.nanmax(np.abs(effort)) > 0.9 else np.zeros(len(u), bool)
+    limit = (
+        np.abs(effort) > 0.98 * np.nanmax(np.abs(effort))
+        if np.nanmax(np.abs(effort)) > 0.9
+        else np.zeros(len(u), bool)
+    )
     valid = np.isfinite(y) & np.isfinite(base).all(axis=1) & same & ~limit
     near = transients(frame, effort)
     valid &= ~near | (np.abs(effort) > 2)
     if valid.sum() < 1000:
         return None
-    problem = Problem("S", "1/3000", np.where(valid, y, 0.0), np.where(valid[:, None], base, 0.0),
-                      [("gain", "1/3000 per count")] * 4, frame.t, frame.run, frame.session, valid, held, dt,
-                      ar_order=4, block_s=3.0, sensor="command")
+    problem = Problem(
+        "S",
+        "1/3000",
+        np.where(valid, y, 0.0),
+        np.where(valid[:, None], base, 0.0),
+        [("gain", "1/3000 per count")] * 4,
+        frame.t,
+        frame.run,
+        frame.session,
+        valid,
+        held,
+        dt,
+        ar_order=4,
+        block_s=3.0,
+        sensor="command",
+    )
     return problem, np.nan_to_num(setpoint) * 206264.806
 
 
 def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Candidate]:
-    """Lines at fixed Hz (a disturbance on the command), and a law that changes with the set point (no catalogue name)."""
+    """Lines at fixed Hz (a disturbance on the command), and a law that changes with the set point (no
+    catalogue name)."""
     rows = problem.train
     dt = problem.period_s
     size = 1 << int(np.bincount(problem.run - problem.run.min()).max() - 1).bit_length()
@@ -75,22 +95,40 @@ def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Cand
     for _ in range(3):
         k = int(np.argmax(score))
         f0 = float(hertz[k])
-        score[max(k - 8, 0):k + 9] = 0
+        score[max(k - 8, 0) : k + 9] = 0
         shape = _line(problem.t, problem.run, dt)
-        out.append(Candidate("command_disturbance", "time", shape(np.array([f0])), (("amplitude", "1/3000"),),
-                             kind="line", frequency=f0, fixed={"frequency": (f0, "Hz")}, shape=shape,
-                             steps=(1.0 / (size * dt),)))
+        out.append(
+            Candidate(
+                "command_disturbance",
+                "time",
+                shape(np.array([f0])),
+                (("amplitude", "1/3000"),),
+                kind="line",
+                frequency=f0,
+                fixed={"frequency": (f0, "Hz")},
+                shape=shape,
+                steps=(1.0 / (size * dt),),
+            )
+        )
     for limit in (30.0, 60.0, 120.0, 200.0, 300.0, 450.0, 700.0, 1000.0, 1500.0):
         below = np.abs(setpoint) < limit
         if 0.03 < np.mean(below[rows]) < 0.97:
-            out.append(Candidate("unknown", "command", problem.base * below[:, None],
-                                 tuple((f"gain_below_{k}", "1/3000 per count") for k in range(4)),
-                                 fixed={"set_point_limit": (limit, "arcsec/s")}))
+            out.append(
+                Candidate(
+                    "unknown",
+                    "command",
+                    problem.base * below[:, None],
+                    tuple((f"gain_below_{k}", "1/3000 per count") for k in range(4)),
+                    fixed={"set_point_limit": (limit, "arcsec/s")},
+                )
+            )
     return out
 
 
 def _line(t: Array, run: NDArray[np.int64], dt: float) -> Callable[[Array], Array]:
-    """Row-to-row change of a sine with a phase of its own in every run (the runs' start times are whole seconds)."""
+    """Row-to-row change of a sine with a phase of its own in every run (the runs' start times are whole
+    seconds)."""
+
     def shape(p: Array) -> Array:
         x = 2 * np.pi * float(p[0]) * t
         y = x - 2 * np.pi * float(p[0]) * dt
@@ -101,7 +139,8 @@ def _line(t: Array, run: NDArray[np.int64], dt: float) -> Callable[[Array], Arra
 
 
 def pulses(problem: Problem, e: Array) -> tuple[float, float, float]:
-    """(size, period s, -log10 p-like score) of pulses that come back at a fixed period in the summed residual."""
+    """(size, period s, -log10 p-like score) of pulses that come back at a fixed period in the summed
+    residual."""
     rows = problem.train
     x = np.where(rows, e, 0.0)
     sigma = 1.4826 * float(np.median(np.abs(x[rows]))) or 1.0
@@ -118,4 +157,3 @@ def pulses(problem: Problem, e: Array) -> tuple[float, float, float]:
     period = float(np.median(gaps))
     regular = float(np.mean(np.abs(gaps / period - np.round(gaps / period)) < 0.05))
     return size, period, count * regular / 4 if regular > REGULAR else 0.0
-

@@ -1,4 +1,5 @@
-"""The declared model of the axis, fitted to the motion: inertia, LuGre friction, and what this log can tell of them."""
+"""The declared model of the axis, fitted to the motion: inertia, LuGre friction, and what this log can tell
+of them."""
 
 from __future__ import annotations
 
@@ -19,7 +20,11 @@ DECLARED = {
 }
 INERTIA = {"ra": 1760.0, "dec": 579.0}  # kg m2, paper section 4 (rundown) and Table 1
 SIGMA_0 = 1e7  # N m/rad, hardware.md 1.1
-BOUNDS = ((0.0, 3.2), (np.log(3e-6), np.log(1e-2)), (np.log(5e2), np.log(2e6)))  # log ratio, log vs, log sigma0/Tc
+BOUNDS = (
+    (0.0, 3.2),
+    (np.log(3e-6), np.log(1e-2)),
+    (np.log(5e2), np.log(2e6)),
+)  # log ratio, log vs, log sigma0/Tc
 
 
 @dataclass
@@ -53,7 +58,8 @@ def linear_columns(m: Motion) -> Array:
 def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Friction, Array, Array]:
     """Fit the declared model to `torque` (n_analysis,) on `rows`.
 
-    Returns the parameters, the base columns (acceleration, rate, bristle, its three log-derivatives times the Coulomb
+    Returns the parameters, the base columns (acceleration, rate, bristle, its three log-derivatives times
+    the Coulomb
     torque, and the bristle's rate for sigma_1), and the bristle at full rate.
     """
     from scipy.optimize import least_squares
@@ -69,7 +75,9 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
     def left(p: Array) -> Array:
         x = columns(p)[sub]
         e = torque[sub] - x @ solve(x, torque[sub])
-        prior = (p - start) / np.array([1.5, 1.5, 3.0]) * 0.5  # holds what the data leave open at the declared value
+        prior = (
+            (p - start) / np.array([1.5, 1.5, 3.0]) * 0.5
+        )  # holds what the data leave open at the declared value
         return np.concatenate([e / scale, prior * 0.05])
 
     start = np.log([d["stiction"] / d["coulomb"], d["stribeck_speed"], SIGMA_0 / d["coulomb"]])
@@ -77,8 +85,16 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
     best, roughness = None, float(np.std(np.diff(torque[sub], n=2))) / np.sqrt(6.0)
     for shift in ((0.0, 0.0, 0.0), (0.0, 0.0, -1.8), (-0.5, 0.7, 0.9)):
         begin = np.clip(start + np.array(shift), low + 1e-3, high - 1e-3)
-        found = least_squares(left, begin, bounds=(low, high), loss="soft_l1", f_scale=0.05, x_scale=(0.3, 0.3, 0.5),
-                              diff_step=0.02, max_nfev=15)
+        found = least_squares(
+            left,
+            begin,
+            bounds=(low, high),
+            loss="soft_l1",
+            f_scale=0.05,
+            x_scale=(0.3, 0.3, 0.5),
+            diff_step=0.02,
+            max_nfev=15,
+        )
         if best is None or found.cost < best.cost:
             best = found
         if float(np.median(np.abs(left(best.x)[:-3]))) * scale < 2.0 * roughness:
@@ -97,15 +113,26 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
             break
         p = trial
     shape, base, beta = _linearised(m, p, linear, torque, sub)
-    return (Friction(float(np.exp(p[0])), float(np.exp(p[1])), float(np.exp(p[2])), float(beta[2]), float(beta[1]),
-                     float(beta[0])), base, shape)
+    return (
+        Friction(
+            float(np.exp(p[0])),
+            float(np.exp(p[1])),
+            float(np.exp(p[2])),
+            float(beta[2]),
+            float(beta[1]),
+            float(beta[0]),
+        ),
+        base,
+        shape,
+    )
 
 
 POLISH = 6  # Gauss-Newton steps on the rows that the model already fits
 
 
 def _linearised(m: Motion, p: Array, linear: Array, torque: Array, rows: Mask) -> tuple[Array, Array, Array]:
-    """Bristle at full rate, base columns with derivatives to the log parameters, coefficients of the first three."""
+    """Bristle at full rate, base columns with derivatives to the log parameters, coefficients of the first
+    three."""
     shape = shape_columns(m, p)
     x = np.column_stack([linear, m.at(shape)])
     beta = solve(x[rows], torque[rows])

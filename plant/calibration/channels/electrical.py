@@ -1,14 +1,17 @@
 """The electrical residual: duty times supply less R i less K omega, both motors stacked.
 
-A motor pulls one way only; its back-EMF counts while it turns the way it pulls (a motor that is dragged backwards has
+A motor pulls one way only; its back-EMF counts while it turns the way it pulls (a motor that is dragged
+backwards has
 none unless its freewheel diode conducts, which is the effect `diode_braking`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion
@@ -18,8 +21,13 @@ from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
 
-CLIPPED = 4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
-DECLARED_R, DECLARED_K = 2.2, 0.39  # ohm, V s/rad; design.md: only used to tell which rows should carry current
+CLIPPED = (
+    4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
+)
+DECLARED_R, DECLARED_K = (
+    2.2,
+    0.39,
+)  # ohm, V s/rad; design.md: only used to tell which rows should carry current
 
 
 RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
@@ -31,7 +39,8 @@ AS_GOOD = 0.1  # of its gain, that it may explain less where it is to stand for 
 
 @dataclass
 class Electrical:
-    """The E problem and the columns its candidates are made of, all (2 n,): motor A's rows, then motor B's."""
+    """The E problem and the columns its candidates are made of, all (2 n,): motor A's rows, then motor
+    B's."""
 
     problem: Problem
     duty: Array
@@ -58,12 +67,21 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
     for k, r in enumerate(frame.runs):
         share[frame.run == k] = r.scales["counter_torque"]
     supply_column = frame.get("supply")
-    supply = fill(supply_column, frame.run)[0] if supply_column is not None else np.full(len(effort), frame.scale["supply_V"])
+    supply = (
+        fill(supply_column, frame.run)[0]
+        if supply_column is not None
+        else np.full(len(effort), frame.scale["supply_V"])
+    )
     near = transients(frame, effort)
-    parts: dict[str, list[Array]] = {k: [] for k in ("y", "i", "pull", "drag", "duty", "ok", "lag", "power", "v", "lags")}
+    parts: dict[str, list[Array]] = {
+        k: [] for k in ("y", "i", "pull", "drag", "duty", "ok", "lag", "power", "v", "lags")
+    }
     rate = m.rate[m.pick] * ratio
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
-    duty = {"a": np.where(effort > 0, effort, -share * effort), "b": np.where(effort > 0, share * effort, -effort)}
+    duty = {
+        "a": np.where(effort > 0, effort, -share * effort),
+        "b": np.where(effort > 0, share * effort, -effort),
+    }
     power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
     for key, sign in (("a", 1.0), ("b", -1.0)):
         i, ti = current[key]
@@ -84,25 +102,52 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         parts["power"].append(power)
         parts["lags"].append((sign * m.at(effort) < 0).astype(float))
     c = {k: np.concatenate(v) for k, v in parts.items()}
-    twice = lambda x: np.concatenate([x, x])  # noqa: E731
     base = np.column_stack([c["i"], c["pull"], c["lag"]])
     labels = [("resistance", "ohm"), ("torque_constant", "N m/A"), ("electrical_lag", "s")]
-    problem = Problem("E", "V", c["y"], base, labels, twice(frame.t[m.pick]), twice(frame.run[m.pick]),
-                      twice(frame.session[m.pick]), c["ok"] > 0, twice(held[m.pick]), m.period_s, ar_order=4,
-                      block_s=3.0, sensor="voltage")
+    problem = Problem(
+        "E",
+        "V",
+        c["y"],
+        base,
+        labels,
+        _twice(frame.t[m.pick]),
+        _twice(frame.run[m.pick]),
+        _twice(frame.session[m.pick]),
+        c["ok"] > 0,
+        _twice(held[m.pick]),
+        m.period_s,
+        ar_order=4,
+        block_s=3.0,
+        sensor="voltage",
+    )
     _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))
     motor = np.concatenate([np.zeros(n), np.ones(n)])
-    return Electrical(problem, c["duty"], c["i"], c["pull"], c["drag"], c["power"], c["lags"], motor, c["v"],
-                      float(fit.beta[0]), float(fit.beta[1]), error, frame.scale["adc_A_per_count"])
+    return Electrical(
+        problem,
+        c["duty"],
+        c["i"],
+        c["pull"],
+        c["drag"],
+        c["power"],
+        c["lags"],
+        motor,
+        c["v"],
+        float(fit.beta[0]),
+        float(fit.beta[1]),
+        error,
+        frame.scale["adc_A_per_count"],
+    )
 
 
 def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: float) -> None:
     """Add how the converter samples to the base, where the log shows it.
 
-    Sampled at the falling edge of the PWM (paper 3.3) the current reads V d (1-d) / (2 L f) above its mean, and a
-    converter that rounds down half a count below. Both are declared, both are bounded; a log sampled otherwise keeps
+    Sampled at the falling edge of the PWM (paper 3.3) the current reads V d (1-d) / (2 L f) above its mean,
+    and a
+    converter that rounds down half a count below. Both are declared, both are bounded; a log sampled
+    otherwise keeps
     its base, and what looks like a ripple but fits better as a supply that gives way is left to that effect.
     """
     ripple, offset = -supply * duty * (1 - duty), np.full(len(duty), ampere)
@@ -116,8 +161,12 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
 
     def sound(beta: Array, error: Array) -> bool:
         counts = float(beta[at + 1] / beta[0])
-        return bool(RIPPLE[0] < beta[at] < RIPPLE[1] and TRUNCATION[0] < counts < TRUNCATION[1]
-                    and beta[at] > SURE * error[at] and beta[at + 1] > SURE * error[at + 1])
+        return bool(
+            RIPPLE[0] < beta[at] < RIPPLE[1]
+            and TRUNCATION[0] < counts < TRUNCATION[1]
+            and beta[at] > SURE * error[at]
+            and beta[at + 1] > SURE * error[at + 1]
+        )
 
     other = fit(sag, offset)[0]
     without = fit()[0]
@@ -127,3 +176,8 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
     if (as_good and sound(beta, error)) or (both > other + MORE and sound(beta2, error2)):
         p.base = np.column_stack([p.base, ripple, offset])
         p.base_labels += [("current_ripple", "1"), ("conversion_offset", "ohm")]
+
+
+def _twice(x: NDArray[Any]) -> NDArray[Any]:
+    """Motor A's rows, then motor B's."""
+    return np.concatenate([x, x])

@@ -10,13 +10,25 @@ from numpy.typing import NDArray
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.whitening import Mask
 
-COLUMNS = ("effort", "position", "velocity", "current_a", "current_b", "motor_a", "motor_b", "aux", "setpoint",
-           "supply", "temperature")
+COLUMNS = (
+    "effort",
+    "position",
+    "velocity",
+    "current_a",
+    "current_b",
+    "motor_a",
+    "motor_b",
+    "aux",
+    "setpoint",
+    "supply",
+    "temperature",
+)
 
 
 @dataclass
 class Frame:
-    """Columns (n,) at the log's sample period; `run`, `session` integer labels; `clock` the stamps as logged."""
+    """Columns (n,) at the log's sample period; `run`, `session` integer labels; `clock` the stamps as
+    logged."""
 
     runs: list[Run]
     period_s: float
@@ -26,7 +38,9 @@ class Frame:
     session: NDArray[np.int64]
     columns: dict[str, Array]
     scale: dict[str, float]
-    missing: dict[str, list[tuple[float, int]]] = field(default_factory=dict)  # run -> (time, rows) of every gap
+    missing: dict[str, list[tuple[float, int]]] = field(
+        default_factory=dict
+    )  # run -> (time, rows) of every gap
 
     @property
     def present(self) -> Mask:
@@ -67,8 +81,17 @@ def build_frame(runs: list[Run]) -> Frame:
         labels.append(np.full(n, index))
         owners.append(np.full(n, sessions[r.session]))
     joined = {k: np.concatenate(v) for k, v in parts.items()}
-    return Frame(runs, period, joined.pop("t"), joined.pop("clock"), np.concatenate(labels).astype(np.int64),
-                 np.concatenate(owners).astype(np.int64), joined, dict(runs[0].scales), missing)
+    return Frame(
+        runs,
+        period,
+        joined.pop("t"),
+        joined.pop("clock"),
+        np.concatenate(labels).astype(np.int64),
+        np.concatenate(owners).astype(np.int64),
+        joined,
+        dict(runs[0].scales),
+        missing,
+    )
 
 
 def _places(t: Array, period: float) -> NDArray[np.int64]:
@@ -80,7 +103,8 @@ def _places(t: Array, period: float) -> NDArray[np.int64]:
 
 
 def fill(x: Array, run: NDArray[np.int64], longest: int = 3) -> tuple[Array, Mask]:
-    """Linear interpolation over gaps; returns the filled column and where it may be trusted (short gaps only)."""
+    """Linear interpolation over gaps; returns the filled column and where it may be trusted (short gaps
+    only)."""
     good = np.isfinite(x)
     if not good.any():
         return np.zeros_like(x), good

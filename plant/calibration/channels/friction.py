@@ -1,4 +1,5 @@
-"""The declared friction along a measured motion: LuGre with the exact bristle update (paper, equations 3-5)."""
+"""The declared friction along a measured motion: LuGre with the exact bristle update (paper, equations
+3-5)."""
 
 from __future__ import annotations
 
@@ -7,21 +8,17 @@ from typing import Any
 import numpy as np
 
 from plant.calibration.readers.run import Array
-
-try:
-    from plant.compiled import entry as _compile
-except ImportError:  # the plant's compiler is not there: numba itself
-    import numba
-
-    def _compile(f: Any) -> Any:
-        return numba.njit(cache=True)(f)
+from plant.calibration.statistics.whitening import Mask
+from plant.compiled import entry
 
 
-@_compile
+@entry
 def _bristle(theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiffness: float) -> Array:
-    """Bristle torque over Coulomb torque, sigma_0 z / Tc, along the motion theta (n,), for g = 1 + (ratio-1) e^-(w/vs)^2.
+    """Bristle torque over Coulomb torque, sigma_0 z / Tc, along the motion theta (n,), for g = 1 +
+    (ratio-1) e^-(w/vs)^2.
 
-    `stiffness` is sigma_0 / Tc in 1/rad. The update is exact for a constant rate within the step, and the increments
+    `stiffness` is sigma_0 / Tc in 1/rad. The update is exact for a constant rate within the step, and the
+    increments
     of theta are used as they are, so that pre-sliding displacements do not drift.
     """
     out = np.zeros(len(theta))
@@ -40,6 +37,6 @@ def _bristle(theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiff
     return out
 
 
-def bristle(theta: Array, fresh: Array, dt: float, ratio: float, vs: float, stiffness: float) -> Array:
+def bristle(theta: Array, fresh: Mask, dt: float, ratio: float, vs: float, stiffness: float) -> Array:
     """See `_bristle`."""
     return np.asarray(_bristle(theta, fresh, dt, ratio, vs, stiffness))

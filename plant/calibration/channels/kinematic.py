@@ -1,10 +1,13 @@
-"""Differences of encoders: motor encoders against the axis (K), roller against the axis (S), auxiliary against the axis."""
+"""Differences of encoders: motor encoders against the axis (K), roller against the axis (S), auxiliary
+against the axis."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion
@@ -42,8 +45,11 @@ def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) ->
     segment = np.cumsum(m.fresh)[pick]
     for key, sign in (("a", 1.0), ("b", -1.0)):
         spin, trusted = fill(frame.columns[f"motor_{key}"], frame.run)
-        current = fill(frame.columns[f"current_{key}"], frame.run)[0] if frame.get(f"current_{key}") is not None \
+        current = (
+            fill(frame.columns[f"current_{key}"], frame.run)[0]
+            if frame.get(f"current_{key}") is not None
             else np.zeros(len(frame.t))
+        )
         angle = np.cumsum(spin) * frame.period_s / ratio - m.theta
         y = m.at(angle) / ARCSEC
         torque = sign * per_ampere * m.at(current)
@@ -61,21 +67,35 @@ def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) ->
     valid = np.concatenate(oks) & ~np.concatenate([wide, wide])
     offsets = _offsets(segment, n, valid)
     alpha, rate = m.acceleration[pick], m.rate[pick]
-    base = np.column_stack([torque / ARCSEC, np.concatenate([alpha, alpha]), np.concatenate([rate, rate]) / ARCSEC,
-                            offsets])
+    base = np.column_stack(
+        [torque / ARCSEC, np.concatenate([alpha, alpha]), np.concatenate([rate, rate]) / ARCSEC, offsets]
+    )
     labels = [("compliance", "rad/(N m)"), ("rotor_lag", "arcsec s2/rad"), ("tachometer_delay", "s")]
     labels += [("offset", "arcsec")] * offsets.shape[1]
-    twice = lambda x: np.concatenate([x, x])  # noqa: E731
-    problem = Problem("K", "arcsec", y, base, labels, twice(frame.t[pick]), twice(run), twice(frame.session[pick]),
-                      valid, twice(held[pick]), m.period_s, ar_order=4, block_s=3.0, sensor="position",
-                      fresh=offsets)
+    problem = Problem(
+        "K",
+        "arcsec",
+        y,
+        base,
+        labels,
+        _twice(frame.t[pick]),
+        _twice(run),
+        _twice(frame.session[pick]),
+        valid,
+        _twice(held[pick]),
+        m.period_s,
+        ar_order=4,
+        block_s=3.0,
+        sensor="position",
+        fresh=offsets,
+    )
     driven = np.abs(m.at(effort)) > 0.01
     fraction = float(np.mean(apart[driven])) if driven.any() else 0.0
     motor = np.concatenate([np.zeros(n), np.ones(n)])
     return Kinematic(problem, torque, motor, ~wide, fraction)
 
 
-def _off_face(y: Array, torque: Array, segment: Array, rows: Mask) -> tuple[Array, Mask]:
+def _off_face(y: Array, torque: Array, segment: NDArray[Any], rows: Mask) -> tuple[Array, Mask]:
     """Centre y per segment and find rows off the wind-up line: robust line with a level per segment."""
     level = np.zeros(len(y))
     slope = 0.0
@@ -93,12 +113,12 @@ def _off_face(y: Array, torque: Array, segment: Array, rows: Mask) -> tuple[Arra
     return y - level, np.abs(y - level - slope * torque) > APART_ARCSEC
 
 
-def _offsets(segment: Array, n: int, valid: Mask) -> Array:
+def _offsets(segment: NDArray[Any], n: int, valid: Mask) -> Array:
     columns = []
     for motor in (0, 1):
         for s in np.unique(segment):
             c = np.zeros(2 * n)
-            c[motor * n:(motor + 1) * n] = segment == s
+            c[motor * n : (motor + 1) * n] = segment == s
             if (c.astype(bool) & valid).sum() > 10:
                 columns.append(c)
     return np.column_stack(columns) if columns else np.zeros((2 * n, 0))
@@ -107,8 +127,10 @@ def _offsets(segment: Array, n: int, valid: Mask) -> Array:
 def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
     """Incremental velocity - rate of the absolute encoder, in arcsec/s.
 
-    Base: the counting window's delay, and its next order. The counts are those of the window at each row, the rate is a
-    mean over all of the time between rows, and a position that was carried on to its row's time lags by a part of the
+    Base: the counting window's delay, and its next order. The counts are those of the window at each row,
+    the rate is a
+    mean over all of the time between rows, and a position that was carried on to its row's time lags by a
+    part of the
     acceleration: all three are a number times the jerk.
     """
     if frame.get("velocity") is None:
@@ -120,9 +142,22 @@ def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
     near = m.smooth(transients(frame, effort).astype(float))[pick] > 1e-9
     jerk = np.gradient(m.acceleration, frame.period_s)
     base = np.column_stack([m.acceleration[pick], jerk[pick]]) / ARCSEC
-    return Problem("S", "arcsec/s", y, base, [("velocity_delay", "s"), ("window_curvature", "s2")], frame.t[pick],
-                   frame.run[pick], frame.session[pick], (m.trusted & trusted)[pick] & ~near, held[pick], m.period_s, ar_order=4,
-                   block_s=3.0, sensor="velocity")
+    return Problem(
+        "S",
+        "arcsec/s",
+        y,
+        base,
+        [("velocity_delay", "s"), ("window_curvature", "s2")],
+        frame.t[pick],
+        frame.run[pick],
+        frame.session[pick],
+        (m.trusted & trusted)[pick] & ~near,
+        held[pick],
+        m.period_s,
+        ar_order=4,
+        block_s=3.0,
+        sensor="velocity",
+    )
 
 
 def auxiliary_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
@@ -136,6 +171,25 @@ def auxiliary_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
     offsets = np.column_stack([(run == k).astype(float) for k in np.unique(run)])
     base = np.column_stack([m.rate[pick] / ARCSEC, offsets])
     labels = [("aux_delay", "s")] + [("offset", "arcsec")] * offsets.shape[1]
-    return Problem("K", "arcsec", raw, base, labels, frame.t[pick], run, frame.session[pick],
-                   (m.trusted & trusted)[pick], held[pick], m.period_s, ar_order=4, block_s=3.0, sensor="auxiliary",
-                   fresh=offsets)
+    return Problem(
+        "K",
+        "arcsec",
+        raw,
+        base,
+        labels,
+        frame.t[pick],
+        run,
+        frame.session[pick],
+        (m.trusted & trusted)[pick],
+        held[pick],
+        m.period_s,
+        ar_order=4,
+        block_s=3.0,
+        sensor="auxiliary",
+        fresh=offsets,
+    )
+
+
+def _twice(x: NDArray[Any]) -> NDArray[Any]:
+    """Motor A's rows, then motor B's."""
+    return np.concatenate([x, x])

@@ -1,7 +1,10 @@
-"""What moved: rates and accelerations of the axis on the analysis grid, each as a mean over the same two boxcars.
+"""What moved: rates and accelerations of the axis on the analysis grid, each as a mean over the same two
+boxcars.
 
-With h = box_D * box_D, the second difference of the position over D rows is h * theta'' exactly, the difference quotient
-over D rows smoothed once more is h * theta', and every other column is smoothed by h: the torque balance then holds
+With h = box_D * box_D, the second difference of the position over D rows is h * theta'' exactly, the
+difference quotient
+over D rows smoothed once more is h * theta', and every other column is smoothed by h: the torque balance
+then holds
 between the smoothed columns without any bias of a differentiating filter.
 """
 
@@ -51,14 +54,18 @@ def motion_of(frame: Frame, width: int) -> Motion:
     ahead, behind = _shift(theta, -d), _shift(theta, d)
     acceleration = (ahead - 2 * theta + behind) / (d * dt) ** 2
     half = d // 2
-    slope = (_shift(theta, -half - 1) + _shift(theta, -half) - _shift(theta, half) - _shift(theta, half + 1)) / 2
+    slope = (
+        _shift(theta, -half - 1) + _shift(theta, -half) - _shift(theta, half) - _shift(theta, half + 1)
+    ) / 2
     slope = slope / ((2 * half + 1) * dt) if d > 1 else (ahead - behind) / (2 * dt)
     rate = boxcar(slope, d)
     usable = trusted.copy()
     for k in range(1, d + 1):
         usable &= _shift(trusted.astype(float), -k) > 0
         usable &= _shift(trusted.astype(float), k) > 0
-        usable &= (_shift(frame.run.astype(float), -k) == frame.run) & (_shift(frame.run.astype(float), k) == frame.run)
+        usable &= (_shift(frame.run.astype(float), -k) == frame.run) & (
+            _shift(frame.run.astype(float), k) == frame.run
+        )
     pick = np.arange(d // 2, len(theta), d)
     return Motion(d, theta, usable, rate, acceleration, pick, fresh, d * dt)
 

@@ -1,4 +1,5 @@
-"""One channel of residual as a regression: what is measured, what the declared model explains, where rows belong."""
+"""One channel of residual as a regression: what is measured, what the declared model explains, where rows
+belong."""
 
 from __future__ import annotations
 
@@ -13,9 +14,11 @@ from plant.calibration.statistics.whitening import Mask
 
 @dataclass
 class Problem:
-    """y (n,) = base (n, p) beta + effects + noise, in `unit`, on a regular grid of `period_s` with gaps in `valid`.
+    """y (n,) = base (n, p) beta + effects + noise, in `unit`, on a regular grid of `period_s` with gaps in
+    `valid`.
 
-    `run` and `session` are integer labels per row; `held` marks the held-out rows. `floor` is the rms that the
+    `run` and `session` are integer labels per row; `held` marks the held-out rows. `floor` is the rms that
+    the
     sensors' own quantisation and noise leave in y, same unit.
     """
 
@@ -40,7 +43,7 @@ class Problem:
     @property
     def block(self) -> int:
         """Rows per block of the bootstrap."""
-        return max(int(round(self.block_s / self.period_s)), 4)
+        return max(round(self.block_s / self.period_s), 4)
 
     @property
     def train(self) -> Mask:

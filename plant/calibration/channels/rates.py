@@ -18,8 +18,9 @@ def local_polynomial(x: Array, window: int, derivative: int, period: float) -> A
     return np.asarray(savgol_filter(x, window, 3, deriv=derivative, delta=period))
 
 
-def regular(t: Array, columns: dict[str, Array], period: float, run: NDArray[np.int64] | None = None
-            ) -> tuple[Array, dict[str, Array]]:
+def regular(
+    t: Array, columns: dict[str, Array], period: float, run: NDArray[np.int64] | None = None
+) -> tuple[Array, dict[str, Array]]:
     """Linear interpolation of unevenly sampled columns onto a regular grid (NaN samples are skipped)."""
     grid = t[0] + period * np.arange(int(np.floor((t[-1] - t[0]) / period)) + 1)
     out = {}

@@ -12,7 +12,8 @@ from plant.compiled import entry
 
 @entry
 def lowpass(x: Array, clock: Array, tau: float) -> Array:
-    """First-order low pass of x (n,) with time constant `tau` s, starting at zero; steps of `clock` may be uneven."""
+    """First-order low pass of x (n,) with time constant `tau` s, starting at zero; steps of `clock` may be
+    uneven."""
     out = np.empty(len(x))
     state = 0.0
     for k in range(len(x)):
@@ -28,9 +29,6 @@ def stop_element(x: Array, fresh: Any, radius: float) -> Array:
     out = np.empty(len(x))
     state = 0.0
     for k in range(len(x)):
-        if fresh[k] or k == 0:
-            state = 0.0
-        else:
-            state = min(max(state + x[k] - x[k - 1], -radius), radius)
+        state = 0.0 if fresh[k] or k == 0 else min(max(state + x[k] - x[k - 1], -radius), radius)
         out[k] = state
     return out

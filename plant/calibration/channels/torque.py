@@ -15,8 +15,11 @@ from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
 
-WIDTH = 3  # rows per analysis sample: 30 ms, wide enough for the encoder, narrow enough for mesh 2 at 1.5 deg/s
-JUMP = 0.02  # of full effort within one row: an electrical and gear transient that the rigid balance does not hold
+WIDTH = (
+    3  # rows per analysis sample: 30 ms, wide enough for the encoder, narrow enough for mesh 2 at 1.5 deg/s
+)
+# of full effort within one row: an electrical and gear transient that the rigid balance does not hold
+JUMP = 0.02
 SETTLE_S = 0.25  # how long such a transient lasts: a few turns of the lock-rotor mode and of the PI loop
 DIRECTION_TRAVEL = 2e-6  # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range
 
@@ -37,8 +40,8 @@ def transients(frame: Frame, effort: Array) -> Mask:
     """Rows within SETTLE_S after a jump of the effort, or two rows before it."""
     jump = np.zeros(len(effort), dtype=bool)
     jump[1:] = (np.abs(np.diff(effort)) > JUMP) & (frame.run[1:] == frame.run[:-1])
-    count = int(round(SETTLE_S / frame.period_s))
-    last = np.where(jump, np.arange(len(jump)), -10**9)
+    count = round(SETTLE_S / frame.period_s)
+    last = np.where(jump, np.arange(len(jump)), -(10**9))
     np.maximum.accumulate(last, out=last)
     near = np.arange(len(jump)) - last <= count
     near[:-1] |= jump[1:]
@@ -52,7 +55,8 @@ def saturated(frame: Frame, current: Array) -> Mask:
 
 
 def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None:
-    """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full rate."""
+    """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full
+    rate."""
     ia, ib = frame.get("current_a"), frame.get("current_b")
     if ia is None and ib is None:
         return None
@@ -69,22 +73,55 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     test = held[pick]
     preload = frame.runs[0].header.get("preload", "low")
     friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
-    labels = [("inertia", "kg m2"), ("viscous", "N m s/rad"), ("coulomb", "N m"), ("log_stiction_ratio", "1"),
-              ("log_stribeck_speed", "1"), ("log_stiffness", "1"), ("sigma_1", "N m s/rad")]
-    # the currents may be late by a fraction of a row against the encoder: a nuisance, an effect only when it is large
+    labels = [
+        ("inertia", "kg m2"),
+        ("viscous", "N m s/rad"),
+        ("coulomb", "N m"),
+        ("log_stiction_ratio", "1"),
+        ("log_stribeck_speed", "1"),
+        ("log_stiffness", "1"),
+        ("sigma_1", "N m s/rad"),
+    ]
+    # the currents may be late by a fraction of a row against the encoder: a nuisance, an effect only when
+    # it is large
     base = np.column_stack([base, m.at(np.gradient(per_ampere * (fa - fb), frame.period_s))])
     labels.append(("current_delay", "s"))
     t = frame.t[pick]
-    problem = Problem("T", "N m", y, base, labels, t, frame.run[pick], frame.session[pick], rows, test, m.period_s,
-                      ar_order=4, block_s=3.0)
+    problem = Problem(
+        "T",
+        "N m",
+        y,
+        base,
+        labels,
+        t,
+        frame.run[pick],
+        frame.session[pick],
+        rows,
+        test,
+        m.period_s,
+        ar_order=4,
+        block_s=3.0,
+    )
     theta = m.theta[pick]
     direction = direction_of(theta, frame.run[pick], DIRECTION_TRAVEL)
     rate = m.rate[pick]
     temperature = frame.get("temperature")
     context = Context(
-        t, theta, rate, direction, since_reversal(theta, direction, frame.run[pick]), frame.run[pick],
-        frame.session[pick], "N m", "rad", 2 * np.pi, np.abs(m.at(np.abs(bristle))) * friction.coulomb,
-        load=y, current=m.at(fa - fb), effort=m.at(effort),
+        t,
+        theta,
+        rate,
+        direction,
+        since_reversal(theta, direction, frame.run[pick]),
+        frame.run[pick],
+        frame.session[pick],
+        "N m",
+        "rad",
+        2 * np.pi,
+        np.abs(m.at(np.abs(bristle))) * friction.coulomb,
+        load=y,
+        current=m.at(fa - fb),
+        effort=m.at(effort),
         temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
-        stages={k: v / (2 * np.pi) for k, v in STAGES.items() if k not in ("aux",)})
+        stages={k: v / (2 * np.pi) for k, v in STAGES.items() if k not in ("aux",)},
+    )
     return Torque(problem, context, m, friction, bristle, per_ampere)

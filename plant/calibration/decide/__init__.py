@@ -1,1 +1,2 @@
-"""The decision: gate, forward selection with out-of-run scores, equivalence classes, negative controls, verdict."""
+"""The decision: gate, forward selection with out-of-run scores, equivalence classes, negative controls,
+verdict."""

@@ -1,4 +1,5 @@
-"""Effects without a phase: broadband torque over time (wind), and lines that only the full rate shows (pick-up)."""
+"""Effects without a phase: broadband torque over time (wind), and lines that only the full rate shows
+(pick-up)."""
 
 from __future__ import annotations
 
@@ -14,13 +15,14 @@ MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster
 WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
 PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
 SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
-COUNTS = 0.8  # amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
+# amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
+COUNTS = 0.8
 
 
 def slow_ratio(e: Array, problem: Problem, white: float) -> float:
     """rms of means over MEAN_S, over the white noise's rms per sample, while the axis slides."""
     rows = problem.train & (np.abs(problem.base[:, 1]) > SLIDING)
-    size = max(int(round(MEAN_S / problem.period_s)), 2)
+    size = max(round(MEAN_S / problem.period_s), 2)
     n = len(e) // size * size
     ok = rows[:n].reshape(-1, size).mean(axis=1) > 0.9
     means = np.where(rows, e, 0.0)[:n].reshape(-1, size).mean(axis=1)[ok]
@@ -39,10 +41,17 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     sigma = float(np.sqrt(variance))
     turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
     half = 1.96 * sigma / np.sqrt(2 * turns)
-    return Finding("wind_torque", "T", "time", evidence=40.0 * ratio, share=1 - (white**2 / float(np.mean(
-        e[problem.train] ** 2))), parameters={
-        "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
-        "corner": Parameter(float(corner), "Hz", float(corner) * 0.6, float(corner) * 1.6)})
+    return Finding(
+        "wind_torque",
+        "T",
+        "time",
+        evidence=40.0 * ratio,
+        share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
+        parameters={
+            "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
+            "corner": Parameter(float(corner), "Hz", float(corner) * 0.6, float(corner) * 1.6),
+        },
+    )
 
 
 def pick_up(frame: Frame) -> Finding | None:
@@ -75,6 +84,13 @@ def pick_up(frame: Frame) -> Finding | None:
     if len(same) < 0.7 * len(strong):
         return None
     size = float(np.median([b[2] for b in same]))
-    return Finding("unknown", "E", "time", frequency=middle, evidence=30.0, share=0.3,
-                   note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
-                   parameters={"amplitude": Parameter(size, "A", 0.8 * size, 1.2 * size)})
+    return Finding(
+        "unknown",
+        "E",
+        "time",
+        frequency=middle,
+        evidence=30.0,
+        share=0.3,
+        note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
+        parameters={"amplitude": Parameter(size, "A", 0.8 * size, 1.2 * size)},
+    )

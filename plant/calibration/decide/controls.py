@@ -13,8 +13,15 @@ from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 
-TEETH = {"shaft1": (113, 123), "shaft2": (123, 17), "motor": (27, 27), "mesh1": (27, 27), "mesh2": (21, 21),
-         "mesh3": (250, 250), "roller": (30, 30)}
+TEETH = {
+    "shaft1": (113, 123),
+    "shaft2": (123, 17),
+    "motor": (27, 27),
+    "mesh1": (27, 27),
+    "mesh2": (21, 21),
+    "mesh3": (250, 250),
+    "roller": (30, 30),
+}
 
 
 def controls(selection: Selection, angle_turns: Array | None, span_turns: float) -> list[dict[str, Any]]:
@@ -23,22 +30,36 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
     for k, chosen in enumerate(selection.chosen):
         c = chosen.candidate
         tests: list[tuple[str, Candidate]] = [
-            ("time reversed", replace(c, columns=c.columns[::-1].copy(), shape=None))]
+            ("time reversed", replace(c, columns=c.columns[::-1].copy(), shape=None))
+        ]
         if c.stage in TEETH and c.kind == "line" and c.order and angle_turns is not None:
             teeth = TEETH[c.stage][0]
             for step, word in ((1, "more"), (-1, "less")):
                 order = c.order * (teeth + step) / teeth
                 if abs(order - c.order) * span_turns < 0.7:
-                    out.append({"what": f"one tooth {word} on {c.stage}", "accepted": False,
-                                "note": "this travel cannot tell one tooth from the next"})
+                    out.append(
+                        {
+                            "what": f"one tooth {word} on {c.stage}",
+                            "accepted": False,
+                            "note": "this travel cannot tell one tooth from the next",
+                        }
+                    )
                     continue
                 x = 2 * np.pi * angle_turns * order
-                tests.append((f"one tooth {word} on {c.stage}",
-                              replace(c, columns=np.column_stack([np.cos(x), np.sin(x)]), shape=None)))
+                tests.append(
+                    (
+                        f"one tooth {word} on {c.stage}",
+                        replace(c, columns=np.column_stack([np.cos(x), np.sin(x)]), shape=None),
+                    )
+                )
         for what, wrong in tests:
             row = {"what": f"{what} ({c.name})", "accepted": _better(selection, k, wrong)}
             if what == "time reversed" and _alike(c.columns, wrong.columns):
-                row = {"what": row["what"], "accepted": False, "note": "no test here: this motion reads the same backwards"}
+                row = {
+                    "what": row["what"],
+                    "accepted": False,
+                    "note": "no test here: this motion reads the same backwards",
+                }
             out.append(row)
         out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(selection, k)})
     return out
@@ -68,8 +89,8 @@ def _flipped(selection: Selection, k: int) -> bool:
     beta = selection.after.beta.copy()
     width = selection.chosen[k].candidate.width
     without = beta.copy()
-    without[at:at + width] = 0.0
-    beta[at:at + width] *= -1
+    without[at : at + width] = 0.0
+    beta[at : at + width] *= -1
     rows = p.test
     e1, e0 = (p.y - x @ beta)[rows], (p.y - x @ without)[rows]
     return bool(np.mean(e1**2) < np.mean(e0**2))

@@ -1,4 +1,5 @@
-"""Late columns: the lag between redundant columns, taken from the coefficients of their rates (effects.md, lesson 2)."""
+"""Late columns: the lag between redundant columns, taken from the coefficients of their rates (effects.md,
+lesson 2)."""
 
 from __future__ import annotations
 
@@ -10,7 +11,10 @@ from plant.calibration.statistics.tails import student_reach
 
 SMALLEST_S = 1.2e-4  # shorter lags than this are within an interrupt's latency
 WINDOW_DELAY_S = 0.0025  # the velocity column counts over the last 5 ms: half of it
-ELECTRICAL_S = (0.003, 0.0105)  # one tick of the loop, L/R of 0.5 to 5 ms and the output latch: what a sound log shows
+ELECTRICAL_S = (
+    0.003,
+    0.0105,
+)  # one tick of the loop, L/R of 0.5 to 5 ms and the output latch: what a sound log shows
 
 
 def delay_findings(selections: dict[str, Selection]) -> list[Finding]:
@@ -39,5 +43,14 @@ def delay_findings(selections: dict[str, Selection]) -> list[Finding]:
     if name is None:
         return []
     error = lags[key][1]
-    return [Finding("channel_delay", "S", "clock", evidence=50.0, share=1.0, note=f"the {name} column is late",
-                    parameters={"delay": Parameter(value, "s", value - error, value + error)})]
+    return [
+        Finding(
+            "channel_delay",
+            "S",
+            "clock",
+            evidence=50.0,
+            share=1.0,
+            note=f"the {name} column is late",
+            parameters={"delay": Parameter(value, "s", value - error, value + error)},
+        )
+    ]

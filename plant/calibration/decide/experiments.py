@@ -1,19 +1,25 @@
-"""The cheapest experiment that would tell two names apart, by pair of names (effects.md, last column of the catalogue)."""
+"""The cheapest experiment that would tell two names apart, by pair of names (effects.md, last column of the
+catalogue)."""
 
 from __future__ import annotations
 
 TABLE: dict[str, str] = {
     "friction_asymmetry": "run both directions at two speeds, and read the currents at locked rotor",
     "adc_offset": "read both currents at zero duty for ten seconds",
-    "adc_gain": "lock the rotor and step the duty of each motor: a reading that is too large shows there, a weak magnet does not",
+    "adc_gain": "lock the rotor and step the duty of each motor: a reading that is too large shows "
+    "there, a weak magnet does not",
     "magnet_weakening": "drive each motor alone at two speeds and compare volts per speed",
     "gravity_imbalance": "move through at least 60 degrees slowly, there and back",
     "cable_wrap": "a full turn both ways: a cable loops, an imbalance does not",
-    "position_friction": "go there and back over the same angle: friction changes its sign, a gear or cogging does not",
-    "gear_eccentricity": "a second speed: a gear keeps its angle, a resonance its frequency; more travel splits close orders",
+    "position_friction": "go there and back over the same angle: friction changes its sign, a gear or "
+    "cogging does not",
+    "gear_eccentricity": "a second speed: a gear keeps its angle, a resonance its frequency; more travel "
+    "splits close orders",
     "gear_mesh": "a second speed, and travel enough to split it from the neighbouring order",
-    "motor_cogging": "hold the speed and vary the torque (raise the counter torque): ripple grows, cogging stays",
-    "torque_ripple": "hold the speed and vary the torque (raise the counter torque): ripple grows, cogging stays",
+    "motor_cogging": "hold the speed and vary the torque (raise the counter torque): ripple grows, "
+    "cogging stays",
+    "torque_ripple": "hold the speed and vary the torque (raise the counter torque): ripple grows, "
+    "cogging stays",
     "bearing_pass": "twice the travel: the order stands clear of every gear",
     "structural_mode": "repeat at another speed: a mode keeps its frequency",
     "friction_warmup": "repeat the same run after a rest of half an hour: a warm-up comes back",

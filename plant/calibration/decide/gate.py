@@ -1,4 +1,5 @@
-"""The gate: is anything there at all? The largest score of all candidates against surrogates of the residual."""
+"""The gate: is anything there at all? The largest score of all candidates against surrogates of the
+residual."""
 
 from __future__ import annotations
 
@@ -14,9 +15,16 @@ DRAWS = 400  # surrogates
 LEVEL = 0.99  # of the surrogate maximum; aim: at most 1 % false alarms
 
 
-def gate(problem: Problem, null: Fit, final: Fit, candidates: list[Candidate], base: Array,
-         rng: np.random.Generator) -> Scores:
-    """Scores of all candidates on the residual of `null`, thresholds from surrogates of the residual of `final`."""
+def gate(
+    problem: Problem,
+    null: Fit,
+    final: Fit,
+    candidates: list[Candidate],
+    base: Array,
+    rng: np.random.Generator,
+) -> Scores:
+    """Scores of all candidates on the residual of `null`, thresholds from surrogates of the residual of
+    `final`."""
     if not candidates:
         return Scores(np.zeros(0), np.zeros(0), 0.0, np.zeros(DRAWS))
     train, w = problem.train, final.whitener

@@ -1,4 +1,5 @@
-"""Errors on rows that were not fitted: before and after, raw and whitened, and whether a gain is more than luck."""
+"""Errors on rows that were not fitted: before and after, raw and whitened, and whether a gain is more than
+luck."""
 
 from __future__ import annotations
 
@@ -14,7 +15,8 @@ from plant.calibration.statistics.whitening import Mask, Whitener
 
 @dataclass(frozen=True)
 class HeldOut:
-    """rms before and after on held-out rows (channel's unit) and the z-score of the whitened gain over blocks."""
+    """rms before and after on held-out rows (channel's unit) and the z-score of the whitened gain over
+    blocks."""
 
     before: float
     after: float
@@ -32,7 +34,9 @@ def predict_residual(problem: Problem, x: Array, beta: Array, rows: Mask) -> Arr
     return np.asarray(e)
 
 
-def compare(problem: Problem, x0: Array, beta0: Array, x1: Array, beta1: Array, whitener: Whitener) -> HeldOut:
+def compare(
+    problem: Problem, x0: Array, beta0: Array, x1: Array, beta1: Array, whitener: Whitener
+) -> HeldOut:
     """Compare two fitted models on the held-out rows."""
     rows = problem.test
     if rows.sum() < 20:
@@ -82,4 +86,6 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
     e0, e1 = left
     b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
     gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in range(FOLDS) if np.any(fold == k)]
-    return HeldOut(b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0, min(gains) > 0)
+    return HeldOut(
+        b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0, min(gains) > 0
+    )

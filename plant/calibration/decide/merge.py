@@ -1,4 +1,5 @@
-"""One physical cause shows up in several channels: merge its traces into one finding, drop its consequences."""
+"""One physical cause shows up in several channels: merge its traces into one finding, drop its
+consequences."""
 
 from __future__ import annotations
 
@@ -6,15 +7,43 @@ from plant.calibration.decide.finding import Finding
 
 #: a finding of the key's name (in that channel) explains away findings of these names
 CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
-    ("backlash_loss", "E"): ("structural_mode", "coulomb_change", "stribeck_change", "viscous_change", "shaft_compliance",
-                             "pwm_deadband", "supply_sag", "presliding", "damaged_tooth", "preload_change", "brake_drag",
-                             "cable_wrap", "gear_eccentricity", "friction_asymmetry", "position_friction", "adc_gain",
-                             "load_friction", "unknown"),
+    ("backlash_loss", "E"): (
+        "structural_mode",
+        "coulomb_change",
+        "stribeck_change",
+        "viscous_change",
+        "shaft_compliance",
+        "pwm_deadband",
+        "supply_sag",
+        "presliding",
+        "damaged_tooth",
+        "preload_change",
+        "brake_drag",
+        "cable_wrap",
+        "gear_eccentricity",
+        "friction_asymmetry",
+        "position_friction",
+        "adc_gain",
+        "load_friction",
+        "unknown",
+    ),
     ("channel_delay", "S"): ("structural_mode", "roller_slip", "unknown", "damaged_tooth"),
     ("clock_jitter", "S"): ("roller_slip", "damaged_tooth", "unknown"),
-    ("log_wrap", "S"): ("encoder_eccentricity", "roller_ratio", "roller_slip", "adc_gain", "magnet_weakening", "unknown",
-                        "structural_mode", "damaged_tooth", "channel_delay", "friction_asymmetry", "supply_sag",
-                        "command_disturbance", "sample_loss"),
+    ("log_wrap", "S"): (
+        "encoder_eccentricity",
+        "roller_ratio",
+        "roller_slip",
+        "adc_gain",
+        "magnet_weakening",
+        "unknown",
+        "structural_mode",
+        "damaged_tooth",
+        "channel_delay",
+        "friction_asymmetry",
+        "supply_sag",
+        "command_disturbance",
+        "sample_loss",
+    ),
     ("magnet_weakening", "E"): ("adc_gain",),
     ("structural_mode", "T"): ("damaged_tooth",),
     ("brake_drag", "T"): ("friction_warmup",),
@@ -22,7 +51,9 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
     ("encoder_eccentricity", "K"): ("roller_ratio",),
     ("cable_wrap", "T"): ("preload_change", "friction_warmup"),
 }
-SUPERFLUOUS = 0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
+SUPERFLUOUS = (
+    0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
+)
 
 
 def merge(findings: list[Finding]) -> list[Finding]:
@@ -35,7 +66,8 @@ def merge(findings: list[Finding]) -> list[Finding]:
 
 
 def _resolve_gain(findings: list[Finding]) -> list[Finding]:
-    """A torque that is too large on one motor: the electrical channel says whether its reading or its magnets."""
+    """A torque that is too large on one motor: the electrical channel says whether its reading or its
+    magnets."""
     electrical = {f.name for f in findings if f.channel == "E"}
     out = []
     for f in findings:
@@ -49,10 +81,21 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
 
 def _same_key(findings: list[Finding]) -> list[Finding]:
     best: dict[tuple[str, str | None], Finding] = {}
-    for f in sorted(findings, key=lambda f: ("SKETU".find(f.channel) if f.name == "channel_delay" else 0, -f.share)):
+    for f in sorted(
+        findings, key=lambda f: ("SKETU".find(f.channel) if f.name == "channel_delay" else 0, -f.share)
+    ):
         key = (f.name, f.stage) if f.name != "unknown" else (f.name, f.domain)
-        single = f.name in ("damaged_tooth", "structural_mode", "gravity_imbalance", "cable_wrap", "channel_delay",
-                            "friction_warmup", "preload_change", "encoder_eccentricity", "friction_asymmetry")
+        single = f.name in (
+            "damaged_tooth",
+            "structural_mode",
+            "gravity_imbalance",
+            "cable_wrap",
+            "channel_delay",
+            "friction_warmup",
+            "preload_change",
+            "encoder_eccentricity",
+            "friction_asymmetry",
+        )
         if single:
             key = (f.name, None)
         if key in best:
@@ -74,7 +117,11 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
     for f in findings:
         names = CONSEQUENCES.get((f.name, f.channel), ())
         for k, other in enumerate(findings):
-            if other is not f and other.name in names and (other.share <= max(f.share, 0.3) or other.name == "wind_torque"):
+            if (
+                other is not f
+                and other.name in names
+                and (other.share <= max(f.share, 0.3) or other.name == "wind_torque")
+            ):
                 drop.add(k)
     explained = max((f.share for f in findings if f.channel == "T" and f.name != "wind_torque"), default=0.0)
     for k, other in enumerate(findings):
@@ -92,8 +139,11 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
 def _remainders(findings: list[Finding]) -> list[Finding]:
     torque = [f for f in findings if f.channel == "T" and f.share > 0]
     top = max((f.share for f in torque), default=0.0)
-    return [f for f in findings if not (f.channel == "T" and 0 < f.share < SUPERFLUOUS * top
-                                        and f.evidence < WEAK)]
+    return [
+        f
+        for f in findings
+        if not (f.channel == "T" and 0 < f.share < SUPERFLUOUS * top and f.evidence < WEAK)
+    ]
 
 
 WEAK = 25.0  # -log10 p below which a small second torque effect is not worth its name

@@ -10,6 +10,7 @@ from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.refine import slopes
 from plant.calibration.decide.scan import Contender
 from plant.calibration.decide.select import Selection
+from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.tails import student_reach
 
@@ -47,16 +48,17 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
 
 
 def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Parameter]:
-    """Intervals of refined parameters from a joint fit with their slopes; grid parameters are given as they are."""
+    """Intervals of refined parameters from a joint fit with their slopes; grid parameters are given as they
+    are."""
     problem, candidate = selection.problem, selection.chosen[index].candidate
     out = {name: Parameter(value, unit, value, value) for name, (value, unit) in candidate.fixed.items()}
     if not candidate.steps:
         return out
     at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
-    extra = slopes(candidate, selection.after.beta[at:at + candidate.width])
+    extra = slopes(candidate, selection.after.beta[at : at + candidate.width])
     x = np.hstack([problem.base, *[c.candidate.columns for c in selection.chosen], extra])
     fit = gls(problem.y, x, problem.train, problem.ar_order, problem.block)
-    for k, name in enumerate(list(candidate.fixed)[:len(candidate.steps)]):
+    for k, name in enumerate(list(candidate.fixed)[: len(candidate.steps)]):
         value, unit = candidate.fixed[name]
         error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
         low, high = interval(value, error, blocks)
@@ -64,7 +66,7 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
     return out
 
 
-def amplitude_interval(beta: np.ndarray, cov: np.ndarray, blocks: int) -> tuple[float, float, float]:  # type: ignore[type-arg]
+def amplitude_interval(beta: Array, cov: Array, blocks: int) -> tuple[float, float, float]:
     """Amplitude of a sine pair with an interval that does not pretend a small line is a sure one."""
     amplitude = float(np.hypot(beta[0], beta[1]))
     variance = float(beta @ cov @ beta) / max(amplitude**2, 1e-300)
@@ -83,5 +85,16 @@ def finding_of(selection: Selection, index: int, name: str | None = None) -> Fin
     names = [e.candidate.name for e in selection.classes[index]] + list(c.twins)
     equivalent = [n for n in dict.fromkeys(names) if n != c.name]
     step = selection.steps[index] if index < len(selection.steps) else selection.held
-    return Finding(name or c.name, selection.problem.channel, c.domain, c.stage, c.harmonic, c.order, c.frequency,
-                   equivalent, parameters_of(selection, index), contender.evidence, step.share)
+    return Finding(
+        name or c.name,
+        selection.problem.channel,
+        c.domain,
+        c.stage,
+        c.harmonic,
+        c.order,
+        c.frequency,
+        equivalent,
+        parameters_of(selection, index),
+        contender.evidence,
+        step.share,
+    )

@@ -1,4 +1,5 @@
-"""Refinement of the parameters that enter a candidate nonlinearly (a time constant, an onset, a resonance)."""
+"""Refinement of the parameters that enter a candidate nonlinearly (a time constant, an onset, a
+resonance)."""
 
 from __future__ import annotations
 
@@ -15,8 +16,11 @@ ROUNDS = 3  # of coordinate searches, each on a finer grid
 POINTS = 7  # per coordinate and round
 
 
-def refine(problem: Problem, base: Array, residual: Array, candidate: Candidate, whitener: Whitener) -> Candidate:
-    """Move the nonlinear parameters to where the candidate takes most off the residual (whitened, training rows)."""
+def refine(
+    problem: Problem, base: Array, residual: Array, candidate: Candidate, whitener: Whitener
+) -> Candidate:
+    """Move the nonlinear parameters to where the candidate takes most off the residual (whitened, training
+    rows)."""
     if candidate.shape is None:
         return candidate
     train = problem.train
@@ -24,7 +28,7 @@ def refine(problem: Problem, base: Array, residual: Array, candidate: Candidate,
     e = whitener.apply(np.where(train, residual, 0.0))[use]
     b = whitener.apply(np.where(train[:, None], base, 0.0))[use]
     q, _ = np.linalg.qr(b / np.maximum(np.linalg.norm(b, axis=0), 1e-300))
-    names = list(candidate.fixed)[:len(candidate.steps)]
+    names = list(candidate.fixed)[: len(candidate.steps)]
     p = np.array([candidate.fixed[n][0] for n in names])
     shape = candidate.shape
 
@@ -55,10 +59,11 @@ def refine(problem: Problem, base: Array, residual: Array, candidate: Candidate,
 
 
 def slopes(candidate: Candidate, beta: Array) -> Array:
-    """Columns d(columns beta)/d(parameter) of the nonlinear parameters, for their intervals; (n, len(steps))."""
+    """Columns d(columns beta)/d(parameter) of the nonlinear parameters, for their intervals; (n,
+    len(steps))."""
     if candidate.shape is None:
         return np.zeros((candidate.columns.shape[0], 0))
-    p = np.array([v for v, _ in candidate.fixed.values()])[:len(candidate.steps)]
+    p = np.array([v for v, _ in candidate.fixed.values()])[: len(candidate.steps)]
     out = []
     for k, step in enumerate(candidate.steps):
         h = np.zeros(len(p))

@@ -51,7 +51,9 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
         place = (candidates[k].key, candidates[k].domain)
         if seen.get(place, 0) >= 2 or (len(chosen) >= CONTENDERS and place in seen):
             continue
-        found = fit_with(problem, base, refine(problem, base, null.residual, candidates[k], null.whitener), null)
+        found = fit_with(
+            problem, base, refine(problem, base, null.residual, candidates[k], null.whitener), null
+        )
         if found is not None:
             chosen.append(found)
             seen[place] = seen.get(place, 0) + 1
@@ -64,7 +66,8 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
 
 
 def _share(problem: Problem, null: Fit, base: Array, candidates: list[Candidate], white: bool) -> Array:
-    """Share of the (whitened) residual that each candidate takes away, less what its columns take by chance."""
+    """Share of the (whitened) residual that each candidate takes away, less what its columns take by
+    chance."""
     train = problem.train
     x = np.hstack([c.columns for c in candidates])
     if white:

@@ -15,12 +15,16 @@ from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import Scores
 
-MARGIN = 0.05  # of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
+# of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
+MARGIN = 0.05
 # for what a rigid balance misses of a compliant drive
 LUCK = 2.0  # z of the cross-validated gain over blocks
 HANDICAP = 0.12  # of the mean square: an unnamed function must do more than a named one
-LEAST_EVIDENCE = 10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
-BURST = 0.05  # of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
+LEAST_EVIDENCE = (
+    10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
+)
+# of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
+BURST = 0.05
 WORSE = 0.001  # of the held-out mean square: rounding, not harm
 MOST = 5  # effects per channel
 
@@ -59,8 +63,13 @@ def design(problem: Problem, chosen: list[Candidate]) -> Array:
     return np.hstack([problem.base, *[c.columns for c in chosen]])
 
 
-def select(problem: Problem, candidates: list[Candidate], rng: np.random.Generator, most: int = MOST,
-           margin: float = MARGIN) -> Selection:
+def select(
+    problem: Problem,
+    candidates: list[Candidate],
+    rng: np.random.Generator,
+    most: int = MOST,
+    margin: float = MARGIN,
+) -> Selection:
     """Pick effects one after another while each helps on held-out rows; then hold them against surrogates."""
     picks: list[Contender] = []
     classes: list[list[Contender]] = []
@@ -95,26 +104,43 @@ def select(problem: Problem, candidates: list[Candidate], rng: np.random.Generat
     keep = [p.evidence >= scores.threshold for p in picks]
     for p, good in zip(picks, keep, strict=True):
         if not good:
-            refused.append(Refusal(p.candidate.say(), f"below the surrogate threshold ({p.evidence:.1f} < "
-                                                      f"{scores.threshold:.1f})"))
+            refused.append(
+                Refusal(
+                    p.candidate.say(),
+                    f"below the surrogate threshold ({p.evidence:.1f} < {scores.threshold:.1f})",
+                )
+            )
     if not all(keep):
-        picks, classes, steps = ([v for v, k in zip(x, keep, strict=True) if k]  # type: ignore[misc]
-                                 for x in (picks, classes, steps))
+        picks = [x for x, k in zip(picks, keep, strict=True) if k]
+        classes = [x for x, k in zip(classes, keep, strict=True) if k]
+        steps = [x for x, k in zip(steps, keep, strict=True) if k]
         after = _fit(problem, picks)
-    held = compare(problem, problem.base, before.beta, design(problem, [p.candidate for p in picks]), after.beta,
-                   after.whitener)
+    held = compare(
+        problem,
+        problem.base,
+        before.beta,
+        design(problem, [p.candidate for p in picks]),
+        after.beta,
+        after.whitener,
+    )
     return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
 
 
 def _fit(problem: Problem, picks: list[Contender]) -> Fit:
-    return gls(problem.y, design(problem, [p.candidate for p in picks]), problem.train, problem.ar_order,
-               problem.block)
+    return gls(
+        problem.y,
+        design(problem, [p.candidate for p in picks]),
+        problem.train,
+        problem.ar_order,
+        problem.block,
+    )
 
 
 def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float = MARGIN) -> str:
     """Why a contender is not accepted; empty when it is.
 
-    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an effect that the
+    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an
+    effect that the
     held-out run does not excite may gain nothing there, but none may make it worse.
     """
     if contender.bayes <= 0:
@@ -133,8 +159,13 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
     return ""
 
 
-def _retest(problem: Problem, picks: list[Contender], classes: list[list[Contender]], steps: list[HeldOut],
-            refused: list[Refusal]) -> tuple[list[Contender], list[list[Contender]], list[HeldOut]]:
+def _retest(
+    problem: Problem,
+    picks: list[Contender],
+    classes: list[list[Contender]],
+    steps: list[HeldOut],
+    refused: list[Refusal],
+) -> tuple[list[Contender], list[list[Contender]], list[HeldOut]]:
     """Drop earlier picks that the later ones made superfluous."""
     keep = list(range(len(picks)))
     for k in range(len(picks) - 1):
@@ -148,7 +179,8 @@ def _retest(problem: Problem, picks: list[Contender], classes: list[list[Contend
 
 
 def equivalents(problem: Problem, contenders: list[Contender], best: Contender) -> list[Contender]:
-    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood test)."""
+    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood
+    test)."""
     out = []
     for other in contenders:
         if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:

@@ -1,6 +1,8 @@
-"""Effects that are a declared number being another one: named only when re-calibration leaves the declared tolerance.
+"""Effects that are a declared number being another one: named only when re-calibration leaves the declared
+tolerance.
 
-A declared friction, stiffness or inertia that is off by up to a fifth is calibration, not an effect: the paper's own
+A declared friction, stiffness or inertia that is off by up to a fifth is calibration, not an effect: the
+paper's own
 figures disagree by that much (hardware.md 2.3).
 """
 
@@ -9,14 +11,16 @@ from __future__ import annotations
 import numpy as np
 
 from plant.calibration.channels.torque import Torque
-from plant.calibration.declaredplant import Declared
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.select import Selection
+from plant.calibration.declaredplant import Declared
 from plant.calibration.statistics.regression import Fit
 from plant.calibration.statistics.tails import student_reach
 
 TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an estimate
-SIGMA_TOLERANCE = 2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
+SIGMA_TOLERANCE = (
+    2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
+)
 
 
 def beyond(value: float, error: float, declared: float, factor: float, sure: float = 5.0) -> bool:
@@ -26,7 +30,9 @@ def beyond(value: float, error: float, declared: float, factor: float, sure: flo
     return abs(np.log(value / declared)) - np.log(factor) > 0 and abs(value - declared) > sure * error
 
 
-def torque_changes(torque: Torque, after: Fit, rows: int, d: Declared) -> tuple[list[Finding], dict[str, Parameter]]:
+def torque_changes(
+    torque: Torque, after: Fit, rows: int, d: Declared
+) -> tuple[list[Finding], dict[str, Parameter]]:
     """Friction findings beyond tolerance, and every calibrated parameter with its interval.
 
     `after` is a fit whose first columns are the torque problem's base, on `rows` rows.
@@ -37,7 +43,11 @@ def torque_changes(torque: Torque, after: Fit, rows: int, d: Declared) -> tuple[
     reach = student_reach(blocks - 2)
     coulomb = float(beta[2])
     f = torque.friction
-    logs = {"ratio": (np.log(f.ratio), 3), "speed": (np.log(f.stribeck_speed), 4), "stiffness": (np.log(f.stiffness), 5)}
+    logs = {
+        "ratio": (np.log(f.ratio), 3),
+        "speed": (np.log(f.stribeck_speed), 4),
+        "stiffness": (np.log(f.stiffness), 5),
+    }
     moved = {k: (v + (beta[i] - 0.0), error[i]) for k, (v, i) in logs.items()}
     ratio, speed, stiffness = (float(np.exp(moved[k][0])) for k in ("ratio", "speed", "stiffness"))
     stiction = coulomb * ratio
@@ -59,20 +69,52 @@ def torque_changes(torque: Torque, after: Fit, rows: int, d: Declared) -> tuple[
     }
     found = []
     if beyond(coulomb, float(error[2]), d.coulomb, TOLERANCE):
-        found.append(Finding("coulomb_change", "T", "velocity", parameters={"coulomb": calibrated["coulomb"]},
-                             evidence=_evidence(coulomb, d.coulomb, float(error[2]))))
+        found.append(
+            Finding(
+                "coulomb_change",
+                "T",
+                "velocity",
+                parameters={"coulomb": calibrated["coulomb"]},
+                evidence=_evidence(coulomb, d.coulomb, float(error[2])),
+            )
+        )
     if beyond(float(beta[1]), float(error[1]), d.viscous, TOLERANCE):
-        found.append(Finding("viscous_change", "T", "velocity", parameters={"sigma_2": calibrated["viscous"]},
-                             evidence=_evidence(float(beta[1]), d.viscous, float(error[1]))))
+        found.append(
+            Finding(
+                "viscous_change",
+                "T",
+                "velocity",
+                parameters={"sigma_2": calibrated["viscous"]},
+                evidence=_evidence(float(beta[1]), d.viscous, float(error[1])),
+            )
+        )
     known = stiction_error < 0.1 * stiction and speed_error < 0.15 * speed
-    if known and (beyond(stiction, stiction_error, d.stiction, TOLERANCE)
-                  or beyond(speed, speed_error, d.stribeck_speed, TOLERANCE)):
-        found.append(Finding("stribeck_change", "T", "velocity", parameters={
-            "breakaway": calibrated["stiction"], "stribeck_velocity": calibrated["stribeck_speed"]},
-            evidence=_evidence(stiction, d.stiction, stiction_error)))
+    if known and (
+        beyond(stiction, stiction_error, d.stiction, TOLERANCE)
+        or beyond(speed, speed_error, d.stribeck_speed, TOLERANCE)
+    ):
+        found.append(
+            Finding(
+                "stribeck_change",
+                "T",
+                "velocity",
+                parameters={
+                    "breakaway": calibrated["stiction"],
+                    "stribeck_velocity": calibrated["stribeck_speed"],
+                },
+                evidence=_evidence(stiction, d.stiction, stiction_error),
+            )
+        )
     if sigma_error < 0.2 * sigma_0 and beyond(sigma_0, sigma_error, d.sigma_0, SIGMA_TOLERANCE):
-        found.append(Finding("presliding", "T", "reversal", parameters={"sigma_0": calibrated["sigma_0"]},
-                             evidence=_evidence(sigma_0, d.sigma_0, sigma_error)))
+        found.append(
+            Finding(
+                "presliding",
+                "T",
+                "reversal",
+                parameters={"sigma_0": calibrated["sigma_0"]},
+                evidence=_evidence(sigma_0, d.sigma_0, sigma_error),
+            )
+        )
     return found, calibrated
 
 
@@ -88,8 +130,15 @@ def compliance_change(selection: Selection, d: Declared) -> tuple[list[Finding],
     found = []
     declared = min((d.stiffness * r for r in d.readings), key=lambda k: abs(float(np.log(stiffness / k))))
     if error < 0.05 * value and beyond(stiffness, spread, declared, TOLERANCE):
-        found.append(Finding("shaft_compliance", "K", "current", parameters={"stiffness": p},
-                             evidence=_evidence(stiffness, declared, spread)))
+        found.append(
+            Finding(
+                "shaft_compliance",
+                "K",
+                "current",
+                parameters={"stiffness": p},
+                evidence=_evidence(stiffness, declared, spread),
+            )
+        )
     return found, {"stiffness": p}
 
 

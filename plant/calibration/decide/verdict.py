@@ -41,7 +41,8 @@ def judge(effects: list[Finding]) -> tuple[str, str | None]:
 
 
 def probability(effect: Finding) -> float:
-    """Posterior-like weight: how far the evidence is beyond the gate, shared with the names it cannot be told from."""
+    """Posterior-like weight: how far the evidence is beyond the gate, shared with the names it cannot be
+    told from."""
     sure = 1.0 - 10.0 ** -min(max(effect.evidence, 0.3), 12.0) * 0.5
     return float(np.clip(sure / (1 + 0.7 * len(effect.equivalent)), 0.0, 0.999))
 
@@ -49,10 +50,17 @@ def probability(effect: Finding) -> float:
 def effect_as_dict(effect: Finding) -> dict[str, Any]:
     """One effect as in report.json."""
     return {
-        "name": effect.name, "equivalent": effect.equivalent, "stage": effect.stage, "harmonic": effect.harmonic,
-        "channel": effect.channel, "probability": round(probability(effect), 4),
-        "parameters": {k: p.as_dict() for k, p in effect.parameters.items()}, "domain": effect.domain,
-        "order": effect.order, "frequency_Hz": effect.frequency, "evidence": round(effect.evidence, 2),
+        "name": effect.name,
+        "equivalent": effect.equivalent,
+        "stage": effect.stage,
+        "harmonic": effect.harmonic,
+        "channel": effect.channel,
+        "probability": round(probability(effect), 4),
+        "parameters": {k: p.as_dict() for k, p in effect.parameters.items()},
+        "domain": effect.domain,
+        "order": effect.order,
+        "frequency_Hz": effect.frequency,
+        "evidence": round(effect.evidence, 2),
         "note": effect.note,
     }
 
@@ -60,9 +68,15 @@ def effect_as_dict(effect: Finding) -> dict[str, Any]:
 def as_dict(v: Verdict) -> dict[str, Any]:
     """report.json, with a few fields beside the contract's."""
     return {
-        "verdict": v.verdict, "effects": [effect_as_dict(e) for e in v.effects], "error": v.error,
-        "held_out": v.held_out, "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
-        "not_identifiable": v.not_identifiable, "separating_experiment": v.separating, "controls": v.controls,
-        "thresholds": v.thresholds, "reasons": v.reasons,
+        "verdict": v.verdict,
+        "effects": [effect_as_dict(e) for e in v.effects],
+        "error": v.error,
+        "held_out": v.held_out,
+        "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
+        "not_identifiable": v.not_identifiable,
+        "separating_experiment": v.separating,
+        "controls": v.controls,
+        "thresholds": v.thresholds,
+        "reasons": v.reasons,
         "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
     }

@@ -13,13 +13,37 @@ from plant.calibration.readers.drive import ARCSEC, SCALES, WRAPS
 from plant.calibration.readers.header import number, parse_header
 from plant.calibration.readers.run import Array, Run
 
-KNOWN = ("t", "setpoint", "effort", "position", "velocity", "adc_a", "adc_b", "tach_a", "tach_b", "aux", "focus",
-         "supply", "temperature")
+KNOWN = (
+    "t",
+    "setpoint",
+    "effort",
+    "position",
+    "velocity",
+    "adc_a",
+    "adc_b",
+    "tach_a",
+    "tach_b",
+    "aux",
+    "focus",
+    "supply",
+    "temperature",
+)
 REQUIRED = ("t", "effort", "position")
 #: what each counts column must be in, for the message when a header row names another unit
-UNITS = {"t": "s", "setpoint": "arcsec/s", "effort": "1/3000 of supply", "position": "29-bit counts",
-         "velocity": "counts per 5 ms", "adc_a": "counts", "adc_b": "counts", "tach_a": "counts per 10 ms",
-         "tach_b": "counts per 10 ms", "aux": "17-bit counts", "supply": "V", "temperature": "degC"}
+UNITS = {
+    "t": "s",
+    "setpoint": "arcsec/s",
+    "effort": "1/3000 of supply",
+    "position": "29-bit counts",
+    "velocity": "counts per 5 ms",
+    "adc_a": "counts",
+    "adc_b": "counts",
+    "tach_a": "counts per 10 ms",
+    "tach_b": "counts per 10 ms",
+    "aux": "17-bit counts",
+    "supply": "V",
+    "temperature": "degC",
+}
 
 
 def is_axis_log(text: str) -> bool:
@@ -53,7 +77,7 @@ def _load(path: Path) -> str:
     except OSError as error:
         raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
-        line = error.object[:error.start].count(b"\n") + 1
+        line = error.object[: error.start].count(b"\n") + 1
         raise CalibrationInputError(path, "is not UTF-8 text", line) from None
 
 
@@ -62,13 +86,16 @@ def _check_names(path: Path, names: list[str], line: int) -> None:
         base = name.replace("[", " ").replace("(", " ").split(" ")[0].strip()
         if name != base and base in UNITS:
             raise CalibrationInputError(
-                path, f"has another unit than the format's: '{base}' is logged in {UNITS[base]}", line, name)
+                path, f"has another unit than the format's: '{base}' is logged in {UNITS[base]}", line, name
+            )
     if len(set(names)) != len(names):
         twice = next(n for n in names if names.count(n) > 1)
         raise CalibrationInputError(path, "appears twice: one file holds one axis", line, twice)
     for name in REQUIRED:
         if name not in names:
-            raise CalibrationInputError(path, f"the column '{name}' is missing; it is logged in {UNITS[name]}", line)
+            raise CalibrationInputError(
+                path, f"the column '{name}' is missing; it is logged in {UNITS[name]}", line
+            )
 
 
 def _check_time(path: Path, raw: dict[str, Array], period: float, first: int) -> dict[str, Array]:
@@ -84,11 +111,16 @@ def _check_time(path: Path, raw: dict[str, Array], period: float, first: int) ->
     if len(step) and step.min() < -0.5 * period:
         k = int(np.argmax(step < -0.5 * period))
         raise CalibrationInputError(
-            path, f"time goes backwards from {t[k]:g} s to {t[k + 1]:g} s", first + k + 1, "t")
+            path, f"time goes backwards from {t[k]:g} s to {t[k + 1]:g} s", first + k + 1, "t"
+        )
     if len(step) > 20 and np.mean(np.abs(step) < 1e-9) > 0.3:
         k = int(np.argmax(np.abs(step) < 1e-9))
         raise CalibrationInputError(
-            path, "a third of the rows share their time with the row before: two axes in one file?", first + k + 1, "t")
+            path,
+            "a third of the rows share their time with the row before: two axes in one file?",
+            first + k + 1,
+            "t",
+        )
     return raw
 
 
@@ -103,13 +135,19 @@ def unwrap(counts: Array, length: int) -> Array:
 def to_si(raw: dict[str, Array], s: dict[str, float]) -> dict[str, Array]:
     """Counts to SI units by the declared or overridden scales."""
     factor = {
-        "t": 1.0, "setpoint": ARCSEC, "effort": 1 / s["effort_full_scale"],
+        "t": 1.0,
+        "setpoint": ARCSEC,
+        "effort": 1 / s["effort_full_scale"],
         "position": s["position_arcsec_per_count"] * ARCSEC,
         "velocity": s["velocity_arcsec_per_count"] * ARCSEC / s["velocity_window_s"],
-        "adc_a": s["adc_A_per_count"], "adc_b": s["adc_A_per_count"],
+        "adc_a": s["adc_A_per_count"],
+        "adc_b": s["adc_A_per_count"],
         "tach_a": 2 * math.pi / s["tach_counts_per_turn"] / s["tach_window_s"],
         "tach_b": 2 * math.pi / s["tach_counts_per_turn"] / s["tach_window_s"],
-        "aux": s["aux_arcsec_per_count"] * ARCSEC, "supply": 1.0, "temperature": 1.0, "focus": 1.0,
+        "aux": s["aux_arcsec_per_count"] * ARCSEC,
+        "supply": 1.0,
+        "temperature": 1.0,
+        "focus": 1.0,
     }
     rename = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
     out: dict[str, Array] = {}

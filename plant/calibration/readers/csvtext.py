@@ -11,11 +11,18 @@ from plant.calibration.errors import CalibrationInputError
 from plant.calibration.readers.run import Array
 
 
-def read_numbers(path: Path, body: str, names: list[str], first_line: int, delimiter: str = ",",
-                 wanted: set[str] | None = None) -> dict[str, Array]:
+def read_numbers(
+    path: Path,
+    body: str,
+    names: list[str],
+    first_line: int,
+    delimiter: str = ",",
+    wanted: set[str] | None = None,
+) -> dict[str, Array]:
     """Columns of `body` (no header row) as floats, empty fields as NaN.
 
-    `first_line` is the file's line number of the first row. Text in a column of `wanted` (default: all) raises
+    `first_line` is the file's line number of the first row. Text in a column of `wanted` (default: all)
+    raises
     CalibrationInputError with line and column; other columns are left out when they are not numbers.
     """
     from pyarrow import ArrowInvalid, csv, float64
@@ -26,15 +33,21 @@ def read_numbers(path: Path, body: str, names: list[str], first_line: int, delim
             io.BytesIO(body.encode()),
             read_options=csv.ReadOptions(column_names=names, use_threads=False),
             parse_options=csv.ParseOptions(delimiter=delimiter),
-            convert_options=csv.ConvertOptions(column_types={n: float64() for n in keep}, include_columns=keep,
-                                               null_values=["", "nan", "NaN"], strings_can_be_null=True))
+            convert_options=csv.ConvertOptions(
+                column_types={n: float64() for n in keep},
+                include_columns=keep,
+                null_values=["", "nan", "NaN"],
+                strings_can_be_null=True,
+            ),
+        )
     except ArrowInvalid:
         return _slowly(path, body, names, first_line, delimiter, set(keep))
     return {n: np.asarray(table[n].to_numpy(), dtype=float) for n in keep}
 
 
-def _slowly(path: Path, body: str, names: list[str], first_line: int, delimiter: str, keep: set[str]
-            ) -> dict[str, Array]:
+def _slowly(
+    path: Path, body: str, names: list[str], first_line: int, delimiter: str, keep: set[str]
+) -> dict[str, Array]:
     """Field by field: finds the line and the column that is wrong."""
     rows = body.splitlines()
     out = {n: np.full(len(rows), np.nan) for n in names if n in keep}

@@ -1,7 +1,9 @@
 """PHD2 guide logs as PHD2 writes them: several sections per file, calibrations, drops, dithers, settling.
 
-The open-loop drive error of a section is the raw distance plus the running sum of the earlier corrections, times the
-pixel scale (PHD2's own log analysis uses the same sum). A dither or a new lock position moves the star, not the drive:
+The open-loop drive error of a section is the raw distance plus the running sum of the earlier corrections,
+times the
+pixel scale (PHD2's own log analysis uses the same sum). A dither or a new lock position moves the star, not
+the drive:
 it starts a new segment with an offset of its own, and frames while settling are left out.
 """
 
@@ -32,7 +34,8 @@ def is_guide_log(text: str) -> bool:
 def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
     """Every guiding section of the file as one Run with columns t (s), ra, dec (arcsec), segment.
 
-    Sections without frames are skipped. Without a pixel scale (a bare table) the unit is pixels; `header['unit']`
+    Sections without frames are skipped. Without a pixel scale (a bare table) the unit is pixels;
+    `header['unit']`
     says so. Raises CalibrationInputError with line and column.
     """
     if text is None:
@@ -45,11 +48,11 @@ def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
     events: list[tuple[int, str]] = []
     guiding = lines[:1] != [] and lines[0].startswith("Frame,")
     for number, line in enumerate(lines, 1):
-        if line.startswith("Guiding Begins") or line.startswith("Calibration Begins"):
+        if line.startswith(("Guiding Begins", "Calibration Begins")):
             _close(runs, path, head, columns, rows, events)
             head, columns, rows, events = [line], None, [], []
             guiding = line.startswith("Guiding")
-        elif line.startswith("Guiding Ends") or line.startswith("Calibration complete"):
+        elif line.startswith(("Guiding Ends", "Calibration complete")):
             _close(runs, path, head, columns, rows, events)
             head, columns, rows, events, guiding = [], None, [], [], False
         elif line.startswith("Frame,"):
@@ -76,34 +79,53 @@ def _number(path: Path, line: int, name: str, value: str) -> float:
         raise CalibrationInputError(path, f"'{value}' is not a number", line, name) from None
 
 
-def _close(runs: list[Run], path: Path, head: list[str], columns: list[str] | None,
-           rows: list[tuple[int, list[str]]], events: list[tuple[int, str]]) -> None:
+def _close(
+    runs: list[Run],
+    path: Path,
+    head: list[str],
+    columns: list[str] | None,
+    rows: list[tuple[int, list[str]]],
+    events: list[tuple[int, str]],
+) -> None:
     if columns is None or not rows:
         return
     text = "\n".join(head)
     scale = _SCALE.search(text)
     factor = float(scale.group(1)) if scale else 1.0
     where = {c: k for k, c in enumerate(columns)}
-    marks = {"dither": [n for n, e in events if "DITHER" in e or "SET LOCK" in e],
-             "off": [n for n, e in events if "Settling started" in e],
-             "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e]}
+    marks = {
+        "dither": [n for n, e in events if "DITHER" in e or "SET LOCK" in e],
+        "off": [n for n, e in events if "Settling started" in e],
+        "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e],
+    }
     t, ra, dec, segment = [], [], [], []
     total = total_dec = 0.0
     drops = 0
     before = -np.inf
     for line, fields in rows:
         if len(fields) <= where["RAGuideDistance"]:
-            raise CalibrationInputError(path, f"{len(fields)} fields, the header row has {len(columns)}", line)
+            raise CalibrationInputError(
+                path, f"{len(fields)} fields, the header row has {len(columns)}", line
+            )
         if fields[where["mount"]].strip('"') not in ("Mount",):
             drops += fields[where["mount"]].strip('"') == "DROP"
             continue
         v = {c: _number(path, line, c, fields[where[c]]) for c in _NEEDED}
         if v["Time"] < before:
-            raise CalibrationInputError(path, f"time goes backwards from {before:g} s to {v['Time']:g} s", line, "Time")
+            raise CalibrationInputError(
+                path, f"time goes backwards from {before:g} s to {v['Time']:g} s", line, "Time"
+            )
         before = v["Time"]
-        d = _number(path, line, "DECRawDistance", fields[where["DECRawDistance"]]) if "DECRawDistance" in where else 0.0
-        g = _number(path, line, "DECGuideDistance", fields[where["DECGuideDistance"]]) \
-            if "DECGuideDistance" in where else 0.0
+        d = (
+            _number(path, line, "DECRawDistance", fields[where["DECRawDistance"]])
+            if "DECRawDistance" in where
+            else 0.0
+        )
+        g = (
+            _number(path, line, "DECGuideDistance", fields[where["DECGuideDistance"]])
+            if "DECGuideDistance" in where
+            else 0.0
+        )
         if np.isfinite(v["RARawDistance"]) and not _settling(line, marks):
             t.append(v["Time"])
             ra.append((v["RARawDistance"] + total) * factor)
@@ -120,9 +142,21 @@ def _close(runs: list[Run], path: Path, head: list[str], columns: list[str] | No
             header[key] = found.group(1).strip()
     notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
     name = path.stem if not runs else f"{path.stem}#{len(runs) + 1}"
-    runs.append(Run(name, path, name, {
-        "t": np.array(t), "ra": np.array(ra), "dec": np.array(dec), "segment": np.array(segment, dtype=float)},
-        header=header, notes=notes))
+    runs.append(
+        Run(
+            name,
+            path,
+            name,
+            {
+                "t": np.array(t),
+                "ra": np.array(ra),
+                "dec": np.array(dec),
+                "segment": np.array(segment, dtype=float),
+            },
+            header=header,
+            notes=notes,
+        )
+    )
 
 
 def _settling(line: int, marks: dict[str, list[int]]) -> bool:

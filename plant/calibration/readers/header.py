@@ -25,7 +25,10 @@ def parse_header(path: Path, lines: list[str]) -> tuple[dict[str, str], int]:
             continue
         if key in ("axis", "format") and header.get(key, value) != value:
             raise CalibrationInputError(
-                path, f"'{key}' is given twice ('{header[key]}', '{value}'): one file holds one axis", index + 1)
+                path,
+                f"'{key}' is given twice ('{header[key]}', '{value}'): one file holds one axis",
+                index + 1,
+            )
         header[key], at[key] = value, index + 1
     else:
         index = len(lines)
@@ -42,9 +45,12 @@ def _check(path: Path, header: dict[str, str], at: dict[str, int]) -> None:
     for key, allowed in (("format", (FORMAT,)), ("axis", ("ra", "dec")), ("loop", ("closed", "open"))):
         if header[key] not in allowed:
             raise CalibrationInputError(
-                path, f"'{key}' is '{header[key]}', must be {' or '.join(allowed)}", at[key])
+                path, f"'{key}' is '{header[key]}', must be {' or '.join(allowed)}", at[key]
+            )
     if header.get("preload", "low") not in ("low", "high"):
-        raise CalibrationInputError(path, f"'preload' is '{header['preload']}', must be low or high", at["preload"])
+        raise CalibrationInputError(
+            path, f"'preload' is '{header['preload']}', must be low or high", at["preload"]
+        )
     for key in SCALES:
         if key in header:
             number(path, header, key, at[key])
@@ -58,7 +64,8 @@ def number(path: Path, header: dict[str, str], key: str, line: int | None = None
         value = float(header[key])
     except ValueError:
         raise CalibrationInputError(
-            path, f"'{key}' is '{header[key]}', must be a plain number ({SCALES[key][1]})", line) from None
+            path, f"'{key}' is '{header[key]}', must be a plain number ({SCALES[key][1]})", line
+        ) from None
     if not (value > 0 or (key == "counter_torque" and value == 0)) or value > 1e12:
         raise CalibrationInputError(path, f"'{key}' is {value}, must be positive ({SCALES[key][1]})", line)
     return value

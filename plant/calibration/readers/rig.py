@@ -56,7 +56,8 @@ DELIMITERS = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}
 
 
 def load_rig(path: Path) -> Rig:
-    """Load and check a rig file; raises CalibrationInputError naming the field and, where it helps, the line."""
+    """Load and check a rig file; raises CalibrationInputError naming the field and, where it helps, the
+    line."""
     import yaml
     from jsonschema import Draft202012Validator
 
@@ -68,11 +69,17 @@ def load_rig(path: Path) -> Rig:
         data = yaml.safe_load(text)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
-        raise CalibrationInputError(path, f"is not YAML: {error.problem}", mark.line + 1 if mark else None) from None
+        raise CalibrationInputError(
+            path, f"is not YAML: {error.problem}", mark.line + 1 if mark else None
+        ) from None
     if not isinstance(data, dict):
-        raise CalibrationInputError(path, "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed")
+        raise CalibrationInputError(
+            path, "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed"
+        )
     schema = json.loads(Path(__file__).with_name("rig.schema.json").read_text(encoding="utf-8"))
-    errors = sorted(Draft202012Validator(schema).iter_errors(data), key=lambda e: list(map(str, e.absolute_path)))
+    errors = sorted(
+        Draft202012Validator(schema).iter_errors(data), key=lambda e: list(map(str, e.absolute_path))
+    )
     if errors:
         _complain(path, text, schema, errors[0])
     return _build(path, data)
@@ -97,20 +104,31 @@ def _complain(path: Path, text: str, schema: dict[str, Any], error: Any) -> None
 
 
 def _build(path: Path, data: dict[str, Any]) -> Rig:
-    columns = {k: Column(v["column"], v["unit"], float(v.get("scale", 1.0)), v.get("wrap"))
-               for k, v in data["columns"].items()}
+    columns = {
+        k: Column(v["column"], v["unit"], float(v.get("scale", 1.0)), v.get("wrap"))
+        for k, v in data["columns"].items()
+    }
     channel = data["response"]["channel"]
     if channel not in columns:
-        raise CalibrationInputError(path, f"response.channel: '{channel}' is not among the columns "
-                                          f"({', '.join(columns)})")
+        raise CalibrationInputError(
+            path, f"response.channel: '{channel}' is not among the columns ({', '.join(columns)})"
+        )
     return Rig(
-        name=data["rig"], path=path, columns=columns, response=data["response"],
+        name=data["rig"],
+        path=path,
+        columns=columns,
+        response=data["response"],
         estimate=tuple(data.get("estimate", ("coulomb", "viscous", "offset"))),
         stages=tuple(_stages(path, data.get("stages", []))),
         constants={k: float(v["value"]) for k, v in data.get("constants", {}).items()},
-        runs=data.get("runs", {}), names=tuple(data.get("names", ())),
-        delimiter=DELIMITERS.get(data.get("delimiter", "")), hold_out=float(data.get("hold_out_fraction", 0.4)),
-        smooth_s=data.get("smooth_s"), analyse_period_s=data.get("analyse_period_s"), raw=data)
+        runs=data.get("runs", {}),
+        names=tuple(data.get("names", ())),
+        delimiter=DELIMITERS.get(data.get("delimiter", "")),
+        hold_out=float(data.get("hold_out_fraction", 0.4)),
+        smooth_s=data.get("smooth_s"),
+        analyse_period_s=data.get("analyse_period_s"),
+        raw=data,
+    )
 
 
 def _stages(path: Path, items: list[dict[str, Any]]) -> list[Stage]:
@@ -121,11 +139,17 @@ def _stages(path: Path, items: list[dict[str, Any]]) -> list[Stage]:
         if "teeth" in item:
             other = known.get(item.get("of", ""))
             if other is None:
-                raise CalibrationInputError(path, f"stages.{item['name']}: 'of' must name a stage given before it")
+                raise CalibrationInputError(
+                    path, f"stages.{item['name']}: 'of' must name a stage given before it"
+                )
             factor = item["teeth"][1] / item["teeth"][0]
             period = other.period * factor if other.period else None
             period_s = other.period_s * factor if other.period_s else None
         if period is None and period_s is None:
-            raise CalibrationInputError(path, f"stages.{item['name']}: give 'period', 'period_s', or 'teeth' with 'of'")
-        known[item["name"]] = Stage(item["name"], period, period_s, item.get("harmonics", 2), item.get("kind"))
+            raise CalibrationInputError(
+                path, f"stages.{item['name']}: give 'period', 'period_s', or 'teeth' with 'of'"
+            )
+        known[item["name"]] = Stage(
+            item["name"], period, period_s, item.get("harmonics", 2), item.get("kind")
+        )
     return list(known.values())

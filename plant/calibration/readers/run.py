@@ -15,8 +15,10 @@ Array = NDArray[np.float64]
 class Run:
     """One log file (or one section of it).
 
-    `columns` hold SI units: `t` s, `position`/`aux` rad (unwrapped), `velocity` rad/s at the axis, `effort` as a
-    signed fraction of the supply, `current_a/b` A, `motor_a/b` rad/s at the motor, `setpoint` rad/s, `supply` V,
+    `columns` hold SI units: `t` s, `position`/`aux` rad (unwrapped), `velocity` rad/s at the axis, `effort`
+    as a
+    signed fraction of the supply, `current_a/b` A, `motor_a/b` rad/s at the motor, `setpoint` rad/s,
+    `supply` V,
     `temperature` degree C. `raw` keeps the columns as logged, in counts.
     """
 

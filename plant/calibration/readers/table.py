@@ -86,7 +86,9 @@ def _text(path: Path, rig: Rig) -> dict[str, Array]:
     else:
         names, first = head, skip + 1
     if len(names) != len(lines[first].split(delimiter)):
-        raise CalibrationInputError(path, f"{len(lines[first].split(delimiter))} fields, {len(names)} names", first + 1)
+        raise CalibrationInputError(
+            path, f"{len(lines[first].split(delimiter))} fields, {len(names)} names", first + 1
+        )
     for name in _wanted(rig):
         if name not in names:
             raise CalibrationInputError(path, f"no such column; the file has {', '.join(names)}", first, name)

@@ -16,8 +16,11 @@ def summary(data: dict[str, Any]) -> str:
     top = effects[0]
     place = f" on {top['stage']}" if top["stage"] else ""
     if data["verdict"] == "unknown":
-        return (f"Something real is left that the catalogue does not name: a function of {top['domain'].replace('_', ' ')}"
-                f" in channel {top['channel']}.")
+        return (
+            f"Something real is left that the catalogue does not name: a function of "
+            f"{top['domain'].replace('_', ' ')}"
+            f" in channel {top['channel']}."
+        )
     if data["verdict"] == "ambiguous":
         return f"{top['name']}{place}, which this log cannot tell from {', '.join(top['equivalent'])}."
     more = f", and {len(effects) - 1} more" if len(effects) > 1 else ""
@@ -30,5 +33,6 @@ def page(data: dict[str, Any], pictures: list[dict[str, str]], title: str, subti
 
     here = Path(__file__).parent
     env = Environment(loader=FileSystemLoader(here), autoescape=True)
-    return env.get_template("report.html.j2").render(r=data, plots=pictures, title=title, subtitle=subtitle,
-                                                     summary=summary(data))
+    return env.get_template("report.html.j2").render(
+        r=data, plots=pictures, title=title, subtitle=subtitle, summary=summary(data)
+    )

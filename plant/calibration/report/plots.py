@@ -22,8 +22,15 @@ def figure(width: float = 9.0, height: float = 3.4) -> tuple[Any, Any]:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
-                         "axes.titlesize": 10, "axes.titleweight": "bold"})
+    plt.rcParams.update(
+        {
+            "font.size": 9,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+            "axes.titlesize": 10,
+            "axes.titleweight": "bold",
+        }
+    )
     return plt.subplots(figsize=(width, height), constrained_layout=True)
 
 
@@ -38,12 +45,15 @@ def png(fig: Any) -> str:
 
 
 def domain_plot(selection: Selection, x: Array, label: str, title: str, index: int = 0) -> str:
-    """Residual without effect `index` over the domain that explains it, binned means with errors, and the effect."""
+    """Residual without effect `index` over the domain that explains it, binned means with errors, and the
+    effect."""
     p = selection.problem
     rows = p.train
     at = p.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
     columns = selection.chosen[index].candidate.columns if selection.chosen else np.zeros((len(p.y), 0))
-    model = columns @ selection.after.beta[at:at + columns.shape[1]] if selection.chosen else np.zeros(len(p.y))
+    model = (
+        columns @ selection.after.beta[at : at + columns.shape[1]] if selection.chosen else np.zeros(len(p.y))
+    )
     e = selection.after.residual + model
     fig, ax = figure()
     step = max(int(rows.sum() / 6000), 1)
@@ -64,23 +74,29 @@ def domain_plot(selection: Selection, x: Array, label: str, title: str, index: i
     return png(fig)
 
 
-def order_plot(selection: Selection, turns: Array, stages: dict[str, float], title: str, unit: str = "cycles per turn"
-               ) -> str:
+def order_plot(
+    selection: Selection, turns: Array, stages: dict[str, float], title: str, unit: str = "cycles per turn"
+) -> str:
     """Amplitude over order, before and after, with the gear table drawn in."""
     p = selection.problem
     rows = p.train
-    top = max([v for v in stages.values()], default=0.0) * 1.3 or 100.0
+    top = max(list(stages.values()), default=0.0) * 1.3 or 100.0
     span = float(np.ptp(turns)) or 1.0
     top = min(top, 0.5 * rows.sum() / span)
     fig, ax = figure(9.0, 3.8)
-    for e, color, name in ((selection.before.residual, GREY, "before"), (selection.after.residual, BLUE, "after")):
+    for e, color, name in (
+        (selection.before.residual, GREY, "before"),
+        (selection.after.residual, BLUE, "after"),
+    ):
         orders, power = order_spectrum(np.where(rows, e, 0.0), turns, rows.astype(float), top)
         if len(orders) == 0:
             continue
         amplitude = 2 * np.sqrt(power * np.mean(e[rows] ** 2) * rows.sum()) / max(rows.sum(), 1)
         edges = np.unique(np.geomspace(max(orders[0], 1e-9), orders[-1], 1500))
         cell = np.digitize(orders, edges)
-        best = np.array([amplitude[cell == k].max() if np.any(cell == k) else np.nan for k in np.unique(cell)])
+        best = np.array(
+            [amplitude[cell == k].max() if np.any(cell == k) else np.nan for k in np.unique(cell)]
+        )
         place = np.array([orders[cell == k][np.argmax(amplitude[cell == k])] for k in np.unique(cell)])
         ax.plot(place, best, color=color, lw=0.9, label=name)
     ax.set_xscale("log")
@@ -123,7 +139,12 @@ def gate_plot(selection: Selection, title: str) -> str:
     ax.axvline(s.threshold, color=GREEN, lw=1.5, label=f"99 % threshold, {s.threshold:.2f}")
     top = selection.statistic
     limit = max(2.5 * s.threshold, float(s.surrogate_max.max()) * 1.2 if len(s.surrogate_max) else 1.0)
-    ax.axvline(min(top, limit), color=RED, lw=2, label=f"this log, {top:.4g}" + (" (off scale)" if top > limit else ""))
+    ax.axvline(
+        min(top, limit),
+        color=RED,
+        lw=2,
+        label=f"this log, {top:.4g}" + (" (off scale)" if top > limit else ""),
+    )
     ax.set_xlim(0, limit * 1.02)
     ax.set(xlabel="-log10 p of the best candidate", title=title)
     ax.legend(frameon=False, fontsize=8)

@@ -1,4 +1,5 @@
-"""Generalised least squares with autoregressive noise, and the covariance that coloured, uneven noise needs."""
+"""Generalised least squares with autoregressive noise, and the covariance that coloured, uneven noise
+needs."""
 
 from __future__ import annotations
 
@@ -12,7 +13,8 @@ from plant.calibration.statistics.whitening import Mask, Whitener, fit_ar
 
 @dataclass(frozen=True)
 class Fit:
-    """Coefficients (p,), their covariance (p, p), the residual (n,) in the channel's unit, and the noise model."""
+    """Coefficients (p,), their covariance (p, p), the residual (n,) in the channel's unit, and the noise
+    model."""
 
     beta: Array
     covariance: Array
@@ -37,7 +39,8 @@ def solve(x: Array, y: Array) -> Array:
 def gls(y: Array, x: Array, valid: Mask, order: int, block: int = 200, rounds: int = 2) -> Fit:
     """Fit y = x beta + AR(order) noise on the valid rows.
 
-    The covariance is block-robust: scores summed over blocks of `block` rows, so that neither colour left by the
+    The covariance is block-robust: scores summed over blocks of `block` rows, so that neither colour left
+    by the
     short AR nor bursts of noise shrink the intervals.
     """
     yz, xz = np.where(valid, y, 0.0), np.where(valid[:, None], x, 0.0)

@@ -1,4 +1,5 @@
-"""Autoregressive whitening of gappy series: coloured residuals make naive statistics lie (effects.md, lesson 3)."""
+"""Autoregressive whitening of gappy series: coloured residuals make naive statistics lie (effects.md,
+lesson 3)."""
 
 from __future__ import annotations
 
@@ -43,16 +44,18 @@ def autocovariance(e: Array, valid: Mask, lags: int) -> Array:
     n = max(int(valid.sum()), 1)
     size = 1 << (2 * len(x) - 1).bit_length()
     spectrum = np.abs(np.fft.rfft(x, size)) ** 2
-    return np.asarray(np.fft.irfft(spectrum, size)[:lags + 1] / n)
+    return np.asarray(np.fft.irfft(spectrum, size)[: lags + 1] / n)
 
 
-LOADING = 0.3  # of the variance, as white noise: keeps the filter from living on bands where only the smoothing acts
+# of the variance, as white noise: keeps the filter from living on bands where only the smoothing acts
+LOADING = 0.3
 
 
 def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:
     """Yule-Walker fit of an AR(order) to the residual `e` (mean removed); order 0 gives the identity.
 
-    The loading bounds how far any band can be lifted over another, so that a fit stays near least squares when the
+    The loading bounds how far any band can be lifted over another, so that a fit stays near least squares
+    when the
     model is wrong in a band that carries little power.
     """
     if order == 0 or valid.sum() < 5 * order:
@@ -62,4 +65,4 @@ def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:
     r[0] *= 1 + LOADING
     if r[0] <= 0:
         return Whitener(np.zeros(0))
-    return Whitener(np.asarray(solve_toeplitz(r[:order], r[1:order + 1])))
+    return Whitener(np.asarray(solve_toeplitz(r[:order], r[1 : order + 1])))
