@@ -135,6 +135,7 @@ def _headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]
             "counter_torque": f"{model.controller.counter_split.si:.2f}",
             "supply_V": f"{model.supply.voltage.si:g}",
             "temperature_C": f"{scenario.site.temperature_c:g}",
+            "note": f"schmidt, plant {model.name}",
         }
         for preload in ("low", "high"):
             if preload in name:

@@ -171,7 +171,6 @@ def analyse(
         result.selections["S"] = s
         _collect(result, s)
     _fine(result, rng)
-    result.findings += delay_findings(result.selections)
     command = command_problem(frame, held)
     if command is not None:
         p, setpoint = command
@@ -198,6 +197,7 @@ def analyse(
             )
     tell("torque channel")
     _torque(result, per_ampere, clock, rng)
+    result.findings += delay_findings(result.selections)
     return result
 
 

@@ -34,7 +34,8 @@ def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
     """From `plant`, from the project's plant file for the emulator's own logs, else from the paper's
     tables."""
     axis, preload = runs[0].header["axis"], runs[0].header.get("preload", "low")
-    own = runs[0].header.get("note", "").lower().startswith(OWN)
+    note = runs[0].header.get("note", "").lower()
+    own = note.startswith(OWN)
     if plant is None and not own:
         d = DECLARED[preload]
         return Declared(
@@ -49,7 +50,8 @@ def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
     from plant.model import default_files, load
 
     files = default_files()
-    model = load(plant if plant is not None else files[f"{preload}_preload"])
+    named = [name for name in files if note.endswith(f"plant {name}")]
+    model = load(plant if plant is not None else files[named[0] if named else f"{preload}_preload"])
     part = getattr(model.axes, axis)
     f = part.friction
     lines = tuple(

@@ -30,6 +30,7 @@ DECLARED_R, DECLARED_K = (
 )  # ohm, V s/rad; design.md: only used to tell which rows should carry current
 
 
+STEP = 0.35  # of a count: rounding leaves 0.29, and a steady current stays at one rounding for minutes
 RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
 TRUNCATION = (0.25, 0.8)  # counts that a converter which rounds down reads too low, 0.5 at even spread
 SURE = 4.0  # standard errors
@@ -120,6 +121,7 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         block_s=3.0,
         sensor="voltage",
     )
+    problem.step = STEP * frame.scale["adc_A_per_count"] * DECLARED_R
     _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))

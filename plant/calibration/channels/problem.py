@@ -38,6 +38,7 @@ class Problem:
     block_s: float = 4.0
     domains: dict[str, Array] = field(default_factory=dict)
     sensor: str = "torque"  # the row of report.json's error table: torque, velocity or position
+    step: float = 0.0  # rms that an effect must take away: less is within the sensor's own steps
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property

@@ -86,7 +86,7 @@ def select(
             x = np.hstack([base, contender.candidate.columns])
             inside = cross_validate(problem, base, x, contender.fit.whitener)
             held = compare(problem, base, now.null.beta, x, contender.fit.beta, contender.fit.whitener)
-            why = refuse(contender, inside, held, margin)
+            why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
             if not why:
                 taken = contender
                 break
@@ -156,6 +156,15 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
     if np.isfinite(held.after) and held.share < -WORSE:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
+    return ""
+
+
+def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
+    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or empty."""
+    rows = problem.train
+    taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
+    if taken < problem.step**2:
+        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
     return ""
 
 
