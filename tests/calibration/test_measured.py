@@ -1,0 +1,70 @@
+"""Real measurements: the figures and names that the data carry. Skipped where the data folder is absent."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from plant.calibration.command import calibrate
+
+ROOT = Path(__file__).parents[2]
+DATA = ROOT.parent / "shared" / "data" / "measured"
+RIGS = ROOT / "plant" / "calibration" / "rigs"
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not DATA.is_dir(), reason="../shared/data/measured is absent: no measured data to test on"),
+]
+
+
+def report(out: Path, log: str, rig: str | None = None) -> dict[str, Any]:
+    assert calibrate([DATA / log], RIGS / f"{rig}.yaml" if rig else None, [], out, plots=False) == 0
+    data: dict[str, Any] = json.loads((out / "report.json").read_text())
+    assert not any(c["accepted"] for c in data["controls"])
+    return data
+
+
+def names(data: dict[str, Any]) -> set[str]:
+    return {n for e in data["effects"] for n in (e["name"], *e["equivalent"])}
+
+
+def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_be_named(tmp_path: Path) -> None:
+    data = report(tmp_path, "emps/DATA_EMPS.mat", "emps")
+    assert "friction_asymmetry" in names(data)
+    assert names(data) & {"stribeck_change", "presliding"}
+    line = next(e for e in data["effects"] if e["order"] and 350 < e["order"] < 450)
+    assert 1 / line["order"] == pytest.approx(0.0025, rel=0.01)
+    assert line["stage"] is None and len(line["equivalent"]) > 1
+    assert data["calibrated"]["inertia"]["value"] == pytest.approx(95.1089, rel=0.05)  # published
+    assert data["error"]["torque"]["after"] < 0.8 * data["error"]["torque"]["before"]
+
+
+def test_the_worm_of_the_astro_physics_mount_is_found_with_its_period(tmp_path: Path) -> None:
+    data = report(tmp_path, "phd2/performance_dataset03.txt")
+    top = data["effects"][0]
+    assert data["verdict"] == "found" and top["name"] == "gear_eccentricity"
+    assert 1 / top["frequency_Hz"] == pytest.approx(382.95, rel=1e-4)
+    # effects.md: 2.76 to 0.39 arcsec
+    assert data["error"]["position"]["before"] == pytest.approx(2.76, rel=0.05)
+    assert data["error"]["position"]["after"] < 0.6
+
+
+def test_the_worm_of_the_heq5_is_not_supported(tmp_path: Path) -> None:
+    data = report(tmp_path, "phd2/performance_dataset02.txt")
+    assert data["verdict"] in ("nothing", "unknown")
+
+
+def test_the_servo_shows_orders_of_its_motor_and_friction_over_position(tmp_path: Path) -> None:
+    data = report(tmp_path, "servo_cogging/motorCoggingTorque.txt", "servo_cogging")
+    orders = {e["harmonic"] for e in data["effects"] if e["name"] == "motor_cogging"}
+    assert 6 in orders and "position_friction" in names(data)
+    assert data["error"]["torque"]["after"] < 0.6 * data["error"]["torque"]["before"]  # effects.md: 49.5 to 26.5
+
+
+def test_the_tribometer_shows_presliding(tmp_path: Path) -> None:
+    data = report(tmp_path, "tribometer/test_data_2.txt", "tribometer")
+    assert data["effects"][0]["name"] == "presliding" and data["effects"][0]["domain"] == "reversal"
+    assert data["error"]["torque"]["after"] < 0.15 * data["error"]["torque"]["before"]  # effects.md: 0.409 to 0.050

@@ -1,0 +1,113 @@
+"""The statistics hold their level on coloured noise, and intervals cover."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.stats import chi2
+
+from plant.calibration.candidates.context import direction_of, since_reversal, turning_points
+from plant.calibration.candidates.friction import stop_operator
+from plant.calibration.candidates.orders import order_spectrum, peaks
+from plant.calibration.channels.frame import boxcar
+from plant.calibration.statistics.regression import gls
+from plant.calibration.statistics.surrogate import orthonormal_blocks, score
+from plant.calibration.statistics.tails import chi2_log10
+from plant.calibration.statistics.whitening import fit_ar
+
+
+def coloured(rng: np.random.Generator, n: int, a: float) -> np.ndarray:
+    out = np.zeros(n)
+    w = rng.standard_normal(n)
+    for k in range(1, n):
+        out[k] = a * out[k - 1] + w[k]
+    return out
+
+
+@pytest.mark.parametrize("gain", [0.1, 3.0, 30.0, 600.0])
+def test_tails_agree_with_scipy_and_stay_finite_far_out(gain: float) -> None:
+    assert chi2_log10(gain, 2) == pytest.approx(-chi2.logsf(gain, 2) / np.log(10), rel=1e-6)
+    assert np.isfinite(chi2_log10(1e6, 4))
+
+
+def test_whitening_takes_the_colour_out_and_respects_gaps() -> None:
+    rng = np.random.default_rng(1)
+    x = coloured(rng, 20000, 0.7)
+    valid = np.ones(len(x), dtype=bool)
+    valid[5000:5100] = False
+    w = fit_ar(x, valid, 2)
+    use = w.usable(valid)
+    e = w.apply(x)[use]
+    assert abs(np.corrcoef(e[1:], e[:-1])[0, 1]) < abs(np.corrcoef(x[1:], x[:-1])[0, 1]) - 0.3
+    assert not use[5000:5102].any() and use[5102]
+
+
+def test_intervals_cover_on_coloured_noise() -> None:
+    inside = 0
+    for seed in range(120):
+        rng = np.random.default_rng(seed)
+        n = 3000
+        x = np.column_stack([np.ones(n), np.sin(np.arange(n) / 40)])
+        fit = gls(x @ [1.0, 0.5] + coloured(rng, n, 0.8), x, np.ones(n, dtype=bool), 3, block=100)
+        error = np.sqrt(fit.covariance[1, 1])
+        inside += abs(fit.beta[1] - 0.5) < 2.05 * error
+    assert 106 <= inside <= 120  # 95 % of 120 is 114, three standard deviations are 7
+
+
+def test_the_surrogate_threshold_holds_its_level_on_coloured_noise() -> None:
+    alarms = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        n = 4000
+        e = coloured(rng, n, 0.9)
+        t = np.arange(n) / 100
+        columns = np.hstack([np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
+                             for f in np.linspace(0.1, 5, 60)])
+        q, widths = orthonormal_blocks(columns, np.ones((n, 1)), [2] * 60)
+        s = score(e, e, q, widths, 200, 200, rng)
+        alarms += s.value.max() > s.threshold
+    assert alarms <= 5  # 1 % of 60 is 0.6; naive chi2 thresholds alarm in all of them
+
+
+@given(st.lists(st.floats(-5, 5), min_size=3, max_size=80), st.floats(0.1, 3.0))
+@settings(max_examples=40, deadline=None)
+def test_the_stop_element_is_bounded_and_dissipates(path: list[float], radius: float) -> None:
+    x = np.array(path)
+    force = stop_operator(x, np.zeros(len(x), dtype=np.int64), radius)
+    assert np.abs(force).max() <= radius + 1e-12
+    loop = np.concatenate([x, x[::-1]])
+    f = stop_operator(loop, np.zeros(len(loop), dtype=np.int64), radius)
+    stored = 0.5 * f[-1] ** 2 - 0.5 * f[0] ** 2
+    assert np.sum(0.5 * (f[1:] + f[:-1]) * np.diff(loop)) - stored >= -1e-9
+
+
+def test_direction_and_travel_since_reversal() -> None:
+    x = np.concatenate([np.linspace(0, 10, 101), np.linspace(10, 4, 61)[1:], np.linspace(4, 8, 41)[1:]])
+    run = np.zeros(len(x), dtype=np.int64)
+    assert np.flatnonzero(turning_points(x, run, 1.0)).tolist() == [100, 160]
+    d = direction_of(x, run, 1.0)
+    assert (d[:100] == 1).all() and (d[101:160] == -1).all() and (d[161:] == 1).all()
+    assert since_reversal(x, d, run)[159] == pytest.approx(x[159] - 10)
+
+
+def test_the_order_spectrum_peaks_at_the_order_and_odd_orders_need_their_weight() -> None:
+    rng = np.random.default_rng(3)
+    turns = np.concatenate([np.linspace(0, 0.3, 9000), np.linspace(0.3, 0, 9000)])
+    sign = np.sign(np.gradient(turns))
+    e = sign * np.cos(2 * np.pi * 86.13 * turns) + rng.standard_normal(18000)
+    odd, even = (order_spectrum(e, turns, w, 300) for w in (sign, np.ones(18000)))
+    assert peaks(*odd, 1, 1.0)[0] == pytest.approx(86.13, abs=0.5)
+    assert odd[1].max() > 50 * even[1].max()
+
+
+def test_smoothing_and_second_differences_are_consistent() -> None:
+    """Boxcar twice over D rows of an acceleration is the second difference of the position over D rows."""
+    t = np.arange(400) * 0.01
+    acceleration = np.sin(3 * t)
+    theta = np.cumsum(np.cumsum(acceleration)) * 1e-4
+    d = 3
+    second = (theta[2 * d:] - 2 * theta[d:-d] + theta[:-2 * d]) / (d * 0.01) ** 2
+    # the double sum runs one row late, so compare with the acceleration one row later
+    assert second == pytest.approx(boxcar(boxcar(acceleration, d), d)[d + 1: -d + 1], abs=1e-6)

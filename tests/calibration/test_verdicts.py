@@ -1,0 +1,55 @@
+"""Whole calls on logs of the plant's own loop: nothing, found with its place, and an effect outside the catalogue."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from plant.calibration.command import calibrate
+from plant.model import load
+from plant.parts import EffectModel
+from tests.calibration.logs import effect, write_logs
+
+pytestmark = pytest.mark.slow
+
+
+def answer(folder: Path, effects: list[EffectModel]) -> dict[str, Any]:
+    out = folder / "out"
+    assert calibrate(write_logs(folder, effects), None, [], out, plots=False) == 0
+    report: dict[str, Any] = json.loads((out / "report.json").read_text())
+    load(out / "plant.yaml")  # a plant that the emulator runs
+    for row in report["error"].values():
+        assert row["after"] <= row["before"] * 1.002  # nothing accepted makes held-out data worse
+    assert not any(c["accepted"] for c in report["controls"])
+    return report
+
+
+def test_a_log_without_an_effect_is_answered_nothing_and_recalibrates_the_declared_model(tmp_path: Path) -> None:
+    report = answer(tmp_path, [])
+    assert report["verdict"] == "nothing" and report["effects"] == []
+    model = load()
+    friction = model.axes.ra.friction
+    for name, true in (("coulomb", friction.coulomb.si), ("viscous", friction.viscous.si),
+                       ("torque_constant", model.axes.ra.motor.torque_constant.si)):
+        assert report["calibrated"][name]["value"] == pytest.approx(true, rel=0.03)
+    assert report["error"]["torque"]["before"] < 3 * report["error"]["torque"]["floor"]
+
+
+def test_a_mesh_is_found_with_its_stage_amplitude_and_a_held_out_gain(tmp_path: Path) -> None:
+    report = answer(tmp_path, [effect("gear_mesh", "mesh3", amplitude=(6.0, "N m"))])
+    assert report["verdict"] == "found"
+    top = report["effects"][0]
+    assert (top["name"], top["stage"], top["harmonic"], top["channel"]) == ("gear_mesh", "mesh3", 1, "T")
+    assert top["parameters"]["amplitude"]["value"] == pytest.approx(6.0, rel=0.05)
+    assert report["error"]["torque"]["after"] < 0.3 * report["error"]["torque"]["before"]
+    effects = load(tmp_path / "out" / "plant.yaml").axes.ra.effects
+    assert [e.name for e in effects] == ["gear_mesh"]
+
+
+def test_two_effects_in_different_channels_are_both_named(tmp_path: Path) -> None:
+    report = answer(tmp_path, [effect("gear_eccentricity", "shaft1", amplitude=(6.0, "N m")),
+                               effect("pwm_deadband", deadband=(0.01, "1"))])
+    assert {e["name"] for e in report["effects"]} == {"gear_eccentricity", "pwm_deadband"}
