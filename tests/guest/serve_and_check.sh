@@ -12,7 +12,7 @@ candump -t a -n 20 vcan0
 cansend vcan0 080#11 # an identifier nobody owns: acknowledged and ignored
 .venv/bin/schmidt conformance --can socketcan:vcan0 --speed "$speed" --tolerance 0.2 | tail -n 25
 status=${PIPESTATUS[0]}
-kill -INT "$server"
+kill -TERM "$server"
 wait "$server" || true
 tail -n 3 /tmp/serve.log
 exit "$status"
