@@ -15,7 +15,7 @@ from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.channels.clock import clock_findings, repair_wraps
 from plant.calibration.channels.command import command_candidates, command_problem, pulses
-from plant.calibration.channels.electrical import Electrical, electrical_problem
+from plant.calibration.channels.electrical import Electrical, electrical_problem, mean_currents
 from plant.calibration.channels.frame import Frame, build_frame, fill
 from plant.calibration.channels.kinematic import (
     Kinematic,
@@ -143,6 +143,7 @@ def analyse(
             rng,
         )
         result.selections["E"] = s
+        mean_currents(frame, e, s.after.beta)
         per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
         _collect(result, s)
     tell("encoder channels")

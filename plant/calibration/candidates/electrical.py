@@ -30,6 +30,8 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
             sign=1,
         ),
     ]
+    both = np.full((len(e.motor), 1), -r * e.ampere_per_count)
+    out.append(Candidate("adc_offset", "current", both, (("offset", "counts"),)))
     for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
         out += [
             Candidate(

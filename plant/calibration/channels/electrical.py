@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion
 from plant.calibration.channels.problem import Problem
-from plant.calibration.channels.torque import saturated, transients
+from plant.calibration.channels.torque import STEP, saturated, transients
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
@@ -30,7 +30,6 @@ DECLARED_R, DECLARED_K = (
 )  # ohm, V s/rad; design.md: only used to tell which rows should carry current
 
 
-STEP = 0.35  # of a count: rounding leaves 0.29, and a steady current stays at one rounding for minutes
 RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
 TRUNCATION = (0.25, 0.8)  # counts that a converter which rounds down reads too low, 0.5 at even spread
 SURE = 4.0  # standard errors
@@ -64,9 +63,6 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         return None
     n, ratio = len(m.pick), frame.scale["gear_ratio"]
     effort, te = fill(frame.columns["effort"], frame.run)
-    share = np.full(len(effort), frame.scale["counter_torque"])
-    for k, r in enumerate(frame.runs):
-        share[frame.run == k] = r.scales["counter_torque"]
     supply_column = frame.get("supply")
     supply = (
         fill(supply_column, frame.run)[0]
@@ -79,10 +75,7 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
     }
     rate = m.rate[m.pick] * ratio
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
-    duty = {
-        "a": np.where(effort > 0, effort, -share * effort),
-        "b": np.where(effort > 0, share * effort, -effort),
-    }
+    duty = _duties(frame, effort)
     power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
     for key, sign in (("a", 1.0), ("b", -1.0)):
         i, ti = current[key]
@@ -141,6 +134,31 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         error,
         frame.scale["adc_A_per_count"],
     )
+
+
+def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
+    """Duty of each motor, 0..1: the effort on the one that leads, the counter torque's share on the other."""
+    share = np.full(len(effort), frame.scale["counter_torque"])
+    for k, r in enumerate(frame.runs):
+        share[frame.run == k] = r.scales["counter_torque"]
+    return {
+        "a": np.where(effort > 0, effort, -share * effort),
+        "b": np.where(effort > 0, share * effort, -effort),
+    }
+
+
+def mean_currents(frame: Frame, e: Electrical, beta: Array) -> None:
+    """Turn sampled currents into mean ones, in place, by what `_sampling` found; `beta` is the E channel's fit."""
+    names = [name for name, _ in e.problem.base_labels]
+    if "current_ripple" not in names:
+        return
+    at, volts, full = names.index("current_ripple"), frame.scale["supply_V"], frame.scale["adc_A_per_count"]
+    duty = _duties(frame, fill(frame.columns["effort"], frame.run)[0])
+    for key in "ab":
+        i, d = frame.columns[f"current_{key}"], duty[key]
+        wrong = beta[at] * volts * d * (1 - d) - beta[at + 1] * full
+        sound = (i > 0) & ~saturated(frame, i)
+        frame.columns[f"current_{key}"] = np.where(sound, i - wrong / beta[0], i)
 
 
 def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: float) -> None:

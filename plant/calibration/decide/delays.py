@@ -17,17 +17,9 @@ ELECTRICAL_S = (
 )  # one tick of the loop, L/R of 0.5 to 5 ms and the output latch: what a sound log shows
 
 
-CONFIRMED = 0.3  # of the delay seen against the effort, that the torque must lag the motion
-
-
-def _late_torque(selections: dict[str, Selection], delay: float) -> bool:
-    """Whether the torque balance sees late currents too. The effort of every second tick is not logged: a loop that
-    changes its effort from tick to tick makes sound currents look late against it, but not against the motion."""
-    s = selections.get("T")
-    labels = [name for name, _ in s.problem.base_labels] if s is not None else []
-    if s is None or "current_delay" not in labels:
-        return True
-    return bool(-s.after.beta[labels.index("current_delay")] > CONFIRMED * delay)
+CONFIRMED = 0.6  # of the delay seen against the effort, that the torque must lag the motion
+SLACK_S = 0.002  # beyond that range before the volts alone call a column late
+LATE_CURRENT_S = 0.0015  # against the encoder; a converter's own delay is well below a tick
 
 
 def delay_findings(selections: dict[str, Selection]) -> list[Finding]:
@@ -46,14 +38,25 @@ def delay_findings(selections: dict[str, Selection]) -> list[Finding]:
         name, key, value = "tachometers", "K", late["K"]
     elif "S" in late:
         name, key, value = "velocity", "S", late["S"]
-    if name is None and "E" in selections:
+    if name is None and "T" in selections:
+        s = selections["T"]
+        at = [label for label, _ in s.problem.base_labels].index("current_delay")
+        # the torque is what the currents say: currents that come late lead it by minus the delay
+        value = -float(s.after.beta[at])
+        error = float(np.sqrt(s.after.covariance[at, at])) * student_reach(60)
+        if value > LATE_CURRENT_S and value > 3 * error and "E" in selections:
+            lag = float(selections["E"].after.beta[2])
+            # a loop that changes its effort from tick to tick, of which every second one is logged, makes sound
+            # currents look late against the effort, but not against the motion
+            if lag > ELECTRICAL_S[1] and value > CONFIRMED * (lag - sum(ELECTRICAL_S) / 2):
+                lags["T"] = (value, error)
+                name, key = "current", "T"
+    if name is None and "E" in selections and not selections["E"].chosen:
         s = selections["E"]
         value, error = float(s.after.beta[2]), float(np.sqrt(s.after.covariance[2, 2])) * student_reach(60)
-        middle = sum(ELECTRICAL_S) / 2
-        beyond = value < ELECTRICAL_S[0] or (value > ELECTRICAL_S[1] and _late_torque(selections, value - middle))
-        if beyond and error < 1e-3:
-            lags["E"] = (value - middle, error)
-            name, key, value = ("current" if value > middle else "effort"), "E", value - middle
+        if (value < ELECTRICAL_S[0] - SLACK_S or value > ELECTRICAL_S[1] + SLACK_S) and error < 1e-3:
+            lags["E"] = (abs(value - sum(ELECTRICAL_S) / 2), error)
+            name, key, value = ("current or effort", "E", lags["E"][0])
     if name is None:
         return []
     error = lags[key][1]
