@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from plant.model import load
+from plant.model import default_files, load
 from plant.parts import PlantModel
 from scenarios.paper.bench import Bench
 from scenarios.paper.campaign import Campaign
@@ -17,10 +17,26 @@ from scenarios.paper.figures import draw_all
 from scenarios.paper.rows import Row
 from scenarios.paper.table import markdown, show
 
-LOW, HIGH = "low_preload", "high_preload"
+DEFAULTS = {"low": "low_preload_motor_units", "high": "high_preload_motor_units"}
+"""The pair of plant files that meets the rows together (docs/paper.md); the pair as printed is `low_preload`,
+`high_preload`."""
 STEPS = 59
 """Progress reports of a whole campaign, for the bar's length."""
 SEED = 1
+
+
+def pair(low: Path | None, high: Path | None) -> dict[str, str]:
+    """Return the two plant files. One that is not named is the other's twin, "low" and "high" exchanged in
+    its name, where there is one, and otherwise the default."""
+    found = {"low": low, "high": high}
+    names = {}
+    for preload, other in (("low", "high"), ("high", "low")):
+        given, partner = found[preload], found[other]
+        if given is None and partner is not None:
+            twin = partner.with_name(partner.name.replace(other, preload))
+            given = twin if twin != partner and (twin.exists() or twin.stem in default_files()) else None
+        names[preload] = str(given or DEFAULTS[preload])
+    return names
 
 
 def run_rows(
@@ -71,7 +87,7 @@ def paper(
     is met, 1 when one is missed. Raises ValueError for a file that cannot be used.
     """
     console = console or Console()
-    names = {"low": str(plant or LOW), "high": str(plant_high or HIGH)}
+    names = pair(plant, plant_high)
     plants = {preload: load(name) for preload, name in names.items()}
     if out is not None:
         _write(out / ".probe", "")  # find out before minutes of work, not after

@@ -10,18 +10,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import log
 
+import numpy as np
+
 from scenarios.paper import judge_loop as judge
 from scenarios.paper.bench import BenchMaker
-from scenarios.paper.measures import line_amplitude, peak_percent, strongest_line
+from scenarios.paper.judge_models import OVERSHOOT_POINTS
+from scenarios.paper.measures import line_amplitude, means, peak_percent, step_response, strongest_line
 from scenarios.paper.runs import (
     HIGH,
     LOW,
     OPENED,
     OPENED_S,
     SLOW_SLEW,
+    STEP_TO,
     high_speed,
     low_speed,
     slow_slew,
+    step,
     tracking,
 )
 
@@ -47,9 +52,12 @@ def terms(bench: BenchMaker, margin: float = 0.0, low_speed: bool = True) -> Ite
     """Yield the terms of both plants. margin: share by which bands are narrowed, so that a find has room to
     spare."""
     low = bench("low")
-    log_15 = tracking(low, 30.0, 25.0)
-    e1 = judge.e1(log_15).emulated
+    e1 = judge.e1(tracking(low)).emulated
     yield Term("E1", e1, outside(e1, 0.0, judge.TRACKING_LIMIT, 10.0))
+    response = step(bench("low"))
+    overshoot = step_response(response.t_s, response.rate, STEP_TO).overshoot_percent
+    # equation (6) with the rule's gains does not overshoot
+    yield Term("E9 overshoot", overshoot, outside(overshoot, 0.0, 0.8 * OVERSHOOT_POINTS, 4.0))
 
     if low_speed:
         yield from _low_speed(bench)
@@ -61,7 +69,7 @@ def terms(bench: BenchMaker, margin: float = 0.0, low_speed: bool = True) -> Ite
     room = margin * 3.0
     top, bottom = max(closed_peaks), min(closed_peaks)
     yield Term("E3 top", top, outside(top, 0.0, judge.HIGH_BAND[1] - room, 1.0))
-    yield Term("E3 bottom", bottom, outside(bottom, judge.HIGH_BAND[0] + room / 3, 99.0, 0.5))
+    yield Term("E3 bottom", bottom, outside(bottom, 0.9 * judge.HIGH_BAND[0], 99.0, 2.0))
     opened = [judge.e5([high_speed(bench("low"), speed, 12.0, 4.0, OPENED_S)]).emulated for speed in OPENED]
     yield Term(
         "E5", max(opened), outside(max(opened), judge.OPEN_BAND[0] + room, judge.OPEN_BAND[1] - room, 1.5)
@@ -79,7 +87,7 @@ def terms(bench: BenchMaker, margin: float = 0.0, low_speed: bool = True) -> Ite
 
 def _low_speed(bench: BenchMaker) -> Iterator[Term]:
     """Yield the terms of E6."""
-    run = low_speed(lambda: bench("low"), 36.0, 9.0)
+    run = low_speed(lambda: bench("low"))
     closed = run.closed
     moving = [log for _, log in run.running]
     if not moving:
@@ -88,10 +96,16 @@ def _low_speed(bench: BenchMaker) -> Iterator[Term]:
     best = min(moving, key=lambda log: abs(float(log.rate.mean()) - LOW))
     mean = float(best.rate.mean())
     lowest = min(float(log.rate.mean()) for log in moving)
-    yield Term("E6 mean", mean, outside(mean, LOW - judge.NEAREST, LOW + judge.NEAREST, 10.0, 10.0))
-    yield Term("E6 lowest", lowest, outside(lowest, *judge.LOWEST_BAND, 8.0))
+    # nearer than the row asks for: an open-loop axis near its lowest speed is a chancy thing
+    near = 0.6 * judge.NEAREST
+    yield Term("E6 mean", mean, outside(mean, LOW - near, LOW + near, 10.0, 10.0))
+    yield Term(
+        "E6 lowest", lowest, outside(lowest, judge.LOWEST_BAND[0] + 5.0, judge.LOWEST_BAND[1] - 5.0, 8.0)
+    )
+    slowest = float(np.min(means(best.rate)))
+    yield Term("E6 slowest second", slowest, outside(slowest, 45.0, 1e9, 20.0))
     line = strongest_line(best.rate, 0.01, 0.2)
-    yield Term("E6 line", line.frequency_hz, outside(line.frequency_hz, *judge.LINE_BAND, 0.01))
+    yield Term("E6 line", line.frequency_hz, outside(line.frequency_hz, 0.045, 0.057, 0.01))
     yield Term("E6 amplitude", line.amplitude, outside(line.amplitude, 3.0, 60.0, 2.0))
     left = line_amplitude(closed.rate, line.frequency_hz) / max(1e-3, line.amplitude)
     yield Term("E6 left", left, outside(left, 0.0, judge.LINE_LEFT, 0.1))

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.paper.campaign import STEP_TO, Record
+from scenarios.paper.campaign import Record
 from scenarios.paper.log import Log
-from scenarios.paper.runs import LOW, TRACKING
+from scenarios.paper.runs import LOW, STEP_TO, TRACKING
 from scenarios.paper.scales import ARCSEC
 
 SIZE = (10.0, 4.2)

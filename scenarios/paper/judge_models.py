@@ -16,7 +16,7 @@ from scenarios.paper.tuning import Gains, closed_time_constant, simc
 
 INERTIA_TOLERANCE = 5.0
 RISE_BAND = (0.67, 1.5)
-OVERSHOOT_POINTS = 10.0
+OVERSHOOT_POINTS = 15.0
 SETTLED_PERCENT = 1.0
 INTEGRAL_BAND = (1.0 / 1.5, 1.5)
 NAMES = {"viscous": "σ2", "coulomb": "Tc", "stiction": "Ts", "stribeck_rate": "vs"}

@@ -167,7 +167,11 @@ def run_down(bench: Bench, direction: int, setpoint: float = 7200.0) -> Log:
     return bench.open_loop(0, 1.5)
 
 
-def step(bench: Bench, setpoint: float = 600.0, seconds: float = 3.0) -> Log:
+STEP_TO = 600.0
+"""arcsec/s, Fig. 11."""
+
+
+def step(bench: Bench, setpoint: float = STEP_TO, seconds: float = 3.0) -> Log:
     """E9: from rest to 600 arcsec/s, closed loop."""
     return bench.closed_loop(setpoint, seconds)
 

@@ -17,14 +17,15 @@ from typing import Any
 
 import numpy as np
 
-from plant.model import dump, load
+from plant.model import load
 from plant.parts import PlantModel
 from scenarios.paper.bench import Bench
 from scenarios.paper.compiled import CompiledBench
 from scenarios.paper.cost import Term, cost
 from scenarios.paper.log import Array
+from scenarios.paper.plantfile import write
 from scenarios.paper.proposals import propose
-from scenarios.paper.space import SPACE, bounds, models, values
+from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.statics import shortfalls_of
 
 READINGS = {"printed": (1.0, "low_preload", "high_preload"),
@@ -86,33 +87,36 @@ class Objective:
         return found
 
 
-def start_points(objective: Objective, count: int, random: np.random.Generator) -> Array:
-    """Return `count` points: half of them the best that linear theory proposes, half scattered about
-    these."""
-    proposed = [
-        proposal.x for proposal in propose(random, objective.scale, objective.low_speed, keep=count // 2)
-    ]
+def start_points(objective: Objective, count: int, random: np.random.Generator, known: Array | None) -> Array:
+    """Return `count` points: half of them the best that linear theory proposes (or the one known point), the
+    rest scattered about these."""
+    if known is None:
+        sifted = propose(random, objective.scale, objective.low_speed, keep=count // 2)
+        proposed = [proposal.x for proposal in sifted]
+    else:
+        proposed = [known]
     if not proposed:
         raise ValueError("linear theory finds no point of the space that could meet the rows")
     low, high = np.array(bounds()).T
     scattered = [
-        np.clip(proposed[k % len(proposed)] + 0.1 * random.standard_normal(low.size), low, high)
+        np.clip(proposed[k % len(proposed)] + 0.15 * random.standard_normal(low.size), low, high)
         for k in range(count - len(proposed))
     ]
     return np.array([*proposed, *scattered])
 
 
-def search(objective: Objective, seed: int, population: int = 32) -> None:
+def search(objective: Objective, seed: int, known: Array | None = None, population: int = 32) -> None:
     """Search until all points are used up or one costs nothing; the result is in `objective`."""
     from scipy.optimize import differential_evolution, minimize
 
     random = np.random.default_rng(seed)
     most = objective.most
     objective.most = round(0.7 * most)
+    start = start_points(objective, population, random, known)
     with suppress(Enough):
         differential_evolution(
-            objective, bounds(), init=start_points(objective, population, random), maxiter=10_000, tol=0.0,
-            mutation=(0.4, 0.9), recombination=0.8, polish=False, rng=random,
+            objective, bounds(), init=start, maxiter=10_000, tol=0.0, polish=False, rng=random,
+            mutation=(0.4, 0.9), recombination=0.8,
         )  # fmt: skip
     objective.most = most
     with suppress(Enough):
@@ -149,6 +153,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--reading", choices=sorted(READINGS), default="printed", help="friction units of Table 2"
     )
+    parser.add_argument(
+        "--start", type=Path, help="search.json of an earlier run, to go on from its best point"
+    )
     parser.add_argument("--without-e6", action="store_true", help="leave row E6 out")
     chosen = parser.parse_args(arguments)
     begin = monotonic()
@@ -159,7 +166,8 @@ def main(arguments: list[str] | None = None) -> int:
         chosen.points,
         lambda text: print(text, flush=True),
     )
-    search(objective, chosen.seed)
+    known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
+    search(objective, chosen.seed, known)
     if objective.best_x is None:
         print("no point of the space could be run at all", file=sys.stderr)
         return 1
@@ -169,7 +177,7 @@ def main(arguments: list[str] | None = None) -> int:
     rows = "E1 to E5 and E10" if chosen.without_e6 else "E1 to E6 and E10"
     source = f"fitted to rows {rows} by scenarios.paper.search, seed {chosen.seed}"
     for preload, plant in objective.plants(objective.best_x, source).items():
-        dump(plant, chosen.out / f"{READINGS[chosen.reading][1 if preload == 'low' else 2]}.yaml")
+        write(plant, chosen.out / f"{READINGS[chosen.reading][1 if preload == 'low' else 2]}.yaml")
     print(f"cost {objective.best:.3f} after {objective.tried} points; plant files in {chosen.out}")
     return 0
 

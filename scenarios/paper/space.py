@@ -91,9 +91,14 @@ def vector(found: dict[str, float]) -> Array:
     return np.array([log(found[free.name]) for free in SPACE])
 
 
-def _effects(found: dict[str, float], source: str) -> tuple[EffectModel, ...]:
+DEC_SHARE = 316.0 / 933.0
+"""Declination over RA: ratio of the load torques of Table 1. What is fitted on RA, the paper's axis, is
+carried over."""
+
+
+def _effects(found: dict[str, float], source: str, share: float) -> tuple[EffectModel, ...]:
     def torque(name: str) -> dict[str, Number]:
-        return {"amplitude": Number(_rounded(found[name], 3), "N m", source)}
+        return {"amplitude": Number(_rounded(found[name] * share, 3), "N m", source)}
 
     return (
         EffectModel("gear_eccentricity", "motor", 2, torque("twice")),
@@ -122,26 +127,30 @@ def models(bases: dict[str, PlantModel], found: dict[str, float], source: str) -
         table = TABLE_2[preload]
         stiffness = found["bristle_stiffness"] * (found["stiffness_ratio"] if preload == "high" else 1.0)
         passive = table["viscous"] * table["coulomb"] / (table["stiction"] - table["coulomb"])
-        motor = "axes.ra.motor."
         base = bases[preload]
         switch = base.axes.ra.motor.switch_resistance.si + base.axes.ra.motor.sense_resistance.si
         winding = max(0.05, found["resistance"] - switch)
         rotor = _rounded(found["rotor_inertia"])
-        numbers = {
-            "axes.ra.friction.bristle_stiffness": _rounded(stiffness),
-            "axes.ra.friction.bristle_damping": _rounded(found["bristle_damping"] * passive),
-            "axes.ra.friction.stribeck_exponent": _rounded(found["exponent"]),
-            motor + "torque_constant": _rounded(found["torque_constant"]),
-            motor + "resistance": _rounded(winding),
-            motor + "inductance": _rounded(found["electrical_time"] * (winding + switch) * 1e3),  # mH
-            motor + "rotor_inertia": rotor,
-            "axes.ra.gear.damping": _rounded(found["gear_damping"]),
-            "axes.ra.inertia": round(INERTIA - 2.0 * rotor * GEAR_RATIO**2, 1),
-        }
-        model = base
-        for path, value in numbers.items():
-            model = with_value(model, path, value, source)
-        model = with_effects(model, "ra", _effects(found, source))
+        model = with_value(base, "axes.ra.inertia", round(INERTIA - 2.0 * rotor * GEAR_RATIO**2, 1), source)
+        for axis, share in (("ra", 1.0), ("dec", DEC_SHARE)):
+            said = (
+                source
+                if axis == "ra"
+                else f"{source}; on RA, times {share:.2g} where it scales with the load"
+            )
+            numbers = {
+                "friction.bristle_stiffness": _rounded(stiffness * share),
+                "friction.bristle_damping": _rounded(found["bristle_damping"] * passive * share),
+                "friction.stribeck_exponent": _rounded(found["exponent"]),
+                "motor.torque_constant": _rounded(found["torque_constant"]),
+                "motor.resistance": _rounded(winding),
+                "motor.inductance": _rounded(found["electrical_time"] * (winding + switch) * 1e3),  # mH
+                "motor.rotor_inertia": rotor,
+                "gear.damping": _rounded(found["gear_damping"]),
+            }
+            for path, value in numbers.items():
+                model = with_value(model, f"axes.{axis}.{path}", value, said)
+            model = with_effects(model, axis, _effects(found, said, share))
         if gains is None:  # tuned once, on the low preload, as equation (6) with its parameters gives it
             rule = simc(
                 reduce_to_dead_time(linear_axis(model), round(model.controller.pwm_steps.si)),

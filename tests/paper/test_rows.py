@@ -1,9 +1,12 @@
 """Verdicts on logs made by arithmetic: what passes, what does not, and what is said about it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from scenarios.paper import judge_loop as judge
+from scenarios.paper.command import DEFAULTS, pair
 from scenarios.paper.judge_models import e8, e9
 from scenarios.paper.measures import Step
 from scenarios.paper.published import PUBLISHED
@@ -38,9 +41,9 @@ def test_E2_needs_limit_cycles_not_only_a_large_error():
 
 
 @pytest.mark.parametrize(
-    ("percents", "passed"), [((3.0, 6.5), True), ((3.0, 7.5), False), ((1.0, 6.0), False)]
+    ("percents", "passed"), [((3.0, 6.5), True), ((3.0, 7.5), False), ((1.0, 1.5), False)]
 )
-def test_E3_every_speed_within_2_and_7_percent(percents, passed):
+def test_E3_largest_peak_within_2_and_7_percent(percents, passed):
     runs = [HighSpeed(v, wave(v, p), None) for v, p in zip((600.0, 1000.0), percents, strict=True)]
     assert judge.e3(runs).passed is passed
 
@@ -81,7 +84,7 @@ def test_E9_similar_means_rise_overshoot_and_settled_value():
     linear = Step(0.1, 5.0, 600.0)
     assert e9(Step(0.12, 10.0, 601.0), linear, 600.0).passed
     assert not e9(Step(0.2, 10.0, 601.0), linear, 600.0).passed
-    assert not e9(Step(0.12, 20.0, 601.0), linear, 600.0).passed
+    assert not e9(Step(0.12, 21.0, 601.0), linear, 600.0).passed
     assert not e9(Step(0.12, 10.0, 620.0), linear, 600.0).passed
 
 
@@ -105,3 +108,12 @@ def test_the_markdown_table_counts_what_is_met():
     assert text.startswith("1 of 2 rows met")
     assert "| E3 |" in text
     assert "**miss**" in text
+
+
+def test_one_plant_file_brings_its_twin(tmp_path):
+    assert pair(None, None) == DEFAULTS
+    assert pair(Path("low_preload"), None) == {"low": "low_preload", "high": "high_preload"}
+    (tmp_path / "my_low.yaml").touch()
+    (tmp_path / "my_high.yaml").touch()
+    assert pair(None, tmp_path / "my_high.yaml")["low"] == str(tmp_path / "my_low.yaml")
+    assert pair(Path("other.yaml"), None)["high"] == DEFAULTS["high"]
