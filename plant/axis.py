@@ -17,9 +17,9 @@ class AxisPort:
     Motor 0 is A, which pulls in +, motor 1 is B, which pulls in -.
 
     incremental: counts of the roller encoder since start, unbounded. absolute: position of the on-shaft
-    absolute encoder, 29 bit. auxiliary: position of the geared one, 17 bit. tachometer_a, tachometer_b: counts
-    of the motors' encoders since start, unbounded. All (t_ns) -> int; a stuck sensor is another callable put
-    here.
+    absolute encoder, 29 bit. auxiliary: position of the geared one, 17 bit. tachometer_a, tachometer_b:
+    counts of the motors' encoders since start, unbounded. All (t_ns) -> int; a stuck sensor is another
+    callable put here.
     """
 
     def __init__(

@@ -45,16 +45,19 @@ class Trouble:
 
     def check(self) -> None:
         """Look again whether trouble is near."""
-        live = [port for port in self._wire.ports if port.online and not port._bus_off]
+        wire = self._wire
+        live = [port for port in wire.ports if port.online and not port._bus_off]
         near = bool(
             self.disturb
+            or self._twins
+            or (wire._sending is None and wire._end_ns != _NEVER)  # an error frame is on the wire
             or len(live) < 2
             or self._recovery.pending
             or any(port.tec or port.rec for port in live)
         )
-        if near and not self._wire._near:
-            self._wire.trouble_nears()
-        self._wire._near = near
+        if near and not wire._near:
+            wire.trouble_nears()
+        wire._near = near
 
     def listeners(self, sender: Port) -> list[Port]:
         """Nodes that hear (and acknowledge) what `sender` sends."""
@@ -157,6 +160,7 @@ class Trouble:
         wire._free_ns = sof_ns + bits * wire.bit_ns
         wire.bits += bits
         wire._end_ns = wire._free_ns - wire._eof_ns
+        wire._near = True
         self._recovery.quiet_since_ns = wire._end_ns - ERROR_DELIMITER_BITS * wire.bit_ns
         senders = [port for port in (offer.port, also) if port is not None]
 

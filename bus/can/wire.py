@@ -130,31 +130,35 @@ class Wire:
             return
         if waiting[0][2] <= sof_ns:
             winner = heappop(waiting)
+            rivals = waiting[:1]
         else:
             # The first in line may come later than the start of frame: look at everyone.
             sof_ns = max(sof_ns, min(offer[2] for offer in waiting))
-            winner = min(offer for offer in waiting if offer[2] <= sof_ns + self.bit_ns)
+            rivals = [offer for offer in waiting if offer[2] <= sof_ns + self.bit_ns]
+            winner = min(rivals)
             self._remove(winner)
-        if waiting and waiting[0][0] == winner[0] and waiting[0][3] is not winner[3]:
+        if any(rival[0] == winner[0] and rival[3] is not winner[3] for rival in rivals):
             heappush(waiting, winner)
             self._call_decide(sof_ns)  # two nodes, one identifier: that is trouble, when the time comes
         else:
             self._begin(winner, sof_ns)
 
-    def _unplan(self) -> None:
-        """Put a plan back whose first bit is not over yet."""
+    def _unplan(self) -> bool:
+        """Put a plan back whose first bit is not over yet; False: there is none."""
         plan = self._sending
-        if plan is not None and self.queue.now_ns <= self._decided_ns:
-            heappush(self._waiting, plan)
-            self._sending = None
-            self._end_ns = _NEVER
-            self._free_ns = self._idle_ns
+        if plan is None or self.queue.now_ns > self._decided_ns:
+            return False
+        heappush(self._waiting, plan)
+        self._sending = None
+        self._end_ns = _NEVER
+        self._free_ns = self._idle_ns
+        return True
 
     def trouble_nears(self) -> None:
         """From now on arbitration is decided when it happens."""
-        self._unplan()
         self._near = True
-        self._await_ready()
+        if self._unplan():
+            self._await_ready()
 
     def _call_decide(self, sof_ns: int) -> None:
         """Have the arbitration of a frame that starts at `sof_ns` decided once its first bit is over."""
@@ -190,19 +194,18 @@ class Wire:
         self._push((end_ns, self._ticket(), self._deliver_call))
 
     def _deliver(self, t_ns: int) -> None:
-        if t_ns != self._end_ns:
+        offer = self._sending
+        if t_ns != self._end_ns or offer is None:
             return  # another plan, or the sender went off in the middle
         self._end_ns = _NEVER
-        offer = self._sending
-        assert offer is not None
         self._sending = None
         key, _, _, port, frame, bits = offer
         self.frames += 1
         self.bits += bits
         port._free += 1
         near = self._near
-        if self._waiting and self._decide_ns == _NEVER:
-            if near:
+        if self._waiting:
+            if near or self._decide_ns != _NEVER:
                 self._call_decide(self._free_ns)
             else:
                 self._plan()
@@ -234,13 +237,13 @@ class Wire:
 
     def _switched(self, port: Port) -> None:
         """`port` was switched on or off."""
-        self._unplan()
+        unplanned = self._unplan()
         self._waiting = [offer for offer in self._waiting if offer[3] is not port]
         heapify(self._waiting)
         if self._sending is not None and self._sending[3] is port:
             self._trouble.cut(self.queue.now_ns)
         port._free = TX_BUFFERS if port.online else 0
         self._trouble.restart(port)
-        if self._sending is None:
+        if unplanned:
             self._await_ready()
         self._forget_routes()
