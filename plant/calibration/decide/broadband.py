@@ -29,6 +29,9 @@ def slow_ratio(e: Array, problem: Problem, white: float) -> float:
     return float(np.sqrt(np.mean(means**2)) / max(white, 1e-12)) if len(means) > 20 else 0.0
 
 
+STEPS = 2.0  # of problem.step
+
+
 def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     """A stationary, broadband, slow torque that no domain explains."""
     ratio = slow_ratio(e, problem, white)
@@ -39,6 +42,8 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     late = int(np.argmax(r < 0.5 * variance)) or 20
     corner = np.log(2) / (2 * np.pi * late * problem.period_s)
     sigma = float(np.sqrt(variance))
+    if sigma < STEPS * problem.step:
+        return None  # two converters' rounding that a steady motion does not average out
     turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
     half = 1.96 * sigma / np.sqrt(2 * turns)
     return Finding(
