@@ -33,12 +33,15 @@ def figure(row: Row) -> str:
 def show(rows: Sequence[Row], console: Console) -> None:
     """Print the table, and below it what was found, row by row: terminals are narrow."""
     table = Table(title="The paper's experiments on the emulator")
-    for name in ("", "experiment", "published", "emulated", "unit", ""):
-        table.add_column(name, no_wrap=True)
+    table.add_column("row", min_width=3)
+    table.add_column("experiment")
+    table.add_column("published")
+    table.add_column("emulated", min_width=8)
+    table.add_column("", min_width=4)
     for row in rows:
         said = PUBLISHED[row.id]
         mark = "[green]met[/]" if row.passed else "[red]miss[/]"
-        table.add_row(row.id, TITLES[row.id], said.figure, figure(row), said.unit, mark)
+        table.add_row(row.id, TITLES[row.id], f"{said.figure}\n[dim]{said.unit}[/]", figure(row), mark)
     console.print(table)
     for row in rows:
         console.print(f"  [bold]{row.id}[/] {row.reason}", highlight=False)
