@@ -71,6 +71,14 @@ MAPS: dict[str, dict[str, tuple[str, float]]] = {
     "command_disturbance": {"amplitude": ("amplitude", 1 / 3000), "frequency": ("frequency", 1)},
 }
 
+#: effect -> (sign, shift): the residual A cos(x + phase) is the torque the motors must add, the effect's is minus that,
+#: written as a sine of x + phase, a cosine of x - phase (imbalance), or a factor's cosine (ripple)
+PHASES: dict[str, tuple[float, float]] = {
+    **dict.fromkeys(("gear_eccentricity", "gear_mesh", "bearing_pass", "motor_cogging"), (1.0, -np.pi / 2)),
+    "gravity_imbalance": (-1.0, np.pi),
+    "torque_ripple": (1.0, np.pi),
+}
+
 
 def write_plant(
     out: Path,
@@ -139,7 +147,11 @@ def effect_model(f: Finding, name: str) -> tuple[Any | None, str]:
     for target, (source, factor) in MAPS[f.name].items():
         if source in f.parameters:
             p = spec.parameter(target)
-            value = float(np.clip(f.parameters[source].value * factor, p.low, p.high))
+            raw = f.parameters[source].value * factor
+            if target == "phase" and f.channel == "T" and f.name in PHASES:
+                sign, shift = PHASES[f.name]
+                raw = float(np.angle(np.exp(1j * (sign * raw + shift))))
+            value = float(np.clip(raw, p.low, p.high))
             parameters[target] = Number(value, p.unit, f"fitted to {name}")
     if "cycles" in [p.name for p in spec.parameters] and f.harmonic:
         parameters["cycles"] = Number(float(f.harmonic), "1", f"found in {name}")

@@ -30,13 +30,16 @@ def manoeuvre(kind: str) -> np.ndarray:
     return np.interp(t, [0, 2, 4, 14, 18, 22, 32, 36, 40], [0, 0, 4000, 4000, 0, -4000, -4000, 0, 0])
 
 
-def effect(name: str, stage: str | None = None, harmonic: int = 1, **parameters: tuple[float, str]) -> EffectModel:
+def effect(
+    name: str, stage: str | None = None, harmonic: int = 1, **parameters: tuple[float, str]
+) -> EffectModel:
     """An effect with parameters given as (value, unit)."""
     return EffectModel(name, stage, harmonic, {k: Number(v, u, "test") for k, (v, u) in parameters.items()})
 
 
-def write_logs(folder: Path, effects: Sequence[EffectModel], kinds: Sequence[str] = ("steps", "sweep", "ramp", "steps")
-               ) -> list[Path]:
+def write_logs(
+    folder: Path, effects: Sequence[EffectModel], kinds: Sequence[str] = ("steps", "sweep", "ramp", "steps")
+) -> list[Path]:
     """Write one log per manoeuvre; the runs share a session and go on where the one before stopped."""
     # the plant's declared run-out is taken out of both sides: these logs are about the effect under test
     model = with_effects(load(default_files()["low_preload"]), "ra", effects)
@@ -57,7 +60,9 @@ def tiny_log(rows: int = 40, **changes: str) -> str:
     """A well-formed axis log of a slow motion as text; `changes` replace header values."""
     head = HEADER.format(axis="ra", minute=0)
     for key, value in changes.items():
-        head = "".join(f"# {key}: {value}\n" if line.startswith(f"# {key}:") else line + "\n"
-                       for line in head.splitlines())
+        head = "".join(
+            f"# {key}: {value}\n" if line.startswith(f"# {key}:") else line + "\n"
+            for line in head.splitlines()
+        )
     body = "\n".join(f"{k * 0.01:.2f},15,20,{1000 + 60 * k},7,{k % 5},0,3,3" for k in range(rows))
     return head + ",".join(COLUMNS) + "\n" + body + "\n"

@@ -16,7 +16,9 @@ RIGS = ROOT / "plant" / "calibration" / "rigs"
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(not DATA.is_dir(), reason="../shared/data/measured is absent: no measured data to test on"),
+    pytest.mark.skipif(
+        not DATA.is_dir(), reason="../shared/data/measured is absent: no measured data to test on"
+    ),
 ]
 
 
@@ -31,7 +33,9 @@ def names(data: dict[str, Any]) -> set[str]:
     return {n for e in data["effects"] for n in (e["name"], *e["equivalent"])}
 
 
-def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_be_named(tmp_path: Path) -> None:
+def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_be_named(
+    tmp_path: Path,
+) -> None:
     data = report(tmp_path, "emps/DATA_EMPS.mat", "emps")
     assert "friction_asymmetry" in names(data)
     assert names(data) & {"stribeck_change", "presliding"}
@@ -61,10 +65,14 @@ def test_the_servo_shows_orders_of_its_motor_and_friction_over_position(tmp_path
     data = report(tmp_path, "servo_cogging/motorCoggingTorque.txt", "servo_cogging")
     orders = {e["harmonic"] for e in data["effects"] if e["name"] == "motor_cogging"}
     assert 6 in orders and "position_friction" in names(data)
-    assert data["error"]["torque"]["after"] < 0.6 * data["error"]["torque"]["before"]  # effects.md: 49.5 to 26.5
+    assert (
+        data["error"]["torque"]["after"] < 0.6 * data["error"]["torque"]["before"]
+    )  # effects.md: 49.5 to 26.5
 
 
 def test_the_tribometer_shows_presliding(tmp_path: Path) -> None:
     data = report(tmp_path, "tribometer/test_data_2.txt", "tribometer")
     assert data["effects"][0]["name"] == "presliding" and data["effects"][0]["domain"] == "reversal"
-    assert data["error"]["torque"]["after"] < 0.15 * data["error"]["torque"]["before"]  # effects.md: 0.409 to 0.050
+    assert (
+        data["error"]["torque"]["after"] < 0.15 * data["error"]["torque"]["before"]
+    )  # effects.md: 0.409 to 0.050

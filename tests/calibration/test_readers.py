@@ -49,7 +49,9 @@ def test_an_axis_log_is_read_in_si_units_and_header_scales_override(tmp_path: Pa
         (lambda t: t.replace("0.10,15,20,", "0.10,15,"), 22, None),
     ],
 )
-def test_bad_input_names_file_line_and_column(tmp_path: Path, change: object, line: int, column: str | None) -> None:
+def test_bad_input_names_file_line_and_column(
+    tmp_path: Path, change: object, line: int, column: str | None
+) -> None:
     path = write(tmp_path / "bad.log", change(tiny_log()))  # type: ignore[operator]
     with pytest.raises(CalibrationInputError) as caught:
         read_axis_log(path)
@@ -58,8 +60,14 @@ def test_bad_input_names_file_line_and_column(tmp_path: Path, change: object, li
 
 
 def test_an_unknown_column_is_kept_out_of_the_way(tmp_path: Path) -> None:
-    text = "\n".join(line + ("" if line.startswith("#") or not line else ",humidity" if line.startswith("t,") else ",wet")
-                     for line in tiny_log().splitlines()) + "\n"
+    text = (
+        "\n".join(
+            line
+            + ("" if line.startswith("#") or not line else ",humidity" if line.startswith("t,") else ",wet")
+            for line in tiny_log().splitlines()
+        )
+        + "\n"
+    )
     assert read_axis_log(write(tmp_path / "a.log", text)).rows == 40
 
 
@@ -199,6 +207,8 @@ def test_a_rig_file_maps_columns_and_resolves_teeth(tmp_path: Path) -> None:
         ("rig: bench", "rig: [", "is not YAML"),
     ],
 )
-def test_a_wrong_rig_file_names_the_field_and_the_nearest_word(tmp_path: Path, old: str, new: str, says: str) -> None:
+def test_a_wrong_rig_file_names_the_field_and_the_nearest_word(
+    tmp_path: Path, old: str, new: str, says: str
+) -> None:
     with pytest.raises(CalibrationInputError, match=says.replace("(", r"\(")):
         load_rig(write(tmp_path / "rig.yaml", RIG.replace(old, new)))

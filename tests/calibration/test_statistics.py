@@ -63,8 +63,12 @@ def test_the_surrogate_threshold_holds_its_level_on_coloured_noise() -> None:
         n = 4000
         e = coloured(rng, n, 0.9)
         t = np.arange(n) / 100
-        columns = np.hstack([np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
-                             for f in np.linspace(0.1, 5, 60)])
+        columns = np.hstack(
+            [
+                np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
+                for f in np.linspace(0.1, 5, 60)
+            ]
+        )
         q, widths = orthonormal_blocks(columns, np.ones((n, 1)), [2] * 60)
         s = score(e, e, q, widths, 200, 200, rng)
         alarms += s.value.max() > s.threshold
@@ -108,6 +112,6 @@ def test_smoothing_and_second_differences_are_consistent() -> None:
     acceleration = np.sin(3 * t)
     theta = np.cumsum(np.cumsum(acceleration)) * 1e-4
     d = 3
-    second = (theta[2 * d:] - 2 * theta[d:-d] + theta[:-2 * d]) / (d * 0.01) ** 2
+    second = (theta[2 * d :] - 2 * theta[d:-d] + theta[: -2 * d]) / (d * 0.01) ** 2
     # the double sum runs one row late, so compare with the acceleration one row later
-    assert second == pytest.approx(boxcar(boxcar(acceleration, d), d)[d + 1: -d + 1], abs=1e-6)
+    assert second == pytest.approx(boxcar(boxcar(acceleration, d), d)[d + 1 : -d + 1], abs=1e-6)

@@ -27,13 +27,18 @@ def answer(folder: Path, effects: list[EffectModel]) -> dict[str, Any]:
     return report
 
 
-def test_a_log_without_an_effect_is_answered_nothing_and_recalibrates_the_declared_model(tmp_path: Path) -> None:
+def test_a_log_without_an_effect_is_answered_nothing_and_recalibrates_the_declared_model(
+    tmp_path: Path,
+) -> None:
     report = answer(tmp_path, [])
     assert report["verdict"] == "nothing" and report["effects"] == []
     model = load()
     friction = model.axes.ra.friction
-    for name, true in (("coulomb", friction.coulomb.si), ("viscous", friction.viscous.si),
-                       ("torque_constant", model.axes.ra.motor.torque_constant.si)):
+    for name, true in (
+        ("coulomb", friction.coulomb.si),
+        ("viscous", friction.viscous.si),
+        ("torque_constant", model.axes.ra.motor.torque_constant.si),
+    ):
         assert report["calibrated"][name]["value"] == pytest.approx(true, rel=0.03)
     assert report["error"]["torque"]["before"] < 3 * report["error"]["torque"]["floor"]
 
@@ -50,6 +55,11 @@ def test_a_mesh_is_found_with_its_stage_amplitude_and_a_held_out_gain(tmp_path: 
 
 
 def test_two_effects_in_different_channels_are_both_named(tmp_path: Path) -> None:
-    report = answer(tmp_path, [effect("gear_eccentricity", "shaft1", amplitude=(6.0, "N m")),
-                               effect("pwm_deadband", deadband=(0.01, "1"))])
+    report = answer(
+        tmp_path,
+        [
+            effect("gear_eccentricity", "shaft1", amplitude=(6.0, "N m")),
+            effect("pwm_deadband", deadband=(0.01, "1")),
+        ],
+    )
     assert {e["name"] for e in report["effects"]} == {"gear_eccentricity", "pwm_deadband"}

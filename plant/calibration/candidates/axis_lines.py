@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -92,36 +92,19 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
             if np.mean(plain[:, 0] ** 2) < 0.02:
                 continue
             for name, columns in (
-                ("motor_cogging", plain),
+                ("motor_cogging", plain * ratio),
                 ("torque_ripple", plain * motors.torque[key][:, None]),
             ):
                 score = float(np.sum((columns.T @ x) ** 2) / np.sum(columns[rows] ** 2))
-                found[name].append((score, line(c, name, "motor", n, order, columns, "motor_angle")))
+                made = line(c, name, "motor", n, order, columns, "motor_angle")
+                found[name].append((score, replace(made, labels=(LABELS[name],))))
     out = []
     for ranked in found.values():
         out += [k for _, k in sorted(ranked, key=lambda s: -s[0])[:keep]]
     return out
 
 
-def both_motor_lines(c: Context, motors: Motors, harmonics: list[int]) -> list[Candidate]:
-    """Cogging and ripple on both motors at once, for the harmonics that one motor already showed."""
-    out = []
-    for n in harmonics:
-        order = n * STAGES["motor"]
-        a, b = (pair(motors.turns[k] * n, c, motors.period_s, None, order) for k in "ab")
-        out.append(line(c, "motor_cogging", "motor", n, order, np.hstack([a, b]), "motor_angle"))
-        out.append(
-            line(
-                c,
-                "torque_ripple",
-                "motor",
-                n,
-                order,
-                np.hstack([a * motors.torque["a"][:, None], b * motors.torque["b"][:, None]]),
-                "motor_angle",
-            )
-        )
-    return out
+LABELS = {"motor_cogging": ("amplitude", "N m at the motor"), "torque_ripple": ("ripple", "1")}
 
 
 def free_lines(c: Context, e: Array, rows: Mask, period_s: float) -> list[Candidate]:

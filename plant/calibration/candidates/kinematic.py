@@ -53,7 +53,7 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
             Candidate(
                 "encoder_thermal_drift",
                 "temperature",
-                (c.temperature - c.temperature.mean())[:, None],
+                (c.temperature.mean() - c.temperature)[:, None],
                 (("drift", "arcsec/K"),),
             )
         )
@@ -145,8 +145,8 @@ def subdivision(c: Context, period_s: float) -> list[Candidate]:
         Candidate(
             "encoder_subdivision",
             "axis_angle",
-            np.hstack([one, two]),
-            (("amplitude", "rad/rad"),),
+            np.hstack([one * LINES / 206264.8, two * 2 * LINES / 206264.8]),
+            (("amplitude", "arcsec"),),
             kind="line",
             order=float(LINES),
             harmonic=1,

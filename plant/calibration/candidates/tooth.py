@@ -76,4 +76,5 @@ def damaged_teeth(
 
 
 def _shape(phase: Array, reach: Array) -> Callable[[Array], Array]:
-    return lambda p: pulse(phase, float(p[0]), max(float(p[1]), 0.002), reach)[:, None]
+    # the torque that the residual lacks is minus the torque on the axis
+    return lambda p: -pulse(phase, float(p[0]), max(float(p[1]), 0.002), reach)[:, None]

@@ -148,7 +148,8 @@ def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
 
 
 def mean_currents(frame: Frame, e: Electrical, beta: Array) -> None:
-    """Turn sampled currents into mean ones, in place, by what `_sampling` found; `beta` is the E channel's fit."""
+    """Turn sampled currents into mean ones, in place, by what `_sampling` found; `beta` is the E channel's
+    fit."""
     names = [name for name, _ in e.problem.base_labels]
     if "current_ripple" not in names:
         return

@@ -42,6 +42,9 @@ class Motion:
         return np.asarray(self.smooth(x)[self.pick])
 
 
+START_ROWS = 10  # rows after a start or a gap that are not analysed
+
+
 def motion_of(frame: Frame, width: int) -> Motion:
     """Motion from the absolute encoder; `width` D is odd."""
     dt = frame.period_s
@@ -66,6 +69,9 @@ def motion_of(frame: Frame, width: int) -> Motion:
         usable &= (_shift(frame.run.astype(float), -k) == frame.run) & (
             _shift(frame.run.astype(float), k) == frame.run
         )
+    usable[:d] = usable[len(usable) - d :] = False
+    last = np.maximum.accumulate(np.where(fresh, np.arange(len(theta)), -(10**9)))
+    usable &= np.arange(len(theta)) - last >= START_ROWS  # the bristles and the first step of the effort
     pick = np.arange(d // 2, len(theta), d)
     return Motion(d, theta, usable, rate, acceleration, pick, fresh, d * dt)
 

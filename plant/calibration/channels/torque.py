@@ -19,7 +19,9 @@ WIDTH = (
     3  # rows per analysis sample: 30 ms, wide enough for the encoder, narrow enough for mesh 2 at 1.5 deg/s
 )
 # of full effort within one row: an electrical and gear transient that the rigid balance does not hold
-STEP = 0.35  # of a converter's count: rounding leaves 0.29, and a steady current keeps its rounding for minutes
+STEP = (
+    0.35  # of a converter's count: rounding leaves 0.29, and a steady current keeps its rounding for minutes
+)
 JUMP = 0.02
 SETTLE_S = 0.25  # how long such a transient lasts: a few turns of the lock-rotor mode and of the PI loop
 DIRECTION_TRAVEL = 2e-6  # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range

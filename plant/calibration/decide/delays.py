@@ -46,7 +46,8 @@ def delay_findings(selections: dict[str, Selection]) -> list[Finding]:
         error = float(np.sqrt(s.after.covariance[at, at])) * student_reach(60)
         if value > LATE_CURRENT_S and value > 3 * error and "E" in selections:
             lag = float(selections["E"].after.beta[2])
-            # a loop that changes its effort from tick to tick, of which every second one is logged, makes sound
+            # a loop that changes its effort from tick to tick, of which every second one is logged, makes
+            # sound
             # currents look late against the effort, but not against the motion
             if lag > ELECTRICAL_S[1] and value > CONFIRMED * (lag - sum(ELECTRICAL_S) / 2):
                 lags["T"] = (value, error)

@@ -14,9 +14,15 @@ from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.tails import student_reach
 
+# of a value, standard error: what the declared model itself is wrong by along a measured motion. From
+# development logs,
+# where estimates scatter by this much about the truth when the noise alone would allow a tenth of it
+MODEL_ERROR = 0.01
+
 
 def interval(value: float, error: float, blocks: int) -> tuple[float, float]:
     """Student's 95 % interval with as many degrees of freedom as there are blocks."""
+    error = float(np.hypot(error, MODEL_ERROR * value))
     reach = student_reach(max(blocks - 2, 3)) * error
     return value - reach, value + reach
 

@@ -160,7 +160,8 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
 
 
 def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
-    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or empty."""
+    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or
+    empty."""
     rows = problem.train
     taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
     if taken < problem.step**2:

@@ -17,6 +17,8 @@ from plant.calibration.declaredplant import Declared
 from plant.calibration.statistics.regression import Fit
 from plant.calibration.statistics.tails import student_reach
 
+# of a calibrated number, standard error: scatter about the truth on development logs beyond what noise allows
+MODEL_ERROR = 0.0025
 TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an estimate
 SIGMA_TOLERANCE = (
     2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
@@ -57,6 +59,7 @@ def torque_changes(
     speed_error = speed * float(moved["speed"][1])
 
     def span(value: float, e: float, unit: str) -> Parameter:
+        e = float(np.hypot(e, MODEL_ERROR * value))
         return Parameter(value, unit, value - reach * e, value + reach * e)
 
     calibrated = {
@@ -125,7 +128,7 @@ def compliance_change(selection: Selection, d: Declared) -> tuple[list[Finding],
         return [], {}
     blocks = max(int(selection.problem.train.sum() / selection.problem.block), 5)
     stiffness, spread = 1 / value, error / value**2
-    reach = student_reach(blocks - 2) * spread
+    reach = student_reach(blocks - 2) * float(np.hypot(spread, MODEL_ERROR * stiffness))
     p = Parameter(stiffness, "N m/rad", stiffness - reach, stiffness + reach)
     found = []
     declared = min((d.stiffness * r for r in d.readings), key=lambda k: abs(float(np.log(stiffness / k))))
