@@ -65,7 +65,16 @@ def axis_answer(
             v.error[SENSORS[key]] = error_row(s)
     _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
-    remarks = write_plant(out / "plant.yaml", axis, preload, v.calibrated, effects, plant, runs[0].name)
+    remarks = write_plant(
+        out / "plant.yaml",
+        axis,
+        preload,
+        v.calibrated,
+        effects,
+        plant,
+        runs[0].name,
+        bool(result.declared.lines),
+    )
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *remarks]
     pictures = _plots(result, effects) if plots else []
     return v, pictures, title

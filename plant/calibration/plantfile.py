@@ -71,8 +71,8 @@ MAPS: dict[str, dict[str, tuple[str, float]]] = {
     "command_disturbance": {"amplitude": ("amplitude", 1 / 3000), "frequency": ("frequency", 1)},
 }
 
-#: effect -> (sign, shift): the residual A cos(x + phase) is the torque the motors must add, the effect's is minus that,
-#: written as a sine of x + phase, a cosine of x - phase (imbalance), or a factor's cosine (ripple)
+#: effect -> (sign, shift). The residual A cos(x + phase) is the torque that the motors must add, the effect's is
+#: minus that, written as a sine of x + phase, a cosine of x - phase (imbalance), a factor's cosine (ripple)
 PHASES: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("gear_eccentricity", "gear_mesh", "bearing_pass", "motor_cogging"), (1.0, -np.pi / 2)),
     "gravity_imbalance": (-1.0, np.pi),
@@ -88,10 +88,12 @@ def write_plant(
     effects: list[Finding],
     base: Path | None,
     name: str,
+    keep: bool = False,
 ) -> list[str]:
     """Write `out` and return remarks on what could not be put into it.
 
-    The base is `base`, or the project's plant file of that preload without its declared effects on this axis.
+    The base is `base`, or the project's plant file of that preload without its declared effects on this axis
+    unless `keep` says that they were part of the declared model.
     """
     from plant.model import ModelError, default_files, dump, load, numbers, with_effects, with_value
     from plant.units import to_si
@@ -117,7 +119,7 @@ def write_plant(
         model = with_value(
             model, full, load_inertia / to_si(1.0, old.unit), f"fitted to {name}, less the rotors"
         )
-    declared = list(getattr(model.axes, axis).effects) if base is not None else []
+    declared = list(getattr(model.axes, axis).effects) if base is not None or keep else []
     made = []
     for f in effects:
         effect, remark = effect_model(f, name)
