@@ -9,10 +9,10 @@ import pytest
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parent.parent
-SPEED = "0.06"
-"""The guest's processor is emulated, about fifteen times slower, and so is whatever else the machine does."""
+SPEEDS = ("0.08", "0.03")
+"""The guest's processor is emulated, about fifteen times slower, and CI's may be busy: the second is for that."""
 
-pytestmark = [pytest.mark.guest, pytest.mark.slow, pytest.mark.timeout(1500)]
+pytestmark = [pytest.mark.guest, pytest.mark.slow, pytest.mark.timeout(1800)]
 
 
 def missing() -> str | None:
@@ -32,9 +32,10 @@ def test_L1_conformance_over_socketcan_in_a_guest_kernel() -> None:
     warm = [PROJECT / ".venv/bin/schmidt", "serve", "--can", "virtual:warm", "--duration", "1"]
     subprocess.run(warm, env=os.environ | shared, check=True, capture_output=True, timeout=300)
     settings = [f"{key}={value}" for key, value in shared.items()]
-    inside = ["env", *settings, str(HERE / "serve_and_check.sh"), SPEED]
+    inside = ["env", *settings, str(HERE / "serve_and_check.sh"), *SPEEDS]
     result = subprocess.run(
-        [str(HERE / "boot.sh"), *inside], cwd=PROJECT, capture_output=True, text=True, timeout=1400
+        [str(HERE / "boot.sh"), *inside], cwd=PROJECT, capture_output=True, text=True, timeout=1700
     )
     assert result.returncode == 0, result.stdout[-6000:] + result.stderr[-2000:]
-    assert "vcan0" in result.stdout
+    assert "vcan0  221   [8]" in result.stdout, "candump saw no position frame"
+    assert " 0 of what must hold failed" in result.stdout
