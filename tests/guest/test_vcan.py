@@ -10,7 +10,7 @@ import pytest
 HERE = Path(__file__).parent
 PROJECT = HERE.parent.parent
 SPEEDS = ("0.08", "0.03")
-"""The guest's processor is emulated, about fifteen times slower, and CI's may be busy: the second is for that."""
+"""The guest's processor is emulated, about fifteen times slower, and may be busy: the second is for that."""
 
 pytestmark = [pytest.mark.guest, pytest.mark.slow, pytest.mark.timeout(1800)]
 
