@@ -105,12 +105,15 @@ def serve(
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--rig", type=click.Path(path_type=Path), help="Rig file of another drive.")
 @click.option("--hold-out", multiple=True, help="Run to hold out (repeatable).")
+@click.option("--plant", type=click.Path(path_type=Path), help="Plant file that is declared (axis logs).")
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Output folder.")
-def calibrate(logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], out: Path) -> None:
+def calibrate(
+    logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None, out: Path
+) -> None:
     """Find what the model lacks in measured LOGS and write the corrected plant."""
     from plant.calibration.command import calibrate as command
 
-    sys.exit(command(list(logs), rig, list(hold_out), out))
+    sys.exit(command(list(logs), rig, list(hold_out), out, plant))
 
 
 @cli.command()

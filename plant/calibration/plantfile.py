@@ -71,7 +71,7 @@ MAPS: dict[str, dict[str, tuple[str, float]]] = {
     "command_disturbance": {"amplitude": ("amplitude", 1 / 3000), "frequency": ("frequency", 1)},
 }
 
-#: effect -> (sign, shift). The residual A cos(x + phase) is the torque that the motors must add, the effect's is
+#: effect -> (sign, shift). The residual A cos(x + phase) is the torque the motors must add, the effect's is
 #: minus that, written as a sine of x + phase, a cosine of x - phase (imbalance), a factor's cosine (ripple)
 PHASES: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("gear_eccentricity", "gear_mesh", "bearing_pass", "motor_cogging"), (1.0, -np.pi / 2)),

@@ -27,7 +27,8 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
         "load_friction",
         "unknown",
     ),
-    ("channel_delay", "S"): ("structural_mode", "roller_slip", "unknown", "damaged_tooth"),
+    ("channel_delay", "S"): ("structural_mode", "roller_slip", "unknown", "damaged_tooth", "wind_torque"),
+    ("sample_loss", "S"): ("wind_torque",),
     ("clock_jitter", "S"): ("roller_slip", "damaged_tooth", "unknown"),
     ("log_wrap", "S"): (
         "encoder_eccentricity",
