@@ -1,0 +1,1 @@
+"""Benchmarks that need tools no room depends on."""
