@@ -1,4 +1,5 @@
-"""The emulator's own logs, as a run leaves them: nothing beyond the plant's file, or the effect that was added."""
+"""The emulator's own logs, as a run leaves them: nothing beyond the plant's file, or the effect that
+was added."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,5 @@
-"""Whole calls on logs of the plant's own loop: nothing, found with its place, and an effect outside the catalogue."""
+"""Whole calls on logs of the plant's own loop: nothing, found with its place, and an effect outside the
+catalogue."""
 
 from __future__ import annotations
 
