@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import resource
 import subprocess
 import sys
 import tempfile
@@ -49,7 +50,7 @@ def calibrate(drive: Drive, out: Path) -> tuple[float, dict[str, Any]]:
     return seconds, report
 
 
-def answer_of(seconds: float, report: dict[str, Any]) -> Answer:
+def answer_of(seconds: float, report: dict[str, Any], cpu_s: float = 0.0) -> Answer:
     """The report in the peers' terms; terms are the effects on top of the declared model."""
     torque = report["error"]["torque"]
     lines = [
@@ -59,6 +60,7 @@ def answer_of(seconds: float, report: dict[str, Any]) -> Answer:
     ]
     return Answer(
         seconds,
+        cpu_s,
         torque["before"],
         torque["after"],
         len(report["effects"]),
@@ -66,6 +68,12 @@ def answer_of(seconds: float, report: dict[str, Any]) -> Answer:
         f"{report['verdict']}: {', '.join(e['name'] for e in report['effects'])}; "
         f"floor {torque['floor']:.3g}",
     )
+
+
+def _children_s() -> float:
+    """CPU seconds of all processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def measure(quick: bool, say: Console) -> dict[str, Any]:
@@ -76,10 +84,12 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         with say.status("logs"):
             drives = [write_drive(folder / f"log{k}.csv", seconds, SEED + k) for k in range(count)]
         with say.status("schmidt calibrate, one log on one core"):
+            before_s = _children_s()
             alone_s, report = calibrate(drives[0], folder / "alone")
+            alone_cpu_s = _children_s() - before_s
         with say.status("the same residual for the peers"):
             residual = residual_of(drives[0])
-        answers = {"schmidt calibrate": answer_of(alone_s, report)}
+        answers = {"schmidt calibrate": answer_of(alone_s, report, alone_cpu_s)}
         missing = {}
         peers: tuple[tuple[str, Callable[[Residual], Answer]], ...] = (
             ("PySINDy", sindy),
@@ -123,6 +133,7 @@ def show(figures: dict[str, Any], console: Console) -> None:
     for column in (
         "tool",
         "time, s",
+        "CPU, s",
         "held-out, N m: before",
         "after",
         "terms",
@@ -136,6 +147,7 @@ def show(figures: dict[str, Any], console: Console) -> None:
         table.add_row(
             title,
             f"{a['seconds']:.1f}",
+            f"{a['cpu_seconds']:.1f}",
             f"{a['before']:.2f}",
             f"{a['after']:.2f}",
             str(a["terms"]),
@@ -144,7 +156,7 @@ def show(figures: dict[str, Any], console: Console) -> None:
             a["note"],
         )
     for title, reason in figures["missing"].items():
-        table.add_row(title, "", "", "", "", "", "", reason)
+        table.add_row(title, "", "", "", "", "", "", "", reason)
     console.print(table)
     console.print(
         "Times: schmidt calibrate is the whole command from reading the log to the report, in its own "
