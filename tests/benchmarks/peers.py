@@ -218,5 +218,5 @@ def whole_vector(r: Residual) -> Answer:
         after,
         len(p),
         tuple(named),
-        "a line is named at 5 of its own standard errors",
+        "friction is a static map, without memory of the reversal; a line is named at 5 of its own errors",
     )
