@@ -7,6 +7,7 @@ The emulator has the last word: run `schmidt paper --plant ... --plant-high ...`
 """
 
 import argparse
+import dataclasses
 import json
 import sys
 from collections.abc import Callable
@@ -25,12 +26,16 @@ from scenarios.paper.cost import Term, cost
 from scenarios.paper.log import Array
 from scenarios.paper.plantfile import write
 from scenarios.paper.proposals import propose
+from scenarios.paper.scales import GEAR_RATIO
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.statics import shortfalls_of
 
-READINGS = {"printed": (1.0, "low_preload", "high_preload"),
-            "motor": (1.0 / 2.774, "low_preload_motor_units", "high_preload_motor_units")}  # fmt: skip
-"""Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3)."""
+READINGS = {
+    "printed": (1.0, "{}_preload", "{}_preload_fitted"),
+    "motor": (GEAR_RATIO / 1000.0, "{}_preload_motor_units", "{}_preload_motor_units"),
+}
+"""Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
+per unit of the table, the plant files whose declared numbers stay, and those that are written."""
 UNREACHABLE = 1000.0
 WORSE = 1e6
 
@@ -45,8 +50,8 @@ class Objective:
     def __init__(
         self, reading: str, low_speed: bool, margin: float, most: int, tell: Callable[[str], None]
     ) -> None:
-        self.scale, low, high = READINGS[reading]
-        self.bases = {"low": load(low), "high": load(high)}
+        self.scale, base, _ = READINGS[reading]
+        self.bases = {preload: load(base.format(preload)) for preload in ("low", "high")}
         self.low_speed = low_speed
         self.margin = margin
         self.tell = tell
@@ -149,9 +154,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="folder for plant files and report")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--points", type=int, default=900, help="how many points are run, about one a second")
-    parser.add_argument("--margin", type=float, default=0.1, help="share by which the bands are narrowed")
+    parser.add_argument("--margin", type=float, default=0.05, help="share by which the bands are narrowed")
     parser.add_argument(
-        "--reading", choices=sorted(READINGS), default="printed", help="friction units of Table 2"
+        "--reading", choices=sorted(READINGS), default="motor", help="friction units of Table 2"
     )
     parser.add_argument(
         "--start", type=Path, help="search.json of an earlier run, to go on from its best point"
@@ -177,7 +182,8 @@ def main(arguments: list[str] | None = None) -> int:
     rows = "E1 to E5 and E10" if chosen.without_e6 else "E1 to E6 and E10"
     source = f"fitted to rows {rows} by scenarios.paper.search, seed {chosen.seed}"
     for preload, plant in objective.plants(objective.best_x, source).items():
-        write(plant, chosen.out / f"{READINGS[chosen.reading][1 if preload == 'low' else 2]}.yaml")
+        name = READINGS[chosen.reading][2].format(preload)
+        write(dataclasses.replace(plant, name=name), chosen.out / f"{name}.yaml")
     print(f"cost {objective.best:.3f} after {objective.tried} points; plant files in {chosen.out}")
     return 0
 
