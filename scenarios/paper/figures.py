@@ -93,6 +93,7 @@ def _figure_8(record: Record, folder: Path) -> Path | None:
     figure, axes = _panels(2, "Fig. 8: friction characteristics about the RA axis")
     for axis, preload, letter in zip(axes, ("high", "low"), "ab", strict=True):
         if preload not in record.fits:
+            axis.set_visible(False)
             continue
         fit, points = record.fits[preload], record.points[preload]
         rate = np.geomspace(0.5 * ARCSEC, max(p.rate for p in points), 300)

@@ -31,7 +31,7 @@ LOWEST = (84.0, 90.0, 96.0)
 """arcsec/s, lowest open-loop speed aimed at."""
 ONCE_SHARE = (0.05, 0.4)
 """Once per turn as a share of both; twice per turn has to stay the stronger line (E6)."""
-MESH_PEAK = (1.2, 1.9, 2.8)
+MESH_PEAK = (2.6, 3.5, 4.5)
 """Percent: smallest closed-loop peak of E3 aimed at with the mesh."""
 OPEN_PEAK = 12.5
 """Percent: largest open-loop peak aimed at with the imbalance."""
@@ -137,8 +137,7 @@ def _velocity_rows(axis: Axis, gains: tuple[Array, Array], low_speed: bool) -> t
                 amplitude = a2 * opened[0] / ARCSEC
                 miss = (
                     np.maximum(0.0, e3.max(0) - 6.3)
-                    + np.maximum(0.0, 2.4 - e3.max(0))
-                    + 0.5 * np.maximum(0.0, 1.8 - e3.min(0))
+                    + 2.0 * np.maximum(0.0, 2.4 - e3.min(0))
                     + 3.0 * np.maximum(0.0, slew - 0.9)
                     + 0.05 * np.maximum(0.0, ag - 100.0)
                     + 0.2 * np.maximum(0.0, 5.0 - ag)

@@ -26,13 +26,12 @@ from scenarios.paper.cost import Term, cost
 from scenarios.paper.log import Array
 from scenarios.paper.plantfile import write
 from scenarios.paper.proposals import propose
-from scenarios.paper.scales import GEAR_RATIO
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.statics import shortfalls_of
 
 READINGS = {
     "printed": (1.0, "{}_preload", "{}_preload_fitted"),
-    "motor": (GEAR_RATIO / 1000.0, "{}_preload_motor_units", "{}_preload_motor_units"),
+    "motor": (1.0 / 2.774, "{}_preload_motor_units", "{}_preload_motor_units"),
 }
 """Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
 per unit of the table, the plant files whose declared numbers stay, and those that are written."""

@@ -57,7 +57,7 @@ SPACE: tuple[Free, ...] = (
     Free(
         "gear_damping", "N m s/rad", 1e3, 1.5e4, "ASSUMPTION: 1 to 15 % of critical of the axis on its trains"
     ),
-    Free("closed_time", "s", 0.005, 0.3, "of the tuning rule; slower could not carry a position loop"),
+    Free("closed_time", "s", 0.005, 0.08, "of the tuning rule; slower could not carry a position loop"),
     Free("twice", "N m", 0.5, 120.0, "gear_eccentricity, motor, 2nd harmonic; design.md: 15 to 25"),
     Free("once", "N m", 0.1, 60.0, "gear_eccentricity, motor, 1st harmonic"),
     Free("mesh", "N m", 0.1, 15.0, "gear_mesh, mesh 1: ASSUMPTION"),

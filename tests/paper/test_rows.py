@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plant.model import load
 from scenarios.paper import judge_loop as judge
+from scenarios.paper.campaign import Campaign
 from scenarios.paper.command import DEFAULTS, pair
 from scenarios.paper.judge_models import e8, e9
 from scenarios.paper.measures import Step
@@ -117,3 +119,18 @@ def test_one_plant_file_brings_its_twin(tmp_path):
     (tmp_path / "my_high.yaml").touch()
     assert pair(None, tmp_path / "my_high.yaml")["low"] == str(tmp_path / "my_low.yaml")
     assert pair(Path("other.yaml"), None)["high"] == DEFAULTS["high"]
+
+
+def test_an_axis_that_never_moves_misses_its_rows_and_stops_nothing():
+    class Dead:
+        def closed_loop(self, arcsec_s, seconds):
+            return log_of(np.zeros(round(seconds * 100)))
+
+        def open_loop(self, effort, seconds):
+            return log_of(np.zeros(round(seconds * 100)))
+
+    plants = {preload: load(name) for preload, name in DEFAULTS.items()}
+    rows = Campaign(lambda preload, gains=None: Dead(), plants, lambda text: None).rows()
+    assert [row.id for row in rows] == [f"E{k}" for k in range(1, 11)]
+    assert not any(row.passed for row in rows)
+    assert all(row.reason.startswith("MISS") for row in rows)
