@@ -106,7 +106,7 @@ def _figure_8(record: Record, folder: Path) -> Path | None:
             f"σ2 = {fit.viscous:.0f} N m s/rad\nTc = {fit.coulomb:.0f} N m\nTs = {fit.stiction:.0f} N m\n "
             f"vs = {fit.stribeck_rate:.2e} rad/s\nδ = {fit.exponent:.2f}"
         )
-        axis.text(0.97, 0.95, text, transform=axis.transAxes, ha="right", va="top", fontsize=8)
+        axis.text(0.62, 0.96, text, transform=axis.transAxes, ha="center", va="top", fontsize=8)
         axis.set(title=f"({letter}) {preload} bearing preload", xlabel="velocity, ″/s", ylabel="torque, N m")
         axis.set_ylim(bottom=0.0)
         axis.legend(loc="lower left", fontsize=7)

@@ -46,7 +46,10 @@ def e7(fits: Mapping[str, FrictionFit], units: Mapping[str, float]) -> Row:
             "misfit_percent": round(fit.misfit_percent, 3),
         }
     passed, reason = verdict(checks)
-    return Row("E7", worst, passed, reason, details)
+    read = (
+        "N m at the axis" if all(abs(unit - 1.0) < 1e-6 for unit in units.values()) else "N mm at the motor"
+    )
+    return Row("E7", worst, passed, f"{reason}. Tc and Ts in {read}", details | {"torque_unit": read})
 
 
 def e8(results: Sequence[RunDown]) -> Row:
