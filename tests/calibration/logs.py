@@ -14,7 +14,7 @@ from plant.parts import EffectModel, Number
 HEADER = (
     "# format: axis-log 1\n# axis: {axis}\n# sample_period_s: 0.010\n# session: a\n# loop: closed\n"
     "# start_utc: 2026-01-15T14:{minute:02d}:00Z\n# preload: low\n# counter_torque: 0.1\n# supply_V: 24\n"
-    "# note: schmidt plant loop\n"
+    "# note: the compiled loop of the plant, effects as the test says\n"
 )
 COLUMNS = ("t", "setpoint", "effort", "position", "velocity", "adc_a", "adc_b", "tach_a", "tach_b")
 FORMATS = ["%.6f", "%.4f", *["%d"] * 7]

@@ -62,6 +62,8 @@ def test_an_interrupted_run_leaves_readable_logs(short: Path, tmp_path: Path) ->
         [sys.executable, "-c", "from scenarios.cli import main; main()", "run", "short.yaml", "--out", "run"],
         cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        # a script's background jobs ignore the interrupt, and so would their children
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )  # fmt: skip
     log = tmp_path / "run" / "can.log"
     end = time.monotonic() + 60
