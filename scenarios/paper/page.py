@@ -54,7 +54,7 @@ the emulator:
 |---|---|---|
 | Tc, Ts in N mm at the motor | all | all ten rows met, after 384 points; `*_motor_units.yaml` |
 | as printed, N m | all but E6 | nine rows met; open loop ends near 600″/s; `paper/printed/` |
-| as printed, N m | all, `closed_time` up to 0.3 s | in 950 points E1 stays at 38.8 %, one count high |
+| as printed, N m | all, `closed_time` up to 0.3 s | in some 600 points E1 stays at 38.8 %, one count high |
 
 With N mm at the motor the slope is 2.8 times smaller, and one drive meets all ten rows. That second
 reading is also the one that fits Table 1's torques. It is the pair that `schmidt paper` runs unless
