@@ -19,18 +19,18 @@ from plant.calibration.channels.electrical import Electrical, electrical_problem
 from plant.calibration.channels.frame import Frame, build_frame, fill
 from plant.calibration.channels.kinematic import (
     Kinematic,
-    auxiliary_problem,
     kinematic_problem,
     roller_problem,
 )
 from plant.calibration.channels.motion import Motion, motion_of
-from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
 from plant.calibration.decide.broadband import pick_up, wind
 from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.decide.holdout import choose_held_out
 from plant.calibration.decide.parameters import finding_of
 from plant.calibration.decide.select import Selection, design, select
+from plant.calibration.decide.sizes import largest_amplitude, white_noise
 from plant.calibration.decide.tolerance import compliance_change, torque_changes
 from plant.calibration.declaredplant import Declared, declared_numbers
 from plant.calibration.readers.drive import STAGES
@@ -51,24 +51,6 @@ LEAST_COMMAND = (
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
 
-def largest_amplitude(s: Selection) -> float:
-    """Largest sine amplitude of the first chosen effect."""
-    at = s.problem.base.shape[1]
-    beta = s.after.beta[at : at + s.chosen[0].candidate.width]
-    return (
-        float(np.sqrt(beta[0::2] ** 2 + beta[1::2] ** 2).max())
-        if len(beta) % 2 == 0
-        else float(np.abs(beta).max())
-    )
-
-
-def white_noise(e: Array, p: Problem) -> float:
-    """rms of the sample-to-sample noise of the analysis grid (means over the same two boxcars)."""
-    x = np.where(p.train, e, np.nan)
-    second = x[2:] - 2 * x[1:-1] + x[:-2]
-    return float(np.sqrt(np.nanmean(second**2) / (6 - 32 / 19)))
-
-
 @dataclass
 class AxisResult:
     """Everything the axis pipeline found, for the decision and the report."""
@@ -84,34 +66,6 @@ class AxisResult:
     findings: list[Finding] = field(default_factory=list)
     held_out: list[str] = field(default_factory=list)
     calibrated: dict[str, Parameter] = field(default_factory=dict)
-
-
-def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:
-    """Held-out rows: the runs named, else one whole run whose speeds the others cover, else the end of a
-    single run."""
-    n = len(frame.runs)
-    if names:
-        chosen = [k for k, r in enumerate(frame.runs) if {r.name, r.path.name, str(r.path)} & set(names)]
-        return np.isin(frame.run, chosen), [frame.runs[k].name for k in chosen]
-    if n >= 3:
-        reach = []
-        for k in range(n):
-            w = np.abs(np.gradient(fill(frame.columns["position"], frame.run)[0]))[frame.run == k]
-            reach.append(float(np.quantile(w, 0.9)))
-        order = sorted(range(n), key=lambda k: reach[k])
-        closed = [k for k in order[1:-1] if frame.runs[k].header.get("loop") == "closed"] or order[1:-1]
-        sessions = [r.session for r in frame.runs]
-        shared = [k for k in closed if sessions.count(sessions[k]) > 1] or closed
-        pick = max(shared)
-        return frame.run == pick, [frame.runs[pick].name]
-    held = np.zeros(len(frame.t), dtype=bool)
-    names_out = []
-    for k, r in enumerate(frame.runs):
-        rows = np.flatnonzero(frame.run == k)
-        cut = rows[int(0.7 * len(rows))]
-        held[cut : rows[-1] + 1] = True
-        names_out.append(f"{r.name} from {frame.t[cut] - frame.t[rows[0]]:.0f} s")
-    return held, names_out
 
 
 def analyse(
@@ -340,6 +294,3 @@ def _stack(c: Context) -> Context:
         twice(c.friction),
         temperature=twice(c.temperature) if c.temperature is not None else None,
     )
-
-
-__all__ = ["AxisResult", "Problem", "analyse", "auxiliary_problem", "choose_held_out"]
