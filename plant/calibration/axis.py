@@ -22,6 +22,7 @@ from plant.calibration.channels.kinematic import (
     kinematic_problem,
     roller_problem,
 )
+from plant.calibration.channels.level import level_of
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
 from plant.calibration.decide.broadband import pick_up, wind
@@ -84,7 +85,7 @@ def analyse(
     numbers = declared_numbers(runs, plant)
     result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
     result.findings += wraps[:1] + clock_findings(frame)
-    clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)[m.pick]
+    clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
     e = result.electrical = electrical_problem(frame, m, held)
     per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
@@ -92,7 +93,7 @@ def analyse(
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
         s = select(
             e.problem,
-            electrical_candidates.electrical_effects(e, clock)
+            electrical_candidates.electrical_effects(e, clock[m.pick])
             + electrical_candidates.brush_effects(e, {"a": turns, "b": turns}),
             rng,
         )
@@ -193,14 +194,13 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
     effort = m.at(fill(frame.columns["effort"], frame.run)[0])
     f = axis_torque.Friction(
-        m.at(torque.bristle) * torque.friction.coulomb,
-        p.base[:, 3],
+        level_of(m, torque.friction, clock, frame.session),
         m.rate[m.pick] * torque.friction.viscous,
         np.where(effort > 0, tb, ta),
         ta,
         tb,
         p.y - null.residual,
-        clock,
+        clock[m.pick],
     )
     forced = {x.name for x in result.findings}
     if "adc_offset" in forced:
@@ -230,7 +230,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     ]
     candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
-    candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
+    candidates += axis_lines.free_lines(c, f.level, null.residual, p.train, m.period_s)
     whole = p.valid.copy()
     moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
     if (moving & p.train).sum() > 0.3 * p.train.sum() and (moving & p.test).sum() > 100:

@@ -9,6 +9,7 @@ import numpy as np
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.orders import order_spectrum, peaks
+from plant.calibration.channels.level import Level
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
@@ -107,23 +108,26 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
 LABELS = {"motor_cogging": ("amplitude", "N m at the motor"), "torque_ripple": ("ripple", "1")}
 
 
-def free_lines(c: Context, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
+def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
     """The strongest orders of the residual that no stage explains: even (bearing) and odd in direction
     (friction)."""
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     known = np.array([v * h for k, v in STAGES.items() for h in (1, 2, 3) if k != "aux"])
     out = []
-    for name, weight in (("bearing_pass", np.ones(len(e))), ("position_friction", c.direction)):
+    sided = level.answer(np.ones(len(level.angle)))
+    for name, weight in (("bearing_pass", np.ones(len(e))), ("position_friction", sided)):
         orders, power = order_spectrum(np.where(rows, e, 0.0), turns, np.where(rows, weight, 0.0), TOP)
         if name == "bearing_pass" and len(orders):
             near = np.min(np.abs(orders[:, None] - known[None, :]), axis=1) < 0.8 / span
             power = np.where(near, 0.0, power)
         for order in peaks(orders, power, FREE, 1.5 / span):
             for shift in (-0.2, 0.0, 0.2):
-                o = order + shift / span
-                w = None if name == "bearing_pass" else weight
-                out.append(
-                    line(c, name, None, None, float(o), pair(turns * o, c, period_s, w, o), "axis_angle")
-                )
+                o = float(order + shift / span)
+                if name == "bearing_pass":
+                    columns = pair(turns * o, c, period_s, None, o)
+                else:
+                    x = o * level.angle
+                    columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])
+                out.append(line(c, name, None, None, o, columns, "axis_angle"))
     return out

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.friction import stop_operator
+from plant.calibration.channels.level import Level
 from plant.calibration.readers.run import Array
 
 
@@ -20,8 +21,7 @@ class Friction:
     """Declared friction along the log: `bristle` N m signed, `viscous` N m signed; currents as N m; session
     time s."""
 
-    bristle: Array
-    stiction: Array  # what the bristle changes per relative change of Ts
+    level: Level
     viscous: Array
     lagging: Array  # torque of the motor that holds the counter torque, N m signed
     torque_a: Array
@@ -30,35 +30,26 @@ class Friction:
     clock: Array
 
     @property
-    def sliding(self) -> Array:
-        """-1..1: the direction of sliding friction, soft while the bristles turn over."""
-        return np.clip(self.bristle / (0.5 * float(np.quantile(np.abs(self.bristle), 0.6)) + 1e-9), -1, 1)
-
-    @property
-    def total(self) -> Array:
-        """Friction torque, signed."""
-        return self.bristle + self.viscous
+    def transmitted(self) -> Array:
+        """Torque through both trains at full rate, N m: they pull against each other."""
+        both = np.abs(self.load) + 2 * np.abs(self.lagging)
+        pick = self.level.motion.pick
+        return np.interp(np.arange(len(self.level.clock)), pick, both)
 
 
 def direction_effects(c: Context, f: Friction) -> list[Candidate]:
     """Asymmetry, load friction, offset and gain of the current reading."""
+    sided = f.level.answer(f.level.side * f.level.steady)
     return [
         Candidate(
             "friction_asymmetry",
             "velocity",
-            np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
+            np.column_stack([sided, np.abs(f.viscous)]),
             (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1")),
         ),
+        Candidate("friction_asymmetry", "velocity", sided[:, None], (("coulomb_asymmetry", "1"),)),
         Candidate(
-            "friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)
-        ),
-        Candidate("load_friction", "current", (f.sliding * np.abs(f.load))[:, None], (("mu", "1"),), sign=1),
-        Candidate(
-            "load_friction",
-            "current",
-            (f.bristle / (float(np.median(np.abs(f.bristle))) + 1e-9) * np.abs(f.load))[:, None],
-            (("mu", "1"),),
-            sign=1,
+            "load_friction", "current", f.level.answer(f.transmitted)[:, None], (("mu", "1"),), sign=1
         ),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
         Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),)),
@@ -115,19 +106,17 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
     """Warm-up, preload that changes, brake that drags: torque that knows the time."""
     low, high = float(f.clock.min()), float(f.clock.max())
     span = (high - low) or 1.0
-    since = _since_start(c, f)
+    level = f.level
+    since, full = _since_start(f.clock, c.session), _since_start(level.clock, level.session)
     out = []
     for tau in (15.0, 30.0, 60.0, 100.0, 150.0, 220.0, 320.0):
         if tau > 3 * span:
             continue
-        for weight, labels in (
-            (f.total[:, None], (("amplitude", "1"),)),
-            (
-                np.column_stack([f.bristle, f.stiction, f.viscous]),
-                (("amplitude", "1"), ("stiction_rise", "1"), ("viscous_rise", "1")),
-            ),
+        for viscous, labels in (
+            (True, (("amplitude", "1"),)),
+            (False, (("amplitude", "1"),)),
         ):
-            shape = _warmup(weight, since)
+            shape = _warmup(f, since, full, viscous)
             out.append(
                 Candidate(
                     "friction_warmup",
@@ -136,17 +125,15 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                     labels,
                     fixed={"tau": (tau, "s")},
                     shape=shape,
-                    steps=(0.05 * tau,),
-                    least=60.0 if weight.shape[1] > 1 else 0.0,
+                    steps=(0.2 * tau,),
                 )
             )
-    preload = f.stiction + f.viscous
-    kinds = (("preload_change", preload, "fraction", "1"), ("brake_drag", f.sliding, "torque", "N m"))
+    kinds = (("preload_change", "fraction", "1"), ("brake_drag", "torque", "N m"))
     for at in np.linspace(0.03, 0.97, 26) * span + low:
-        for name, weight, label, unit in kinds:
+        for name, label, unit in kinds:
             if not 0.02 < np.mean(f.clock > at) < 0.98:
                 continue
-            shape = _onset(weight, f.clock)
+            shape = _onset(f, name)
             out.append(
                 Candidate(
                     name,
@@ -160,41 +147,57 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
             )
     for at in np.linspace(-0.4, 0.9, 14) * span + low:
         for ramp in (0.2, 0.5, 1.0):
-            for name, weight, label, unit in kinds[:1]:
-                shape = _ramp(weight, f.clock)
-                columns = shape(np.array([at, ramp * span]))
-                if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
-                    out.append(
-                        Candidate(
-                            name,
-                            "time",
-                            columns,
-                            ((label, unit),),
-                            shape=shape,
-                            steps=(0.02 * span, 0.02 * span),
-                            fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
-                        )
+            shape = _ramp(f)
+            columns = shape(np.array([at, ramp * span]))
+            if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
+                out.append(
+                    Candidate(
+                        "preload_change",
+                        "time",
+                        columns,
+                        (("fraction", "1"),),
+                        shape=shape,
+                        steps=(0.02 * span, 0.02 * span),
+                        fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
                     )
+                )
     return out
 
 
-def _warmup(weight: Array, since: Array) -> Callable[[Array], Array]:
-    return lambda p: weight * np.exp(-since / max(float(p[0]), 1.0))[:, None]
+def _warmup(f: Friction, since: Array, full: Array, viscous: bool) -> Callable[[Array], Array]:
+    def shape(p: Array) -> Array:
+        tau = max(float(p[0]), 1.0)
+        out = f.level.answer(f.level.steady * np.exp(-full / tau))
+        return (out + f.viscous * np.exp(-since / tau) if viscous else out)[:, None]
+
+    return shape
 
 
-def _onset(weight: Array, clock: Array) -> Callable[[Array], Array]:
-    return lambda p: (weight * (clock > p[0]))[:, None]
+def _onset(f: Friction, name: str) -> Callable[[Array], Array]:
+    def shape(p: Array) -> Array:
+        on = f.level.clock > p[0]
+        if name == "brake_drag":
+            return f.level.answer(on.astype(float))[:, None]
+        return (f.level.answer(f.level.stiction * on) + f.viscous * (f.clock > p[0]))[:, None]
+
+    return shape
 
 
-def _ramp(weight: Array, clock: Array) -> Callable[[Array], Array]:
-    return lambda p: (weight * np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
+def _ramp(f: Friction) -> Callable[[Array], Array]:
+    def shape(p: Array) -> Array:
+        def rise(clock: Array) -> Array:
+            return np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1)
+
+        return (f.level.answer(f.level.stiction * rise(f.level.clock)) + f.viscous * rise(f.clock))[:, None]
+
+    return shape
 
 
-def _since_start(c: Context, f: Friction) -> Array:
-    out = f.clock.copy()
-    for k in np.unique(c.session):
-        m = c.session == k
-        out[m] -= f.clock[m].min()
+def _since_start(clock: Array, session: NDArray[np.int64]) -> Array:
+    out = clock.copy()
+    for k in np.unique(session):
+        m = session == k
+        out[m] -= clock[m].min()
     return out
 
 
