@@ -226,7 +226,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         *axis_torque.slow_effects(c, f),
         *axis_lines.gear_lines(c, m.period_s),
         *axis_lines.motor_lines(c, motors, null.residual, p.train),
-        *modes.structural_modes(c, m.acceleration[m.pick], m.period_s),
+        *modes.structural_modes(m, frame.run),
     ]
     candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)

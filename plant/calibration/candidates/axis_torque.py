@@ -128,25 +128,23 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                     steps=(0.2 * tau,),
                 )
             )
-    kinds = (("preload_change", "fraction", "1"), ("brake_drag", "torque", "N m"))
     for at in np.linspace(0.03, 0.97, 26) * span + low:
-        for name, label, unit in kinds:
-            if not 0.02 < np.mean(f.clock > at) < 0.98:
-                continue
-            shape = _onset(f, name)
-            out.append(
-                Candidate(
-                    name,
-                    "time",
-                    shape(np.array([at])),
-                    ((label, unit),),
-                    fixed={"onset": (float(at), "s")},
-                    shape=shape,
-                    steps=(0.02 * span,),
-                )
+        if not 0.02 < np.mean(f.clock > at) < 0.98:
+            continue
+        shape = _onset(f)
+        out.append(
+            Candidate(
+                "brake_drag",
+                "time",
+                shape(np.array([at])),
+                (("torque", "N m"),),
+                fixed={"onset": (float(at), "s")},
+                shape=shape,
+                steps=(0.02 * span,),
             )
-    for at in np.linspace(-0.4, 0.9, 14) * span + low:
-        for ramp in (0.2, 0.5, 1.0):
+        )
+    for at in np.linspace(-0.4, 0.95, 19) * span + low:
+        for ramp in (0.02, 0.2, 0.5, 1.0):
             shape = _ramp(f)
             columns = shape(np.array([at, ramp * span]))
             if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
@@ -157,7 +155,7 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                         columns,
                         (("fraction", "1"),),
                         shape=shape,
-                        steps=(0.02 * span, 0.02 * span),
+                        steps=(0.02 * span, 0.08 * max(ramp, 0.1) * span),
                         fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
                     )
                 )
@@ -173,14 +171,8 @@ def _warmup(f: Friction, since: Array, full: Array, viscous: bool) -> Callable[[
     return shape
 
 
-def _onset(f: Friction, name: str) -> Callable[[Array], Array]:
-    def shape(p: Array) -> Array:
-        on = f.level.clock > p[0]
-        if name == "brake_drag":
-            return f.level.answer(on.astype(float))[:, None]
-        return (f.level.answer(f.level.stiction * on) + f.viscous * (f.clock > p[0]))[:, None]
-
-    return shape
+def _onset(f: Friction) -> Callable[[Array], Array]:
+    return lambda p: f.level.answer((f.level.clock > p[0]).astype(float))[:, None]
 
 
 def _ramp(f: Friction) -> Callable[[Array], Array]:

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant.calibration.candidates.candidate import Candidate
-from plant.calibration.candidates.context import Context
+from plant.calibration.channels.motion import Motion
 from plant.calibration.readers.run import Array
 
-FREQUENCIES = (2.0, 2.5, 3.0, 3.6, 4.2, 4.8, 5.4, 6.0, 6.6, 7.2, 7.9, 8.6, 9.4, 10.3, 11.3, 12.5, 14.0)  # Hz
+# Hz, 4.5 % apart: a mode of 2 % damping is as wide
+FREQUENCIES = tuple(float(x) for x in np.geomspace(1.8, 14.2, 48))
 
 
-def structural_modes(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:
-    """Torque of a second mass: its inertia times the axis acceleration seen through its resonance."""
+def structural_modes(m: Motion, run: NDArray[np.int64]) -> list[Candidate]:
+    """Torque of a second mass: its inertia times the axis acceleration seen through its resonance.
+
+    `run` (n,) at full rate. Where the motion is not sound (a gap, the seam between two runs) nothing excites
+    it.
+    """
     out = []
-    shape = _resonance(acceleration, period_s)
+    period_s = m.period_s / m.width
+    shape = _resonance(np.where(m.trusted, m.acceleration, 0.0), run, period_s, m.pick)
     for f0 in FREQUENCIES:
-        if f0 > 0.4 / period_s:
+        if f0 > 0.4 / m.period_s:
             continue
-        for zeta in (0.01, 0.03, 0.08):
+        for zeta in (0.008, 0.03):
             out.append(
                 Candidate(
                     "structural_mode",
@@ -31,21 +39,28 @@ def structural_modes(c: Context, acceleration: Array, period_s: float) -> list[C
                     sign=1,
                     frequency=f0,
                     shape=shape,
-                    steps=(0.03 * f0, 0.3 * zeta),
+                    steps=(0.01 * f0, 0.3 * zeta),
                 )
             )
     return out
 
 
-def _resonance(acceleration: Array, period_s: float) -> Callable[[Array], Array]:
+def _resonance(
+    acceleration: Array, run: NDArray[np.int64], period_s: float, pick: NDArray[np.int64]
+) -> Callable[[Array], Array]:
+    starts = [*np.flatnonzero(np.diff(run, prepend=run[0] - 1)), len(run)]
+
     def shape(p: Array) -> Array:
         from scipy.signal import bilinear, lfilter
 
-        zeta = max(float(p[1]), 1e-3)
-        if zeta > 0.15:
-            zeta = 0.15  # more is no resonance
-        w = 2 / period_s * np.tan(np.pi * min(max(float(p[0]), 0.3), 0.45 / period_s) * period_s)  # prewarped
+        zeta = min(max(float(p[1]), 1e-3), 0.15)  # more is no resonance
+        w = 2 * np.pi * min(max(float(p[0]), 0.3), 0.45 / period_s)
+        x = w * period_s / 2
+        # the bilinear transform narrows a resonance at w by this factor, and lowers it by the same
+        narrow = np.sin(2 * x) / (2 * x)
+        w, zeta = np.tan(x) * 2 / period_s, zeta / narrow
         b, a = bilinear([2 * zeta * w, w * w], [1.0, 2 * zeta * w, w * w], fs=1 / period_s)
-        return np.asarray(lfilter(b, a, acceleration))[:, None]
+        out = [lfilter(b, a, acceleration[i:j]) for i, j in itertools.pairwise(starts)]
+        return np.asarray(np.concatenate(out)[pick][:, None])
 
     return shape
