@@ -98,6 +98,9 @@ def select(
         steps.append(held)
         picks, classes, steps = _retest(problem, picks, classes, steps, refused)
         left = [c for c in left if all(c.key != p.candidate.key for p in picks)]
+    if len(picks) > 1:
+        for k in range(len(picks)):
+            _again(problem, picks, classes, steps, k, candidates, margin, refused)
     before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
     after = _fit(problem, picks)
     scores = gate(problem, before, after, candidates, problem.base, rng)
@@ -167,6 +170,37 @@ def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
     if taken < problem.step**2:
         return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
     return ""
+
+
+def _again(
+    problem: Problem,
+    picks: list[Contender],
+    classes: list[list[Contender]],
+    steps: list[HeldOut],
+    k: int,
+    candidates: list[Candidate],
+    margin: float,
+    refused: list[Refusal],
+) -> None:
+    """Look at pick `k` again beside all the others: what was taken while they were missing may be another's
+    name."""
+    others = [p for j, p in enumerate(picks) if j != k]
+    base = design(problem, [p.candidate for p in others])
+    taken = {p.candidate.key for p in others}
+    now = look(problem, base, [c for c in candidates if c.key not in taken])
+    for contender in now.contenders[:3]:
+        x = np.hstack([base, contender.candidate.columns])
+        inside = cross_validate(problem, base, x, contender.fit.whitener)
+        held = compare(problem, base, now.null.beta, x, contender.fit.beta, contender.fit.whitener)
+        if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
+            continue
+        if contender.candidate.key != picks[k].candidate.key:
+            refused.append(
+                Refusal(picks[k].candidate.say(), f"{contender.candidate.say()} explains it better")
+            )
+        picks[k], steps[k] = contender, held
+        classes[k] = equivalents(problem, now.contenders, contender)
+        return
 
 
 def _retest(
