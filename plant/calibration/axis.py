@@ -88,6 +88,7 @@ def analyse(
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
     e = result.electrical = electrical_problem(frame, m, held)
+    left = electrical_candidates.weakened([], clock)
     per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
     if e is not None and e.problem.train.sum() > 200:
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
@@ -100,6 +101,7 @@ def analyse(
         result.selections["E"] = s
         mean_currents(frame, e, s.after.beta)
         per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
+        left = electrical_candidates.weakened(_fitted(s), clock)
         _collect(result, s)
     tell("encoder channels")
     result.kinematic = kinematic_problem(frame, m, held, per_ampere)
@@ -133,7 +135,7 @@ def analyse(
         null = gls(p.y, p.base, p.train, p.ar_order, p.block)
         s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
         result.selections["U"] = s
-        if not s.chosen or largest_amplitude(s) > LEAST_COMMAND:
+        if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
             _collect(result, s)
         size, period, score = pulses(p, s.after.residual)
         if score > 8:
@@ -152,7 +154,7 @@ def analyse(
                 )
             )
     tell("torque channel")
-    _torque(result, per_ampere, clock, rng)
+    _torque(result, per_ampere, left, clock, rng)
     result.findings += delay_findings(result.selections)
     return result
 
@@ -175,9 +177,11 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
         result.findings.append(line)
 
 
-def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.Generator) -> None:
+def _torque(
+    result: AxisResult, per_ampere: float, left: dict[str, Array], clock: Array, rng: np.random.Generator
+) -> None:
     frame, m = result.frame, result.motion
-    torque = result.torque = torque_problem(frame, per_ampere, result.held)
+    torque = result.torque = torque_problem(frame, per_ampere, result.held, left)
     if torque is None:
         return
     p, c = torque.problem, torque.context
@@ -191,7 +195,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         p.base_labels += [(f"declared {stage} {harmonic}", "N m")] * 2
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
-    ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
+    ta, tb = per_ampere * m.at(left["a"] * ia), -per_ampere * m.at(left["b"] * ib)
     effort = m.at(fill(frame.columns["effort"], frame.run)[0])
     f = axis_torque.Friction(
         level_of(m, torque.friction, clock, frame.session),
@@ -249,6 +253,15 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared)
     result.findings += found
     result.calibrated |= calibrated
+
+
+def _fitted(s: Selection) -> list[tuple[Candidate, Array]]:
+    """Every accepted effect with its coefficients in the joint fit."""
+    out, at = [], s.problem.base.shape[1]
+    for c in s.chosen:
+        out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
+        at += c.candidate.width
+    return out
 
 
 def _collect(result: AxisResult, s: Selection) -> None:

@@ -42,6 +42,7 @@ class Candidate:
         None  # columns as a function of the first len(steps) fixed parameters
     )
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
+    per_run: bool = False  # a pair of columns per run: the phase is every run's own
 
     @property
     def key(self) -> tuple[str, str | None, int | None]:

@@ -30,14 +30,15 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
             sign=1,
         ),
     ]
-    both = np.full((len(e.motor), 1), -r * e.ampere_per_count)
-    out.append(Candidate("adc_offset", "current", both, (("offset", "counts"),)))
+    offset = -r * e.ampere_per_count
+    each = offset * np.column_stack([e.motor == 0, e.motor == 1])
+    out.append(Candidate("adc_offset", "current", each, (("offset_a", "counts"), ("offset_b", "counts"))))
     for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
         out += [
             Candidate(
                 "adc_offset",
                 "current",
-                (-r * e.ampere_per_count * mask)[:, None],
+                (offset * mask)[:, None],
                 (("offset", "counts"),),
                 fixed={"motor": (float(name == "b"), "0 A, 1 B")},
             ),
@@ -72,17 +73,20 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
             )
         )
     low, high = float(clock.min()), float(clock.max())
-    for at in np.linspace(0.05, 0.95, 16) * (high - low) + low:
-        on = (t > at).astype(float)
-        if 0.02 < on.mean() < 0.98:
+    span = high - low
+    for at in np.linspace(0.05, 0.95, 16) * span + low:
+        if 0.02 < np.mean(t > at) < 0.98:
+            shape = _weakening(e, t)
             out.append(
                 Candidate(
                     "magnet_weakening",
                     "time",
-                    (-k * e.pulling * on)[:, None],
+                    shape(np.array([at, 0.05 * span])),
                     (("fraction", "1"),),
-                    fixed={"onset": (float(at), "s")},
+                    fixed={"onset": (float(at), "s"), "ramp": (0.05 * span, "s")},
                     sign=1,
+                    shape=shape,
+                    steps=(0.02 * span, 0.02 * span),
                 )
             )
     return out
@@ -112,6 +116,31 @@ def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
                     fixed={"motor": (float(k), "0 A, 1 B")},
                 )
             )
+    return out
+
+
+def _weakening(e: Electrical, t: Array) -> Callable[[Array], Array]:
+    """Volts per fraction of K lost, from an onset over a ramp."""
+    return lambda p: (-e.constant * e.pulling * ramp(t, float(p[0]), float(p[1])))[:, None]
+
+
+def ramp(t: Array, onset: float, length: float) -> Array:
+    """0 before `onset`, 1 after `onset + length`, s."""
+    return np.asarray(np.clip((t - onset) / max(length, 1.0), 0.0, 1.0))
+
+
+def weakened(chosen: list[tuple[Candidate, Array]], clock: Array) -> dict[str, Array]:
+    """Part of its torque constant that each motor has left, (n,) over `clock`, from the E channel's accepted
+    effects."""
+    out = {"a": np.ones(len(clock)), "b": np.ones(len(clock))}
+    for c, beta in chosen:
+        if c.name != "magnet_weakening":
+            continue
+        at = c.fixed
+        lost = float(beta[0]) * (ramp(clock, at["onset"][0], at["ramp"][0]) if "onset" in at else 1.0)
+        for k, key in enumerate("ab"):
+            if "motor" not in at or at["motor"][0] == k:
+                out[key] = out[key] - lost
     return out
 
 

@@ -8,11 +8,13 @@ import numpy as np
 from plant.calibration.channels.frame import Frame
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.readers.run import Array, Run
+from plant.calibration.statistics.whitening import Mask
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
 LOST = 0.003  # fraction of rows missing that is worth a word
 PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
+SHORTEST = 5  # rows alike in a row that are no coincidence of slow columns
 PACKET = 25  # rows per RS232 packet, log-format.md
 
 
@@ -50,7 +52,11 @@ def _loss(frame: Frame) -> Finding | None:
     gaps = [g for v in frame.missing.values() for _, g in v]
     lost = sum(gaps)
     rows = int(frame.present.sum())
-    repeats = _repeated(frame)
+    again = _repeated(frame)
+    repeats = int(again.sum())
+    if repeats / max(rows, 1) >= LOST:
+        for column in frame.columns.values():
+            column[again] = np.nan  # a repeated row is a missing one with a wrong stamp
     fraction = lost / (lost + rows)
     if fraction < LOST and repeats / max(rows, 1) < LOST:
         return None
@@ -71,11 +77,9 @@ def _loss(frame: Frame) -> Finding | None:
     )
 
 
-def _repeated(frame: Frame) -> int:
-    """Rows of packets that repeat the packet before them, or runs of at least five frozen rows while
-    moving."""
+def _repeated(frame: Frame) -> Mask:
+    """Rows of packets that repeat the packet before them, or at least SHORTEST frozen rows while moving, (n,)."""
     p = frame.columns["position"]
-    count = 0
     shifted = np.zeros(len(p), dtype=bool)
     shifted[PACKET:] = (p[PACKET:] == p[:-PACKET]) & np.isfinite(p[PACKET:])
     for name in ("velocity", "effort", "current_a", "current_b"):
@@ -91,11 +95,11 @@ def _repeated(frame: Frame) -> int:
             still[1:] &= c[1:] == c[:-1]
     near = np.convolve(moving, np.ones(61), "same") > 20
     both = (shifted | still) & near
-    runs = np.split(both.astype(int), np.flatnonzero(np.diff(both.astype(int))) + 1)
-    for r in runs:
-        if len(r) >= 5 and r[0]:
-            count += len(r)
-    return count
+    edges = np.flatnonzero(np.diff(both.astype(int), prepend=0, append=0))
+    for start, end in edges.reshape(-1, 2):
+        if end - start < SHORTEST:
+            both[start:end] = False
+    return both
 
 
 def repair_wraps(run: Run) -> Finding | None:

@@ -108,6 +108,7 @@ def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Cand
                 fixed={"frequency": (f0, "Hz")},
                 shape=shape,
                 steps=(1.0 / (size * dt),),
+                per_run=True,
             )
         )
     for limit in (30.0, 60.0, 120.0, 200.0, 300.0, 450.0, 700.0, 1000.0, 1500.0):

@@ -57,9 +57,13 @@ def saturated(frame: Frame, current: Array) -> Mask:
     return np.asarray(current >= 1022.5 * frame.scale["adc_A_per_count"])
 
 
-def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None:
-    """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full
-    rate."""
+def torque_problem(
+    frame: Frame, per_ampere: float, held: Mask, left: dict[str, Array]
+) -> Torque | None:
+    """Build the T channel; None when the log has no currents.
+
+    `held` (n,) marks held-out rows at full rate, `left` what each motor has left of its torque constant.
+    """
     ia, ib = frame.get("current_a"), frame.get("current_b")
     if ia is None and ib is None:
         return None
@@ -72,7 +76,8 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     pick = m.pick
     near |= saturated(frame, fa) | saturated(frame, fb)
     rows = (m.trusted & ta & tb)[pick] & (m.smooth(near.astype(float))[pick] < 1e-9)
-    y = per_ampere * m.at(fa - fb)
+    full = per_ampere * (left["a"] * fa - left["b"] * fb)
+    y = m.at(full)
     test = held[pick]
     preload = frame.runs[0].header.get("preload", "low")
     friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
@@ -87,7 +92,7 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     ]
     # the currents may be late by a fraction of a row against the encoder: a nuisance, an effect only when
     # it is large
-    base = np.column_stack([base, m.at(np.gradient(per_ampere * (fa - fb), frame.period_s))])
+    base = np.column_stack([base, m.at(np.gradient(full, frame.period_s))])
     labels.append(("current_delay", "s"))
     t = frame.t[pick]
     problem = Problem(

@@ -3,6 +3,7 @@ luck."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,23 +26,52 @@ class HeldOut:
     everywhere: bool = False  # cross-validation only: every fold gained
 
 
-def predict_residual(problem: Problem, x: Array, beta: Array, rows: Mask) -> Array:
-    """y - x beta on `rows`, with the fresh nuisances (offsets of a new segment) fitted there."""
+def predict_residual(
+    problem: Problem, x: Array, beta: Array, rows: Mask, phases: Sequence[slice] = ()
+) -> Array:
+    """y - x beta on `rows`, with the fresh nuisances fitted there: offsets of a new segment, and of the
+    columns in `phases` the phase of a run that training has not seen."""
     e = problem.y[rows] - x[rows] @ beta
+    for at in phases:
+        e = e - _new_phase(x[:, at], beta[at], problem.train, rows, e)
     if problem.fresh is not None:
         f = problem.fresh[rows]
         e = e - f @ solve(f, e)
     return np.asarray(e)
 
 
+def _new_phase(pairs: Array, beta: Array, train: Mask, rows: Mask, e: Array) -> Array:
+    """What a line of known amplitude and a phase of its own in every run (cos, sin per run) takes off `e`
+    there."""
+    weight = np.abs(pairs[train]).max(axis=0)
+    known = [k for k in range(0, pairs.shape[1], 2) if weight[k] > 0]
+    out = np.zeros(len(e))
+    if not known:
+        return out
+    amplitude = float(np.median([np.hypot(beta[k], beta[k + 1]) for k in known]))
+    for k in range(0, pairs.shape[1], 2):
+        pair = pairs[rows, k : k + 2]
+        if weight[k] == 0 and np.abs(pair).max() > 0:
+            b = solve(pair, e)
+            out += pair @ b * (amplitude / max(float(np.hypot(b[0], b[1])), 1e-300))
+    return out
+
+
 def compare(
-    problem: Problem, x0: Array, beta0: Array, x1: Array, beta1: Array, whitener: Whitener
+    problem: Problem,
+    x0: Array,
+    beta0: Array,
+    x1: Array,
+    beta1: Array,
+    whitener: Whitener,
+    phases: tuple[Sequence[slice], Sequence[slice]] = ((), ()),
 ) -> HeldOut:
-    """Compare two fitted models on the held-out rows."""
+    """Compare two fitted models on the held-out rows; `phases` as in `predict_residual`, of either model."""
     rows = problem.test
     if rows.sum() < 20:
         return HeldOut(float("nan"), float("nan"), 0.0, 0.0)
-    e0, e1 = predict_residual(problem, x0, beta0, rows), predict_residual(problem, x1, beta1, rows)
+    e0 = predict_residual(problem, x0, beta0, rows, phases[0])
+    e1 = predict_residual(problem, x1, beta1, rows, phases[1])
     full0, full1 = np.zeros(len(problem.y)), np.zeros(len(problem.y))
     full0[rows], full1[rows] = e0, e1
     use = whitener.usable(rows)

@@ -36,7 +36,9 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
     beta, cov = selection.after.beta[where], selection.after.covariance[where, where]
     blocks = int(problem.train.sum() / problem.block)
     out: dict[str, Parameter] = {}
-    if candidate.kind == "line":
+    if candidate.per_run:
+        out["amplitude"] = _common_amplitude(candidate, beta, cov, blocks)
+    elif candidate.kind == "line":
         for k in range(min(candidate.width // 2, 6)):
             name, unit = candidate.labels[0]
             pair = slice(2 * k, 2 * k + 2)
@@ -70,6 +72,19 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
         low, high = interval(value, error, blocks)
         out[name] = Parameter(value, unit, low, high)
     return out
+
+
+def _common_amplitude(candidate: Candidate, beta: Array, cov: Array, blocks: int) -> Parameter:
+    """One amplitude of a line whose phase is every run's own; runs that were not fitted do not count."""
+    found = []
+    for k in range(0, candidate.width, 2):
+        pair = slice(k, k + 2)
+        if float(np.hypot(*beta[pair])) > 0:
+            value, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
+            found.append((value, high - low))
+    value = float(np.mean([v for v, _ in found])) if found else 0.0
+    half = float(np.sqrt(np.sum([w**2 for _, w in found]))) / 2 / max(len(found), 1)
+    return Parameter(value, candidate.labels[0][1], value - half, value + half)
 
 
 def amplitude_interval(beta: Array, cov: Array, blocks: int) -> tuple[float, float, float]:

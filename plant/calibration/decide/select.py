@@ -63,6 +63,28 @@ def design(problem: Problem, chosen: list[Candidate]) -> Array:
     return np.hstack([problem.base, *[c.columns for c in chosen]])
 
 
+def phases(problem: Problem, chosen: list[Candidate]) -> list[slice]:
+    """Columns of `design` whose phase is every run's own."""
+    out, at = [], problem.base.shape[1]
+    for c in chosen:
+        if c.per_run:
+            out.append(slice(at, at + c.width))
+        at += c.width
+    return out
+
+
+def judge(
+    problem: Problem, look: Look, picks: list[Contender], contender: Contender
+) -> tuple[HeldOut, HeldOut]:
+    """Score a contender beside `picks`: on training rows it was not fitted to, and on the held-out rows."""
+    others = [p.candidate for p in picks]
+    base = design(problem, others)
+    x, w = np.hstack([base, contender.candidate.columns]), contender.fit.whitener
+    free = (phases(problem, others), phases(problem, [*others, contender.candidate]))
+    inside = cross_validate(problem, base, x, w)
+    return inside, compare(problem, base, look.null.beta, x, contender.fit.beta, w, free)
+
+
 def select(
     problem: Problem,
     candidates: list[Candidate],
@@ -83,9 +105,7 @@ def select(
         first = first or now
         taken = None
         for contender in now.contenders[:4]:
-            x = np.hstack([base, contender.candidate.columns])
-            inside = cross_validate(problem, base, x, contender.fit.whitener)
-            held = compare(problem, base, now.null.beta, x, contender.fit.beta, contender.fit.whitener)
+            inside, held = judge(problem, now, picks, contender)
             why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
             if not why:
                 taken = contender
@@ -125,6 +145,7 @@ def select(
         design(problem, [p.candidate for p in picks]),
         after.beta,
         after.whitener,
+        ((), phases(problem, [p.candidate for p in picks])),
     )
     return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
 
@@ -189,9 +210,7 @@ def _again(
     taken = {p.candidate.key for p in others}
     now = look(problem, base, [c for c in candidates if c.key not in taken])
     for contender in now.contenders[:3]:
-        x = np.hstack([base, contender.candidate.columns])
-        inside = cross_validate(problem, base, x, contender.fit.whitener)
-        held = compare(problem, base, now.null.beta, x, contender.fit.beta, contender.fit.whitener)
+        inside, held = judge(problem, now, others, contender)
         if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
             continue
         if contender.candidate.key != picks[k].candidate.key:
@@ -229,6 +248,8 @@ def equivalents(problem: Problem, contenders: list[Contender], best: Contender) 
     for other in contenders:
         if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
             continue
+        if other.candidate.width > best.candidate.width:
+            continue  # a richer form always fits as well
         loss, spread = _paired(problem, best, other)
         if loss < max(2.0, 2.0 * spread):
             out.append(other)
