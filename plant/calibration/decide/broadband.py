@@ -64,30 +64,19 @@ def pick_up(frame: Frame) -> Finding | None:
     if frame.get("current_a") is None:
         return None
     dt = frame.period_s
-    best: list[tuple[float, float, float]] = []
+    same: list[tuple[float, float, float]] = []
     for name in ("current_a", "current_b"):
-        x, ok = fill(frame.columns[name], frame.run)
-        for k in np.unique(frame.run):
-            rows = frame.run == k
-            part = x[rows] - np.convolve(np.pad(x[rows], 4, mode="edge"), np.ones(9) / 9, "valid")
-            busy = np.abs(np.gradient(x[rows])) < 0.1
-            part = np.where(ok[rows] & busy & (x[rows] > 0.05), part, 0.0)
-            used = int(np.count_nonzero(part))
-            if used < 1000:
-                continue
-            power = np.abs(np.fft.rfft(part)) ** 2
-            hertz = np.fft.rfftfreq(len(part), dt)
-            power[hertz < 15.0] = 0.0
-            j = int(np.argmax(power))
-            level = float(np.median(power[hertz > 15.0])) or 1e-30
-            best.append((float(hertz[j]), float(power[j] / level), 2 * float(np.sqrt(power[j])) / used))
-    strong = [b for b in best if b[1] > PEAK and b[2] > COUNTS * frame.scale["adc_A_per_count"]]
-    if len(strong) < max(3, len(best) // 2):
+        found = _lines(frame, name)
+        strong = [b for b in found if b[1] > PEAK and b[2] > COUNTS * frame.scale["adc_A_per_count"]]
+        if len(strong) < max(3, len(found) // 2):
+            continue
+        middle = float(np.median([b[0] for b in strong]))
+        near = [b for b in strong if abs(b[0] - middle) < 0.15]
+        if len(near) >= 0.7 * len(strong) and len(near) > len(same):
+            same = near
+    if not same:
         return None
-    middle = float(np.median([b[0] for b in strong]))
-    same = [b for b in strong if abs(b[0] - middle) < 0.15]
-    if len(same) < 0.7 * len(strong):
-        return None
+    middle = float(np.median([b[0] for b in same]))
     size = float(np.median([b[2] for b in same]))
     return Finding(
         "unknown",
@@ -99,3 +88,25 @@ def pick_up(frame: Frame) -> Finding | None:
         note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
         parameters={"amplitude": Parameter(size, "A", 0.8 * size, 1.2 * size)},
     )
+
+
+def _lines(frame: Frame, name: str) -> list[tuple[float, float, float]]:
+    """(Hz, power over the median, amplitude in A) of the strongest fast line of a current in every run."""
+    out = []
+    dt = frame.period_s
+    x, ok = fill(frame.columns[name], frame.run)
+    for k in np.unique(frame.run):
+        rows = frame.run == k
+        part = x[rows] - np.convolve(np.pad(x[rows], 4, mode="edge"), np.ones(9) / 9, "valid")
+        busy = np.abs(np.gradient(x[rows])) < 0.1
+        part = np.where(ok[rows] & busy & (x[rows] > 0.05), part, 0.0)
+        used = int(np.count_nonzero(part))
+        if used < 1000:
+            continue
+        power = np.abs(np.fft.rfft(part)) ** 2
+        hertz = np.fft.rfftfreq(len(part), dt)
+        power[hertz < 15.0] = 0.0
+        j = int(np.argmax(power))
+        level = float(np.median(power[hertz > 15.0])) or 1e-30
+        out.append((float(hertz[j]), float(power[j] / level), 2 * float(np.sqrt(power[j])) / used))
+    return out

@@ -75,11 +75,12 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
 
 
 def _common_amplitude(candidate: Candidate, beta: Array, cov: Array, blocks: int) -> Parameter:
-    """One amplitude of a line whose phase is every run's own; runs that were not fitted do not count."""
+    """One amplitude of a line whose phase is every run's own; runs that hardly show it do not count."""
     found = []
+    top = max(float(np.hypot(beta[k], beta[k + 1])) for k in range(0, candidate.width, 2))
     for k in range(0, candidate.width, 2):
         pair = slice(k, k + 2)
-        if float(np.hypot(*beta[pair])) > 0:
+        if float(np.hypot(*beta[pair])) > 0.2 * top:
             value, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
             found.append((value, high - low))
     value = float(np.mean([v for v, _ in found])) if found else 0.0
