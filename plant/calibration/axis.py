@@ -25,7 +25,7 @@ from plant.calibration.channels.kinematic import (
 from plant.calibration.channels.level import level_of
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
-from plant.calibration.decide.broadband import pick_up, wind
+from plant.calibration.decide.broadband import pick_up, unexplained_volts, wind
 from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.holdout import choose_held_out
@@ -103,6 +103,10 @@ def analyse(
         per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
         left = electrical_candidates.weakened(_fitted(s), clock)
         _collect(result, s)
+        e_left = s.after.residual
+        strange = unexplained_volts(e_left, s.problem, white_noise(e_left, s.problem), np.tile(turns, 2))
+        if strange is not None and not s.chosen:
+            result.findings.append(strange)
     tell("encoder channels")
     result.kinematic = kinematic_problem(frame, m, held, per_ampere)
     context = _kinematic_context(frame, m)
@@ -123,7 +127,7 @@ def analyse(
         s = select(
             roller,
             kinematic_candidates.roller_effects(context, alpha, m.period_s)
-            + kinematic_candidates.subdivision(context, m.period_s),
+            + kinematic_candidates.subdivision(context, m),
             rng,
         )
         result.selections["S"] = s
@@ -166,7 +170,7 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
     if problem is not None:
-        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full.period_s)
+        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full)
         if candidates:
             s = select(problem, candidates, rng, margin=FINE_MARGIN)
             if s.chosen:

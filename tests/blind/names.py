@@ -12,7 +12,6 @@ from typing import Any
 Truth = dict[str, Any]
 ARCSEC = math.pi / 648000.0
 GEAR_RATIO = (113 / 27) * (123 / 21) * (250 / 17)
-ADC_A_PER_COUNT = 0.0061
 
 _DRIVE = {
     "coulomb": "TC",
@@ -70,6 +69,24 @@ def angle(key: str) -> Read:
     )
 
 
+def counter_phase(key: str) -> Read:
+    """A cos(theta - p) on the axis is A cos(theta + pi - p) less for the motors to do, a turn more or less."""
+    return lambda values, _truth: (
+        [math.pi - values[key] + turn * 2.0 * math.pi for turn in (-1, 0, 1)] if key in values else []
+    )
+
+
+def relative_gain(values: dict[str, float], _truth: Truth) -> list[float]:
+    """One motor's reading too large, or the other's as much too small: with R and K free both say the
+    same."""
+    return [
+        x
+        for key in ("ADC_GAIN_A", "ADC_GAIN_B")
+        if key in values
+        for x in (values[key], -values[key] / (1.0 + values[key]))
+    ]
+
+
 def compliance(_values: dict[str, float], truth: Truth) -> list[float]:
     """arcsec per N m: of one train, of both, and what is beyond the declared."""
     real, said = 1.0 / truth["drive"]["KGEAR"], 1.0 / truth["declared"]["KGEAR"]
@@ -86,7 +103,7 @@ EFFECTS: dict[str, dict[str, Read]] = {
     "load_friction": {"coefficient": raw("LOADF")},
     "friction_warmup": {"depth": raw("WARM_A", -1.0), "time_constant": raw("WARM_TAU")},
     "preload_change": {"change": raw("PRELOAD_A")},
-    "gravity_imbalance": {"amplitude": raw("GRAV_A", size=True), "phase": angle("GRAV_PH")},
+    "gravity_imbalance": {"amplitude": raw("GRAV_A", size=True), "phase": counter_phase("GRAV_PH")},
     "gear_eccentricity": {
         "amplitude": raw("L1_T", size=True),
         "kinematic": raw("L1_K", 1 / ARCSEC, size=True),
@@ -100,9 +117,10 @@ EFFECTS: dict[str, dict[str, Read]] = {
     "structural_mode": {"frequency": raw("W2", 0.5 / math.pi), "damping": raw("Z2"), "inertia": raw("J2")},
     "encoder_eccentricity": {"amplitude": raw("ECC_1", size=True), "second": raw("ECC_2", size=True)},
     "encoder_subdivision": {"amplitude": raw("SUB_1", size=True), "second": raw("SUB_2", size=True)},
+    "roller_slip": {"slip": raw("SLIP_C"), "limit": raw("SLIP_A0")},
     "roller_ratio": {"error": raw("ROLLER_EPS", 1e6)},
-    "adc_offset": {"offset": either("ADC_OFF_A", "ADC_OFF_B", factor=ADC_A_PER_COUNT)},
-    "adc_gain": {"gain": either("ADC_GAIN_A", "ADC_GAIN_B", plus=1.0)},
+    "adc_offset": {"offset": either("ADC_OFF_A", "ADC_OFF_B")},
+    "adc_gain": {"gain": relative_gain},
     "pwm_deadband": {"deadband": raw("DEADBAND")},
     "diode_braking": {"share": raw("DIODE")},
     "supply_sag": {"resistance": raw("SAG")},

@@ -8,6 +8,7 @@ from plant.calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.orders import order_spectrum, peaks
+from plant.calibration.channels.motion import Motion, rate_response
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
@@ -21,22 +22,18 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     x = c.angle
-    for columns in (
-        np.column_stack([np.cos(x), np.sin(x)]),
-        np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
-    ):
-        out.append(
-            Candidate(
-                "encoder_eccentricity",
-                "axis_angle",
-                columns,
-                (("amplitude", "arcsec"),),
-                kind="line",
-                stage="axis",
-                harmonic=1,
-                order=1.0,
-            )
+    out.append(
+        Candidate(
+            "encoder_eccentricity",
+            "axis_angle",
+            np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+            (("amplitude", "arcsec"),),
+            kind="line",
+            stage="axis",
+            harmonic=1,
+            order=1.0,
         )
+    )
     for stage in (*SHAFTS, *MESHES):
         for h in (1, 2):
             order = STAGES[stage] * h
@@ -75,34 +72,7 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
-    size = np.abs(acceleration)
-    for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
-        on = size > limit
-        if not 0.002 < on.mean() < 0.6:
-            continue
-        out.append(
-            Candidate(
-                "roller_slip",
-                "velocity",
-                (-w * on)[:, None],
-                (("creep", "1"),),
-                stage="roller",
-                fixed={"limit": (limit, "rad/s2")},
-                sign=1,
-            )
-        )
-        over = np.sign(acceleration) * np.maximum(size - limit, 0.0) * arcsec
-        out.append(
-            Candidate(
-                "roller_slip",
-                "velocity",
-                -over[:, None],
-                (("slip", "s"),),
-                stage="roller",
-                fixed={"limit": (limit, "rad/s2")},
-                sign=1,
-            )
-        )
+    out += _slips(w, np.abs(acceleration))
     for h in (1, 2):
         order = STAGES["roller"] * h
         if span * order > 0.8:
@@ -133,19 +103,52 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
     return out
 
 
-def subdivision(c: Context, period_s: float) -> list[Candidate]:
+def _slips(w: Array, size: Array) -> list[Candidate]:
+    """Travel lost while the axis accelerates harder than a limit: a share of it, or as much as the limit is
+    exceeded."""
+
+    def share(p: Array) -> Array:
+        return (-w * (size > p[0]))[:, None]
+
+    def excess(p: Array) -> Array:
+        return (-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None]
+
+    out = []
+    for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
+        if not 0.002 < np.mean(size > limit) < 0.6:
+            continue
+        for shape, label in ((share, ("creep", "1")), (excess, ("slip", "s"))):
+            out.append(
+                Candidate(
+                    "roller_slip",
+                    "velocity",
+                    shape(np.array([limit])),
+                    (label,),
+                    stage="roller",
+                    fixed={"limit": (limit, "rad/s2")},
+                    sign=1,
+                    shape=shape,
+                    steps=(0.1 * limit,),
+                )
+            )
+    return out
+
+
+def subdivision(c: Context, m: Motion) -> list[Candidate]:
     """Rate error of the absolute encoder's interpolation: its line count and twice it."""
-    w = c.speed * 206264.806
-    turns = c.angle / c.turn
-    one = pair(turns * LINES, c, period_s, w, LINES)
-    two = pair(turns * 2 * LINES, c, period_s, w, 2 * LINES)
-    if np.mean(one**2) < 1e-3 * np.mean(w**2):
+    x = 2 * np.pi * c.angle / c.turn * LINES
+    rate = c.speed * LINES  # arcsec/s per arcsec of error
+    cycles = c.speed / c.turn * LINES * m.period_s / m.width
+    parts = [
+        h * rate * rate_response(m.width, h * cycles) * g(h * x) for h in (1, 2) for g in (np.cos, np.sin)
+    ]
+    if np.mean(parts[0] != 0) < 0.02:
         return []
     return [
         Candidate(
             "encoder_subdivision",
             "axis_angle",
-            np.hstack([one * LINES / 206264.8, two * 2 * LINES / 206264.8]),
+            np.column_stack(parts),
             (("amplitude", "arcsec"),),
             kind="line",
             order=float(LINES),

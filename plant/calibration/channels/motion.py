@@ -76,6 +76,18 @@ def motion_of(frame: Frame, width: int) -> Motion:
     return Motion(d, theta, usable, rate, acceleration, pick, fresh, d * dt)
 
 
+def rate_response(width: int, cycles: Array) -> Array:
+    """What is left in `Motion.rate` of a position error that swings `cycles` times per row, per amplitude of
+    its own rate; 0 beyond 0.9 cycles per analysis sample."""
+    x = np.abs(cycles)
+    if width == 1:
+        out = np.sinc(2 * x)
+    else:
+        comb = np.mean([np.cos(2 * np.pi * x * k) for k in range(-(width // 2), width // 2 + 1)], axis=0)
+        out = np.sinc(width * x) * np.cos(np.pi * x) * comb
+    return np.asarray(np.where(x * width < (0.45 if width == 1 else 0.9), out, 0.0))
+
+
 def _shift(x: Array, by: int) -> Array:
     """x[k - by], ends repeated."""
     if by == 0:

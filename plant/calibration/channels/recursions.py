@@ -10,14 +10,20 @@ from plant.calibration.readers.run import Array
 from plant.compiled import entry
 
 
+PAUSE_S = 2.0
+
+
 @entry
 def lowpass(x: Array, clock: Array, tau: float) -> Array:
     """First-order low pass of x (n,) with time constant `tau` s, starting at zero; steps of `clock` may be
-    uneven."""
+    uneven, and x is zero in a pause."""
     out = np.empty(len(x))
     state = 0.0
     for k in range(len(x)):
         dt = clock[k] - clock[k - 1] if k > 0 else 0.0
+        if dt > PAUSE_S:  # between two runs nothing flows
+            state *= np.exp(-dt / tau)
+            dt = 0.0
         state = x[k] + (state - x[k]) * np.exp(-max(dt, 0.0) / tau)
         out[k] = state
     return out

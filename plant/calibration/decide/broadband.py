@@ -30,6 +30,47 @@ def slow_ratio(e: Array, problem: Problem, white: float) -> float:
 
 
 STEPS = 2.0  # of problem.step
+BURSTS = 5.0  # kurtosis; a few hundred gusts of Gaussian wind scatter by 0.3 about 3
+VOLTS = 2.0  # rms of the volts left over the sensors' noise; sound logs lie below 1.5
+BINS = 16  # of a motor's turn
+
+
+def kurtosis(e: Array) -> float:
+    """Fourth moment over the variance squared: 3 for a Gaussian."""
+    x = e - np.mean(e)
+    return float(np.mean(x**4) / max(float(np.mean(x**2)) ** 2, 1e-300))
+
+
+def unexplained_volts(e: Array, problem: Problem, white: float, turns: Array) -> Finding | None:
+    """Volts far above the sensors' noise on training and held-out rows that no effect explains.
+
+    `turns` (n,) of the motors; the domain is the motor's angle when the power of the residual varies over it
+    more than it varies over time pieces of the same number.
+    """
+    inside, outside = (float(np.sqrt(np.mean(e[k] ** 2))) for k in (problem.train, problem.test))
+    if min(inside, outside) < VOLTS * white:
+        return None
+    rows = problem.train
+    power = np.minimum(e**2, 25 * inside**2)
+
+    def contrast(bins: Array) -> float:
+        place = bins[rows].astype(np.int64)
+        count = np.bincount(place, minlength=BINS)
+        means = np.bincount(place, power[rows], BINS)[count > 20] / count[count > 20]
+        return float(np.std(means) / max(float(np.mean(means)), 1e-300))
+
+    span = float(np.ptp(problem.t)) or 1.0
+    over_angle = contrast((turns % 1.0) * BINS)
+    over_time = contrast(np.clip((problem.t - problem.t.min()) / span * BINS, 0, BINS - 1))
+    return Finding(
+        "unknown",
+        "E",
+        "motor_angle" if over_angle > over_time else "time",
+        evidence=40.0 * inside / white,
+        share=1 - (white / inside) ** 2,
+        note=f"volts {inside / white:.1f} times the sensors' noise that no effect of the catalogue explains",
+        parameters={"rms": Parameter(inside, "V", 0.8 * inside, 1.2 * inside)},
+    )
 
 
 def wind(e: Array, problem: Problem, white: float) -> Finding | None:
@@ -44,6 +85,18 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     sigma = float(np.sqrt(variance))
     if sigma < STEPS * problem.step:
         return None  # two converters' rounding that a steady motion does not average out
+    tails = kurtosis(e[problem.train])
+    if tails > BURSTS:
+        return Finding(
+            "unknown",
+            "T",
+            "time",
+            evidence=40.0 * ratio,
+            share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
+            note=f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3) that no angle, speed or "
+            "reversal explains",
+            parameters={"rms": Parameter(sigma, "N m", 0.8 * sigma, 1.2 * sigma)},
+        )
     turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
     half = 1.96 * sigma / np.sqrt(2 * turns)
     return Finding(

@@ -39,17 +39,21 @@ def rest(p: Array) -> Array:
 def run_all(drive: Drive, runs: list[Run], effects: dict[str, float], seed: int) -> list[Trace]:
     """Simulate every run with these effect values; noise depends on the seed and the run only.
 
-    Angle and heat carry over from run to run of a session; each run starts at rest.
+    Angle and heat carry over from run to run of a session, the windings cool in between; each run starts at
+    rest.
     """
     values = {**drive.values, **{k: v for k, v in effects.items() if k in slots.INDEX}}
     out: list[Trace] = []
     memory = np.zeros(held.MEMORY)
     angle = values["TH_START"]
-    session = ""
+    session, until = "", 0.0
     for i, run in enumerate(runs):
         if run.session != session:
             memory[:2] = 0.0
             session = run.session
+        elif values["HEAT"] > 0.0:
+            memory[:2] *= np.exp(-max(run.t_session - until, 0.0) / values["HEAT_TAU"])
+        until = run.t_session + d.TICK_S * len(run.command)
         phase = float(np.random.default_rng([seed, 17, ord(session)]).uniform(0, 1e6))
         p = slots.vector({**values, "TH_START": angle, "T_SESSION": run.t_session, "ROLLER_PHASE": phase})
         state = rest(p)

@@ -44,7 +44,7 @@ def roller_ratio(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
 def roller_slip(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """Roller creeps while the axis accelerates harder than a limit."""
     fixed = {"SLIP_A0": 0.3 * 2400.0 * d.ARCSEC}
-    names = {"creep": ("SLIP_C", 1.0, "s"), "limit": ("SLIP_A0", 1.0, "rad/s2")}
+    names = {"slip": ("SLIP_C", 1.0, "s"), "limit": ("SLIP_A0", 1.0, "rad/s2")}
     return Drawn(
         "roller_slip", "K", ("velocity", "reversal", "time"), {"SLIP_C": 0.01}, fixed, names, "roller"
     )
