@@ -34,7 +34,7 @@ from plant.calibration.decide.select import Selection, design, select
 from plant.calibration.decide.sizes import largest_amplitude, white_noise
 from plant.calibration.decide.tolerance import compliance_change, torque_changes
 from plant.calibration.declaredplant import Declared, declared_numbers
-from plant.calibration.readers.drive import STAGES
+from plant.calibration.readers.drive import ARCSEC, STAGES
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
@@ -42,6 +42,7 @@ from plant.calibration.statistics.whitening import Mask
 K_DECLARED = 0.39  # N m/A; design.md, the near miss that reaches the paper's rows together
 
 
+ROTORS = (39.0, 780.0)  # kg m2, one rotor at the axis: 3e-4 to 6e-3 kg m2 (hardware.md 1.2) times the ratio squared
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
@@ -185,7 +186,14 @@ def _torque(
     result: AxisResult, per_ampere: float, left: dict[str, Array], clock: Array, rng: np.random.Generator
 ) -> None:
     frame, m = result.frame, result.motion
-    torque = result.torque = torque_problem(frame, per_ampere, result.held, left)
+    stiffness = result.declared.stiffness
+    if "K" in result.selections and result.selections["K"].after.beta[0] > 1e-8:
+        stiffness = 1.0 / float(result.selections["K"].after.beta[0])
+    softness = ROTORS[0] / stiffness
+    if "K" in result.selections:
+        lag = -float(result.selections["K"].after.beta[1]) * ARCSEC
+        softness = float(np.clip(lag, softness, ROTORS[1] / stiffness))
+    torque = result.torque = torque_problem(frame, per_ampere, result.held, left, softness)
     if torque is None:
         return
     p, c = torque.problem, torque.context
@@ -214,9 +222,6 @@ def _torque(
     if "adc_offset" in forced:
         p.base = np.column_stack([p.base, np.ones(len(p.y))])
         p.base_labels.append(("offset_torque", "N m"))
-    stiffness = result.declared.stiffness
-    if "K" in result.selections and result.selections["K"].after.beta[0] > 1e-8:
-        stiffness = 1.0 / float(result.selections["K"].after.beta[0])
     theta = m.theta[m.pick]
     ratio = frame.scale["gear_ratio"]
     motors = axis_lines.Motors(

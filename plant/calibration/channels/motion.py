@@ -37,6 +37,11 @@ class Motion:
         """h * x at full rate."""
         return boxcar(boxcar(x, self.width), self.width)
 
+    def curvature(self, x: Array) -> Array:
+        """h * x'' at full rate."""
+        d = self.width
+        return (_shift(x, -d) - 2 * x + _shift(x, d)) / self.period_s**2
+
     def at(self, x: Array) -> Array:
         """h * x on the analysis grid; `x` is (n,) or (n, k)."""
         return np.asarray(self.smooth(x)[self.pick])

@@ -58,11 +58,13 @@ def saturated(frame: Frame, current: Array) -> Mask:
 
 
 def torque_problem(
-    frame: Frame, per_ampere: float, held: Mask, left: dict[str, Array]
+    frame: Frame, per_ampere: float, held: Mask, left: dict[str, Array], softness: float = 0.0
 ) -> Torque | None:
     """Build the T channel; None when the log has no currents.
 
     `held` (n,) marks held-out rows at full rate, `left` what each motor has left of its torque constant.
+    `softness` is a rotor's inertia at the axis over its train's stiffness, s2: what the rotors turn against
+    the axis while the trains wind up takes `softness` times the torque's second derivative.
     """
     ia, ib = frame.get("current_a"), frame.get("current_b")
     if ia is None and ib is None:
@@ -77,7 +79,7 @@ def torque_problem(
     near |= saturated(frame, fa) | saturated(frame, fb)
     rows = (m.trusted & ta & tb)[pick] & (m.smooth(near.astype(float))[pick] < 1e-9)
     full = per_ampere * (left["a"] * fa - left["b"] * fb)
-    y = m.at(full)
+    y = m.at(full) - softness * m.curvature(full)[pick]
     test = held[pick]
     preload = frame.runs[0].header.get("preload", "low")
     friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
