@@ -48,6 +48,11 @@ def error_row(s: Selection, floor: float | None = None) -> dict[str, Any]:
     }
 
 
+def errors(name: str, s: Selection, floor: float | None = None) -> dict[str, dict[str, Any]]:
+    """The error table of one channel; empty when there are no held-out rows to measure it on."""
+    return {name: error_row(s, floor)} if np.isfinite(s.held.before) else {}
+
+
 def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]:
     """The declared model's parameters with intervals."""
     out = {}
@@ -96,13 +101,13 @@ def guide(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: bool) ->
     v = Verdict(
         verdict,
         effects,
-        {"position": error_row(s, found.problem.floor)},
+        errors("position", s, found.problem.floor),
         found.held_out,
         calibrated(s, ("offset",)),
         found.not_identifiable,
         _worm_controls(found),
         separating,
-        [n for r in runs for n in r.notes][:2],
+        list(dict.fromkeys([*(n for r in runs for n in r.notes), *found.notes])),
         gate_rows({"position": s}),
         refusals({"position": s}),
     )
@@ -188,7 +193,7 @@ def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer
     v = Verdict(
         verdict,
         found.findings,
-        {"torque": error_row(s, found.problem.floor)},
+        errors("torque", s, found.problem.floor),
         found.held_out,
         calibrated(s),
         found.not_identifiable,
