@@ -129,7 +129,9 @@ def answer(
     from plant.calibration import answers
 
     if kind == "guide":
-        return answers.guide(runs, rig, hold_out, plots)
+        from plant.calibration.guideanswer import guide_answer
+
+        return guide_answer(runs, rig, hold_out, plots)
     if kind == "rig":
         assert rig is not None
         tell("rig")
