@@ -55,17 +55,26 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
     """Kind of input ("axis", "guide", "rig") and its runs; one kind per call."""
     runs: list[Run] = []
     kinds: dict[str, Path] = {}
-    for path in logs:
+    for k, path in enumerate(logs):
+        if path.resolve() in [p.resolve() for p in logs[:k]]:
+            raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
         if path.suffix.lower() == ".mat":
             text = ""
         else:
             try:
-                text = path.read_text(encoding="utf-8", errors="strict")
+                text = path.read_text(encoding="utf-8-sig", errors="strict")
             except UnicodeDecodeError as error:
+                head = error.object[:20000].decode("latin-1")
+                if is_guide_log(head):  # names in it may be in the computer's code page; numbers are ASCII
+                    kinds["guide"] = path
+                    runs += read_guide_log(path, error.object.decode("latin-1"))
+                    continue
                 line = error.object[: error.start].count(b"\n") + 1
                 raise CalibrationInputError(path, "is not UTF-8 text", line) from None
             except OSError as error:
                 raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+        if path.suffix.lower() != ".mat" and not text.strip():
+            raise CalibrationInputError(path, "is empty", 1)
         if is_axis_log(text):
             kinds["axis"] = path
             runs.append(read_axis_log(path, text))

@@ -60,7 +60,14 @@ def _slowly(
         if len(fields) != len(names):
             if offset == len(rows) - 1:  # a run that was cut off: the last line may be half written
                 break
-            raise CalibrationInputError(path, f"{len(fields)} fields, the header row has {len(names)}", line)
+            hint = ""
+            if text.startswith("#"):
+                hint = ": a second header? one file holds one run"
+            elif len(fields) == 2 * len(names) or (len(fields) > len(names) and delimiter == ","):
+                hint = ": decimal commas? write points"
+            raise CalibrationInputError(
+                path, f"{len(fields)} fields, the header row has {len(names)}{hint}", line
+            )
         for name, value in zip(names, fields, strict=True):
             value = value.strip()
             if name not in keep or value in ("", "nan", "NaN"):

@@ -45,11 +45,11 @@ def png(fig: Any) -> str:
 
 
 def finish(ax: Any, title: str) -> None:
-    """Title to the left, legend above the axes to the right: it never hides a curve."""
-    ax.set_title(title, loc="left")
+    """Title above, the legend between it and the axes: it never hides a curve."""
     handles, _ = ax.get_legend_handles_labels()
+    ax.set_title(title, loc="left", pad=20 if handles else 6)
     if handles:
-        ax.legend(frameon=False, fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
+        ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=3)
 
 
 def nothing_to_draw(title: str, why: str) -> str:
@@ -78,6 +78,9 @@ def domain_plot(
     e = selection.after.residual + model
     if odd is not None:
         e, model = e * odd, model * odd
+    if selection.chosen and selection.chosen[index].candidate.name == "unknown":
+        level = float(np.mean(model[rows]))  # the declared offset moves against the function's own level
+        e, model = e - level, model - level
     fig, ax = figure()
     step = max(int(rows.sum() / 6000), 1)
     xs, es, ms = x[rows], e[rows], model[rows]
@@ -230,7 +233,7 @@ def gate_plot(selection: Selection, title: str) -> str:
         lw=2,
         label=f"this log, {top:.4g}" + (" (off scale)" if top > limit else ""),
     )
-    ax.set_xlim(0, limit * 1.02)
+    ax.set_xlim(0, max(limit * 1.02, 1.0))
     ax.set(xlabel="largest score, -log10 p", ylabel="surrogates")
     finish(ax, title)
     return png(fig)
