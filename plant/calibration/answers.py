@@ -212,8 +212,9 @@ def axis(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    replay: bool = True,
 ) -> Answer:
     """Answer for logs of one axis of the telescope."""
     from plant.calibration.axisanswer import axis_answer
 
-    return axis_answer(runs, hold_out, out, plant, plots, tell)
+    return axis_answer(runs, hold_out, out, plant, plots, tell, replay)

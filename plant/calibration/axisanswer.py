@@ -11,15 +11,19 @@ import numpy as np
 
 from plant.calibration.answers import calibrated, error_row, gate_rows, refusals
 from plant.calibration.axis import AxisResult, analyse
+from plant.calibration.corrected.making import Facts
 from plant.calibration.decide.controls import controls
 from plant.calibration.decide.finding import Finding
 from plant.calibration.decide.merge import merge
 from plant.calibration.decide.select import Selection
 from plant.calibration.decide.verdict import Verdict, judge
-from plant.calibration.plantfile import write_plant
+from plant.calibration.plantfile import declared_model, write_plant
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Run
+from plant.calibration.replay.answer import correct_and_replay
+from plant.calibration.report.replayplot import replay_picture
 from plant.calibration.statistics.regression import gls
+from plant.model import with_effects
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters
 LEAST_PRESENT = (
@@ -35,15 +39,21 @@ def axis_answer(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    run_again: bool = True,
 ) -> tuple[Verdict, list[dict[str, str]], str]:
-    """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason."""
+    """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason.
+
+    `run_again=False` leaves out the replay of the closed loop.
+    """
     axis = runs[0].header["axis"]
     preload = runs[0].header.get("preload", "low")
     title = f"{axis.upper()} axis, {preload} preload"
     reason = too_little(runs)
     if reason:
         v = Verdict("nothing", [], reasons=[reason], not_identifiable=["everything: " + reason])
-        write_plant(out / "plant.yaml", axis, preload, {}, [], plant, "nothing")
+        model, keep = declared_model(runs[0].header, plant)
+        bare = model if keep else with_effects(model, axis, ())
+        write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("nothing"), [])
         return v, [], title
     result = analyse(runs, hold_out, tell=tell, plant=plant)
     effects = merge(result.findings)
@@ -65,18 +75,12 @@ def axis_answer(
             v.error[SENSORS[key]] = error_row(s)
     _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
-    remarks = write_plant(
-        out / "plant.yaml",
-        axis,
-        preload,
-        v.calibrated,
-        effects,
-        plant,
-        runs[0].name,
-        bool(result.declared.lines),
-    )
-    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *remarks]
+    again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
+    v.closed_loop = again.rows
+    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks]
     pictures = _plots(result, effects) if plots else []
+    if plots and again.log is not None:
+        pictures.append(replay_picture(again))
     return v, pictures, title
 
 

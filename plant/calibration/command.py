@@ -24,13 +24,15 @@ def calibrate(
     out: Path = Path("."),
     plant: Path | None = None,
     plots: bool = True,
+    replay: bool = True,
 ) -> int:
     """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
 
     Returns 0 whenever there is an answer, "nothing" and "unknown" included. Raises CalibrationInputError (a
     ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
     file;
-    `plots=False` leaves the pictures out of the report.
+    `plots=False` leaves the pictures out of the report, `replay=False` the closed loop run again on an axis
+    log's held-out rows.
     """
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -45,7 +47,9 @@ def calibrate(
         kind, runs = read_logs(logs, declared)
         _check_names(hold_out or [], runs, logs)
         out.mkdir(parents=True, exist_ok=True)
-        verdict, pictures, title = answer(kind, runs, declared, hold_out or [], out, plant, plots, tell)
+        verdict, pictures, title = answer(
+            kind, runs, declared, hold_out or [], out, plant, plots, tell, replay
+        )
         tell("writing the report")
         write_report(verdict, pictures, title, runs, out)
     return 0
@@ -133,6 +137,7 @@ def answer(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    replay: bool = True,
 ) -> tuple[Verdict, Plots, str]:
     """Verdict, pictures and title for runs of one kind."""
     from plant.calibration import answers
@@ -145,7 +150,7 @@ def answer(
         assert rig is not None
         tell("rig")
         return answers.bench(runs, rig, hold_out, plots)
-    return answers.axis(runs, hold_out, out, plant, plots, tell)
+    return answers.axis(runs, hold_out, out, plant, plots, tell, replay)
 
 
 def write_report(verdict: Verdict, pictures: Plots, title: str, runs: list[Run], out: Path) -> None:

@@ -97,7 +97,8 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
             ):
                 score = float(np.sum((columns.T @ x) ** 2) / np.sum(columns[rows] ** 2))
                 made = line(c, name, "motor", n, order, columns, "motor_angle")
-                found[name].append((score, replace(made, labels=(LABELS[name],))))
+                motor = {"motor": (float(key == "b"), "0 A, 1 B")}
+                found[name].append((score, replace(made, labels=(LABELS[name],), fixed=motor)))
     out = []
     for ranked in found.values():
         out += [k for _, k in sorted(ranked, key=lambda s: -s[0])[:keep]]
