@@ -15,7 +15,12 @@ from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.channels.clock import clock_findings, repair_wraps
 from plant.calibration.channels.command import command_candidates, command_problem, pulses
-from plant.calibration.channels.electrical import Electrical, electrical_problem, mean_currents
+from plant.calibration.channels.electrical import (
+    Electrical,
+    electrical_problem,
+    mean_currents,
+    undo_sampling,
+)
 from plant.calibration.channels.frame import Frame, build_frame, fill
 from plant.calibration.channels.kinematic import (
     Kinematic,
@@ -31,17 +36,14 @@ from plant.calibration.decide.holdout import choose_held_out
 from plant.calibration.decide.parameters import finding_of
 from plant.calibration.decide.select import Selection, design, select
 from plant.calibration.decide.sizes import largest_amplitude, white_noise
-from plant.calibration.decide.tolerance import compliance_change, torque_changes
+from plant.calibration.decide.tolerance import compliance_change, seen_speeds, telling, torque_changes
 from plant.calibration.declaredplant import Declared, declared_numbers
-from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
 
-K_DECLARED = 0.39  # N m/A; design.md, the near miss that reaches the paper's rows together
-
-
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
+LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
 )
@@ -86,8 +88,10 @@ def analyse(
     result.findings += wraps[:1] + clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)[m.pick]
     tell("electrical channel")
-    e = result.electrical = electrical_problem(frame, m, held)
-    per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
+    if numbers.ripple is not None and frame.get("current_a") is not None:
+        undo_sampling(frame, numbers.ripple)
+    e = result.electrical = electrical_problem(frame, m, held, numbers)
+    per_ampere = (e.constant if e is not None else numbers.torque_constant) * frame.scale["gear_ratio"]
     if e is not None and e.problem.train.sum() > 200:
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
         s = select(
@@ -101,7 +105,7 @@ def analyse(
         per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
         _collect(result, s)
     tell("encoder channels")
-    result.kinematic = kinematic_problem(frame, m, held, per_ampere)
+    result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)
     context = _kinematic_context(frame, m)
     if result.kinematic is not None:
         p = result.kinematic.problem
@@ -126,7 +130,7 @@ def analyse(
         result.selections["S"] = s
         _collect(result, s)
     _fine(result, rng)
-    command = command_problem(frame, held)
+    command = command_problem(frame, held, numbers.own)
     if command is not None:
         p, setpoint = command
         null = gls(p.y, p.base, p.train, p.ar_order, p.block)
@@ -152,7 +156,7 @@ def analyse(
             )
     tell("torque channel")
     _torque(result, per_ampere, clock, rng)
-    result.findings += delay_findings(result.selections)
+    result.findings += delay_findings(result.selections, numbers)
     return result
 
 
@@ -176,18 +180,12 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
 
 def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.Generator) -> None:
     frame, m = result.frame, result.motion
-    torque = result.torque = torque_problem(frame, per_ampere, result.held)
+    torque = result.torque = torque_problem(frame, per_ampere, result.held, result.declared)
     if torque is None:
         return
     p, c = torque.problem, torque.context
     if result.kinematic is not None:
         p.valid &= result.kinematic.engaged
-    for _, stage, harmonic in result.declared.lines:
-        order = STAGES[stage] * harmonic
-        p.base = np.hstack(
-            [p.base, axis_lines.pair(m.theta[m.pick] / (2 * np.pi) * order, c, m.period_s, None, order)]
-        )
-        p.base_labels += [(f"declared {stage} {harmonic}", "N m")] * 2
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
     ta, tb = per_ampere * m.at(ia), -per_ampere * m.at(ib)
@@ -235,6 +233,8 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
     if (moving & p.train).sum() > 0.3 * p.train.sum() and (moving & p.test).sum() > 100:
         p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
+    elif (moving & p.train).sum() < LEAST_MOVING:
+        candidates = []  # nothing but that history: no torque effect can be told from it
     s = select(p, candidates, rng)
     result.selections["T"] = s
     _collect(result, s)
@@ -243,10 +243,11 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
         result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
         result.findings.append(blowing)
     everything = replace(p, valid=whole)
-    all_rows = gls(
-        p.y, design(everything, [x.candidate for x in s.chosen]), everything.train, p.ar_order, p.block
-    )
-    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared)
+    x = design(everything, [k.candidate for k in s.chosen])
+    all_rows = gls(p.y, x, everything.train, p.ar_order, p.block)
+    seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
+    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared, seen)
+    found = telling(found, everything, x, result.declared, torque.friction)
     result.findings += found
     result.calibrated |= calibrated
 

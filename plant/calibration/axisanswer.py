@@ -129,27 +129,13 @@ def not_identifiable(result: AxisResult) -> list[str]:
 def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Finding]) -> None:
     """A declared number that is another one: "before" may only re-calibrate within the tolerance of the
     declared one."""
-    from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
+    from plant.calibration.decide.tolerance import TOLERANCE, held_numbers
 
     d = result.declared
     changed = {e.name for e in effects}
     t = result.selections.get("T")
     if t is not None and result.torque is not None:
-        f = result.torque.friction
-        fixed: dict[int, float] = {}
-        if "coulomb_change" in changed:
-            fixed[2] = float(np.clip(t.after.beta[2], d.coulomb / TOLERANCE, d.coulomb * TOLERANCE))
-        if "viscous_change" in changed:
-            fixed[1] = float(np.clip(t.after.beta[1], d.viscous / TOLERANCE, d.viscous * TOLERANCE))
-        if "stribeck_change" in changed:
-            low, high = np.log(d.stiction / TOLERANCE / f.coulomb), np.log(d.stiction * TOLERANCE / f.coulomb)
-            fixed[3] = float(np.clip(np.log(f.ratio), low, high) - np.log(f.ratio))
-        if "presliding" in changed:
-            low, high = (
-                np.log(d.sigma_0 / SIGMA_TOLERANCE / f.coulomb),
-                np.log(d.sigma_0 * SIGMA_TOLERANCE / f.coulomb),
-            )
-            fixed[5] = float(np.clip(np.log(f.stiffness), low, high) - np.log(f.stiffness))
+        fixed = held_numbers(changed, t.after.beta, d, result.torque.friction)
         if fixed and "torque" in v.error:
             v.error["torque"]["before"] = _constrained(t, fixed)
     k = result.selections.get("K")

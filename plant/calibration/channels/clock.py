@@ -10,6 +10,8 @@ from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.readers.run import Array, Run
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
+MOVING = 4e-8  # rad per row, 0.8 arcsec/s
+QUICK = 4e-7  # rad per row: fast enough that a single row without motion is no chance
 LOST = 0.003  # fraction of rows missing that is worth a word
 PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
@@ -72,8 +74,7 @@ def _loss(frame: Frame) -> Finding | None:
 
 
 def _repeated(frame: Frame) -> int:
-    """Rows of packets that repeat the packet before them, or runs of at least five frozen rows while
-    moving."""
+    """Rows of packets that repeat the packet before them, or frozen rows while moving."""
     p = frame.columns["position"]
     count = 0
     shifted = np.zeros(len(p), dtype=bool)
@@ -82,7 +83,7 @@ def _repeated(frame: Frame) -> int:
         c = frame.get(name)
         if c is not None:
             shifted[PACKET:] &= c[PACKET:] == c[:-PACKET]
-    moving = np.abs(np.gradient(np.nan_to_num(p))) > 4e-8
+    moving = np.abs(np.gradient(np.nan_to_num(p))) > MOVING
     still = np.zeros(len(p), dtype=bool)
     still[1:] = p[1:] == p[:-1]
     for name in ("velocity", "effort", "current_a"):
@@ -92,10 +93,20 @@ def _repeated(frame: Frame) -> int:
     near = np.convolve(moving, np.ones(61), "same") > 20
     both = (shifted | still) & near
     runs = np.split(both.astype(int), np.flatnonzero(np.diff(both.astype(int))) + 1)
+    at = 0
     for r in runs:
-        if len(r) >= 5 and r[0]:
+        if r[0] and _goes_on(p, at, len(r)):
             count += len(r)
+        at += len(r)
     return count
+
+
+def _goes_on(p: Array, at: int, rows: int) -> bool:
+    """Whether the row after `rows` unchanged ones from `at` on has moved as if the axis had never stopped:
+    an axis that comes to rest shows the same row again and again, too."""
+    before, after = p[max(at - 1, 0)], p[min(at + rows, len(p) - 1)]
+    usual = np.nanmedian(np.abs(np.diff(p[max(at - 12, 0) : at + 1]))) if at > 1 else 0.0
+    return bool(abs(after - before) > 0.3 * (rows + 1) * usual and usual > (MOVING if rows >= 5 else QUICK))
 
 
 def repair_wraps(run: Run) -> Finding | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from plant.calibration.channels.declared import Friction, fit_friction
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
+from plant.calibration.declaredplant import Declared
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
@@ -57,7 +59,20 @@ def saturated(frame: Frame, current: Array) -> Mask:
     return np.asarray(current >= 1022.5 * frame.scale["adc_A_per_count"])
 
 
-def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None:
+def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]]) -> Array:
+    """(n_analysis, 2 k): cos and sin of every declared periodic torque, dimmed by the two boxcars."""
+    turns, speed = m.theta[m.pick] / (2 * np.pi), np.abs(m.rate[m.pick]) / (2 * np.pi)
+    columns = [np.zeros((len(turns), 0))]
+    for _, stage, harmonic in lines:
+        order = STAGES[stage] * harmonic
+        per_sample = speed * order * m.period_s
+        dim = np.where(per_sample < 0.9, np.sinc(per_sample) ** 2, 0.0)
+        x = 2 * np.pi * order * turns
+        columns.append(np.column_stack([dim * np.cos(x), dim * np.sin(x)]))
+    return np.hstack(columns)
+
+
+def torque_problem(frame: Frame, per_ampere: float, held: Mask, declared: Declared) -> Torque | None:
     """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full
     rate."""
     ia, ib = frame.get("current_a"), frame.get("current_b")
@@ -74,8 +89,10 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     rows = (m.trusted & ta & tb)[pick] & (m.smooth(near.astype(float))[pick] < 1e-9)
     y = per_ampere * m.at(fa - fb)
     test = held[pick]
-    preload = frame.runs[0].header.get("preload", "low")
-    friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
+    lines = declared_lines(m, declared.lines)
+    friction, base, bristle = fit_friction(
+        m, y, rows & ~test, declared.start, declared.stribeck_exponent, lines
+    )
     labels = [
         ("inertia", "kg m2"),
         ("viscous", "N m s/rad"),
@@ -89,6 +106,8 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask) -> Torque | None
     # it is large
     base = np.column_stack([base, m.at(np.gradient(per_ampere * (fa - fb), frame.period_s))])
     labels.append(("current_delay", "s"))
+    base = np.hstack([base, lines])
+    labels += [(f"declared {s} {h}", "N m") for _, s, h in declared.lines for _ in "cs"]
     t = frame.t[pick]
     problem = Problem(
         "T",
