@@ -43,6 +43,7 @@ from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
 
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
+REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away
 LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
@@ -231,9 +232,9 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     candidates += axis_lines.free_lines(c, null.residual, p.train, m.period_s)
     whole = p.valid.copy()
     moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
-    if (moving & p.train).sum() > 0.3 * p.train.sum() and (moving & p.test).sum() > 100:
+    if (moving & p.train).sum() > LEAST_MOVING and (moving & p.test).sum() > 100:
         p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
-    elif (moving & p.train).sum() < LEAST_MOVING:
+    else:
         candidates = []  # nothing but that history: no torque effect can be told from it
     s = select(p, candidates, rng)
     result.selections["T"] = s
@@ -242,7 +243,10 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     if blowing is not None:
         result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
         result.findings.append(blowing)
-    everything = replace(p, valid=whole)
+    # long rests say where the bristles were left, not what they are; and an exponent below 1 has a cusp at
+    # rest, which needs slower speeds than the encoder resolves
+    reach = REST_S / m.period_s if result.declared.stribeck_exponent >= 1.0 else 0.0
+    everything = replace(p, valid=whole & near(moving, reach))
     x = design(everything, [k.candidate for k in s.chosen])
     all_rows = gls(p.y, x, everything.train, p.ar_order, p.block)
     seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
@@ -250,6 +254,13 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     found = telling(found, everything, x, result.declared, torque.friction)
     result.findings += found
     result.calibrated |= calibrated
+
+
+def near(rows: Mask, reach: float) -> Mask:
+    """Rows within `reach` rows of one of `rows`."""
+    from scipy.ndimage import binary_dilation
+
+    return np.asarray(binary_dilation(rows, iterations=round(reach))) if reach >= 1 else rows
 
 
 def _collect(result: AxisResult, s: Selection) -> None:

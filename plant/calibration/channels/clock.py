@@ -13,6 +13,7 @@ JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own l
 MOVING = 4e-8  # rad per row, 0.8 arcsec/s
 QUICK = 4e-7  # rad per row: fast enough that a single row without motion is no chance
 LOST = 0.003  # fraction of rows missing that is worth a word
+DRIVEN = 0.05  # of the effort's range, that a column at its end must hold against
 PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 PACKET = 25  # rows per RS232 packet, log-format.md
@@ -162,7 +163,7 @@ def _other_wraps(run: Run) -> Finding | None:
             _unfold(run, name, size)
             found = f"folds at {size} counts"
         else:
-            found = _stops(x, name)
+            found = _stops(x, name, run.raw["effort"][np.isfinite(raw)])
             if found:
                 run.columns[RENAMED.get(name, name)] = (
                     np.where(
@@ -205,7 +206,7 @@ def _folds(x: Array, length: int) -> int:
     return 0
 
 
-def _stops(x: Array, name: str) -> str:
+def _stops(x: Array, name: str, effort: Array) -> str:
     """A column that piles up at one end: noise would spread it over the neighbouring counts."""
     if name.startswith("tach"):
         return ""  # a count or two at constant speed pile up by themselves
@@ -215,6 +216,8 @@ def _stops(x: Array, name: str) -> str:
         power = np.log2(abs(end) + (1 if end > 0 else 0))
         if name == "velocity" and abs(power - round(power)) > 1e-9:
             continue  # a constant speed piles up too: only an end of a power of two is a stop
+        if np.ptp(effort[x == end]) < DRIVEN * np.ptp(effort):
+            continue  # a steady effort makes a steady current
         piled, next_to = int(np.sum(x == end)), int(np.sum(x == end + inward))
         if piled >= PILE and piled > 3 * next_to + 20:
             return f"stops at {int(end)} counts"

@@ -18,6 +18,7 @@ from plant.calibration.readers.drive import ARCSEC
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
 
+STILL_S = 1.0  # without a count: the rounding of a motor's place is one error then, not one per row
 # of a tachometer count: what rounding leaves when a steady speed beats with the rows (white: 0.29)
 COUNT_PART = 0.1
 APART_ARCSEC = 8.0  # a motor this far from where wind-up puts it has left its tooth face
@@ -66,7 +67,8 @@ def kinematic_problem(
         apart |= off & ~full
         ys.append(y)
         torques.append(torque)
-        oks.append((m.trusted & trusted)[pick] & ~near & ~full)
+        still = standing(spin, frame.run, round(STILL_S / frame.period_s))
+        oks.append((m.trusted & trusted & ~still)[pick] & ~near & ~full)
     wide = apart.copy()
     for k in range(1, 6):
         wide[k:] |= apart[:-k]
@@ -112,6 +114,15 @@ def kinematic_problem(
     fraction = float(np.mean(apart[driven])) if driven.any() else 0.0
     motor = np.concatenate([np.zeros(n), np.ones(n)])
     return Kinematic(problem, torque, motor, ~wide, fraction)
+
+
+def standing(spin: Array, run: NDArray[Any], rows: int) -> Mask:
+    """Rows before which the motor's encoder has shown no count for more than `rows` rows."""
+    index = np.arange(len(spin))
+    moves = np.abs(spin) > 0
+    moves[1:] |= run[1:] != run[:-1]
+    last = np.maximum.accumulate(np.where(moves, index, -rows))
+    return np.asarray(index - last > rows)
 
 
 def _off_face(y: Array, torque: Array, segment: NDArray[Any], rows: Mask) -> tuple[Array, Mask]:

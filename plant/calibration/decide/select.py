@@ -154,7 +154,9 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
         return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
     if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
-    if np.isfinite(held.after) and held.share < -WORSE:
+    if not np.isfinite(held.after):
+        return "no held-out rows to test it on"
+    if held.share < -WORSE:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
     return ""
 

@@ -37,7 +37,8 @@ def beyond(value: float, error: float, declared: float, factor: float, sure: flo
     return abs(np.log(value / declared)) - np.log(factor) > 0 and abs(value - declared) > sure * error
 
 
-SLOW, QUICK = (0.05, 0.8), 2.5  # of the Stribeck speed: where its dip is seen, and where it is over
+# (speed / Stribeck speed)^exponent: where the dip is seen, and where it is over (e^-6)
+SLOW, QUICK = (0.0025, 0.64), 6.25
 SEEN = (0.004, 0.02)  # of the rows used, at such speeds, before the log can tell
 SPREAD = 3.0  # of the speeds beyond the dip, before Coulomb and viscous friction come apart
 
@@ -56,12 +57,13 @@ class Seen:
 
 def seen_speeds(rate: Array, d: Declared) -> Seen:
     """From the speeds (rad/s) of the rows that are fitted."""
-    w = np.abs(rate) / d.stribeck_speed
-    quick = w > QUICK
+    w = np.abs(rate)
+    dip = (w / d.stribeck_speed) ** d.stribeck_exponent
+    quick = dip > QUICK
     sliding = bool(np.mean(quick) > SEEN[1])
     spread = sliding and float(np.quantile(w[quick], 0.95)) > SPREAD * float(np.quantile(w[quick], 0.05))
-    dip = bool(np.mean((w > SLOW[0]) & (w < SLOW[1])) > SEEN[0])
-    return Seen(sliding, spread, dip and sliding)
+    slow = bool(np.mean((dip > SLOW[0]) & (dip < SLOW[1])) > SEEN[0])
+    return Seen(sliding, spread, slow and sliding)
 
 
 def torque_changes(
