@@ -10,6 +10,11 @@ import numpy as np
 from plant.calibration.decide.experiments import experiment
 from plant.calibration.decide.finding import Finding, Parameter
 
+PHASES = (
+    "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
+    "effect, or of the difference of two encoders; plant.yaml has the effect's own torque or error, a sine."
+)
+
 
 @dataclass
 class Verdict:
@@ -72,7 +77,7 @@ def as_dict(v: Verdict) -> dict[str, Any]:
         "verdict": v.verdict,
         "effects": [effect_as_dict(e) for e in v.effects],
         "error": v.error,
-        "closed_loop": v.closed_loop,
+        **({"closed_loop": v.closed_loop} if v.closed_loop else {}),
         "held_out": v.held_out,
         "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
         "not_identifiable": v.not_identifiable,
@@ -80,5 +85,6 @@ def as_dict(v: Verdict) -> dict[str, Any]:
         "controls": v.controls,
         "thresholds": v.thresholds,
         "reasons": v.reasons,
+        "conventions": [PHASES] if any("phase" in e.parameters for e in v.effects) else [],
         "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
     }

@@ -55,7 +55,9 @@ def correct_and_replay(
         with_declared_lines(model, axis, result, t.before if t else None), axis, numbers, run.name, unsure
     )
     per_ampere = result.torque.per_ampere if result.torque is not None else 0.0
-    return replay(result.frame, result.held, axis, declared, corrected, per_ampere), remarks
+    e = result.selections.get("E")
+    mean = e is not None and "current_ripple" in [name for name, _ in e.problem.base_labels]
+    return replay(result.frame, result.held, axis, declared, corrected, per_ampere, mean), remarks
 
 
 def add_curves(result: AxisResult, effects: list[Finding]) -> None:

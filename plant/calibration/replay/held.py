@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from plant.calibration.candidates.axis_torque import start_clock
 from plant.calibration.channels.frame import Frame
 from plant.calibration.readers.run import Array
-from plant.calibration.replay.compare import UNITS, breaking, comparable, errors
+from plant.calibration.replay.compare import UNITS, breaking, comparable, errors, residual
 from plant.calibration.replay.gains import Gains, identify
 from plant.calibration.replay.trace import Trace, drive_again, measured, model_for_run
 from plant.calibration.statistics.whitening import Mask
@@ -45,8 +45,12 @@ def replay(
     declared: PlantModel,
     corrected: PlantModel,
     per_ampere: float,
+    mean_currents: bool = False,
 ) -> Replay:
-    """Run the loop again along every run that holds held-out rows, with both models, and compare there."""
+    """Run the loop again along every run that holds held-out rows, with both models, and compare there.
+
+    `mean_currents`: the log's currents are mean ones already; else training rows tell how they were sampled.
+    """
     gains = identify(frame, ~held) or identify(frame, held)
     clock = start_clock([r.header.get("start_utc", "") for r in frame.runs], frame.t, frame.run)
     out = Replay()
@@ -54,6 +58,7 @@ def replay(
     chaos: list[Mask] = []
     left_out: set[str] = set()
     same = declared == corrected
+    sampled = not mean_currents and sampled_at_the_edge(frame, held, axis, corrected, gains, per_ampere)
     for k, run in enumerate(frame.runs):
         whole = frame.run == k
         if not (held & whole).any():
@@ -72,6 +77,8 @@ def replay(
             try:
                 prepared, left = model_for_run(model, axis, run.scales, gains, start)
                 traces[key] = drive_again(prepared, axis, frame, whole, per_ampere, start)
+                if sampled:
+                    traces[key] = as_sampled(traces[key])
             except ValueError as error:
                 return Replay(reasons=[f"closed loop not run again: {error}"])
             left_out |= set(left)
@@ -87,6 +94,31 @@ def replay(
     _judge(out, pairs, chaos)
     _say(out, gains, left_out, frame)
     return out
+
+
+def as_sampled(trace: Trace) -> Trace:
+    """The trace with the torque that currents sampled at the PWM's edge give."""
+    return replace(trace, torque=trace.torque + trace.ripple) if trace.ripple is not None else trace
+
+
+def sampled_at_the_edge(
+    frame: Frame, held: Mask, axis: str, model: PlantModel, gains: Gains | None, per_ampere: float
+) -> bool:
+    """Whether a run's training rows are nearer to currents sampled at the PWM's edge than to mean ones."""
+    for k, run in enumerate(frame.runs):
+        whole = frame.run == k
+        use = comparable(frame, whole) & ~held[whole]
+        if use.sum() < LEAST_ROWS:
+            continue
+        try:
+            prepared, _ = model_for_run(model, axis, run.scales, gains, 0.0)
+            trace = drive_again(prepared, axis, frame, whole, per_ampere)
+        except ValueError:
+            return False
+        log = measured(frame, whole, per_ampere)
+        mean, edge = (np.mean(residual("torque", log, x, use) ** 2) for x in (trace, as_sampled(trace)))
+        return bool(edge < mean)
+    return False
 
 
 def _judge(out: Replay, pairs: dict[str, list[tuple[Trace, Trace, Mask]]], chaos: list[Mask]) -> None:

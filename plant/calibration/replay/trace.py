@@ -25,6 +25,7 @@ class Trace:
     torque: Array
     velocity: Array
     position: Array
+    ripple: Array | None = None  # N m that sampling at the PWM's edge adds to a replayed torque
 
 
 def measured(frame: Frame, rows: Mask, per_ampere: float) -> Trace:
@@ -68,15 +69,20 @@ def drive_again(
         adc_counts_per_A=1.0 / scale["adc_A_per_count"],
     )
     count = scale["velocity_arcsec_per_count"] / scale["velocity_window_s"]
+    per = scale["adc_A_per_count"]
+    peaks = [
+        _ripple(model, axis, adc, log.truth[d]) for adc, d in ((log.adc_a, "duty_a"), (log.adc_b, "duty_b"))
+    ]
     ampere = [
-        _mean_current(model, axis, adc, log.truth[f"duty_{key}"], scale["adc_A_per_count"])
-        for key, adc in (("a", log.adc_a), ("b", log.adc_b))
+        np.where(adc > 0, (adc + 0.5) * per - peak, 0.0)
+        for adc, peak in zip((log.adc_a, log.adc_b), peaks, strict=True)
     ]
     turned = np.unwrap(log.position, period=2.0**29)
     return Trace(
         per_ampere * (ampere[0] - ampere[1]),
         log.velocity * count,
         turned * scale["position_arcsec_per_count"],
+        per_ampere * (peaks[0] - peaks[1]),
     )
 
 
@@ -102,12 +108,11 @@ def ticks(wanted: Array) -> Array:
     return out
 
 
-def _mean_current(model: PlantModel, axis: str, adc: Array, duty: Array, per_count: float) -> Array:
-    """Counts as mean currents, A: less the PWM's ripple at the edge, and the half count rounded off."""
-    ripple = model.supply.voltage.si / (
-        2.0 * getattr(model.axes, axis).motor.inductance.si * model.controller.pwm_frequency.si
-    )
-    return np.where(adc > 0, (adc + 0.5) * per_count - ripple * duty * (1.0 - duty), 0.0)
+def _ripple(model: PlantModel, axis: str, adc: Array, duty: Array) -> Array:
+    """What the PWM's ripple adds to a current at the sampling edge, A, where the reading is not zero."""
+    inductance = getattr(model.axes, axis).motor.inductance.si
+    size = model.supply.voltage.si / (2.0 * inductance * model.controller.pwm_frequency.si)
+    return np.where(adc > 0, size * duty * (1.0 - duty), 0.0)
 
 
 def model_for_run(
