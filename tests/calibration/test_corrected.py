@@ -20,6 +20,7 @@ from plant.calibration.corrected.lines import nearest_place
 from plant.calibration.corrected.making import Facts
 from plant.calibration.decide.finding import Curve, Finding, Parameter
 from plant.calibration.decide.select import select
+from plant.calibration.declaredplant import declared_numbers
 from plant.calibration.plantfile import correct, declared_model
 from plant.calibration.readers.axis import read_axis_log
 from plant.effects import NAMES
@@ -231,8 +232,9 @@ def test_a_smooth_torque_over_the_angle_comes_back_as_an_unknown_within_its_unce
     true = Function("torque", "axis_angle", "cubic", 0.0, tuple(zip(x, smooth(x), strict=True)), "a test")
     plain = with_effects(load(), "ra", ())
     paths = logs(tmp_path, with_effects(plain, "ra", [EffectModel("unknown", function=true)]))
-    frame = build_frame([read_axis_log(p) for p in paths])
-    t = torque_problem(frame, 0.39 * RATIO, frame.run == 3)
+    runs = [read_axis_log(p) for p in paths]
+    frame = build_frame(runs)
+    t = torque_problem(frame, 0.39 * RATIO, frame.run == 3, declared_numbers(runs, None))
     assert t is not None
     columns = spline_columns(t.context.angle, 16)
     labels = tuple((f"knot_{k}", "N m") for k in range(columns.shape[1]))

@@ -56,7 +56,8 @@ def correct_and_replay(
     )
     per_ampere = result.torque.per_ampere if result.torque is not None else 0.0
     e = result.selections.get("E")
-    mean = e is not None and "current_ripple" in [name for name, _ in e.problem.base_labels]
+    mean = result.declared.ripple is not None
+    mean |= e is not None and "current_ripple" in [name for name, _ in e.problem.base_labels]
     return replay(result.frame, result.held, axis, declared, corrected, per_ampere, mean), remarks
 
 

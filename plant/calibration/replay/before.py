@@ -10,6 +10,7 @@ from plant.calibration.axis import AxisResult
 from plant.calibration.corrected.making import wrapped
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
+from plant.calibration.declaredplant import PERIODIC
 from plant.calibration.statistics.regression import Fit
 from plant.model import PlantModel, with_effects
 from plant.parts import Number
@@ -73,11 +74,18 @@ def with_declared_lines(model: PlantModel, axis: str, result: AxisResult, fit: F
     labels = [name for name, _ in t.problem.base_labels]
     effects = []
     for effect in getattr(model.axes, axis).effects:
-        label = f"declared {effect.stage} {effect.harmonic}"
-        if (effect.name, effect.stage, effect.harmonic) in result.declared.lines and label in labels:
+        stage = effect.stage or PERIODIC.get(effect.name)
+        label = f"declared {stage} {effect.harmonic}"
+        if (
+            effect.enabled
+            and (effect.name, stage, effect.harmonic) in result.declared.lines
+            and label in labels
+        ):
             c, s = fit.beta[labels.index(label) : labels.index(label) + 2]
-            # the motors' counter-torque c cos + s sin, as a sine on the axis
-            sizes = {"amplitude": float(np.hypot(c, s)), "phase": wrapped(np.arctan2(-s, c) - np.pi / 2)}
+            # the motors' counter-torque c cos + s sin as a sine on the axis; imbalance: cos(angle - phase)
+            shift = float(np.arctan2(-s, c))
+            phase = np.pi - shift if effect.name == "gravity_imbalance" else shift - np.pi / 2
+            sizes = {"amplitude": float(np.hypot(c, s)), "phase": wrapped(phase)}
             numbers = {
                 name: Number(value, "N m" if name == "amplitude" else "rad", "re-calibrated")
                 for name, value in sizes.items()
