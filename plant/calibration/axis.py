@@ -34,7 +34,7 @@ from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.holdout import choose_held_out
 from plant.calibration.decide.parameters import finding_of
-from plant.calibration.decide.select import Selection, design, select
+from plant.calibration.decide.select import FEWEST_BLOCKS, Selection, design, select
 from plant.calibration.decide.sizes import largest_amplitude, white_noise
 from plant.calibration.decide.tolerance import compliance_change, seen_speeds, telling, torque_changes
 from plant.calibration.declaredplant import Declared, declared_numbers
@@ -51,6 +51,7 @@ FINE_MARGIN = (
 LEAST_COMMAND = (
     0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
 )
+SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
 
@@ -103,7 +104,10 @@ def analyse(
         )
         result.selections["E"] = s
         mean_currents(frame, e, s.after.beta)
-        per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
+        if float(np.sqrt(s.after.covariance[1, 1])) < SURE_CONSTANT * abs(float(s.after.beta[1])):
+            per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
+        else:  # one speed: resistance and torque constant are not apart, and the constant scales every torque
+            per_ampere = K_DECLARED * frame.scale["gear_ratio"]
         _collect(result, s)
     tell("encoder channels")
     result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)
@@ -239,7 +243,8 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     s = select(p, candidates, rng)
     result.selections["T"] = s
     _collect(result, s)
-    blowing = wind(s.after.residual, p, white_noise(s.after.residual, p))
+    enough = p.train.sum() >= FEWEST_BLOCKS * p.block
+    blowing = wind(s.after.residual, p, white_noise(s.after.residual, p)) if enough else None
     if blowing is not None:
         result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
         result.findings.append(blowing)
@@ -250,7 +255,7 @@ def _torque(result: AxisResult, per_ampere: float, clock: Array, rng: np.random.
     x = design(everything, [k.candidate for k in s.chosen])
     all_rows = gls(p.y, x, everything.train, p.ar_order, p.block)
     seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
-    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared, seen)
+    found, calibrated = torque_changes(torque, all_rows, x[everything.train], result.declared, seen)
     found = telling(found, everything, x, result.declared, torque.friction)
     result.findings += found
     result.calibrated |= calibrated

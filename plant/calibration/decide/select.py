@@ -27,6 +27,9 @@ LEAST_EVIDENCE = (
 BURST = 0.05
 WORSE = 0.001  # of the held-out mean square: rounding, not harm
 MOST = 5  # effects per channel
+# of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
+# short logs would be named with confidence they do not have
+FEWEST_BLOCKS = 20
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,16 @@ def select(
     steps: list[HeldOut] = []
     refused: list[Refusal] = []
     left = list(candidates)
+    blocks = problem.train.sum() / problem.block
+    if left and blocks < FEWEST_BLOCKS:
+        refused.append(
+            Refusal(
+                "every candidate",
+                f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
+                f" an interval needs {FEWEST_BLOCKS}",
+            )
+        )
+        left = []
     first: Look | None = None
     while len(picks) < most and left:
         base = design(problem, [p.candidate for p in picks])

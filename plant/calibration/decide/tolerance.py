@@ -16,7 +16,7 @@ from plant.calibration.channels.declared import Friction
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import Torque
 from plant.calibration.decide.finding import Finding, Parameter
-from plant.calibration.decide.select import Selection
+from plant.calibration.decide.select import FEWEST_BLOCKS, Selection
 from plant.calibration.declaredplant import Declared
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
@@ -28,6 +28,32 @@ TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an es
 SIGMA_TOLERANCE = (
     2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
 )
+
+
+# of a parameter's variance by the other columns (1 / (1 - R squared)): beyond it the motion does not hold the
+# number apart from the others, and the linear correction of the friction curve is no correction
+INFLATION = 100.0
+COLUMNS = (
+    "inertia",
+    "viscous",
+    "coulomb",
+    "stiction",
+    "stribeck_speed",
+    "sigma_0",
+)  # the base's first columns
+LARGEST_CORRECTION = 3.0  # of a logarithm: only keeps the number finite where INFLATION refuses it anyway
+
+
+def inflation(x: Array) -> Array:
+    """Variance inflation of every column of x (n, p); infinite for a column of zeros."""
+    size = np.linalg.norm(x, axis=0)
+    z = x / np.where(size > 0, size, 1.0)
+    out = np.full(x.shape[1], np.inf)
+    for k in np.flatnonzero(size > 0):
+        others = np.delete(z, k, axis=1)
+        rest = z[:, k] - others @ np.linalg.lstsq(others, z[:, k], rcond=None)[0]
+        out[k] = 1.0 / max(float(rest @ rest), 1e-12)
+    return out
 
 
 def beyond(value: float, error: float, declared: float, factor: float, sure: float = 5.0) -> bool:
@@ -67,13 +93,14 @@ def seen_speeds(rate: Array, d: Declared) -> Seen:
 
 
 def torque_changes(
-    torque: Torque, after: Fit, rows: int, d: Declared, seen: Seen
+    torque: Torque, after: Fit, used: Array, d: Declared, seen: Seen
 ) -> tuple[list[Finding], dict[str, Parameter]]:
     """Friction findings beyond tolerance, and every calibrated parameter with its interval.
 
-    `after` is a fit whose first columns are the torque problem's base, on `rows` rows, whose speeds are
-    `seen`.
+    `after` is a fit whose first columns are the torque problem's base; `used` (rows, p) are its columns on the
+    fitted rows, whose speeds are `seen`.
     """
+    rows = len(used)
     beta, cov = after.beta, after.covariance
     error = np.sqrt(np.maximum(np.diag(cov), 0.0))
     blocks = max(rows // torque.problem.block, 5)
@@ -85,7 +112,8 @@ def torque_changes(
         "speed": (np.log(f.stribeck_speed), 4),
         "stiffness": (np.log(f.stiffness), 5),
     }
-    moved = {k: (v + (beta[i] - 0.0), error[i]) for k, (v, i) in logs.items()}
+    limit = LARGEST_CORRECTION
+    moved = {k: (v + float(np.clip(beta[i], -limit, limit)), error[i]) for k, (v, i) in logs.items()}
     ratio, speed, stiffness = (float(np.exp(moved[k][0])) for k in ("ratio", "speed", "stiffness"))
     stiction = coulomb * ratio
     stiction_error = stiction * float(np.hypot(moved["ratio"][1], error[2] / max(coulomb, 1e-9)))
@@ -105,6 +133,11 @@ def torque_changes(
         "stribeck_speed": span(speed, speed_error, "rad/s"),
         "sigma_0": span(sigma_0, sigma_error, "N m/rad"),
     }
+    apart = inflation(used[:, : len(COLUMNS)]) < INFLATION
+    for name in (n for n, good in zip(COLUMNS, apart, strict=True) if not good):
+        del calibrated[name]
+    if rows < FEWEST_BLOCKS * torque.problem.block or coulomb <= 0 or not all(apart[1:4]):
+        return [], calibrated
     found = []
     if seen.sliding and beyond(coulomb, float(error[2]), d.coulomb, TOLERANCE):
         found.append(
@@ -126,7 +159,7 @@ def torque_changes(
                 evidence=_evidence(float(beta[1]), d.viscous, float(error[1])),
             )
         )
-    known = seen.dip and stiction_error < 0.1 * stiction and speed_error < 0.15 * speed
+    known = seen.dip and apart[4] and stiction_error < 0.1 * stiction and speed_error < 0.15 * speed
     if known and (
         beyond(stiction, stiction_error, d.stiction, TOLERANCE)
         or beyond(speed, speed_error, d.stribeck_speed, TOLERANCE)
@@ -143,7 +176,7 @@ def torque_changes(
                 evidence=_evidence(stiction, d.stiction, stiction_error),
             )
         )
-    if sigma_error < 0.2 * sigma_0 and beyond(sigma_0, sigma_error, d.sigma_0, SIGMA_TOLERANCE):
+    if apart[5] and sigma_error < 0.2 * sigma_0 and beyond(sigma_0, sigma_error, d.sigma_0, SIGMA_TOLERANCE):
         found.append(
             Finding(
                 "presliding",
@@ -201,7 +234,7 @@ def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Friction
 def compliance_change(selection: Selection, d: Declared) -> tuple[list[Finding], dict[str, Parameter]]:
     """Stiffness of one train from the wind-up line."""
     value, error = float(selection.after.beta[0]), float(np.sqrt(selection.after.covariance[0, 0]))
-    if value <= 0:
+    if value <= 0 or selection.problem.train.sum() < FEWEST_BLOCKS * selection.problem.block:
         return [], {}
     blocks = max(int(selection.problem.train.sum() / selection.problem.block), 5)
     stiffness, spread = 1 / value, error / value**2
