@@ -104,10 +104,10 @@ def analyse(
         )
         result.selections["E"] = s
         mean_currents(frame, e, s.after.beta)
-        if float(np.sqrt(s.after.covariance[1, 1])) < SURE_CONSTANT * abs(float(s.after.beta[1])):
-            per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
-        else:  # one speed: resistance and torque constant are not apart, and the constant scales every torque
-            per_ampere = K_DECLARED * frame.scale["gear_ratio"]
+        constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
+        if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
+            constant = numbers.torque_constant
+        per_ampere = constant * frame.scale["gear_ratio"]
         _collect(result, s)
     tell("encoder channels")
     result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)

@@ -97,8 +97,8 @@ def torque_changes(
 ) -> tuple[list[Finding], dict[str, Parameter]]:
     """Friction findings beyond tolerance, and every calibrated parameter with its interval.
 
-    `after` is a fit whose first columns are the torque problem's base; `used` (rows, p) are its columns on the
-    fitted rows, whose speeds are `seen`.
+    `after` is a fit whose first columns are the torque problem's base; `used` (rows, p) are its columns on
+    the fitted rows, whose speeds are `seen`.
     """
     rows = len(used)
     beta, cov = after.beta, after.covariance
