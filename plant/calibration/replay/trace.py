@@ -6,12 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from plant.calibration.candidates.axis_torque import start_clock
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.readers.drive import ARCSEC
 from plant.calibration.readers.run import Array
 from plant.calibration.replay.gains import Gains
 from plant.calibration.statistics.whitening import Mask
+from plant.effects.evaluate import signals
 from plant.effects.rows import values
+from plant.effects.signals import ANGLE, CURRENT, MOTOR, RATE, TIME
 from plant.model import PlantModel, with_effects, with_value
 
 LEAD_ROWS = 5  # rows driven by the logged effort before the loop closes: its integrator then starts as logged
@@ -66,6 +69,7 @@ def drive_again(
         start_steps=float(position[0]) / per_count + 0.5,
         start_rate=rate / ARCSEC if abs(rate) > LEAST_RATE else 0.0,
         start_s=start_s,
+        history=before_start(frame, rows),
         adc_counts_per_A=1.0 / scale["adc_A_per_count"],
     )
     count = scale["velocity_arcsec_per_count"] / scale["velocity_window_s"]
@@ -84,6 +88,25 @@ def drive_again(
         turned * scale["position_arcsec_per_count"],
         per_ampere * (peaks[0] - peaks[1]),
     )
+
+
+def before_start(frame: Frame, rows: Mask) -> Array | None:
+    """Signal vectors (2 motors, n, VECTOR) of the session's rows before `rows`; None without any."""
+    first = int(np.flatnonzero(rows)[0])
+    clock = start_clock([r.header.get("start_utc", "") for r in frame.runs], frame.t, frame.run)
+    earlier = np.flatnonzero((frame.session == frame.session[first]) & (clock < clock[first]) & ~rows)
+    if len(earlier) < 2:
+        return None
+    earlier = earlier[np.argsort(clock[earlier], kind="stable")]
+    angle = fill(frame.columns["position"], frame.run)[0][earlier]
+    time = clock[earlier]
+    rate = np.gradient(angle) / np.maximum(np.gradient(time), frame.period_s)
+    parts = []
+    for motor, key in enumerate("ab"):
+        current = fill(frame.columns[f"current_{key}"], frame.run)[0][earlier]
+        columns = {TIME: time, ANGLE: angle, RATE: rate, CURRENT: current}
+        parts.append(signals(len(earlier), {**columns, MOTOR: np.full(len(earlier), float(motor))}))
+    return np.stack(parts)
 
 
 def _held(x: Array) -> Array:

@@ -8,7 +8,7 @@ from plant.calibration.replay.compare import residual
 from plant.calibration.replay.held import Replay
 from plant.calibration.report.plots import BLUE, GREY, RED, png
 
-WINDOW_S = 8.0  # what a page can show of a trace at 10 ms
+WINDOW_S = 2.0  # what a page can show of a trace at 10 ms
 
 
 def replay_picture(again: Replay) -> dict[str, str]:
@@ -24,13 +24,15 @@ def replay_picture(again: Replay) -> dict[str, str]:
     torque = np.isfinite(again.log.torque).any()
     channel, unit = ("torque", "N m") if torque else ("velocity", "arcsec/s")
     measured, before, after = (getattr(x, channel) for x in (again.log, again.before, again.after))
-    off = np.where(use, np.nan_to_num(before - measured) ** 2, 0.0)
+    off = np.where(use, np.nan_to_num(before - measured), 0.0)
     step = max(float(np.median(np.diff(t))), 1e-3)
     size = max(min(round(WINDOW_S / step), len(t)), 1)
-    sums = np.convolve(off, np.ones(size), "valid")
-    first = int(np.argmax(sums))
+    box = np.ones(size)
+    spread = size * np.convolve(off**2, box, "valid") - np.convolve(off, box, "valid") ** 2
+    whole = np.convolve(use, box, "valid") > 0.99 * size
+    first = int(np.argmax(np.where(whole, spread, 0.0)))
     part = slice(first, first + size)
-    top.plot(t[part], measured[part], color=GREY, lw=1.2, label="measured")
+    top.plot(t[part], measured[part], color=GREY, lw=2.6, alpha=0.7, label="measured")
     top.plot(t[part], before[part], color=RED, lw=0.8, label="declared model, closed loop run again")
     top.plot(t[part], after[part], color=BLUE, lw=0.8, label="corrected plant, closed loop run again")
     top.set(xlabel="time in the run, s", ylabel=f"motor {channel}, {unit}", title=f"Held-out run {again.run}")
