@@ -46,7 +46,7 @@ It holds out `{held}`, re-calibrates the declared model on the others, and answe
 
 "Before" is the declared model with its own parameters re-calibrated on the same runs; "floor" is what the
 sensors leave. "Closed loop run again" drives the held-out run's set points once more through either plant and
-compares with the log. The residual, over the phase of the order that explains it, on the rows that were fitted:
+compares with the log. The residual, over the phase of the order that explains it, on rows that were fitted:
 
 ![{residual_alt}](residual.png)
 
@@ -133,8 +133,8 @@ def page(report: dict[str, Any], plant: Path, alt: str) -> str:
             for e in others
         ),
         again="".join(
-            f"| closed loop run again, {channel} | {row['before']:.3g} {row['unit']} before, **{row['after']:.3g}** "
-            f"after, floor {row['floor']:.3g} |\n"
+            f"| closed loop run again, {channel} | {row['before']:.3g} {row['unit']} before, "
+            f"**{row['after']:.3g}** after, floor {row['floor']:.3g} |\n"
             for channel, row in report["closed_loop"].items()
         ),
         missing=", ".join(report["not_identifiable"]),

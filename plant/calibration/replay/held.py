@@ -75,7 +75,9 @@ def replay(
                 traces[key] = traces["before"]
                 continue
             try:
-                prepared, left = model_for_run(model, axis, run.scales, gains, start)
+                prepared, left = model_for_run(
+                    model, axis, run.scales, gains, start, frame.columns["temperature"][whole]
+                )
                 traces[key] = drive_again(prepared, axis, frame, whole, per_ampere, start)
                 if sampled:
                     traces[key] = as_sampled(traces[key])

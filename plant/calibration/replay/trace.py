@@ -17,6 +17,7 @@ from plant.effects.rows import values
 from plant.effects.signals import ANGLE, CURRENT, MOTOR, RATE, TIME
 from plant.model import PlantModel, with_effects, with_value
 
+SECONDS_PER = {"K/s": 1.0, "K/h": 3600.0}
 LEAD_ROWS = 5  # rows driven by the logged effort before the loop closes: its integrator then starts as logged
 LEAST_RATE = 3.0 * ARCSEC  # rad/s; slower, the axis is taken to start at rest
 
@@ -139,7 +140,12 @@ def _ripple(model: PlantModel, axis: str, adc: Array, duty: Array) -> Array:
 
 
 def model_for_run(
-    model: PlantModel, axis: str, scales: dict[str, float], gains: Gains | None, start_s: float
+    model: PlantModel,
+    axis: str,
+    scales: dict[str, float],
+    gains: Gains | None,
+    start_s: float,
+    temperature: Array | None = None,
 ) -> tuple[PlantModel, list[str]]:
     """The model with this run's supply, counter torque and gains, without what has no trace to repeat.
 
@@ -148,6 +154,13 @@ def model_for_run(
     """
     model = with_value(model, "supply.voltage", scales["supply_V"])
     model = with_value(model, "controller.counter_split", scales["counter_torque"])
+    if temperature is not None and np.isfinite(temperature).sum() > 1:
+        seen = np.flatnonzero(np.isfinite(temperature))
+        warming, start = np.polyfit(seen * scales["sample_period_s"], temperature[seen], 1)
+        model = with_value(model, "environment.temperature", start - warming * start_s)
+        model = with_value(
+            model, "environment.warming", warming * SECONDS_PER[model.environment.warming.unit]
+        )
     if gains is not None:
         model = with_value(model, "controller.kp", gains.kp)
         model = with_value(model, "controller.ki", gains.ki)

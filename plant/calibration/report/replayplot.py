@@ -36,7 +36,8 @@ def replay_picture(again: Replay) -> dict[str, str]:
     top.plot(t[part], before[part], color=RED, lw=0.8, label="declared model, closed loop run again")
     top.plot(t[part], after[part], color=BLUE, lw=0.8, label="corrected plant, closed loop run again")
     top.set(xlabel="time in the run, s", ylabel=f"motor {channel}, {unit}", title=f"Held-out run {again.run}")
-    top.legend(frameon=False, fontsize=8)
+    top.margins(y=0.25)
+    top.legend(frameon=False, fontsize=8, loc="upper center", ncol=3)
     for trace, color, name in ((again.before, RED, "declared"), (again.after, BLUE, "corrected")):
         e = residual("velocity", again.log, trace, use)
         low.plot(
