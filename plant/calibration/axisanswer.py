@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from plant.calibration.answers import calibrated, error_row, gate_rows, refusals
-from plant.calibration.axis import AxisResult, analyse
+from plant.calibration.axis import analyse
+from plant.calibration.axisresult import AxisResult
 from plant.calibration.corrected.making import Facts
 from plant.calibration.decide.controls import controls
 from plant.calibration.decide.finding import Finding

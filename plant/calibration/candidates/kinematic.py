@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from plant.calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
@@ -80,17 +82,21 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
         on = size > limit
         if not 0.002 < on.mean() < 0.6:
             continue
-        out.append(
-            Candidate(
-                "roller_slip",
-                "velocity",
-                (-w * on)[:, None],
-                (("creep", "1"),),
-                stage="roller",
-                fixed={"limit": (limit, "rad/s2")},
-                sign=1,
+        shape = _slip(w, acceleration)
+        for chatter in (0.1 * limit, 0.5 * limit, 2.0 * limit):
+            out.append(
+                Candidate(
+                    "roller_slip",
+                    "velocity",
+                    shape(np.array([limit, chatter])),
+                    (("creep", "1"),),
+                    stage="roller",
+                    fixed={"limit": (limit, "rad/s2"), "chatter": (chatter, "rad/s2")},
+                    sign=1,
+                    shape=shape,
+                    steps=(0.1 * limit, 0.2 * chatter),
+                )
             )
-        )
         over = np.sign(acceleration) * np.maximum(size - limit, 0.0) * arcsec
         out.append(
             Candidate(
@@ -131,6 +137,20 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
         )
     )
     return out
+
+
+def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
+    """Rate lost, per unit of creep, for p = (limit, rms of the acceleration within a row): the share of a
+    row's time beyond the limit."""
+
+    def shape(p: Array) -> Array:
+        from scipy.special import ndtr
+
+        limit, chatter = abs(float(p[0])), max(abs(float(p[1])), 1e-6)
+        share = ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter)
+        return np.asarray(-w * share)[:, None]
+
+    return shape
 
 
 def subdivision(c: Context, period_s: float) -> list[Candidate]:

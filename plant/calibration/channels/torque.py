@@ -72,9 +72,11 @@ def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]]) -> Array:
     return np.hstack(columns)
 
 
-def torque_problem(frame: Frame, per_ampere: float, held: Mask, declared: Declared) -> Torque | None:
+def torque_problem(
+    frame: Frame, per_ampere: float, held: Mask, declared: Declared, beside: Array | None = None
+) -> Torque | None:
     """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full
-    rate."""
+    rate; `beside` (n_analysis, k) are torques fitted beside friction, and no part of the base."""
     ia, ib = frame.get("current_a"), frame.get("current_b")
     if ia is None and ib is None:
         return None
@@ -90,8 +92,9 @@ def torque_problem(frame: Frame, per_ampere: float, held: Mask, declared: Declar
     y = per_ampere * m.at(fa - fb)
     test = held[pick]
     lines = declared_lines(m, declared.lines)
+    torques = lines if beside is None else np.hstack([lines, beside])
     friction, base, bristle = fit_friction(
-        m, y, rows & ~test, declared.start, declared.stribeck_exponent, lines
+        m, y, rows & ~test, declared.start, declared.stribeck_exponent, torques
     )
     labels = [
         ("inertia", "kg m2"),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plant.calibration.axis import AxisResult
+from plant.calibration.axisresult import AxisResult
 from plant.calibration.candidates.axis_torque import start_clock
 from plant.calibration.corrected.curves import curve_of
 from plant.calibration.corrected.making import Facts

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plant.calibration.axis import AxisResult
+from plant.calibration.axisresult import AxisResult
 from plant.calibration.corrected.making import wrapped
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
