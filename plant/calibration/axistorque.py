@@ -9,6 +9,7 @@ import numpy as np
 from plant.calibration.axisresult import AxisResult
 from plant.calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
 from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.channels.declared import uneven_columns
 from plant.calibration.channels.frame import fill
 from plant.calibration.channels.torque import Torque, torque_problem
 from plant.calibration.decide.broadband import wind
@@ -80,6 +81,7 @@ def _pass(
     effort = m.at(fill(frame.columns["effort"], frame.run)[0])
     f = axis_torque.Friction(
         m.at(torque.bristle) * torque.friction.coulomb,
+        uneven_columns(m, torque.friction, result.declared.stribeck_exponent),
         p.base[:, 3],
         m.rate[m.pick] * torque.friction.viscous,
         np.where(effort > 0, tb, ta),

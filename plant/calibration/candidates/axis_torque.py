@@ -21,6 +21,7 @@ class Friction:
     time s."""
 
     bristle: Array
+    uneven: Array  # N m per unit of asymmetry
     stiction: Array  # what the bristle changes per relative change of Ts
     viscous: Array
     lagging: Array  # torque of the motor that holds the counter torque, N m signed
@@ -46,12 +47,10 @@ def direction_effects(c: Context, f: Friction) -> list[Candidate]:
         Candidate(
             "friction_asymmetry",
             "velocity",
-            np.column_stack([np.abs(f.bristle), np.abs(f.viscous)]),
+            np.column_stack([f.uneven, np.abs(f.viscous)]),
             (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1")),
         ),
-        Candidate(
-            "friction_asymmetry", "velocity", np.abs(f.bristle)[:, None], (("coulomb_asymmetry", "1"),)
-        ),
+        Candidate("friction_asymmetry", "velocity", f.uneven[:, None], (("coulomb_asymmetry", "1"),)),
         Candidate("load_friction", "current", (f.sliding * np.abs(f.load))[:, None], (("mu", "1"),), sign=1),
         Candidate(
             "load_friction",

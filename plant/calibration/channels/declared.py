@@ -53,6 +53,17 @@ def shape_columns(m: Motion, p: Array, exponent: float = 2.0) -> Array:
     return bristle(m.theta, m.fresh, _dt(m), ratio, speed, stiffness, exponent)
 
 
+def uneven_columns(m: Motion, f: Friction, exponent: float) -> Array:
+    """Torque (n_analysis,) per unit of asymmetry of Tc and Ts, history included."""
+    h = 0.05
+
+    def shape(uneven: float) -> Array:
+        b = bristle(m.theta, m.fresh, _dt(m), f.ratio, f.stribeck_speed, f.stiffness, exponent, uneven)
+        return m.at(b)
+
+    return np.asarray((shape(h) - shape(-h)) / (2 * h) * f.coulomb)
+
+
 def _dt(m: Motion) -> float:
     return m.period_s / m.width
 

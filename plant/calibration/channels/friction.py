@@ -14,10 +14,18 @@ from plant.compiled import entry
 
 @entry
 def _bristle(
-    theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiffness: float, exponent: float
+    theta: Array,
+    fresh: Any,
+    dt: float,
+    ratio: float,
+    vs: float,
+    stiffness: float,
+    exponent: float,
+    uneven: float,
 ) -> Array:
     """Bristle torque over Coulomb torque, sigma_0 z / Tc, along the motion theta (n,), for g = 1 +
-    (ratio-1) e^-(w/vs)^exponent.
+    (ratio-1) e^-(w/vs)^exponent,
+    times 1 + uneven in the positive direction and 1 - uneven in the negative one.
 
     `stiffness` is sigma_0 / Tc in 1/rad. The update is exact for a constant rate within the step, and the
     increments
@@ -32,6 +40,7 @@ def _bristle(
         move = theta[k] - theta[k - 1]
         w = abs(move) / dt
         g = 1.0 + (ratio - 1.0) * np.exp(-((w / vs) ** exponent))
+        g *= 1.0 + uneven if move > 0 else 1.0 - uneven
         end = g if move > 0 else -g
         a = stiffness * abs(move) / g
         z = end + (z - end) * np.exp(-a)
@@ -40,7 +49,14 @@ def _bristle(
 
 
 def bristle(
-    theta: Array, fresh: Mask, dt: float, ratio: float, vs: float, stiffness: float, exponent: float = 2.0
+    theta: Array,
+    fresh: Mask,
+    dt: float,
+    ratio: float,
+    vs: float,
+    stiffness: float,
+    exponent: float = 2.0,
+    uneven: float = 0.0,
 ) -> Array:
     """See `_bristle`."""
-    return np.asarray(_bristle(theta, fresh, dt, ratio, vs, stiffness, exponent))
+    return np.asarray(_bristle(theta, fresh, dt, ratio, vs, stiffness, exponent, uneven))
