@@ -13,6 +13,7 @@ from plant.calibration.channels.declared import uneven_columns
 from plant.calibration.channels.frame import fill
 from plant.calibration.channels.torque import Torque, torque_problem
 from plant.calibration.decide.broadband import wind
+from plant.calibration.decide.finding import Finding
 from plant.calibration.decide.select import FEWEST_BLOCKS, Selection, design, select
 from plant.calibration.decide.sizes import white_noise
 from plant.calibration.decide.tolerance import seen_speeds, telling, torque_changes
@@ -23,6 +24,7 @@ from plant.calibration.statistics.whitening import Mask
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
 REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away
 LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training
+EXPLAINS = 0.4  # of the held-out mean square: what is left beside such an effect is its remainder
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
 
@@ -52,7 +54,7 @@ def torque_channel(result: AxisResult, per_ampere: float, clock: Array, rng: np.
     enough = p.train.sum() >= FEWEST_BLOCKS * p.block
     blowing = wind(s.after.residual, p, white_noise(s.after.residual, p)) if enough else None
     if blowing is not None:
-        result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
+        result.findings = [x for x in result.findings if x.channel != "T" or believed(x)]
         result.findings.append(blowing)
     # long rests say where the bristles were left, not what they are; and an exponent below 1 has a cusp at
     # rest, which needs slower speeds than the encoder resolves
@@ -63,7 +65,7 @@ def torque_channel(result: AxisResult, per_ampere: float, clock: Array, rng: np.
     seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
     found, calibrated = torque_changes(torque, all_rows, x[everything.train], result.declared, seen)
     found = telling(found, everything, x, result.declared, torque.friction)
-    result.findings += found
+    result.findings += found if enough else []
     result.calibrated |= calibrated
 
 
@@ -126,6 +128,11 @@ def _pass(
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
     return select(p, candidates, rng), whole, moving
+
+
+def believed(f: Finding) -> bool:
+    """Whether a torque effect stands beside a broadband torque, which may be no more than its remainder."""
+    return f.evidence > SURE_IN_WIND or f.share > EXPLAINS
 
 
 def left(s: Selection) -> float:

@@ -14,6 +14,9 @@ from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.friction import stop_operator
 from plant.calibration.readers.run import Array
 
+# of a current's gain error: one motor's torque is most of the torque, and would explain itself
+LARGEST_GAIN = 0.5
+
 
 @dataclass
 class Friction:
@@ -60,8 +63,8 @@ def direction_effects(c: Context, f: Friction) -> list[Candidate]:
             sign=1,
         ),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
-        Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),)),
-        Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),)),
+        Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),), most=LARGEST_GAIN),
+        Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),), most=LARGEST_GAIN),
     ]
 
 
