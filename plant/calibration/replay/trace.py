@@ -19,6 +19,7 @@ from plant.model import PlantModel, with_effects, with_value
 
 SECONDS_PER = {"K/s": 1.0, "K/h": 3600.0}
 LEAD_ROWS = 5  # rows driven by the logged effort before the loop closes: its integrator then starts as logged
+AT_REST = 3e-3  # of full effort: a log that starts with less starts with an empty integrator
 LEAST_RATE = 3.0 * ARCSEC  # rad/s; slower, the axis is taken to start at rest
 
 
@@ -58,7 +59,8 @@ def drive_again(
     effort, _ = fill(frame.columns["effort"][rows], frame.run[rows])
     wanted = ticks(_held(frame.columns["setpoint"][rows]) / ARCSEC)
     closed = np.isfinite(wanted)
-    wanted[: 2 * LEAD_ROWS] = np.nan
+    if abs(effort[0]) > AT_REST:
+        wanted[: 2 * LEAD_ROWS] = np.nan
     per_count = scale["position_arcsec_per_count"] * ARCSEC
     rate = float(position[min(LEAD_ROWS, len(position) - 1)] - position[0]) / LEAD_ROWS / frame.period_s
     log = simulate(
