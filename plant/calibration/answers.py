@@ -52,6 +52,11 @@ def errors(name: str, s: Selection, floor: float | None = None) -> dict[str, dic
     return {name: error_row(s, floor)} if np.isfinite(s.held.before) else {}
 
 
+def too_short(s: Selection, channel: str) -> list[str]:
+    """The reason when a channel holds too little to name anything."""
+    return [f"{channel}{r.why}" for r in s.refused if r.what == "every candidate"]
+
+
 def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]:
     """The declared model's parameters with intervals."""
     out = {}
@@ -103,7 +108,7 @@ def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer
         found.not_identifiable,
         controls(s, None, float(np.ptp(turns))) + _stage_controls(found),
         separating,
-        [],
+        too_short(s, "") + ([] if np.any(c.direction) else ["the position does not move"]),
         gate_rows({"T": s}),
         refusals({"T": s}),
     )

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from plant.calibration.answers import calibrated, error_row, gate_rows, refusals
+from plant.calibration.answers import calibrated, error_row, gate_rows, refusals, too_short
 from plant.calibration.axis import analyse
 from plant.calibration.axisresult import AxisResult
 from plant.calibration.corrected.making import Facts
@@ -78,7 +78,8 @@ def axis_answer(
     v.controls = _controls(result, effects)
     again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
     v.closed_loop = again.rows
-    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks]
+    short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
+    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
     pictures = _plots(result, effects) if plots else []
     if plots and again.log is not None:
         pictures.append(replay_picture(again))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from plant.calibration.answers import GATE, Answer, calibrated, errors, gate_rows, refusals
+from plant.calibration.answers import GATE, Answer, calibrated, errors, gate_rows, refusals, too_short
 from plant.calibration.decide.controls import _better, _flipped
 from plant.calibration.decide.merge import merge
 from plant.calibration.decide.select import Selection
@@ -40,7 +40,7 @@ def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: b
         found.not_identifiable,
         _worm_controls(found),
         separating,
-        list(dict.fromkeys([*(n for r in runs for n in r.notes), *found.notes])),
+        list(dict.fromkeys([*(n for r in runs for n in r.notes), *found.notes, *too_short(s, "")])),
         gate_rows({"position": s}),
         refusals({"position": s}),
     )

@@ -75,6 +75,7 @@ def _slowly(
             try:
                 out[name][count] = float(value)
             except ValueError:
-                raise CalibrationInputError(path, f"'{value}' is not a number", line, name) from None
+                hint = ": decimal commas? write points" if value.replace(",", "", 1).isdigit() else ""
+                raise CalibrationInputError(path, f"'{value}' is not a number{hint}", line, name) from None
         count += 1
     return {n: v[:count] for n, v in out.items()}
