@@ -27,6 +27,7 @@ _DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
 _SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
 COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
+MARKS = ("Mount", "AO", "DROP")
 _NEEDED = ("Time", "RARawDistance", "RAGuideDistance")
 
 
@@ -136,6 +137,10 @@ def _close(
                 path, f"{len(fields)} fields, the header row has {len(columns)}", line
             )
         mark = fields[where["mount"]].strip().strip('"')
+        if mark not in MARKS:
+            raise CalibrationInputError(
+                path, f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)", line, "mount"
+            )
         if mark != "Mount":
             drops += mark == "DROP"
             other.add(mark)
