@@ -36,14 +36,14 @@ def both_ways(*moves: tuple[float, float]) -> list[Move]:
 def rests() -> list[Move]:
     """Moves with a stop and a rest after each: the board holds, or is off, with gains of its own."""
     moves = []
-    for speed, time in ((3000, 8), (-600, 8), (7200, 8), (-7200, 8), (300, 8), (-3000, 8), (1500, 8)):
-        moves += [rate(speed, time), ("stop", {}), ("wait", {"for": "3 s"})]
+    for speed in (3000, -600, 7200, -7200, 300, -3000, 1500, -1500, 5400):
+        moves += [rate(speed, 13), ("stop", {}), ("wait", {"for": "3 s"})]
     return moves
 
 
 def efforts() -> list[Move]:
     """Loop open, both ways; shares of the supply on right ascension (declination gets six tenths)."""
-    levels = ((0.17, 8), (0.14, 8), (0.24, 10), (0.2, 8))
+    levels = ((0.17, 12), (0.14, 12), (0.24, 14), (0.2, 12))
     moves: list[Move] = []
     for sign in (1, -1):
         moves += [("open_loop", {"effort": sign * e, "for": f"{t} s"}) for e, t in levels]
@@ -55,7 +55,7 @@ def efforts() -> list[Move]:
     ]
 
 
-RATES = both_ways((15, 10), (200, 8), (600, 8), (3600, 8), (7200, 10), (30, 4), (1500, 8), (5400, 8))
+RATES = both_ways((60, 10), (200, 10), (600, 10), (3600, 10), (7200, 12), (30, 4), (1500, 10), (5400, 10))
 FIRST = both_ways((1500, 10), (300, 8), (6600, 10), (60, 8))
 SECOND = both_ways((1000, 10), (4800, 10), (120, 8), (7200, 8))
 
@@ -151,6 +151,8 @@ def test_what_was_added_is_named_and_nothing_else(
 ) -> None:
     assert calibrate(logs(drive, axis), out=tmp_path, plots=False) == 0
     report = json.loads((tmp_path / "report.json").read_text())
+    too_short = [x for x in report["refused"] if "independent blocks" in x["why"]]
+    assert not too_short, "a log that is too short for any name proves nothing"
     assert [e["name"] for e in report["effects"]] == ([] if name is None else [name]), report["effects"]
     if parameter is not None:
         found = report["effects"][0]["parameters"][parameter[0]]["value"]
