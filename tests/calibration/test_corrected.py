@@ -183,6 +183,13 @@ def test_lines_of_a_motor_know_that_its_angle_lies_half_the_play_off(motor: int)
         assert np.allclose(pushed, -size * np.cos(37 * seen + 1.0), atol=1e-9)
 
 
+def test_a_line_of_both_motors_is_one_effect_of_each() -> None:
+    numbers = {"amplitude": 0.03, "phase": 1.0, "amplitude_2": 0.01, "phase_2": 0.5}
+    made = convert(finding("motor_cogging", stage="motor", harmonic=33, **numbers), FACTS)
+    found = [(e.parameters["motor"].si, e.parameters["amplitude"].si) for e in made.effects]
+    assert found == [(1.0, 0.03), (2.0, 0.01)] and made.remarks == []
+
+
 def test_a_line_of_friction_keeps_its_phase_where_the_axis_was() -> None:
     found = finding("position_friction", order=123.4, amplitude=5.0, phase=1.0)
     (made,) = convert(found, FACTS).effects

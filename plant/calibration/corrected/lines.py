@@ -70,17 +70,20 @@ def bearing(f: Finding, facts: Facts) -> Made:
 
 
 def motor(f: Finding, facts: Facts) -> Made:
-    """motor_cogging and torque_ripple: over the angle of a motor, which lies half the play off the axis'."""
+    """motor_cogging and torque_ripple: over the angle of a motor, which lies half the play off the axis'.
+
+    A finding without a motor has motor A's wave first and motor B's second.
+    """
     made, number, cycles = Made(), motor_of(f), float(f.harmonic or 1)
-    side = 0.0 if number is None else 1.0 - 2.0 * number
-    shift = -cycles * side * facts.half_play
-    values = {"cycles": cycles, "motor": 0.0 if number is None else number + 1.0}
-    if f.name == "motor_cogging":
-        values |= {"amplitude": value(f, "amplitude"), "phase": value(f, "phase") - TURN + shift}
-    else:
-        values |= {"ripple": value(f, "ripple"), "phase": value(f, "phase") + np.pi + shift}
-    made.add(f.name, facts, values)
-    if number is None:
+    size = "amplitude" if f.name == "motor_cogging" else "ripple"
+    turn = -TURN if f.name == "motor_cogging" else np.pi
+    second = f"{size}_2" in f.parameters
+    for motor, word in ((0, ""), (1, "_2")) if number is None and second else ((number, ""),):
+        side = 0.0 if motor is None else 1.0 - 2.0 * motor
+        phase = value(f, "phase" + word) + turn - cycles * side * facts.half_play
+        values = {"cycles": cycles, size: value(f, size + word), "phase": phase}
+        made.add(f.name, facts, values | {"motor": 0.0 if motor is None else motor + 1.0})
+    if number is None and not second:
         made.remarks.append(f"{f.name}: the log does not say on which motor, written to both")
     return made
 
