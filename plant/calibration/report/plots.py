@@ -201,7 +201,7 @@ def trace_plot(selection: Selection, title: str) -> str:
     t, run = p.t[rows], p.run[rows]
     gap = (np.diff(t) > 5 * p.period_s) | (np.diff(t) < 0) | (np.diff(run) != 0)
     step = np.where(gap, 0.0, np.diff(t))
-    space = 0.02 * float(step.sum())
+    space = min(0.02, 0.1 / max(gap.sum(), 1)) * float(step.sum())
     at = np.concatenate([[0.0], np.cumsum(np.where(gap, space, step))])
     fig, ax = figure()
     for e, color, name in ((before, GREY, "before"), (after, BLUE, "after")):
@@ -212,7 +212,7 @@ def trace_plot(selection: Selection, title: str) -> str:
     if gap.sum() <= 12:
         for place in np.flatnonzero(gap):
             ax.axvline((at[place] + at[place + 1]) / 2, color=GREY, lw=0.7, ls=":")
-    closed = " (gaps closed, dotted)" if gap.any() else ""
+    closed = " (rows left out are not drawn to scale)" if gap.any() else ""
     ax.set(xlabel=f"time in the held-out span{'s' if gap.any() else ''}, s{closed}")
     ax.set(ylabel=f"residual, {p.unit}")
     finish(ax, title)
