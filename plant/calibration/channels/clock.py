@@ -211,8 +211,8 @@ def _stops(x: Array, name: str, effort: Array) -> str:
     if name.startswith("tach"):
         return ""  # a count or two at constant speed pile up by themselves
     for end, inward in ((x.max(), -1.0), (x.min(), 1.0)):
-        if end == 0 or (name.startswith("adc") and end >= 1023):
-            continue
+        if end == 0 or (name.startswith("adc") and (end >= 1023 or inward > 0)):
+            continue  # a motor that pulls one way only has a lowest current
         power = np.log2(abs(end) + (1 if end > 0 else 0))
         if name == "velocity" and abs(power - round(power)) > 1e-9:
             continue  # a constant speed piles up too: only an end of a power of two is a stop
