@@ -12,6 +12,7 @@ from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
 from plant.calibration.declaredplant import PERIODIC
 from plant.calibration.statistics.regression import Fit
+from plant.effects import REGISTRY
 from plant.model import PlantModel, with_effects
 from plant.parts import Number
 
@@ -81,7 +82,12 @@ def with_declared_lines(model: PlantModel, axis: str, result: AxisResult, fit: F
             and (effect.name, stage, effect.harmonic) in result.declared.lines
             and label in labels
         ):
-            c, s = fit.beta[labels.index(label) : labels.index(label) + 2]
+            at = slice(labels.index(label), labels.index(label) + 2)
+            c, s = fit.beta[at]
+            most = next(p.high for p in REGISTRY[effect.name].parameters if p.name == "amplitude")
+            if np.hypot(c, s) > most or np.trace(fit.covariance[at, at]) > np.hypot(c, s) ** 2:
+                effects.append(effect)  # this motion does not tell it: it stays as declared
+                continue
             # the motors' counter-torque c cos + s sin as a sine on the axis; imbalance: cos(angle - phase)
             shift = float(np.arctan2(-s, c))
             phase = np.pi - shift if effect.name == "gravity_imbalance" else shift - np.pi / 2
