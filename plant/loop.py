@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.effects import structural_mode
+from plant.effects import cable_wrap, structural_mode, unknown, winding_heating
+from plant.effects.evaluate import values_over
 from plant.effects.rows import KINDS
 from plant.gears import ARCSEC, TURN
 from plant.kernels import control as at_control
@@ -55,6 +56,9 @@ TRUTH_COLUMNS = (
 )
 
 
+LASTING = [KINDS[effect.formula] for effect in (cable_wrap, unknown, winding_heating)]
+
+
 @dataclass(frozen=True)
 class LogColumns:
     """Columns of the axis log (units as in log-format.md: raw counts), and the truth beside them.
@@ -87,15 +91,19 @@ def simulate(
     seed: int = 0,
     start_steps: float = 0.0,
     start_rate: float = 0.0,
+    start_s: float = 0.0,
+    history: Floats | None = None,
     adc_counts_per_A: float = ADC_COUNTS_PER_A,
 ) -> LogColumns:
     """Run `axis` (`ra` or `dec`) for `duration` s and return its log.
 
-    setpoint: arcsec/s, a number or one value per 10 ms sample (closed loop where it is not NaN). effort:
-    1/3000 of the supply, a number or one value per sample (open loop where there is no set point; between
-    samples the mean of two, as a logged effort needs). start_steps: absolute encoder; start_rate: arcsec/s,
-    both motors and the bristle following. Raises ValueError for shapes that do not fit, or when neither is
-    given.
+    setpoint: arcsec/s, a number, one value per 10 ms sample or one per 5 ms tick (closed loop where it is not
+    NaN). effort: 1/3000 of the supply, a number or one value per sample (open loop where there is no set
+    point; between samples the mean of two, as a logged effort needs). start_steps: absolute encoder;
+    start_rate: arcsec/s, both motors and the bristle following. start_s: time on the plant's clock of the
+    first sample, for effects that know the time. history: signal vectors (2 motors, n, VECTOR) of the motion
+    before the start (plant/effects/signals.py), which give cables, stops and windings their state. Raises
+    ValueError for shapes that do not fit, or when neither is given.
     """
     if axis not in AXES:
         raise ValueError(f"simulate: axis '{axis}' is not known; expected ra or dec")
@@ -110,10 +118,16 @@ def simulate(
         _start(w, start_rate * ARCSEC)
     settings = _settings(model, part, adc_counts_per_A)
     w[at.DELAY_ON] = float(settings[at_control.DELAYS :].any())
+    w[at.STEP] = round(start_s / w[at.GRID])
+    if history is not None:
+        _remember(w, history)
     advance(w.reshape(1, -1), 0)
+    ring = w[at.DELAYS : at.DELAYS + at.OUT_SIZE * at.DELAY_ROWS].reshape(at.DELAY_ROWS, at.OUT_SIZE)
+    ring[:] = w[at.OUT : at.OUT + at.OUT_SIZE]  # before the start the readings were those of the start
+    ring[:, 1 : at.OUT_CURRENT_A : 2] = 0.0
 
     counts = part.encoders.incremental.si * part.encoders.roller_ratio.si * model.controller.period.si
-    wanted = np.repeat(_column(setpoint, rows, np.nan, "setpoint"), 2)
+    wanted = _ticks(setpoint, rows)
     ticks = np.rint(wanted * ARCSEC / TURN * counts * 65536.0)
     log = np.zeros((rows, at_control.LOG_SIZE))
     truth = np.zeros((rows, at_control.TRUTH_SIZE))
@@ -126,6 +140,13 @@ def simulate(
     columns = {name: np.ascontiguousarray(log[:, k]) for k, name in enumerate(LOG_COLUMNS)}
     beside = {name: np.ascontiguousarray(truth[:, k]) for k, name in enumerate(TRUTH_COLUMNS)}
     return LogColumns(truth=beside, **columns)
+
+
+def _ticks(setpoint: float | Floats | None, rows: int) -> Floats:
+    """Return the set point of every control tick, two per sample."""
+    if setpoint is not None and np.shape(setpoint) == (2 * rows,):
+        return np.array(setpoint, dtype=float)
+    return np.repeat(_column(setpoint, rows, np.nan, "setpoint"), 2)
 
 
 def _column(given: float | Floats | None, rows: int, absent: float, name: str) -> Floats:
@@ -164,6 +185,17 @@ def _settings(model: PlantModel, part: AxisModel, adc: float) -> Floats:
     s[at_control.AMPERE] = adc
     s[at_control.DELAYS :] = [delay * 1e-9 for delay in delays_ns(part).values()]
     return s
+
+
+def _remember(w: Floats, history: Floats) -> None:
+    """Take the effects that keep a state of their own through the motion before the start."""
+    out = np.zeros(history.shape[1])
+    for r in range(int(w[at.ROWS_ALL])):
+        row = w[at.EFFECTS + r * at.ROW : at.EFFECTS + (r + 1) * at.ROW]
+        if row[at.ROW_KIND] in LASTING:
+            motors = history if row[at.ROW_KIND] == KINDS[winding_heating.formula] else history[:1]
+            for rows in motors:
+                values_over(int(row[at.ROW_KIND]), rows, row[at.ROW_MEMORY :], out)
 
 
 def _start(w: Floats, rate: float) -> None:

@@ -125,7 +125,7 @@ def _plain(part: Any) -> Any:
                 "period": f.period,
                 "source": f.source,
                 "knots": [[x, y] for x, y in f.knots],
-            }
+            } | ({"motor": f.motor} if f.motor else {})
         return effect
     if isinstance(part, tuple):
         return [_plain(child) for child in part]

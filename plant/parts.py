@@ -111,7 +111,10 @@ class Encoders:
 
 @dataclass(frozen=True)
 class Function:
-    """A smooth function found in data (effect `unknown`): knots (x, y) in SI units."""
+    """A smooth function found in data (effect `unknown`): knots (x, y) in SI units.
+
+    `motor`: of a target that belongs to a motor, 0 both, 1 A, 2 B.
+    """
 
     target: str
     domain: str
@@ -119,6 +122,7 @@ class Function:
     period: float
     knots: tuple[tuple[float, float], ...]
     source: str
+    motor: int = 0
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import yaml
 from plant.effects import REGISTRY
 from plant.effects.base import STAGES, Effect
 from plant.effects.targets import DOMAINS, TARGETS
+from plant.effects.unknown import KINDS, STOPS
 from plant.parts import AxisModel, EffectModel, Function, Number
 from plant.units import UNITS, factor
 
@@ -193,20 +194,23 @@ class Reader:
 
     def function(self, node: yaml.Node, path: str) -> Function:
         """Return the function of an `unknown` effect."""
-        given = self.fields(node, path, ["target", "domain", "knots", "source"], ["interpolation", "period"])
+        optional = ["interpolation", "period", "motor"]
+        given = self.fields(node, path, ["target", "domain", "knots", "source"], optional)
         target = self.choice(given["target"], path + ".target", list(TARGETS))
         domain = self.choice(given["domain"], path + ".domain", list(DOMAINS))
         kind = (
-            self.choice(given["interpolation"], path + ".interpolation", ["linear", "cubic"])
+            self.choice(given["interpolation"], path + ".interpolation", list(KINDS))
             if "interpolation" in given
             else "cubic"
         )
         period = self.real(given["period"], path + ".period") if "period" in given else 0.0
+        motor = int(self.choice(given["motor"], path + ".motor", ["0", "1", "2"])) if "motor" in given else 0
         rows = given["knots"]
-        if not isinstance(rows, yaml.SequenceNode) or not 1 <= len(rows.value) <= MAX_KNOTS:
-            raise self.fail(
-                rows, path + ".knots", f"expected a list of 1 to {MAX_KNOTS} pairs [x, y], SI units"
-            )
+        if kind == "stop" and domain != "axis_angle":
+            raise self.fail(given["domain"], path + ".domain", "a sum of stops follows the axis_angle")
+        most = STOPS if kind == "stop" else MAX_KNOTS
+        if not isinstance(rows, yaml.SequenceNode) or not 1 <= len(rows.value) <= most:
+            raise self.fail(rows, path + ".knots", f"expected a list of 1 to {most} pairs [x, y], SI units")
         knots: list[tuple[float, float]] = []
         for k, row in enumerate(rows.value):
             here = f"{path}.knots.{k}"
@@ -215,7 +219,9 @@ class Reader:
             x, y = (self.real(cell, here) for cell in row.value)
             if knots and x <= knots[-1][0]:
                 raise self.fail(row, here, "knots must rise in x")
+            if kind == "stop" and x <= 0.0:
+                raise self.fail(row, here, "the radius of a stop must be above zero")
             knots.append((x, y))
         return Function(
-            target, domain, kind, period, tuple(knots), self.scalar(given["source"], path + ".source")
+            target, domain, kind, period, tuple(knots), self.scalar(given["source"], path + ".source"), motor
         )

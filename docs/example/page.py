@@ -42,10 +42,11 @@ It holds out `{held}`, re-calibrates the declared model on the others, and answe
 | name | {name} |
 | parameters | {parameters} |
 | held-out torque error | {before} N m before, **{after} N m** after, floor {floor} N m |
-{others}| not identifiable from these runs | {missing} |
+{again}{others}| not identifiable from these runs | {missing} |
 
 "Before" is the declared model with its own parameters re-calibrated on the same runs; "floor" is what the
-sensors leave. The residual, over the phase of the order that explains it, on the rows that were fitted:
+sensors leave. "Closed loop run again" drives the held-out run's set points once more through either plant and
+compares with the log. The residual, over the phase of the order that explains it, on rows that were fitted:
 
 ![{residual_alt}](residual.png)
 
@@ -130,6 +131,11 @@ def page(report: dict[str, Any], plant: Path, alt: str) -> str:
         others="".join(
             f"| also named | {in_words(e['name'], e['stage'], e['harmonic'])}, domain {e['domain']} |\n"
             for e in others
+        ),
+        again="".join(
+            f"| closed loop run again, {channel} | {row['before']:.3g} {row['unit']} before, "
+            f"**{row['after']:.3g}** after, floor {row['floor']:.3g} |\n"
+            for channel, row in report["closed_loop"].items()
         ),
         missing=", ".join(report["not_identifiable"]),
         residual_alt=alt,

@@ -10,7 +10,6 @@ import numpy as np
 
 from plant.calibration.decide.controls import controls
 from plant.calibration.decide.finding import Parameter
-from plant.calibration.decide.merge import merge
 from plant.calibration.decide.parameters import interval
 from plant.calibration.decide.select import Selection
 from plant.calibration.decide.verdict import Verdict, judge
@@ -48,6 +47,16 @@ def error_row(s: Selection, floor: float | None = None) -> dict[str, Any]:
     }
 
 
+def errors(name: str, s: Selection, floor: float | None = None) -> dict[str, dict[str, Any]]:
+    """The error table of one channel; empty when there are no held-out rows to measure it on."""
+    return {name: error_row(s, floor)} if np.isfinite(s.held.before) else {}
+
+
+def too_short(s: Selection, channel: str) -> list[str]:
+    """The reason when a channel holds too little to name anything."""
+    return [f"{channel}{r.why}" for r in s.refused if r.what == "every candidate"]
+
+
 def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]:
     """The declared model's parameters with intervals."""
     out = {}
@@ -78,102 +87,7 @@ def refusals(selections: dict[str, Selection]) -> list[tuple[str, str, str]]:
     return [(k, w, y) for (k, w), y in seen.items()]
 
 
-def guide(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: bool) -> Answer:
-    """Answer for PHD2 guide logs."""
-    from plant.calibration.guide import analyse_guide
-
-    title = f"Guide log, {runs[0].header.get('mount', 'unnamed mount')}"
-    found = analyse_guide(runs, rig, hold_out)
-    if isinstance(found, str):
-        return (
-            Verdict("nothing", [], reasons=[found], not_identifiable=["everything: the log is too short"]),
-            [],
-            title,
-        )
-    s = found.selection
-    effects = merge(found.findings)
-    verdict, separating = judge(effects)
-    v = Verdict(
-        verdict,
-        effects,
-        {"position": error_row(s, found.problem.floor)},
-        found.held_out,
-        calibrated(s, ("offset",)),
-        found.not_identifiable,
-        _worm_controls(found),
-        separating,
-        [n for r in runs for n in r.notes][:2],
-        gate_rows({"position": s}),
-        refusals({"position": s}),
-    )
-    return v, _guide_plots(found) if plots else [], title
-
-
-def _worm_controls(found: Any) -> list[dict[str, Any]]:
-    from dataclasses import replace
-
-    from plant.calibration.decide.controls import _better, _flipped
-    from plant.calibration.guide import SIDEREAL_DAY_S, harmonics
-
-    out = []
-    s = found.selection
-    for k, chosen in enumerate(s.chosen):
-        c = chosen.candidate
-        if c.stage and c.frequency:
-            for step, word in ((1, "more"), (-1, "less")):
-                rate = c.frequency + step / SIDEREAL_DAY_S
-                if step and abs(step / SIDEREAL_DAY_S) * float(np.ptp(s.problem.t)) < 0.3:
-                    out.append(
-                        {
-                            "what": f"one tooth {word}: {1 / rate:.2f} s",
-                            "accepted": False,
-                            "note": "this log is too short to tell one tooth from the next",
-                        }
-                    )
-                    continue
-                wrong = replace(c, columns=harmonics(s.problem, rate, max(c.width // 2, 1)))
-                out.append({"what": f"one tooth {word}: {1 / rate:.2f} s", "accepted": _better(s, k, wrong)})
-            for factor in (0.9, 1.1):
-                wrong = replace(c, columns=harmonics(s.problem, c.frequency * factor, max(c.width // 2, 1)))
-                out.append(
-                    {
-                        "what": f"wrong period: {1 / (c.frequency * factor):.1f} s",
-                        "accepted": _better(s, k, wrong),
-                    }
-                )
-        out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(s, k)})
-    return out
-
-
-def _guide_plots(found: Any) -> list[dict[str, str]]:
-    from plant.calibration.report import plots as draw
-
-    s, p = found.selection, found.problem
-    out = []
-    if s.chosen and s.chosen[0].candidate.frequency:
-        f0 = s.chosen[0].candidate.frequency
-        out.append(
-            {
-                "image": draw.domain_plot(
-                    s,
-                    (p.t * f0) % 1.0,
-                    "phase of the period, turns",
-                    "Residual over the period that explains it",
-                ),
-                "alt": f"Residual over the phase of {1 / f0:.2f} s",
-            }
-        )
-    out.append(
-        {
-            "image": draw.order_plot(s, p.t, found.stages, "Spectrum with the known periods drawn in", "Hz"),
-            "alt": "Amplitude spectrum before and after, known periods dotted",
-        }
-    )
-    out.append(
-        {"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out drive error"}
-    )
-    out.append({"image": draw.gate_plot(s, "Gate"), "alt": "Largest score of this log against surrogates"})
-    return out
+GATE = "The largest score of all candidates, in this log and in copies of its residual that hold nothing"
 
 
 def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer:
@@ -188,43 +102,70 @@ def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer
     v = Verdict(
         verdict,
         found.findings,
-        {"torque": error_row(s, found.problem.floor)},
+        errors("torque", s, found.problem.floor),
         found.held_out,
         calibrated(s),
         found.not_identifiable,
         controls(s, None, float(np.ptp(turns))) + _stage_controls(found),
         separating,
-        [],
+        too_short(s, "") + ([] if np.any(c.direction) else ["the position does not move"]),
         gate_rows({"T": s}),
         refusals({"T": s}),
     )
     pictures = []
     if plots:
-        for k, chosen in enumerate(s.chosen[:3]):
+        for k in _worth_drawing(s):
+            chosen = s.chosen[k]
             x, label = _domain(
                 chosen.candidate.domain,
                 c,
                 chosen.candidate.order if chosen.candidate.kind == "line" else None,
             )
+            odd = c.direction if chosen.candidate.name == "position_friction" else None
             pictures.append(
                 {
-                    "image": draw.domain_plot(s, x, label, chosen.candidate.say(), k),
-                    "alt": f"Residual over {label}: {chosen.candidate.say()}",
+                    "image": draw.domain_plot(s, x, label, _say(found, k), k, odd),
+                    "alt": "Fitted rows, the declared model and the other effects taken away",
                 }
             )
         pictures.append(
             {
                 "image": draw.order_plot(
-                    s, turns, c.stages, "Spectrum over order", f"cycles per {c.angle_unit}"
+                    s, turns, c.stages, "Amplitude over order", f"cycles per {_one(c.angle_unit)}"
                 ),
-                "alt": "Spectrum over order with the gear table",
+                "alt": "Fitted rows; dotted: stages of the rig file, short marks: orders that were found",
             }
         )
         pictures.append(
-            {"image": draw.trace_plot(s, "Held-out trace before and after"), "alt": "Held-out residual"}
+            {
+                "image": draw.trace_plot(s, "Held-out residual before and after"),
+                "alt": "Rows nothing was fitted to",
+            }
         )
-        pictures.append({"image": draw.gate_plot(s, "Gate"), "alt": "Largest score against surrogates"})
+        pictures.append({"image": draw.gate_plot(s, "Is anything there at all?"), "alt": GATE})
     return v, pictures, rig.name
+
+
+def _worth_drawing(s: Selection, most: int = 4) -> list[int]:
+    """One picture per name, the strongest first; an unnamed function is always drawn."""
+    names = [x.candidate.name for x in s.chosen]
+    first = [k for k, name in enumerate(names) if name not in names[:k]]
+    more = [k for k in range(len(names)) if k not in first]
+    return sorted([*first, *more[: max(most - len(first), 0)]])
+
+
+def _one(unit: str) -> str:
+    """Singular of a plural unit: cycles per motor turn."""
+    return unit.removesuffix("s") if unit.endswith("turns") else unit
+
+
+def _say(found: Any, k: int) -> str:
+    """Title of an effect's picture: the finding's name, not the candidate's."""
+    f = found.findings[k]
+    place = f" on {f.stage}" if f.stage else ""
+    harmonic = f", harmonic {f.harmonic}" if f.harmonic else ""
+    alike = f" (or {', '.join(f.equivalent[:2])}{' …' if len(f.equivalent) > 2 else ''})"
+    return f"{f.name}{place}{harmonic}{alike if f.equivalent else ''}"
 
 
 def _stage_controls(found: Any) -> list[dict[str, Any]]:
@@ -244,7 +185,10 @@ def _stage_controls(found: Any) -> list[dict[str, Any]]:
                 order = x.order + shift / span
                 wrong = replace(x, columns=sine_columns(c.angle * order, c.session), shape=None)
                 out.append(
-                    {"what": f"order {order:.4g} in place of {x.order:.4g}", "accepted": _better(s, k, wrong)}
+                    {
+                        "what": f"order {order:.4g} in place of {x.order:.4g}",
+                        "accepted": _better(s, k, wrong),
+                    }
                 )
     return out
 
@@ -273,8 +217,9 @@ def axis(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    replay: bool = True,
 ) -> Answer:
     """Answer for logs of one axis of the telescope."""
     from plant.calibration.axisanswer import axis_answer
 
-    return axis_answer(runs, hold_out, out, plant, plots, tell)
+    return axis_answer(runs, hold_out, out, plant, plots, tell, replay)

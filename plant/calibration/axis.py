@@ -3,71 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from plant.calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
+from plant.calibration.axisresult import AxisResult
+from plant.calibration.axistorque import torque_channel
+from plant.calibration.candidates import axis_torque
 from plant.calibration.candidates import electrical as electrical_candidates
 from plant.calibration.candidates import kinematic as kinematic_candidates
-from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.candidates.context import Context
 from plant.calibration.channels.clock import clock_findings, repair_wraps
 from plant.calibration.channels.command import command_candidates, command_problem, pulses
-from plant.calibration.channels.electrical import Electrical, electrical_problem, mean_currents
+from plant.calibration.channels.electrical import (
+    electrical_problem,
+    mean_currents,
+    undo_sampling,
+)
 from plant.calibration.channels.frame import Frame, build_frame, fill
 from plant.calibration.channels.kinematic import (
-    Kinematic,
     kinematic_problem,
     roller_problem,
 )
-from plant.calibration.channels.level import level_of
 from plant.calibration.channels.motion import Motion, motion_of
-from plant.calibration.channels.torque import WIDTH, Torque, torque_problem
-from plant.calibration.decide.broadband import pick_up, unexplained_volts, wind
+from plant.calibration.channels.torque import WIDTH, Transmission
+from plant.calibration.decide.broadband import pick_up, unexplained_volts
 from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.holdout import choose_held_out
-from plant.calibration.decide.parameters import finding_of
-from plant.calibration.decide.select import Selection, design, select
+from plant.calibration.decide.select import fitted, select
 from plant.calibration.decide.sizes import largest_amplitude, white_noise
-from plant.calibration.decide.tolerance import compliance_change, torque_changes
-from plant.calibration.declaredplant import Declared, declared_numbers
-from plant.calibration.readers.drive import ARCSEC, STAGES
+from plant.calibration.decide.tolerance import compliance_change
+from plant.calibration.declaredplant import declared_numbers
+from plant.calibration.readers.drive import ARCSEC
 from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.regression import gls
-from plant.calibration.statistics.whitening import Mask
 
-K_DECLARED = 0.39  # N m/A; design.md, the near miss that reaches the paper's rows together
-
-
-ROTORS = (39.0, 780.0)  # kg m2, one rotor at the axis: 3e-4 to 6e-3 kg m2 (hardware.md 1.2) times the ratio squared
-CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
+# kg m2, one rotor at the axis: 3e-4 to 6e-3 kg m2 (hardware.md 1.2) times the ratio squared
+ROTORS = (39.0, 780.0)
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
 )
+SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
 LEAST_COMMAND = (
     0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
 )
-SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
-
-
-@dataclass
-class AxisResult:
-    """Everything the axis pipeline found, for the decision and the report."""
-
-    declared: Declared
-    frame: Frame
-    motion: Motion
-    held: Mask
-    electrical: Electrical | None
-    kinematic: Kinematic | None
-    torque: Torque | None
-    selections: dict[str, Selection] = field(default_factory=dict)
-    findings: list[Finding] = field(default_factory=list)
-    held_out: list[str] = field(default_factory=list)
-    calibrated: dict[str, Parameter] = field(default_factory=dict)
 
 
 def analyse(
@@ -88,9 +68,11 @@ def analyse(
     result.findings += wraps[:1] + clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
-    e = result.electrical = electrical_problem(frame, m, held)
+    if numbers.ripple is not None and frame.get("current_a") is not None:
+        undo_sampling(frame, numbers.ripple)
+    e = result.electrical = electrical_problem(frame, m, held, numbers)
+    per_ampere = (e.constant if e is not None else numbers.torque_constant) * frame.scale["gear_ratio"]
     left = electrical_candidates.weakened([], clock)
-    per_ampere = (e.constant if e is not None else K_DECLARED) * frame.scale["gear_ratio"]
     if e is not None and e.problem.train.sum() > 200:
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
         s = select(
@@ -101,15 +83,18 @@ def analyse(
         )
         result.selections["E"] = s
         mean_currents(frame, e, s.after.beta)
-        per_ampere = float(s.after.beta[1]) * frame.scale["gear_ratio"]
-        left = electrical_candidates.weakened(_fitted(s), clock)
-        _collect(result, s)
-        e_left = s.after.residual
-        strange = unexplained_volts(e_left, s.problem, white_noise(e_left, s.problem), np.tile(turns, 2))
+        constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
+        if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
+            constant = numbers.torque_constant
+        per_ampere = constant * frame.scale["gear_ratio"]
+        left = electrical_candidates.weakened(fitted(s), clock)
+        result.collect(s)
+        over = s.after.residual
+        strange = unexplained_volts(over, s.problem, white_noise(over, s.problem), np.tile(turns, 2))
         if strange is not None and not s.chosen:
             result.findings.append(strange)
     tell("encoder channels")
-    result.kinematic = kinematic_problem(frame, m, held, per_ampere)
+    result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)
     context = _kinematic_context(frame, m)
     if result.kinematic is not None:
         p = result.kinematic.problem
@@ -118,7 +103,7 @@ def analyse(
             p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s, result.kinematic.motor), rng
         )
         result.selections["K"] = s
-        _collect(result, s)
+        result.collect(s)
         found, stiffness = compliance_change(s, numbers)
         result.findings += found
         result.calibrated |= stiffness
@@ -132,16 +117,16 @@ def analyse(
             rng,
         )
         result.selections["S"] = s
-        _collect(result, s)
+        result.collect(s)
     _fine(result, rng)
-    command = command_problem(frame, held)
+    command = command_problem(frame, held, numbers.own)
     if command is not None:
         p, setpoint = command
         null = gls(p.y, p.base, p.train, p.ar_order, p.block)
         s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
         result.selections["U"] = s
         if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
-            _collect(result, s)
+            result.collect(s)
         size, period, score = pulses(p, s.after.residual)
         if score > 8:
             result.findings.append(
@@ -159,9 +144,20 @@ def analyse(
                 )
             )
     tell("torque channel")
-    _torque(result, per_ampere, left, clock, rng)
-    result.findings += delay_findings(result.selections)
+    torque_channel(result, transmission(result, per_ampere, left), clock, rng)
+    result.findings += delay_findings(result.selections, numbers)
     return result
+
+
+def transmission(result: AxisResult, per_ampere: float, left: dict[str, Array]) -> Transmission:
+    """From currents to the axis, with the trains' stiffness and the rotors' lag where encoders show them."""
+    stiffness, softness = result.declared.stiffness, ROTORS[0] / result.declared.stiffness
+    if "K" in result.selections:
+        beta = result.selections["K"].after.beta
+        if beta[0] > 1e-8:
+            stiffness = 1.0 / float(beta[0])
+        softness = float(np.clip(-beta[1] * ARCSEC, ROTORS[0] / stiffness, ROTORS[1] / stiffness))
+    return Transmission(per_ampere, left, softness, stiffness)
 
 
 def _fine(result: AxisResult, rng: np.random.Generator) -> None:
@@ -176,106 +172,10 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
             s = select(problem, candidates, rng, margin=FINE_MARGIN)
             if s.chosen:
                 result.selections["S1"] = s
-                _collect(result, s)
+                result.collect(s)
     line = pick_up(frame)
     if line is not None:
         result.findings.append(line)
-
-
-def _torque(
-    result: AxisResult, per_ampere: float, left: dict[str, Array], clock: Array, rng: np.random.Generator
-) -> None:
-    frame, m = result.frame, result.motion
-    stiffness = result.declared.stiffness
-    if "K" in result.selections and result.selections["K"].after.beta[0] > 1e-8:
-        stiffness = 1.0 / float(result.selections["K"].after.beta[0])
-    softness = ROTORS[0] / stiffness
-    if "K" in result.selections:
-        lag = -float(result.selections["K"].after.beta[1]) * ARCSEC
-        softness = float(np.clip(lag, softness, ROTORS[1] / stiffness))
-    torque = result.torque = torque_problem(frame, per_ampere, result.held, left, softness)
-    if torque is None:
-        return
-    p, c = torque.problem, torque.context
-    if result.kinematic is not None:
-        p.valid &= result.kinematic.engaged
-    for _, stage, harmonic in result.declared.lines:
-        order = STAGES[stage] * harmonic
-        p.base = np.hstack(
-            [p.base, axis_lines.pair(m.theta[m.pick] / (2 * np.pi) * order, c, m.period_s, None, order)]
-        )
-        p.base_labels += [(f"declared {stage} {harmonic}", "N m")] * 2
-    null = gls(p.y, p.base, p.train, p.ar_order, p.block)
-    ia, ib = (fill(frame.columns[f"current_{k}"], frame.run)[0] for k in "ab")
-    ta, tb = per_ampere * m.at(left["a"] * ia), -per_ampere * m.at(left["b"] * ib)
-    effort = m.at(fill(frame.columns["effort"], frame.run)[0])
-    f = axis_torque.Friction(
-        level_of(m, torque.friction, clock, frame.session),
-        m.rate[m.pick] * torque.friction.viscous,
-        np.where(effort > 0, tb, ta),
-        ta,
-        tb,
-        p.y - null.residual,
-        clock[m.pick],
-    )
-    forced = {x.name for x in result.findings}
-    if "adc_offset" in forced:
-        p.base = np.column_stack([p.base, np.ones(len(p.y))])
-        p.base_labels.append(("offset_torque", "N m"))
-    theta = m.theta[m.pick]
-    ratio = frame.scale["gear_ratio"]
-    motors = axis_lines.Motors(
-        {
-            "a": (theta + f.torque_a / stiffness) * ratio / (2 * np.pi),
-            "b": (theta + f.torque_b / stiffness) * ratio / (2 * np.pi),
-        },
-        {"a": f.torque_a, "b": f.torque_b},
-        m.period_s,
-    )
-    offsets = ("adc_offset",) if result.electrical is not None and "adc_offset" not in forced else ()
-    candidates: list[Candidate] = [
-        *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets),
-        *axis_torque.angle_effects(c),
-        *axis_torque.slow_effects(c, f),
-        *axis_lines.gear_lines(c, m.period_s),
-        *axis_lines.motor_lines(c, motors, null.residual, p.train),
-        *modes.structural_modes(m, frame.run),
-    ]
-    candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
-    candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
-    candidates += axis_lines.free_lines(c, f.level, null.residual, p.train, m.period_s)
-    whole = p.valid.copy()
-    moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
-    if (moving & p.train).sum() > 0.3 * p.train.sum() and (moving & p.test).sum() > 100:
-        p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
-    s = select(p, candidates, rng)
-    result.selections["T"] = s
-    _collect(result, s)
-    blowing = wind(s.after.residual, p, white_noise(s.after.residual, p))
-    if blowing is not None:
-        result.findings = [x for x in result.findings if x.channel != "T" or x.evidence > SURE_IN_WIND]
-        result.findings.append(blowing)
-    everything = replace(p, valid=whole)
-    all_rows = gls(
-        p.y, design(everything, [x.candidate for x in s.chosen]), everything.train, p.ar_order, p.block
-    )
-    found, calibrated = torque_changes(torque, all_rows, int(everything.train.sum()), result.declared)
-    result.findings += found
-    result.calibrated |= calibrated
-
-
-def _fitted(s: Selection) -> list[tuple[Candidate, Array]]:
-    """Every accepted effect with its coefficients in the joint fit."""
-    out, at = [], s.problem.base.shape[1]
-    for c in s.chosen:
-        out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
-        at += c.candidate.width
-    return out
-
-
-def _collect(result: AxisResult, s: Selection) -> None:
-    for k in range(len(s.chosen)):
-        result.findings.append(finding_of(s, k))
 
 
 def _kinematic_context(frame: Frame, m: Motion) -> Context:

@@ -9,17 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from plant.calibration.answers import calibrated, error_row, gate_rows, refusals
-from plant.calibration.axis import AxisResult, analyse
+from plant.calibration.answers import calibrated, error_row, gate_rows, refusals, too_short
+from plant.calibration.axis import analyse
+from plant.calibration.axisresult import AxisResult
+from plant.calibration.corrected.making import Facts
 from plant.calibration.decide.controls import controls
 from plant.calibration.decide.finding import Finding
 from plant.calibration.decide.merge import merge
 from plant.calibration.decide.select import Selection
 from plant.calibration.decide.verdict import Verdict, judge
-from plant.calibration.plantfile import write_plant
+from plant.calibration.plantfile import declared_model, write_plant
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Run
+from plant.calibration.replay.answer import correct_and_replay
+from plant.calibration.report.replayplot import replay_picture
 from plant.calibration.statistics.regression import gls
+from plant.model import with_effects
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters
 LEAST_PRESENT = (
@@ -35,15 +40,21 @@ def axis_answer(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    run_again: bool = True,
 ) -> tuple[Verdict, list[dict[str, str]], str]:
-    """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason."""
+    """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason.
+
+    `run_again=False` leaves out the replay of the closed loop.
+    """
     axis = runs[0].header["axis"]
     preload = runs[0].header.get("preload", "low")
     title = f"{axis.upper()} axis, {preload} preload"
     reason = too_little(runs)
     if reason:
         v = Verdict("nothing", [], reasons=[reason], not_identifiable=["everything: " + reason])
-        write_plant(out / "plant.yaml", axis, preload, {}, [], plant, "nothing")
+        model, keep = declared_model(runs[0].header, plant)
+        bare = model if keep else with_effects(model, axis, ())
+        write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("nothing"), [])
         return v, [], title
     result = analyse(runs, hold_out, tell=tell, plant=plant)
     effects = merge(result.findings)
@@ -65,18 +76,13 @@ def axis_answer(
             v.error[SENSORS[key]] = error_row(s)
     _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
-    remarks = write_plant(
-        out / "plant.yaml",
-        axis,
-        preload,
-        v.calibrated,
-        effects,
-        plant,
-        runs[0].name,
-        bool(result.declared.lines),
-    )
-    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *remarks]
+    again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
+    v.closed_loop = again.rows
+    short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
+    v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
     pictures = _plots(result, effects) if plots else []
+    if plots and again.log is not None:
+        pictures.append(replay_picture(again))
     return v, pictures, title
 
 
@@ -125,27 +131,13 @@ def not_identifiable(result: AxisResult) -> list[str]:
 def _before_within_tolerance(v: Verdict, result: AxisResult, effects: list[Finding]) -> None:
     """A declared number that is another one: "before" may only re-calibrate within the tolerance of the
     declared one."""
-    from plant.calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
+    from plant.calibration.decide.tolerance import TOLERANCE, held_numbers
 
     d = result.declared
     changed = {e.name for e in effects}
     t = result.selections.get("T")
     if t is not None and result.torque is not None:
-        f = result.torque.friction
-        fixed: dict[int, float] = {}
-        if "coulomb_change" in changed:
-            fixed[2] = float(np.clip(t.after.beta[2], d.coulomb / TOLERANCE, d.coulomb * TOLERANCE))
-        if "viscous_change" in changed:
-            fixed[1] = float(np.clip(t.after.beta[1], d.viscous / TOLERANCE, d.viscous * TOLERANCE))
-        if "stribeck_change" in changed:
-            low, high = np.log(d.stiction / TOLERANCE / f.coulomb), np.log(d.stiction * TOLERANCE / f.coulomb)
-            fixed[3] = float(np.clip(np.log(f.ratio), low, high) - np.log(f.ratio))
-        if "presliding" in changed:
-            low, high = (
-                np.log(d.sigma_0 / SIGMA_TOLERANCE / f.coulomb),
-                np.log(d.sigma_0 * SIGMA_TOLERANCE / f.coulomb),
-            )
-            fixed[5] = float(np.clip(np.log(f.stiffness), low, high) - np.log(f.stiffness))
+        fixed = held_numbers(changed, t.after.beta, d, result.torque.friction)
         if fixed and "torque" in v.error:
             v.error["torque"]["before"] = _constrained(t, fixed)
     k = result.selections.get("K")

@@ -57,11 +57,24 @@ def analyse_bench(runs: list[Run], rig: Rig, hold_out: list[str], seed: int = 0)
         rng,
         most=1,
     )
+    s.refused += more.refused
     if more.chosen:
         findings.append(finding_of(more, 0))
-        s.held = HeldOut(s.held.before, more.held.after, s.held.z, 1 - (more.held.after / s.held.before) ** 2)
-        s.refused += more.refused
-    return BenchResult(problem, c, s, findings, _held_names(problem, runs, rig), _missing(problem, c, rig))
+        s = _together(s, more)
+    return BenchResult(problem, c, s, findings, _held_names(problem, runs, rig), _missing(problem, c, s))
+
+
+def _together(s: Selection, more: Selection) -> Selection:
+    """The named effects and the unnamed function as one selection, so that table and pictures agree."""
+    share = 1 - (more.held.after / s.held.before) ** 2
+    return replace(
+        s,
+        chosen=[*s.chosen, *more.chosen],
+        classes=[*s.classes, *more.classes],
+        steps=[*s.steps, *more.steps],
+        after=more.after,
+        held=HeldOut(s.held.before, more.held.after, s.held.z, share),
+    )
 
 
 def _name(f: Finding, c: Context) -> Finding:
@@ -85,17 +98,28 @@ def _held_names(problem: Problem, runs: list[Run], rig: Rig) -> list[str]:
     return names
 
 
-def _missing(problem: Problem, c: Context, rig: Rig) -> list[str]:
-    """Parameters of the declared model whose columns the data do not move apart, before any fit."""
-    x = problem.base[problem.train]
-    size = np.linalg.norm(x, axis=0)
-    out = [label for (label, _), s in zip(problem.base_labels, size, strict=True) if s == 0]
-    keep = size > 0
-    if keep.sum() > 1:
-        z = x[:, keep] / size[keep]
-        inverse = np.linalg.pinv(z.T @ z, hermitian=True)
-        labels = [label for (label, _), k in zip(problem.base_labels, keep, strict=True) if k]
-        out += [f"{label} (collinear)" for label, v in zip(labels, np.diag(inverse), strict=True) if v > 100]
+INFLATION = (
+    30.0  # of a parameter's variance by its neighbours: more than five times the error it would have alone
+)
+
+
+def _missing(problem: Problem, c: Context, s: Selection) -> list[str]:
+    """Parameters whose columns this motion does not move apart; from the columns, not from the response."""
+    names = [label for label, _ in problem.base_labels]
+    for x in s.chosen:
+        if x.candidate.kind != "line" and x.candidate.name != "unknown":
+            names += [f"{label} of {x.candidate.name}" for label, _ in x.candidate.labels]
+    named = [x.candidate for x in s.chosen if x.candidate.kind != "line" and x.candidate.name != "unknown"]
+    columns = design(problem, named)[problem.train]
+    size = np.linalg.norm(columns, axis=0)
+    out = [name for name, v in zip(names, size, strict=True) if v == 0]
+    at = np.flatnonzero(size > 0)
+    z = columns[:, at] / size[at]
+    inverse = np.linalg.pinv(z.T @ z, hermitian=True)
+    likeness = np.abs(z.T @ z) - np.eye(len(at))
+    for k, v in enumerate(np.diag(inverse)):
+        if v > INFLATION:
+            out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
     if min(np.mean(c.direction > 0), np.mean(c.direction < 0)) < 0.05:
         out.append("anything odd in direction: one direction only")
     return out

@@ -24,13 +24,15 @@ def calibrate(
     out: Path = Path("."),
     plant: Path | None = None,
     plots: bool = True,
+    replay: bool = True,
 ) -> int:
     """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
 
     Returns 0 whenever there is an answer, "nothing" and "unknown" included. Raises CalibrationInputError (a
     ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
     file;
-    `plots=False` leaves the pictures out of the report.
+    `plots=False` leaves the pictures out of the report, `replay=False` the closed loop run again on an axis
+    log's held-out rows.
     """
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -45,7 +47,9 @@ def calibrate(
         kind, runs = read_logs(logs, declared)
         _check_names(hold_out or [], runs, logs)
         out.mkdir(parents=True, exist_ok=True)
-        verdict, pictures, title = answer(kind, runs, declared, hold_out or [], out, plant, plots, tell)
+        verdict, pictures, title = answer(
+            kind, runs, declared, hold_out or [], out, plant, plots, tell, replay
+        )
         tell("writing the report")
         write_report(verdict, pictures, title, runs, out)
     return 0
@@ -55,17 +59,26 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
     """Kind of input ("axis", "guide", "rig") and its runs; one kind per call."""
     runs: list[Run] = []
     kinds: dict[str, Path] = {}
-    for path in logs:
+    for k, path in enumerate(logs):
+        if path.resolve() in [p.resolve() for p in logs[:k]]:
+            raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
         if path.suffix.lower() == ".mat":
             text = ""
         else:
             try:
-                text = path.read_text(encoding="utf-8", errors="strict")
+                text = path.read_text(encoding="utf-8-sig", errors="strict")
             except UnicodeDecodeError as error:
+                head = error.object[:20000].decode("latin-1")
+                if is_guide_log(head):  # names in it may be in the computer's code page; numbers are ASCII
+                    kinds["guide"] = path
+                    runs += read_guide_log(path, error.object.decode("latin-1"))
+                    continue
                 line = error.object[: error.start].count(b"\n") + 1
                 raise CalibrationInputError(path, "is not UTF-8 text", line) from None
             except OSError as error:
                 raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+        if path.suffix.lower() != ".mat" and not text.strip():
+            raise CalibrationInputError(path, "is empty", 1)
         if is_axis_log(text):
             kinds["axis"] = path
             runs.append(read_axis_log(path, text))
@@ -124,17 +137,20 @@ def answer(
     plant: Path | None,
     plots: bool,
     tell: Callable[[str], None],
+    replay: bool = True,
 ) -> tuple[Verdict, Plots, str]:
     """Verdict, pictures and title for runs of one kind."""
     from plant.calibration import answers
 
     if kind == "guide":
-        return answers.guide(runs, rig, hold_out, plots)
+        from plant.calibration.guideanswer import guide_answer
+
+        return guide_answer(runs, rig, hold_out, plots)
     if kind == "rig":
         assert rig is not None
         tell("rig")
         return answers.bench(runs, rig, hold_out, plots)
-    return answers.axis(runs, hold_out, out, plant, plots, tell)
+    return answers.axis(runs, hold_out, out, plant, plots, tell, replay)
 
 
 def write_report(verdict: Verdict, pictures: Plots, title: str, runs: list[Run], out: Path) -> None:

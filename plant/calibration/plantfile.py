@@ -3,13 +3,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from plant.calibration.corrected.convert import convert
+from plant.calibration.corrected.making import Facts
 from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.declaredplant import OWN
+from plant.gears import RATIO
+from plant.model import (
+    ModelError,
+    PlantModel,
+    default_files,
+    dump,
+    dumps,
+    get,
+    load,
+    loads,
+    with_effects,
+    with_value,
+)
+from plant.parts import EffectModel
+from plant.units import to_si
 
-#: calibrated name -> (path below axes.<axis>, factor to SI is handled by the plant's units)
+#: calibrated name -> path below axes.<axis>
 PATHS = {
     "coulomb": "friction.coulomb",
     "stiction": "friction.stiction",
@@ -18,146 +35,127 @@ PATHS = {
     "sigma_0": "friction.bristle_stiffness",
     "torque_constant": "motor.torque_constant",
     "resistance": "motor.resistance",
+    "inertia": "inertia",
+    "stiffness": "gear.stiffness",
 }
-#: effect -> {plant parameter: (finding parameter, factor)}
-MAPS: dict[str, dict[str, tuple[str, float]]] = {
-    "gear_eccentricity": {
-        "amplitude": ("amplitude", 1),
-        "kinematic": ("kinematic", 1),
-        "phase": ("phase", 1),
-    },
-    "gear_mesh": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
-    "gravity_imbalance": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
-    "bearing_pass": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
-    "motor_cogging": {"amplitude": ("amplitude", 1), "phase": ("phase", 1)},
-    "torque_ripple": {"ripple": ("ripple", 1), "phase": ("phase", 1)},
-    "friction_asymmetry": {
-        "coulomb_asymmetry": ("coulomb_asymmetry", 1),
-        "viscous_asymmetry": ("viscous_asymmetry", 1),
-    },
-    "load_friction": {"coefficient": ("mu", 1)},
-    "friction_warmup": {"depth": ("amplitude", -1), "time_constant": ("tau", 1)},
-    "preload_change": {"change": ("fraction", 1), "start": ("onset", 1), "duration": ("ramp", 1)},
-    "brake_drag": {"torque": ("torque", 1), "start": ("onset", 1)},
-    "cable_wrap": {
-        "stiffness": ("stiffness", 1),
-        "hysteresis": ("loop", 1),
-        "width": ("loop_travel", 180 / np.pi),
-    },
-    "structural_mode": {
-        "frequency": ("frequency", 1),
-        "damping": ("damping", 1),
-        "inertia": ("inertia_2", 1),
-    },
-    "damaged_tooth": {"amplitude": ("amplitude", 1), "width": ("width", 2 * np.pi * 0.2)},
-    "supply_sag": {"resistance": ("resistance", 1)},
-    "winding_heating": {"thermal_resistance": ("thermal_resistance", 1), "time_constant": ("tau", 1)},
-    "diode_braking": {"share": ("fraction", 1)},
-    "pwm_deadband": {"deadband": ("u0", 1)},
-    "backlash_loss": {"loss": ("counter_loss", 1)},
-    "adc_offset": {"offset": ("offset", 0.0061)},
-    "magnet_weakening": {"loss": ("fraction", 1)},
-    "roller_ratio": {"error": ("scale", 1e6)},
-    "encoder_thermal_drift": {"drift": ("drift", 1)},
-    "encoder_eccentricity": {
-        "amplitude": ("amplitude", 1),
-        "phase": ("phase", 1),
-        "second": ("amplitude_2", 1),
-    },
-    "clock_jitter": {"deviation": ("sigma", 1)},
-    "channel_delay": {"delay": ("delay", 1)},
-    "sample_loss": {"packet_loss": ("fraction", 1)},
-    "wind_torque": {"deviation": ("sigma", 1)},
-    "command_disturbance": {"amplitude": ("amplitude", 1 / 3000), "frequency": ("frequency", 1)},
-}
+LEAST_INERTIA = 10.0  # kg m2: a load that is left when the rotors are taken off
 
-#: effect -> (sign, shift). The residual A cos(x + phase) is the torque the motors must add, the effect's is
-#: minus that, written as a sine of x + phase, a cosine of x - phase (imbalance), a factor's cosine (ripple)
-PHASES: dict[str, tuple[float, float]] = {
-    **dict.fromkeys(("gear_eccentricity", "gear_mesh", "bearing_pass", "motor_cogging"), (1.0, -np.pi / 2)),
-    "gravity_imbalance": (-1.0, np.pi),
-    "torque_ripple": (1.0, np.pi),
-}
+
+def declared_model(header: dict[str, str], base: Path | None) -> tuple[PlantModel, bool]:
+    """The plant a log is held against, and whether its effects are part of what is declared.
+
+    `base` when given; for the emulator's own logs the plant file their note names; else the project's plant
+    of that preload, whose effects are a choice of the project and not the paper's.
+    """
+    if base is not None:
+        return load(base), True
+    files = default_files()
+    note = header.get("note", "").lower()
+    named = [name for name in files if note.endswith(f"plant {name}")]
+    name = named[0] if named and note.startswith(OWN) else f"{header.get('preload', 'low')}_preload"
+    return load(files[name]), note.startswith(OWN)
+
+
+def calibrate_model(
+    model: PlantModel, axis: str, calibrated: dict[str, Parameter], name: str, skip: list[str]
+) -> tuple[PlantModel, list[str]]:
+    """The model with the calibrated numbers, except those in `skip` (which this log cannot tell)."""
+    remarks, declared = [], model
+    for key, path in PATHS.items():
+        if key not in calibrated or key in skip:
+            continue
+        changed = _set(model, axis, path, _as_declared(model, axis, key, calibrated[key].value), name)
+        if changed is None:
+            remarks.append(
+                f"{key}: {calibrated[key].value:.4g} {calibrated[key].unit} is no number of a plant"
+            )
+        else:
+            model = changed
+    return _with_rules(model, declared, axis, name), remarks
+
+
+def _with_rules(model: PlantModel, declared: PlantModel, axis: str, name: str) -> PlantModel:
+    """What no log tells keeps the rule it was declared by.
+
+    sigma1 keeps its share of the passivity bound, the gears' damping its share of the critical one.
+    """
+    f, g = (getattr(model.axes, axis), getattr(declared.axes, axis))
+    bounds = [
+        x.friction.viscous.si * x.friction.coulomb.si / (x.friction.stiction.si - x.friction.coulomb.si)
+        for x in (f, g)
+        if x.friction.stiction.si > x.friction.coulomb.si
+    ]
+    for path, factor in (
+        ("friction.bristle_damping", bounds[0] / bounds[1] if len(bounds) == 2 else 1.0),
+        ("gear.damping", float(np.sqrt(f.gear.stiffness.si / g.gear.stiffness.si))),
+    ):
+        old = get(declared, f"axes.{axis}.{path}").si
+        model = (
+            (_set(model, axis, path, old * factor, f"{name}, by the rule it was declared by") or model)
+            if factor != 1.0
+            else model
+        )
+    return model
+
+
+def _as_declared(model: PlantModel, axis: str, key: str, value: float) -> float:
+    """A calibrated number as the plant file means it, SI: inertia of the load, winding alone, both trains."""
+    motor = getattr(model.axes, axis).motor
+    if key == "inertia":
+        return float(max(value - 2 * motor.rotor_inertia.si * RATIO**2, LEAST_INERTIA))
+    if key == "resistance":
+        return float(value - motor.switch_resistance.si - motor.sense_resistance.si)
+    return float(2.0 * value if key == "stiffness" else value)
+
+
+def _set(model: PlantModel, axis: str, path: str, si: float, name: str) -> PlantModel | None:
+    """The model with one number in its own unit, None where its bounds forbid it."""
+    full = f"axes.{axis}.{path}"
+    unit = get(model, full).unit
+    try:
+        changed = with_value(model, full, si / to_si(1.0, unit), f"fitted to {name}")
+        return loads(dumps(changed))
+    except ModelError:
+        return None
+
+
+def correct(
+    model: PlantModel, axis: str, effects: list[Finding], facts: Facts
+) -> tuple[PlantModel, list[str]]:
+    """The model with the effects found behind those it has; remarks on what could not be put into it."""
+    remarks: list[str] = []
+    rows: list[EffectModel] = list(getattr(model.axes, axis).effects)
+    for f in effects:
+        made = convert(f, facts)
+        remarks += made.remarks
+        for path, change in made.numbers.items():
+            changed = _set(model, axis, path, get(model, f"axes.{axis}.{path}").si + change, facts.name)
+            if changed is None:
+                remarks.append(f"{f.name}: {path} cannot be changed by {change:.4g}")
+            else:
+                model = changed
+        for effect in made.effects:
+            trial = with_effects(model, axis, [*rows, effect])
+            try:
+                loads(dumps(trial))
+            except ModelError as error:
+                remarks.append(f"{f.name} left out of the plant: {error}")
+            else:
+                rows.append(effect)
+    return with_effects(model, axis, rows), remarks
 
 
 def write_plant(
     out: Path,
+    model: PlantModel,
     axis: str,
-    preload: str,
     calibrated: dict[str, Parameter],
     effects: list[Finding],
-    base: Path | None,
-    name: str,
-    keep: bool = False,
-) -> list[str]:
-    """Write `out` and return remarks on what could not be put into it.
-
-    The base is `base`, or the project's plant file of that preload without its declared effects on this axis
-    unless `keep` says that they were part of the declared model.
-    """
-    from plant.model import ModelError, default_files, dump, load, numbers, with_effects, with_value
-    from plant.units import to_si
-
-    remarks: list[str] = []
-    files = default_files()
-    model = load(base if base is not None else files.get(f"{preload}_preload", next(iter(files.values()))))
-    for key, path in PATHS.items():
-        if key not in calibrated:
-            continue
-        full = f"axes.{axis}.{path}"
-        old = numbers(model)[full]
-        try:
-            model = with_value(model, full, calibrated[key].value / to_si(1.0, old.unit), f"fitted to {name}")
-        except ModelError as error:
-            remarks.append(f"{key}: {error}")
-    if "inertia" in calibrated:
-        part = getattr(model.axes, axis)
-        rotors = 2 * part.motor.rotor_inertia.si * 129952.06  # both rotors at the axis, ratio squared
-        full = f"axes.{axis}.inertia"
-        old = numbers(model)[full]
-        load_inertia = max(calibrated["inertia"].value - rotors, 10.0)
-        model = with_value(
-            model, full, load_inertia / to_si(1.0, old.unit), f"fitted to {name}, less the rotors"
-        )
-    declared = list(getattr(model.axes, axis).effects) if base is not None or keep else []
-    made = []
-    for f in effects:
-        effect, remark = effect_model(f, name)
-        if effect is None:
-            remarks.append(remark)
-        else:
-            made.append(effect)
-    try:
-        model = with_effects(model, axis, [*declared, *made])
-        dump(model, out)
-        load(out)
-    except (ModelError, ValueError) as error:
-        remarks.append(f"effects left out of the plant: {error}")
-        dump(with_effects(model, axis, declared), out)
-    return remarks
-
-
-def effect_model(f: Finding, name: str) -> tuple[Any | None, str]:
-    """A finding as an effect of the plant file, its numbers inside the effect's bounds; or None and why."""
-    from plant.effects import REGISTRY
-    from plant.parts import EffectModel, Number
-
-    if f.name not in REGISTRY or f.name not in MAPS:
-        return None, f"{f.name}: described in the report, not a number of the plant file"
-    spec = REGISTRY[f.name]
-    parameters: dict[str, Number] = {}
-    for target, (source, factor) in MAPS[f.name].items():
-        if source in f.parameters:
-            p = spec.parameter(target)
-            raw = f.parameters[source].value * factor
-            if target == "phase" and f.channel == "T" and f.name in PHASES:
-                sign, shift = PHASES[f.name]
-                raw = float(np.angle(np.exp(1j * (sign * raw + shift))))
-            value = float(np.clip(raw, p.low, p.high))
-            parameters[target] = Number(value, p.unit, f"fitted to {name}")
-    if "cycles" in [p.name for p in spec.parameters] and f.harmonic:
-        parameters["cycles"] = Number(float(f.harmonic), "1", f"found in {name}")
-    if f.name in ("bearing_pass",) and f.order:
-        parameters["order"] = Number(float(f.order), "1", f"found in {name}")
-    stage = f.stage if spec.stages else None
-    return EffectModel(f.name, stage=stage, harmonic=f.harmonic or 1, parameters=parameters), ""
+    facts: Facts,
+    skip: list[str],
+) -> tuple[PlantModel, list[str]]:
+    """Write `model` with calibrated numbers and effects to `out`; return it with remarks on what it lacks."""
+    model, remarks = calibrate_model(model, axis, calibrated, facts.name, skip)
+    model, more = correct(model, axis, effects, facts)
+    dump(model, out)
+    return load(out), remarks + more

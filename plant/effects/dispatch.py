@@ -150,3 +150,5 @@ def update(kind: int, x: Floats, p: Floats, dt: float) -> None:
         wind_torque.update(x, p, dt)
     elif kind == 31:
         cable_wrap.update(x, p, dt)
+    elif kind == 40:
+        unknown.update(x, p, dt)

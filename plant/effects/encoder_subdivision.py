@@ -11,20 +11,21 @@ from plant.effects.signals import ANGLE, MEMORY
 def formula(x: Floats, p: Floats) -> float:
     """Return the error of the reading, rad at the axis."""
     line = p[MEMORY] * x[ANGLE]
-    return p[MEMORY + 1] * sin(line + p[MEMORY + 3]) + p[MEMORY + 2] * sin(2.0 * line)
+    return p[MEMORY + 1] * sin(line + p[MEMORY + 3]) + p[MEMORY + 2] * sin(2.0 * line + p[MEMORY + 5])
 
 
 EFFECT = Effect(
     name="encoder_subdivision",
     channel="S",
     domain="axis_angle",
-    equation="reading -> angle + A sin(lines angle + phase) + B sin(2 lines angle)",
+    equation="reading -> angle + A sin(lines angle + phase) + B sin(2 lines angle + phase2)",
     parameters=(
         Parameter("lines", "1", 100.0, 3e7, 32768.0, "hardware.md 1.3: RCN 700/800 has 32768 signal periods"),
         Parameter("amplitude", "arcsec", 0.0, 20.0, 0.2, ASSUMED),
         Parameter("second", "arcsec", 0.0, 20.0, 0.05, ASSUMED),
         PHASE,
         Parameter("encoder", "1", 0.0, 2.0, 1.0, "choice: 0 incremental, 1 absolute, 2 auxiliary"),
+        Parameter("second_phase", "rad", -3.2, 3.2, 0.0, "free: unknown mounting angle"),
     ),
     source=CATALOGUE,
     terms=(Term("encoder", formula),),

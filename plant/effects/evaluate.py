@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from plant.compiled import Floats, entry
-from plant.effects import REGISTRY
+from plant.effects import REGISTRY, unknown
 from plant.effects.base import Term
 from plant.effects.dispatch import update, value
 from plant.effects.rows import KINDS, vector
-from plant.effects.signals import MEMORY, RATE, SIGMA0, TIME, VECTOR, Hook
+from plant.effects.signals import ANGLE, MEMORY, RATE, SIGMA0, TIME, VECTOR, Hook
 from plant.kernels.friction import steady
 from plant.kernels.layout import ROW, ROW_MEMORY
 
@@ -41,6 +41,20 @@ def signals(count: int, columns: Mapping[int, Floats]) -> Floats:
     for place, column in columns.items():
         rows[:, place] = column
     return rows
+
+
+def evaluate_function(knots: Floats, heights: Floats, u: Floats, period: float = 0.0) -> Floats:
+    """Return the cubic function through (knots, heights) at `u`, as an `unknown` of the plant computes it."""
+    p = np.zeros(ROW - ROW_MEMORY)
+    count = len(knots)
+    p[MEMORY + unknown.DOMAIN], p[MEMORY + unknown.KIND] = ANGLE, unknown.KINDS["cubic"]
+    p[MEMORY + unknown.PERIOD], p[MEMORY + unknown.COUNT] = period, count
+    first = MEMORY + unknown.FIRST
+    p[first : first + count] = knots
+    p[first + unknown.KNOTS : first + unknown.KNOTS + count] = heights
+    y = np.zeros(len(u))
+    values_over(KINDS[unknown.formula], signals(len(u), {ANGLE: u}), p, y)
+    return y
 
 
 def evaluate(

@@ -11,7 +11,8 @@ from plant.effects import REGISTRY
 from plant.effects.base import Effect, Formula
 from plant.effects.signals import MOTOR_HOOKS, Hook
 from plant.effects.targets import DOMAINS, TARGETS
-from plant.effects.unknown import COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD
+from plant.effects.unknown import CHOICE, COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD
+from plant.effects.unknown import KINDS as INTERPOLATIONS
 from plant.gears import ORDERS
 from plant.kernels.layout import EFFECTS, MAX_EFFECTS, MEMORY_SIZE, ROW, ROW_MEMORY, ROWS_ALL, ROWS_MOTOR
 from plant.parts import EffectModel, Function
@@ -70,7 +71,8 @@ def order_of(model: EffectModel) -> float:
 def _function(function: Function) -> list[float]:
     row = [0.0] * (FIRST + 2 * KNOTS)
     row[DOMAIN] = float(DOMAINS[function.domain])
-    row[KIND] = 3.0 if function.interpolation == "cubic" else 1.0
+    row[KIND] = INTERPOLATIONS[function.interpolation]
+    row[CHOICE] = float(function.motor)
     row[PERIOD] = function.period
     row[COUNT] = float(len(function.knots))
     for k, (x, y) in enumerate(function.knots):

@@ -7,6 +7,8 @@ TARGETS: dict[str, Hook] = {
     "torque": Hook.AXIS_TORQUE,  # N m at the axis
     "motor_torque": Hook.MOTOR_TORQUE,  # N m at each motor
     "voltage": Hook.SUPPLY,  # V
+    "resistance": Hook.RESISTANCE,  # ohm, of each winding
+    "transmission": Hook.TRANSMISSION,  # rad at the axis, twist of both trains
     "command": Hook.COMMAND,  # duty of each motor
     "incremental": Hook.INCREMENTAL,  # rad
     "absolute": Hook.ABSOLUTE,  # rad

@@ -1,38 +1,67 @@
 """An effect outside the catalogue: a smooth function of the domain it was found in, given by knots.
 
-Parameters are `target` (where it acts), `domain` (the signal it depends on), `kind` (1 linear, 3 cubic),
-`period` (0: none; else the domain wraps, knots within one period), and up to 32 knots x0, y0, x1, y1 … in SI
-units."""
+Parameters are `domain` (the signal it depends on), `kind` (1 linear, 3 cubic, 5 a sum of stops), `period` (0:
+none; else the domain wraps, knots within one period), `motor` (of a target that belongs to a motor: 0 both,
+1 A, 2 B) and up to 32 knots x0, y0, x1, y1 … in SI units. A sum of stops is a hysteresis: every knot is
+(radius, height), and adds height * z / radius, z following the domain and held within +-radius; up to 12."""
 
 from math import floor
 
 from plant.compiled import Floats, inner
 from plant.effects.base import Effect, Term
-from plant.effects.signals import MEMORY
+from plant.effects.signals import MEMORY, MOTOR
 
 KNOTS = 32
-DOMAIN, KIND, PERIOD, COUNT, FIRST = 0, 1, 2, 3, 4  # places behind the memory; knots are x's, then y's
+STOPS = 12
+# places behind the memory; knots are x's, then y's; a stop's state lies STATES behind its height
+DOMAIN, KIND, PERIOD, COUNT, CHOICE, FIRST = 0, 1, 2, 3, 4, 5
+STATES = 16
+KINDS = {"linear": 1.0, "cubic": 3.0, "stop": 5.0}
 
 
 @inner
 def slope(p: Floats, k: int, count: int) -> float:
-    """Return the slope at a knot: that of the parabola through its neighbours, one-sided at the ends."""
+    """Return the slope at a knot: that of the parabola through its neighbours, one-sided at the ends.
+
+    Where the knots span one whole period and close, the neighbours of the ends are those across it.
+    """
     a = max(k - 1, 0)
     b = min(k + 1, count - 1)
     xs = MEMORY + FIRST
     ys = xs + KNOTS
-    if a == k or b == k:
-        return (p[ys + b] - p[ys + a]) / (p[xs + b] - p[xs + a])
     left = p[xs + k] - p[xs + a]
     right = p[xs + b] - p[xs + k]
+    if a == k or b == k:
+        span = p[xs + count - 1] - p[xs]
+        whole = count > 2 and p[ys] == p[ys + count - 1] and abs(span - p[MEMORY + PERIOD]) < 1e-9 * span
+        if not whole:
+            return (p[ys + b] - p[ys + a]) / (p[xs + b] - p[xs + a])
+        a = count - 2
+        b = 1
+        left = p[xs + count - 1] - p[xs + a]
+        right = p[xs + b] - p[xs]
     before = (p[ys + k] - p[ys + a]) / left
     after = (p[ys + b] - p[ys + k]) / right
     return (before * right + after * left) / (left + right)
 
 
 @inner
+def stops(p: Floats) -> float:
+    """Return the sum of the stops at their states."""
+    total = 0.0
+    ys = MEMORY + FIRST + KNOTS
+    for k in range(int(p[MEMORY + COUNT])):
+        total += p[ys + k] * p[ys + STATES + k] / p[ys - KNOTS + k]
+    return total
+
+
+@inner
 def formula(x: Floats, p: Floats) -> float:
     """Return the function of its domain at the signal vector; constant beyond the outer knots."""
+    if p[MEMORY + CHOICE] != 0.0 and p[MEMORY + CHOICE] != x[MOTOR] + 1.0:
+        return 0.0
+    if p[MEMORY + KIND] > 4.0:
+        return stops(p)
     u = x[int(p[MEMORY + DOMAIN])]
     count = int(p[MEMORY + COUNT])
     xs = MEMORY + FIRST
@@ -57,12 +86,27 @@ def formula(x: Floats, p: Floats) -> float:
     return y0 + s * (m0 + s * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * (y1 - y0))))
 
 
+@inner
+def update(x: Floats, p: Floats, dt: float) -> None:
+    """Let the stops follow the domain (p[0]: its last value; p[1]: 1 once there is one)."""
+    if p[MEMORY + KIND] < 4.0:
+        return
+    u = x[int(p[MEMORY + DOMAIN])]
+    moved = u - p[0] if p[1] > 0.0 else 0.0
+    p[0] = u
+    p[1] = 1.0
+    xs = MEMORY + FIRST
+    at = xs + KNOTS + STATES
+    for k in range(int(p[MEMORY + COUNT])):
+        p[at + k] = min(p[xs + k], max(-p[xs + k], p[at + k] + moved))
+
+
 EFFECT = Effect(
     name="unknown",
     channel="T",
     domain="axis_angle",
-    equation="y = f(domain) through the knots, linear or cubic (Hermite)",
+    equation="y = f(domain) through the knots, linear or cubic (Hermite), or a sum of stops",
     parameters=(),
     source="issue 3: an effect outside the catalogue enters as a smooth function",
-    terms=(Term("target", formula),),
+    terms=(Term("target", formula, update),),
 )

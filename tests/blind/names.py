@@ -70,7 +70,7 @@ def angle(key: str) -> Read:
 
 
 def counter_phase(key: str) -> Read:
-    """A cos(theta - p) on the axis is A cos(theta + pi - p) less for the motors to do, a turn more or less."""
+    """A cos(theta - p) on the axis is A cos(theta + pi - p) for the motors to do, a turn more or less."""
     return lambda values, _truth: (
         [math.pi - values[key] + turn * 2.0 * math.pi for turn in (-1, 0, 1)] if key in values else []
     )

@@ -86,19 +86,23 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
     found: dict[str, list[tuple[float, Candidate]]] = {"motor_cogging": [], "torque_ripple": []}
     ratio = STAGES["motor"]
     x = np.where(rows, e, 0.0)
-    for key in ("a", "b"):
-        for n in range(2, COGGING + 1):
-            order = n * ratio
-            plain = pair(motors.turns[key] * n, c, motors.period_s, None, order)
-            if np.mean(plain[:, 0] ** 2) < 0.02:
-                continue
-            for name, columns in (
-                ("motor_cogging", plain * ratio),
-                ("torque_ripple", plain * motors.torque[key][:, None]),
-            ):
-                score = float(np.sum((columns.T @ x) ** 2) / np.sum(columns[rows] ** 2))
+    for n in range(2, COGGING + 1):
+        order = n * ratio
+        plain = {k: pair(motors.turns[k] * n, c, motors.period_s, None, order) for k in "ab"}
+        if not rows.any() or np.mean(plain["a"][:, 0] ** 2) < 0.02:
+            continue
+        for name in found:
+            one = {
+                k: v * (ratio if name == "motor_cogging" else motors.torque[k][:, None])
+                for k, v in plain.items()
+            }
+            for motor, columns in ((0.0, one["a"]), (1.0, one["b"]), (None, np.hstack([one["a"], one["b"]]))):
+                # both motors' pairs are all but the same: their angles differ by their wind-up
+                q, _ = np.linalg.qr(np.where(rows[:, None], columns, 0.0))
+                score = float(np.sum((q.T @ x) ** 2)) - 0.5 * float(np.var(x)) * columns.shape[1]
                 made = line(c, name, "motor", n, order, columns, "motor_angle")
-                found[name].append((score, replace(made, labels=(LABELS[name],))))
+                which = {} if motor is None else {"motor": (motor, "0 A, 1 B")}
+                found[name].append((score, replace(made, labels=(LABELS[name],), fixed=which)))
     out = []
     for ranked in found.values():
         out += [k for _, k in sorted(ranked, key=lambda s: -s[0])[:keep]]

@@ -15,10 +15,13 @@ from plant.calibration.candidates.friction import stop_operator
 from plant.calibration.channels.level import Level
 from plant.calibration.readers.run import Array
 
+# of a current's gain error: one motor's torque is most of the torque, and would explain itself
+LARGEST_GAIN = 0.5
+
 
 @dataclass
 class Friction:
-    """Declared friction along the log: `bristle` N m signed, `viscous` N m signed; currents as N m; session
+    """Declared friction along the log: `level` at full rate, `viscous` N m signed; currents as N m; session
     time s."""
 
     level: Level
@@ -48,12 +51,10 @@ def direction_effects(c: Context, f: Friction) -> list[Candidate]:
             (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1")),
         ),
         Candidate("friction_asymmetry", "velocity", sided[:, None], (("coulomb_asymmetry", "1"),)),
-        Candidate(
-            "load_friction", "current", f.level.answer(f.transmitted)[:, None], (("mu", "1"),), sign=1
-        ),
+        Candidate("load_friction", "current", f.level.answer(f.transmitted)[:, None], (("mu", "1"),), sign=1),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
-        Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),)),
-        Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),)),
+        Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),), most=LARGEST_GAIN),
+        Candidate("adc_gain", "current", f.torque_b[:, None], (("gain_b", "1"),), most=LARGEST_GAIN),
     ]
 
 

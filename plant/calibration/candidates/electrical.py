@@ -103,13 +103,13 @@ def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
         x = 2 * np.pi * np.concatenate([angle[key], angle[key]])
         waves = np.column_stack([g(h * x) for h in range(1, 7) for g in (np.cos, np.sin)])
         mask = (e.motor == k).astype(float)
-        for weight in (mask, mask * e.current):
+        for weight, unit in ((mask, "V"), (mask * e.current, "ohm")):
             out.append(
                 Candidate(
                     "unknown",
                     "motor_angle",
                     waves * weight[:, None],
-                    (("amplitude", "V"),),
+                    (("amplitude", unit),),
                     kind="line",
                     stage="motor",
                     harmonic=1,

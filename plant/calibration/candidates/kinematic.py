@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from plant.calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
@@ -67,12 +69,11 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
 
 def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:
     """Candidates of velocity minus rate in arcsec/s; `c.speed` in rad/s."""
-    arcsec = 206264.806
-    w = c.speed * arcsec
+    w = c.speed * 206264.806
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
-    out += _slips(w, np.abs(acceleration))
+    out += _slips(w, acceleration)
     for h in (1, 2):
         order = STAGES["roller"] * h
         if span * order > 0.8:
@@ -103,12 +104,10 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
     return out
 
 
-def _slips(w: Array, size: Array) -> list[Candidate]:
+def _slips(w: Array, acceleration: Array) -> list[Candidate]:
     """Travel lost while the axis accelerates harder than a limit: a share of it, or as much as the limit is
     exceeded."""
-
-    def share(p: Array) -> Array:
-        return (-w * (size > p[0]))[:, None]
+    size = np.abs(acceleration)
 
     def excess(p: Array) -> Array:
         return (-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None]
@@ -117,21 +116,49 @@ def _slips(w: Array, size: Array) -> list[Candidate]:
     for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
         if not 0.002 < np.mean(size > limit) < 0.6:
             continue
-        for shape, label in ((share, ("creep", "1")), (excess, ("slip", "s"))):
+        share = _slip(w, acceleration)
+        for chatter in (0.1 * limit, 0.5 * limit, 2.0 * limit):
             out.append(
                 Candidate(
                     "roller_slip",
                     "velocity",
-                    shape(np.array([limit])),
-                    (label,),
+                    share(np.array([limit, chatter])),
+                    (("creep", "1"),),
                     stage="roller",
-                    fixed={"limit": (limit, "rad/s2")},
+                    fixed={"limit": (limit, "rad/s2"), "chatter": (chatter, "rad/s2")},
                     sign=1,
-                    shape=shape,
-                    steps=(0.1 * limit,),
+                    shape=share,
+                    steps=(0.1 * limit, 0.2 * chatter),
                 )
             )
+        out.append(
+            Candidate(
+                "roller_slip",
+                "velocity",
+                excess(np.array([limit])),
+                (("slip", "s"),),
+                stage="roller",
+                fixed={"limit": (limit, "rad/s2")},
+                sign=1,
+                shape=excess,
+                steps=(0.1 * limit,),
+            )
+        )
     return out
+
+
+def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
+    """Rate lost, per unit of creep, for p = (limit, rms of the acceleration within a row): the share of a
+    row's time beyond the limit."""
+
+    def shape(p: Array) -> Array:
+        from scipy.special import ndtr
+
+        limit, chatter = abs(float(p[0])), max(abs(float(p[1])), 1e-6)
+        share = ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter)
+        return np.asarray(-w * share)[:, None]
+
+    return shape
 
 
 def subdivision(c: Context, m: Motion) -> list[Candidate]:

@@ -11,10 +11,12 @@ from plant.calibration.readers.run import Array, Run
 from plant.calibration.statistics.whitening import Mask
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
+MOVING = 4e-8  # rad per row, 0.8 arcsec/s
+QUICK = 4e-7  # rad per row: fast enough that a single row without motion is no chance
 LOST = 0.003  # fraction of rows missing that is worth a word
+DRIVEN = 0.05  # of the effort's range, that a column at its end must hold against
 PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
-SHORTEST = 5  # rows alike in a row that are no coincidence of slow columns
 PACKET = 25  # rows per RS232 packet, log-format.md
 
 
@@ -78,7 +80,7 @@ def _loss(frame: Frame) -> Finding | None:
 
 
 def _repeated(frame: Frame) -> Mask:
-    """Rows of packets that repeat the packet before them, or at least SHORTEST frozen rows while moving, (n,)."""
+    """Rows (n,) of packets that repeat the packet before them, or frozen rows while moving."""
     p = frame.columns["position"]
     shifted = np.zeros(len(p), dtype=bool)
     shifted[PACKET:] = (p[PACKET:] == p[:-PACKET]) & np.isfinite(p[PACKET:])
@@ -86,7 +88,7 @@ def _repeated(frame: Frame) -> Mask:
         c = frame.get(name)
         if c is not None:
             shifted[PACKET:] &= c[PACKET:] == c[:-PACKET]
-    moving = np.abs(np.gradient(np.nan_to_num(p))) > 4e-8
+    moving = np.abs(np.gradient(np.nan_to_num(p))) > MOVING
     still = np.zeros(len(p), dtype=bool)
     still[1:] = p[1:] == p[:-1]
     for name in ("velocity", "effort", "current_a"):
@@ -97,9 +99,16 @@ def _repeated(frame: Frame) -> Mask:
     both = (shifted | still) & near
     edges = np.flatnonzero(np.diff(both.astype(int), prepend=0, append=0))
     for start, end in edges.reshape(-1, 2):
-        if end - start < SHORTEST:
-            both[start:end] = False
+        both[start:end] = _goes_on(p, int(start), int(end - start))
     return both
+
+
+def _goes_on(p: Array, at: int, rows: int) -> bool:
+    """Whether the row after `rows` unchanged ones from `at` on has moved as if the axis had never stopped:
+    an axis that comes to rest shows the same row again and again, too."""
+    before, after = p[max(at - 1, 0)], p[min(at + rows, len(p) - 1)]
+    usual = np.nanmedian(np.abs(np.diff(p[max(at - 12, 0) : at + 1]))) if at > 1 else 0.0
+    return bool(abs(after - before) > 0.3 * (rows + 1) * usual and usual > (MOVING if rows >= 5 else QUICK))
 
 
 def repair_wraps(run: Run) -> Finding | None:
@@ -155,7 +164,7 @@ def _other_wraps(run: Run) -> Finding | None:
             _unfold(run, name, size)
             found = f"folds at {size} counts"
         else:
-            found = _stops(x, name)
+            found = _stops(x, name, run.raw["effort"][np.isfinite(raw)])
             if found:
                 run.columns[RENAMED.get(name, name)] = (
                     np.where(
@@ -198,16 +207,18 @@ def _folds(x: Array, length: int) -> int:
     return 0
 
 
-def _stops(x: Array, name: str) -> str:
+def _stops(x: Array, name: str, effort: Array) -> str:
     """A column that piles up at one end: noise would spread it over the neighbouring counts."""
     if name.startswith("tach"):
         return ""  # a count or two at constant speed pile up by themselves
     for end, inward in ((x.max(), -1.0), (x.min(), 1.0)):
-        if end == 0 or (name.startswith("adc") and end >= 1023):
-            continue
+        if end == 0 or (name.startswith("adc") and (end >= 1023 or inward > 0)):
+            continue  # a motor that pulls one way only has a lowest current
         power = np.log2(abs(end) + (1 if end > 0 else 0))
         if name == "velocity" and abs(power - round(power)) > 1e-9:
             continue  # a constant speed piles up too: only an end of a power of two is a stop
+        if np.ptp(effort[x == end]) < DRIVEN * np.ptp(effort):
+            continue  # a steady effort makes a steady current
         piled, next_to = int(np.sum(x == end)), int(np.sum(x == end + inward))
         if piled >= PILE and piled > 3 * next_to + 20:
             return f"stops at {int(end)} counts"

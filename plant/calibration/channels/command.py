@@ -21,12 +21,19 @@ from plant.calibration.channels.torque import transients
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
 
+ARCSEC_PER_RAD = 206264.806
+STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position loop adds is more
+REGIME = 51  # rows over which the set point's kind is told
+CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
 
-def command_problem(frame: Frame, held: Mask) -> tuple[Problem, Array] | None:
+def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Problem, Array] | None:
     """The problem at the log's full rate, and the set point in arcsec/s; None without set point or
-    velocity."""
+    velocity.
+
+    `own`: the emulator's boards made the log, whose gains depend on the mode: one regime is looked at.
+    """
     setpoint, velocity = frame.get("setpoint"), frame.get("velocity")
     if setpoint is None or velocity is None:
         return None
@@ -58,6 +65,9 @@ def command_problem(frame: Frame, held: Mask) -> tuple[Problem, Array] | None:
     valid = np.isfinite(y) & np.isfinite(base).all(axis=1) & same & ~limit
     near = transients(frame, effort)
     valid &= ~near | (np.abs(effort) > 2)
+    valid &= ~resting(setpoint, frame.run)
+    if own:
+        valid &= usual_regime(setpoint * ARCSEC_PER_RAD, frame.run, valid)
     if valid.sum() < 1000:
         return None
     problem = Problem(
@@ -77,6 +87,34 @@ def command_problem(frame: Frame, held: Mask) -> tuple[Problem, Array] | None:
         sensor="command",
     )
     return problem, np.nan_to_num(setpoint) * 206264.806
+
+
+def resting(setpoint: Array, run: NDArray[np.int64]) -> Mask:
+    """Rows at a zero set point, on the ramp into it, and two after it: stopping, standing or off, the board
+    follows no rate."""
+    s = np.abs(np.nan_to_num(setpoint))
+    falling = np.zeros(len(s), dtype=bool)
+    falling[:-1] = (s[1:] < s[:-1]) & (run[1:] == run[:-1])
+    out: Mask = np.asarray(s == 0.0)
+    for k in range(len(s) - 2, -1, -1):
+        out[k] |= out[k + 1] and falling[k]
+    for _ in range(2):
+        out[1:] |= out[:-1].copy()
+    return out
+
+
+def usual_regime(setpoint: Array, run: NDArray[np.int64], valid: Mask) -> Mask:
+    """Rows of the commonest of three sets of gains: set rates, pointing while creeping, pointing faster.
+
+    `setpoint` in arcsec/s. A set rate is constant or a straight ramp; a position loop corrects its set point
+    at every tick (boards/axis/motion.py).
+    """
+    second = np.full(len(setpoint), np.inf)
+    second[1:-1] = np.abs(setpoint[2:] - 2 * setpoint[1:-1] + setpoint[:-2])
+    straight = np.convolve((second < STRAIGHT).astype(float), np.ones(REGIME), "same") > REGIME / 2
+    creeping = np.abs(setpoint) < CREEP_RATE
+    regimes = (straight, ~straight & creeping, ~straight & ~creeping)
+    return max(regimes, key=lambda rows: int((rows & valid).sum()))
 
 
 def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Candidate]:

@@ -41,9 +41,16 @@ class Friction:
     identifiable: dict[str, bool] = field(default_factory=dict)
 
 
-def shape_columns(m: Motion, p: Array) -> Array:
+def paper_start(preload: str) -> Array:
+    """Log parameters (ratio, Stribeck speed, stiffness) of the paper's tables, where a fit begins."""
+    d = DECLARED[preload]
+    return np.log([d["stiction"] / d["coulomb"], d["stribeck_speed"], SIGMA_0 / d["coulomb"]])
+
+
+def shape_columns(m: Motion, p: Array, exponent: float = 2.0) -> Array:
     """Bristle shape (n,) at full rate for log parameters p = (log ratio, log vs, log stiffness)."""
-    return bristle(m.theta, m.fresh, _dt(m), float(np.exp(p[0])), float(np.exp(p[1])), float(np.exp(p[2])))
+    ratio, speed, stiffness = (float(np.exp(x)) for x in p)
+    return bristle(m.theta, m.fresh, _dt(m), ratio, speed, stiffness, exponent)
 
 
 def _dt(m: Motion) -> float:
@@ -55,8 +62,11 @@ def linear_columns(m: Motion) -> Array:
     return np.column_stack([m.acceleration[m.pick], m.rate[m.pick]])
 
 
-def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Friction, Array, Array]:
-    """Fit the declared model to `torque` (n_analysis,) on `rows`.
+def fit_friction(
+    m: Motion, torque: Array, rows: Mask, start: Array, exponent: float, lines: Array
+) -> tuple[Friction, Array, Array]:
+    """Fit the declared model to `torque` (n_analysis,) on `rows`, from log parameters `start`. `lines`
+    (n_analysis, k) are periodic torques that are declared too: left out, they would bend the friction.
 
     Returns the parameters, the base columns (acceleration, rate, bristle, its three log-derivatives times
     the Coulomb
@@ -66,11 +76,10 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
 
     linear = linear_columns(m)
     sub = rows.copy()
-    d = DECLARED[preload]
     scale = float(np.std(torque[rows])) or 1.0
 
     def columns(p: Array) -> Array:
-        return np.column_stack([linear, m.at(shape_columns(m, p))])
+        return np.column_stack([linear, m.at(shape_columns(m, p, exponent)), lines])
 
     def left(p: Array) -> Array:
         x = columns(p)[sub]
@@ -80,7 +89,6 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
         )  # holds what the data leave open at the declared value
         return np.concatenate([e / scale, prior * 0.05])
 
-    start = np.log([d["stiction"] / d["coulomb"], d["stribeck_speed"], SIGMA_0 / d["coulomb"]])
     low, high = np.array([b[0] for b in BOUNDS]), np.array([b[1] for b in BOUNDS])
     best, roughness = None, float(np.std(np.diff(torque[sub], n=2))) / np.sqrt(6.0)
     for shift in ((0.0, 0.0, 0.0), (0.0, 0.0, -1.8), (-0.5, 0.7, 0.9)):
@@ -102,17 +110,19 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
     assert best is not None
     p = best.x
     for _ in range(POLISH):
-        shape, base, beta = _linearised(m, p, linear, torque, sub)
+        shape, base, beta = _linearised(m, p, linear, torque, sub, exponent, lines)
         e = np.abs(torque - base @ solve(base[sub], torque[sub]))
         inside = sub & (e < 6 * max(float(np.median(e[sub])), 1e-9))
         step = np.clip(solve(base[inside], torque[inside])[3:6], -0.3, 0.3)
         if not np.all(np.isfinite(step)) or np.abs(step).max() < 1e-4:
             break
         trial = np.clip(p + step, low + 1e-3, high - 1e-3)
-        if _median_error(m, trial, linear, torque, sub) > _median_error(m, p, linear, torque, sub):
+        errors = [_median_error(m, q, linear, torque, sub, exponent, lines) for q in (trial, p)]
+        if errors[0] > errors[1]:
             break
         p = trial
-    shape, base, beta = _linearised(m, p, linear, torque, sub)
+    shape, base, beta = _linearised(m, p, linear, torque, sub, exponent, lines)
+    base = base[:, : base.shape[1] - lines.shape[1]]
     return (
         Friction(
             float(np.exp(p[0])),
@@ -130,24 +140,30 @@ def fit_friction(m: Motion, torque: Array, rows: Mask, preload: str) -> tuple[Fr
 POLISH = 6  # Gauss-Newton steps on the rows that the model already fits
 
 
-def _linearised(m: Motion, p: Array, linear: Array, torque: Array, rows: Mask) -> tuple[Array, Array, Array]:
+def _linearised(
+    m: Motion, p: Array, linear: Array, torque: Array, rows: Mask, exponent: float, lines: Array
+) -> tuple[Array, Array, Array]:
     """Bristle at full rate, base columns with derivatives to the log parameters, coefficients of the first
-    three."""
-    shape = shape_columns(m, p)
-    x = np.column_stack([linear, m.at(shape)])
+    three; `lines` come last."""
+    shape = shape_columns(m, p, exponent)
+    x = np.column_stack([linear, m.at(shape), lines])
     beta = solve(x[rows], torque[rows])
     derivative = []
     for k in range(3):
         h = np.zeros(3)
         h[k] = 0.03
-        derivative.append(m.at((shape_columns(m, p + h) - shape_columns(m, p - h)) / 0.06) * beta[2])
+        derivative.append(
+            m.at((shape_columns(m, p + h, exponent) - shape_columns(m, p - h, exponent)) / 0.06) * beta[2]
+        )
     slip = np.zeros(len(shape))
     slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * _dt(m)) / float(np.exp(p[2]))  # dz/dt of the bristle, rad/s
     slip[m.fresh] = 0.0
-    return shape, np.column_stack([x, *derivative, m.at(slip)]), beta
+    return shape, np.column_stack([x[:, :3], *derivative, m.at(slip), lines]), beta
 
 
-def _median_error(m: Motion, p: Array, linear: Array, torque: Array, rows: Mask) -> float:
-    x = np.column_stack([linear, m.at(shape_columns(m, p))])
+def _median_error(
+    m: Motion, p: Array, linear: Array, torque: Array, rows: Mask, exponent: float, lines: Array
+) -> float:
+    x = np.column_stack([linear, m.at(shape_columns(m, p, exponent)), lines])
     e = torque[rows] - x[rows] @ solve(x[rows], torque[rows])
     return float(np.mean(np.minimum(np.abs(e), 8 * np.median(np.abs(e)))))

@@ -17,6 +17,7 @@ from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import STEP, saturated, transients
+from plant.calibration.declaredplant import Declared
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.whitening import Mask
@@ -24,12 +25,6 @@ from plant.calibration.statistics.whitening import Mask
 CLIPPED = (
     4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
 )
-DECLARED_R, DECLARED_K = (
-    2.2,
-    0.39,
-)  # ohm, V s/rad; design.md: only used to tell which rows should carry current
-
-
 RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
 TRUNCATION = (0.25, 0.8)  # counts that a converter which rounds down reads too low, 0.5 at even spread
 SURE = 4.0  # standard errors
@@ -57,7 +52,7 @@ class Electrical:
     ampere_per_count: float
 
 
-def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None:
+def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) -> Electrical | None:
     """Build the E channel; None when the log lacks a current."""
     if frame.get("current_a") is None or frame.get("current_b") is None:
         return None
@@ -89,7 +84,8 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         slope = np.gradient(volts, frame.period_s)
         parts["lag"].append(m.at(slope))
         bad = near | saturated(frame, i) | (volts <= 0) | ~ti | ~te | ~m.trusted
-        expected = (volts - DECLARED_K * ratio * np.maximum(sign * m.rate, 0.0)) / DECLARED_R
+        emf = declared.torque_constant * ratio * np.maximum(sign * m.rate, 0.0)
+        expected = (volts - emf) / declared.resistance  # only to tell which rows should carry current
         bad |= expected < CLIPPED * frame.scale["adc_A_per_count"]
         crossing = np.abs(np.sign(m.rate)) < 0.5
         parts["ok"].append((m.smooth((bad | crossing).astype(float))[m.pick] < 1e-9).astype(float))
@@ -114,8 +110,9 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask) -> Electrical | None
         block_s=3.0,
         sensor="voltage",
     )
-    problem.step = STEP * frame.scale["adc_A_per_count"] * DECLARED_R
-    _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
+    problem.step = STEP * frame.scale["adc_A_per_count"] * declared.resistance
+    if declared.ripple is None:
+        _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))
     motor = np.concatenate([np.zeros(n), np.ones(n)])
@@ -160,6 +157,20 @@ def mean_currents(frame: Frame, e: Electrical, beta: Array) -> None:
         wrong = beta[at] * volts * d * (1 - d) - beta[at + 1] * full
         sound = (i > 0) & ~saturated(frame, i)
         frame.columns[f"current_{key}"] = np.where(sound, i - wrong / beta[0], i)
+
+
+def undo_sampling(frame: Frame, ripple: float) -> None:
+    """Turn sampled currents into mean ones, in place, by what a plant file declares.
+
+    `ripple` in A/V: at the falling edge the current is ripple V d (1 - d) above its mean; a converter that
+    rounds down reads half a count too low.
+    """
+    duty = _duties(frame, fill(frame.columns["effort"], frame.run)[0])
+    for key in "ab":
+        i, d = frame.columns[f"current_{key}"], duty[key]
+        wrong = ripple * frame.scale["supply_V"] * d * (1 - d) - 0.5 * frame.scale["adc_A_per_count"]
+        sound = (i > 0) & ~saturated(frame, i)
+        frame.columns[f"current_{key}"] = np.where(sound, i - wrong, i)
 
 
 def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: float) -> None:

@@ -13,9 +13,17 @@ from plant.compiled import entry
 
 
 @entry
-def _bristle(theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiffness: float) -> Array:
+def _bristle(
+    theta: Array,
+    fresh: Any,
+    dt: float,
+    ratio: float,
+    vs: float,
+    stiffness: float,
+    exponent: float,
+) -> Array:
     """Bristle torque over Coulomb torque, sigma_0 z / Tc, along the motion theta (n,), for g = 1 +
-    (ratio-1) e^-(w/vs)^2.
+    (ratio-1) e^-(w/vs)^exponent.
 
     `stiffness` is sigma_0 / Tc in 1/rad. The update is exact for a constant rate within the step, and the
     increments
@@ -29,7 +37,7 @@ def _bristle(theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiff
             continue
         move = theta[k] - theta[k - 1]
         w = abs(move) / dt
-        g = 1.0 + (ratio - 1.0) * np.exp(-((w / vs) ** 2))
+        g = 1.0 + (ratio - 1.0) * np.exp(-((w / vs) ** exponent))
         end = g if move > 0 else -g
         a = stiffness * abs(move) / g
         z = end + (z - end) * np.exp(-a)
@@ -37,6 +45,14 @@ def _bristle(theta: Array, fresh: Any, dt: float, ratio: float, vs: float, stiff
     return out
 
 
-def bristle(theta: Array, fresh: Mask, dt: float, ratio: float, vs: float, stiffness: float) -> Array:
+def bristle(
+    theta: Array,
+    fresh: Mask,
+    dt: float,
+    ratio: float,
+    vs: float,
+    stiffness: float,
+    exponent: float = 2.0,
+) -> Array:
     """See `_bristle`."""
-    return np.asarray(_bristle(theta, fresh, dt, ratio, vs, stiffness))
+    return np.asarray(_bristle(theta, fresh, dt, ratio, vs, stiffness, exponent))

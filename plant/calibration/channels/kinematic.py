@@ -3,6 +3,7 @@ against the axis."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,11 +13,14 @@ from numpy.typing import NDArray
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion
 from plant.calibration.channels.problem import Problem
-from plant.calibration.channels.torque import saturated, transients
+from plant.calibration.channels.torque import declared_lines, saturated, transients
 from plant.calibration.readers.drive import ARCSEC
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
 
+STILL_S = 1.0  # without a count: the rounding of a motor's place is one error then, not one per row
+# of a tachometer count: what rounding leaves when a steady speed beats with the rows (white: 0.29)
+COUNT_PART = 0.1
 APART_ARCSEC = 8.0  # a motor this far from where wind-up puts it has left its tooth face
 
 
@@ -31,8 +35,13 @@ class Kinematic:
     disengaged_driven: float  # fraction of driven rows in which a motor is off its face
 
 
-def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) -> Kinematic | None:
-    """Motor angle / ratio - axis angle, with an offset per run and motor; None without tachometers."""
+def kinematic_problem(
+    frame: Frame, m: Motion, held: Mask, per_ampere: float, lines: Sequence[tuple[str, str, int]] = ()
+) -> Kinematic | None:
+    """Motor angle / ratio - axis angle, with an offset per run and motor; None without tachometers.
+
+    `lines`: periodic torques that are declared; what they turn the rotors by is part of the base.
+    """
     if frame.get("motor_a") is None or frame.get("motor_b") is None:
         return None
     pick, ratio = m.pick, frame.scale["gear_ratio"]
@@ -58,7 +67,8 @@ def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) ->
         apart |= off & ~full
         ys.append(y)
         torques.append(torque)
-        oks.append((m.trusted & trusted)[pick] & ~near & ~full)
+        still = standing(spin, frame.run, round(STILL_S / frame.period_s))
+        oks.append((m.trusted & trusted & ~still)[pick] & ~near & ~full)
     wide = apart.copy()
     for k in range(1, 6):
         wide[k:] |= apart[:-k]
@@ -67,10 +77,20 @@ def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) ->
     valid = np.concatenate(oks) & ~np.concatenate([wide, wide])
     offsets = _offsets(segment, n, valid)
     alpha, rate = m.acceleration[pick], m.rate[pick]
+    one = declared_lines(m, [x for x in lines if x[1] != "axis"])
+    nil = np.zeros_like(one)
+    twist = np.vstack([np.hstack([one, nil]), np.hstack([nil, one])])  # the trains may differ
     base = np.column_stack(
-        [torque / ARCSEC, np.concatenate([alpha, alpha]), np.concatenate([rate, rate]) / ARCSEC, offsets]
+        [
+            torque / ARCSEC,
+            np.concatenate([alpha, alpha]),
+            np.concatenate([rate, rate]) / ARCSEC,
+            twist,
+            offsets,
+        ]
     )
     labels = [("compliance", "rad/(N m)"), ("rotor_lag", "arcsec s2/rad"), ("tachometer_delay", "s")]
+    labels += [("declared line", "arcsec")] * twist.shape[1]
     labels += [("offset", "arcsec")] * offsets.shape[1]
     problem = Problem(
         "K",
@@ -87,12 +107,22 @@ def kinematic_problem(frame: Frame, m: Motion, held: Mask, per_ampere: float) ->
         ar_order=4,
         block_s=3.0,
         sensor="position",
+        step=COUNT_PART * 1296000.0 / (frame.scale["tach_counts_per_turn"] * ratio),
         fresh=offsets,
     )
     driven = np.abs(m.at(effort)) > 0.01
     fraction = float(np.mean(apart[driven])) if driven.any() else 0.0
     motor = np.concatenate([np.zeros(n), np.ones(n)])
     return Kinematic(problem, torque, motor, ~wide, fraction)
+
+
+def standing(spin: Array, run: NDArray[Any], rows: int) -> Mask:
+    """Rows before which the motor's encoder has shown no count for more than `rows` rows."""
+    index = np.arange(len(spin))
+    moves = np.abs(spin) > 0
+    moves[1:] |= run[1:] != run[:-1]
+    last = np.maximum.accumulate(np.where(moves, index, -rows))
+    return np.asarray(index - last > rows)
 
 
 def _off_face(y: Array, torque: Array, segment: NDArray[Any], rows: Mask) -> tuple[Array, Mask]:

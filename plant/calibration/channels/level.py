@@ -18,10 +18,10 @@ from plant.compiled import entry
 
 
 @entry
-def _response(
-    theta: Array, fresh: Array, dt: float, ratio: float, vs: float, stiffness: float, change: Array
-) -> Array:
-    """d(sigma_0 z / Tc) per relative change `change` (n,) of the level g along theta (n,); see `_bristle`."""
+def _response(theta: Array, fresh: Array, dt: float, p: Array, exponent: float, change: Array) -> Array:
+    """d(sigma_0 z / Tc) per relative change `change` (n,) of the level g along theta (n,); p = (Ts / Tc,
+    Stribeck speed, sigma_0 / Tc); see `_bristle`."""
+    ratio, vs, stiffness = p
     out = np.zeros(len(theta))
     z = 0.0
     dz = 0.0
@@ -32,7 +32,7 @@ def _response(
             continue
         move = theta[k] - theta[k - 1]
         w = abs(move) / dt
-        g = 1.0 + (ratio - 1.0) * np.exp(-((w / vs) ** 2))
+        g = 1.0 + (ratio - 1.0) * np.exp(-((w / vs) ** exponent))
         end = g if move > 0 else -g
         a = stiffness * abs(move) / g
         left = np.exp(-a)
@@ -53,6 +53,7 @@ class Level:
 
     motion: Motion
     friction: Friction
+    exponent: float  # of the Stribeck curve
     angle: Array  # rad
     clock: Array  # s
     session: NDArray[np.int64]
@@ -67,24 +68,25 @@ class Level:
             m.theta,
             m.fresh,
             m.period_s / m.width,
-            f.ratio,
-            f.stribeck_speed,
-            f.stiffness,
+            np.array([f.ratio, f.stribeck_speed, f.stiffness]),
+            self.exponent,
             np.ascontiguousarray(change / self.steady),
         )
         return m.at(one) * f.coulomb
 
 
 def level_of(
-    motion: Motion, friction: Friction, clock: Array, session: NDArray[np.int64]
+    motion: Motion, friction: Friction, exponent: float, clock: Array, session: NDArray[np.int64]
 ) -> Level:
     """The declared friction's level along a motion; `clock` (n,) at full rate, s."""
     step = np.gradient(motion.theta)
-    fade = np.exp(-((np.abs(step) * motion.width / motion.period_s / friction.stribeck_speed) ** 2))
+    speed = np.abs(step) * motion.width / motion.period_s
+    fade = np.exp(-((speed / friction.stribeck_speed) ** exponent))
     stiction = friction.coulomb * friction.ratio * fade
     return Level(
         motion,
         friction,
+        exponent,
         motion.theta,
         clock,
         session,

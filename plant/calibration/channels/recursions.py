@@ -9,7 +9,6 @@ import numpy as np
 from plant.calibration.readers.run import Array
 from plant.compiled import entry
 
-
 PAUSE_S = 2.0
 
 

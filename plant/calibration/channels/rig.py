@@ -14,6 +14,7 @@ from plant.calibration.readers.rig import Rig
 from plant.calibration.readers.run import Array, Run
 
 STANDSTILL = 0.005  # of the usual top speed: slower is standing
+LONGEST = 0.02  # of a run: a longer window or step would leave too little of it
 MIN_ROWS = 200  # fewer rows than this say nothing about ten parameters
 
 
@@ -94,6 +95,11 @@ def _one(run: Run, rig: Rig, index: int) -> dict[str, Array]:
         below = c[rig.response["divide_by"]]
         ok &= np.abs(below) > 0.5 * np.median(np.abs(below))  # unloaded: the ratio says nothing
         y = y / np.where(ok, below, np.inf)
+    for field, value in (("smooth_s", rig.smooth_s), ("analyse_period_s", rig.analyse_period_s)):
+        if value is not None and value > LONGEST * run.duration_s:
+            raise CalibrationInputError(
+                rig.path, f"{field}: {value:g} s is too long for a run of {run.duration_s:.4g} s"
+            )
     window = round((rig.smooth_s or 21 * period) / period) | 1
     out = {
         "t": grid,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from plant.calibration.channels.declared import Friction, fit_friction
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.motion import Motion, motion_of
 from plant.calibration.channels.problem import Problem
+from plant.calibration.declaredplant import Declared
 from plant.calibration.readers.drive import STAGES
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import Mask
@@ -27,6 +29,21 @@ SETTLE_S = 0.25  # how long such a transient lasts: a few turns of the lock-roto
 DIRECTION_TRAVEL = 2e-6  # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range
 
 
+@dataclass(frozen=True)
+class Transmission:
+    """From currents to the axis: what electrical and encoder channels say of it.
+
+    `per_ampere` N m at the axis; `left` (n,) per motor, the part of its torque constant it has left;
+    `softness_s2` is a rotor's inertia at the axis over its train's stiffness: what the rotors turn against
+    the axis while the trains wind up takes that times the torque's second derivative.
+    """
+
+    per_ampere: float
+    left: dict[str, Array]
+    softness_s2: float
+    stiffness: float  # N m/rad of one train
+
+
 @dataclass
 class Torque:
     """The torque problem with what it was made of."""
@@ -36,7 +53,7 @@ class Torque:
     motion: Motion
     friction: Friction
     bristle: Array  # F/Tc at full rate
-    per_ampere: float  # N m at the axis per A
+    drive: Transmission
 
 
 def transients(frame: Frame, effort: Array) -> Mask:
@@ -57,15 +74,28 @@ def saturated(frame: Frame, current: Array) -> Mask:
     return np.asarray(current >= 1022.5 * frame.scale["adc_A_per_count"])
 
 
-def torque_problem(
-    frame: Frame, per_ampere: float, held: Mask, left: dict[str, Array], softness: float = 0.0
-) -> Torque | None:
-    """Build the T channel; None when the log has no currents.
+def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]]) -> Array:
+    """(n_analysis, 2 k): cos and sin of every declared periodic torque, dimmed by the two boxcars."""
+    turns, speed = m.theta[m.pick] / (2 * np.pi), np.abs(m.rate[m.pick]) / (2 * np.pi)
+    columns = [np.zeros((len(turns), 0))]
+    for _, stage, harmonic in lines:
+        order = STAGES[stage] * harmonic
+        per_sample = speed * order * m.period_s
+        dim = np.where(per_sample < 0.9, np.sinc(per_sample) ** 2, 0.0)
+        x = 2 * np.pi * order * turns
+        columns.append(np.column_stack([dim * np.cos(x), dim * np.sin(x)]))
+    return np.hstack(columns)
 
-    `held` (n,) marks held-out rows at full rate, `left` what each motor has left of its torque constant.
-    `softness` is a rotor's inertia at the axis over its train's stiffness, s2: what the rotors turn against
-    the axis while the trains wind up takes `softness` times the torque's second derivative.
-    """
+
+def torque_problem(
+    frame: Frame,
+    drive: Transmission,
+    held: Mask,
+    declared: Declared,
+    beside: Array | None = None,
+) -> Torque | None:
+    """Build the T channel; None when the log has no currents. `held` (n,) marks held-out rows at full
+    rate; `beside` (n_analysis, k) are torques fitted beside friction, and no part of the base."""
     ia, ib = frame.get("current_a"), frame.get("current_b")
     if ia is None and ib is None:
         return None
@@ -78,11 +108,14 @@ def torque_problem(
     pick = m.pick
     near |= saturated(frame, fa) | saturated(frame, fb)
     rows = (m.trusted & ta & tb)[pick] & (m.smooth(near.astype(float))[pick] < 1e-9)
-    full = per_ampere * (left["a"] * fa - left["b"] * fb)
-    y = m.at(full) - softness * m.curvature(full)[pick]
+    full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
+    y = m.at(full) - drive.softness_s2 * m.curvature(full)[pick]
     test = held[pick]
-    preload = frame.runs[0].header.get("preload", "low")
-    friction, base, bristle = fit_friction(m, y, rows & ~test, preload)
+    lines = declared_lines(m, declared.lines)
+    torques = lines if beside is None else np.hstack([lines, beside])
+    friction, base, bristle = fit_friction(
+        m, y, rows & ~test, declared.start, declared.stribeck_exponent, torques
+    )
     labels = [
         ("inertia", "kg m2"),
         ("viscous", "N m s/rad"),
@@ -96,6 +129,8 @@ def torque_problem(
     # it is large
     base = np.column_stack([base, m.at(np.gradient(full, frame.period_s))])
     labels.append(("current_delay", "s"))
+    base = np.hstack([base, lines])
+    labels += [(f"declared {s} {h}", "N m") for _, s, h in declared.lines for _ in "cs"]
     t = frame.t[pick]
     problem = Problem(
         "T",
@@ -111,7 +146,7 @@ def torque_problem(
         m.period_s,
         ar_order=4,
         block_s=3.0,
-        step=STEP * frame.scale["adc_A_per_count"] * per_ampere,
+        step=STEP * frame.scale["adc_A_per_count"] * drive.per_ampere,
     )
     theta = m.theta[pick]
     direction = direction_of(theta, frame.run[pick], DIRECTION_TRAVEL)
@@ -135,4 +170,4 @@ def torque_problem(
         temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
         stages={k: v / (2 * np.pi) for k, v in STAGES.items() if k not in ("aux",)},
     )
-    return Torque(problem, context, m, friction, bristle, per_ampere)
+    return Torque(problem, context, m, friction, bristle, drive)

@@ -53,7 +53,7 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
                     )
                 )
         for what, wrong in tests:
-            row = {"what": f"{what} ({c.name})", "accepted": _better(selection, k, wrong)}
+            row = {"what": f"{what} ({c.say()})", "accepted": _better(selection, k, wrong)}
             if what == "time reversed" and _alike(c.columns, wrong.columns):
                 row = {
                     "what": row["what"],
@@ -61,7 +61,7 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
                     "note": "no test here: this motion reads the same backwards",
                 }
             out.append(row)
-        out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(selection, k)})
+        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(selection, k)})
     return out
 
 

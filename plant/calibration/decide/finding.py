@@ -19,6 +19,17 @@ class Parameter:
         return {"value": self.value, "unit": self.unit, "low": self.low, "high": self.high}
 
 
+@dataclass(frozen=True)
+class Curve:
+    """A function found in data: what it adds, in `unit`, over a signal of the plant; 95 % half-widths."""
+
+    domain: str
+    unit: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    half: tuple[float, ...]
+
+
 @dataclass
 class Finding:
     """One effect; `evidence` is -log10 p on training rows, `share` the held-out mean square it takes away."""
@@ -35,6 +46,7 @@ class Finding:
     evidence: float = 0.0
     share: float = 0.0
     note: str = ""
+    curve: Curve | None = None
 
     @property
     def key(self) -> tuple[str, str | None, int | None]:

@@ -27,6 +27,9 @@ LEAST_EVIDENCE = (
 BURST = 0.05
 WORSE = 0.001  # of the held-out mean square: rounding, not harm
 MOST = 5  # effects per channel
+# of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
+# short logs would be named with confidence they do not have
+FEWEST_BLOCKS = 20
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,15 @@ class Selection:
 def design(problem: Problem, chosen: list[Candidate]) -> Array:
     """Base and chosen candidates side by side."""
     return np.hstack([problem.base, *[c.columns for c in chosen]])
+
+
+def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
+    """Every accepted effect with its coefficients in the joint fit."""
+    out, at = [], s.problem.base.shape[1]
+    for c in s.chosen:
+        out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
+        at += c.candidate.width
+    return out
 
 
 def phases(problem: Problem, chosen: list[Candidate]) -> list[slice]:
@@ -98,6 +110,16 @@ def select(
     steps: list[HeldOut] = []
     refused: list[Refusal] = []
     left = list(candidates)
+    blocks = problem.train.sum() / problem.block
+    if left and blocks < FEWEST_BLOCKS:
+        refused.append(
+            Refusal(
+                "every candidate",
+                f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
+                f" an interval needs {FEWEST_BLOCKS}",
+            )
+        )
+        left = []
     first: Look | None = None
     while len(picks) < most and left:
         base = design(problem, [p.candidate for p in picks])
@@ -178,7 +200,9 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
         return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
     if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
-    if np.isfinite(held.after) and held.share < -WORSE:
+    if not np.isfinite(held.after):
+        return "no held-out rows to test it on"
+    if held.share < -WORSE:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
     return ""
 

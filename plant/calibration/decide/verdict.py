@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
 from plant.calibration.decide.experiments import experiment
 from plant.calibration.decide.finding import Finding, Parameter
+
+PHASES = (
+    "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
+    "effect, or of the difference of two encoders; plant.yaml has the effect's own torque or error, a sine."
+)
 
 
 @dataclass
@@ -26,6 +31,7 @@ class Verdict:
     reasons: list[str] = field(default_factory=list)
     thresholds: dict[str, dict[str, float]] = field(default_factory=dict)
     refused: list[tuple[str, str, str]] = field(default_factory=list)
+    closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
 def judge(effects: list[Finding]) -> tuple[str, str | None]:
@@ -62,7 +68,7 @@ def effect_as_dict(effect: Finding) -> dict[str, Any]:
         "frequency_Hz": effect.frequency,
         "evidence": round(effect.evidence, 2),
         "note": effect.note,
-    }
+    } | ({} if effect.curve is None else {"curve": asdict(effect.curve)})
 
 
 def as_dict(v: Verdict) -> dict[str, Any]:
@@ -71,6 +77,7 @@ def as_dict(v: Verdict) -> dict[str, Any]:
         "verdict": v.verdict,
         "effects": [effect_as_dict(e) for e in v.effects],
         "error": v.error,
+        **({"closed_loop": v.closed_loop} if v.closed_loop else {}),
         "held_out": v.held_out,
         "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
         "not_identifiable": v.not_identifiable,
@@ -78,5 +85,6 @@ def as_dict(v: Verdict) -> dict[str, Any]:
         "controls": v.controls,
         "thresholds": v.thresholds,
         "reasons": v.reasons,
+        "conventions": [PHASES] if any("phase" in e.parameters for e in v.effects) else [],
         "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
     }

@@ -11,6 +11,7 @@ from plant.calibration.errors import CalibrationInputError
 from plant.calibration.readers.csvtext import read_numbers
 from plant.calibration.readers.drive import ARCSEC, SCALES, WRAPS
 from plant.calibration.readers.header import number, parse_header
+from plant.calibration.readers.plausible import check_values
 from plant.calibration.readers.run import Array, Run
 
 KNOWN = (
@@ -60,7 +61,10 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
         start += 1
     if start >= len(lines):
         raise CalibrationInputError(path, "the log ends after its header: no column row, no data", start)
-    names = [n.strip() for n in lines[start].rstrip("\r").split(",")]
+    names = [n.strip().strip('"') for n in lines[start].rstrip("\r").split(",")]
+    if len(names) == 1 and any(mark in names[0] for mark in ";\t"):
+        mark = "semicolons" if ";" in names[0] else "tabs"
+        raise CalibrationInputError(path, f"the columns are parted by {mark}, must be commas", start + 1)
     _check_names(path, names, start + 1)
     body = text.split("\n", start + 1)[start + 1] if text.count("\n") > start else ""
     if not body.strip():
@@ -68,12 +72,13 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
     raw = read_numbers(path, body, names, start + 2, wanted=set(KNOWN) & set(names))
     scales = {key: number(path, header, key) for key in SCALES}
     raw = _check_time(path, raw, scales["sample_period_s"], start + 2)
+    check_values(path, raw, scales, start + 2)
     return Run(path.stem, path, header["session"], to_si(raw, scales), raw, header, scales)
 
 
 def _load(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
@@ -119,6 +124,13 @@ def _check_time(path: Path, raw: dict[str, Array], period: float, first: int) ->
             path,
             "a third of the rows share their time with the row before: two axes in one file?",
             first + k + 1,
+            "t",
+        )
+    if len(step) > 20 and not 0.05 < float(np.median(step)) / period < 20:
+        raise CalibrationInputError(
+            path,
+            f"rows are {np.median(step):g} apart, the header says {period:g} s: 't' is logged in s",
+            first,
             "t",
         )
     return raw

@@ -60,7 +60,14 @@ def _slowly(
         if len(fields) != len(names):
             if offset == len(rows) - 1:  # a run that was cut off: the last line may be half written
                 break
-            raise CalibrationInputError(path, f"{len(fields)} fields, the header row has {len(names)}", line)
+            hint = ""
+            if text.startswith("#"):
+                hint = ": a second header? one file holds one run"
+            elif len(fields) == 2 * len(names) or (len(fields) > len(names) and delimiter == ","):
+                hint = ": decimal commas? write points"
+            raise CalibrationInputError(
+                path, f"{len(fields)} fields, the header row has {len(names)}{hint}", line
+            )
         for name, value in zip(names, fields, strict=True):
             value = value.strip()
             if name not in keep or value in ("", "nan", "NaN"):
@@ -68,6 +75,7 @@ def _slowly(
             try:
                 out[name][count] = float(value)
             except ValueError:
-                raise CalibrationInputError(path, f"'{value}' is not a number", line, name) from None
+                hint = ": decimal commas? write points" if value.replace(",", "", 1).isdigit() else ""
+                raise CalibrationInputError(path, f"'{value}' is not a number{hint}", line, name) from None
         count += 1
     return {n: v[:count] for n, v in out.items()}

@@ -113,6 +113,7 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         raise CalibrationInputError(
             path, f"response.channel: '{channel}' is not among the columns ({', '.join(columns)})"
         )
+    _check(path, data, columns)
     return Rig(
         name=data["rig"],
         path=path,
@@ -129,6 +130,37 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         analyse_period_s=data.get("analyse_period_s"),
         raw=data,
     )
+
+
+def _check(path: Path, data: dict[str, Any], columns: dict[str, Column]) -> None:
+    """What the schema cannot say: channels that are needed, factors that erase a column, the unit of time."""
+    for needed in ("time", "position"):
+        if needed not in columns:
+            raise CalibrationInputError(path, f"columns: '{needed}' is missing")
+    if columns["time"].unit != "s":
+        raise CalibrationInputError(
+            path,
+            f"columns.time.unit: '{columns['time'].unit}', must be s; give the file's unit as a factor,"
+            " such as scale: 0.001 for ms",
+        )
+    zero = next((k for k, c in columns.items() if c.scale == 0), None)
+    if zero is not None:
+        raise CalibrationInputError(path, f"columns.{zero}.scale: 0 erases the column")
+    response = data["response"]
+    if response.get("gain", 1) == 0:
+        raise CalibrationInputError(path, "response.gain: 0 erases the response")
+    below = response.get("divide_by")
+    if below is not None and below not in columns:
+        raise CalibrationInputError(
+            path, f"response.divide_by: '{below}' is not among the columns ({', '.join(columns)})"
+        )
+    runs = data.get("runs", {})
+    if runs.get("by") == "column" and "column" not in runs:
+        raise CalibrationInputError(path, "runs.by: 'column' needs runs.column, the column's name")
+    names = [item["name"] for item in data.get("stages", [])]
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise CalibrationInputError(path, f"stages: '{twice}' is given twice")
 
 
 def _stages(path: Path, items: list[dict[str, Any]]) -> list[Stage]:

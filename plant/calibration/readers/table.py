@@ -23,9 +23,21 @@ def read_table(path: Path, rig: Rig) -> Run:
             values = values.copy()
             values[good] = np.unwrap(values[good], period=where.wrap)
         columns["t" if channel == "time" else channel] = values * where.scale
-    if "t" not in columns:
-        raise CalibrationInputError(rig.path, "columns: 'time' is missing")
-    t = columns["t"]
+    for channel, values in columns.items():
+        name = str(rig.columns["time" if channel == "t" else channel].column)
+        if not np.isfinite(values).any():
+            raise CalibrationInputError(path, "holds no number in any row", None, name)
+        if np.isinf(values).any():
+            row = int(np.argmax(np.isinf(values))) + 1
+            raise CalibrationInputError(path, f"is infinite in data row {row}", None, name)
+    t, clock = columns["t"], str(rig.columns["time"].column)
+    if not np.isfinite(t).all():
+        row = int(np.argmax(~np.isfinite(t))) + 1
+        raise CalibrationInputError(
+            path, f"is empty in data row {row}", None, str(rig.columns["time"].column)
+        )
+    if len(t) > 1 and not np.median(np.diff(t)) > 0:
+        raise CalibrationInputError(path, "does not advance", None, clock)
     if (np.diff(t) < 0).any():
         k = int(np.argmax(np.diff(t) < 0))
         name = str(rig.columns["time"].column)
@@ -44,10 +56,11 @@ def _wanted(rig: Rig) -> list[str]:
 
 def _matlab(path: Path, rig: Rig) -> dict[str, Array]:
     from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
 
     try:
         content = loadmat(path)
-    except (OSError, ValueError, NotImplementedError) as error:
+    except (OSError, ValueError, TypeError, NotImplementedError, MatReadError) as error:
         raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({error})") from None
     out: dict[str, Array] = {}
     for name in _wanted(rig):
@@ -89,9 +102,15 @@ def _text(path: Path, rig: Rig) -> dict[str, Array]:
         raise CalibrationInputError(
             path, f"{len(lines[first].split(delimiter))} fields, {len(names)} names", first + 1
         )
+    for column in [c.column for c in rig.columns.values()] + [rig.runs.get("column", "")]:
+        if isinstance(column, int) and str(column) not in names and 0 <= column < len(names):
+            names[column] = str(column)  # by its place, from 0
     for name in _wanted(rig):
         if name not in names:
-            raise CalibrationInputError(path, f"no such column; the file has {', '.join(names)}", first, name)
+            have = (
+                ", ".join(names) if first > skip else f"no header row and {len(names)} columns, named 0, 1 …"
+            )
+            raise CalibrationInputError(path, f"no such column; the file has {have}", skip + 1, name)
     return read_numbers(path, "\n".join(lines[first:]), names, first + 1, delimiter, set(_wanted(rig)))
 
 

@@ -5,26 +5,60 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+#: channel of an effect -> the row of the error table it is judged by
+ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}
+CHANNELS = {
+    "T": "torque or effort",
+    "K": "position (difference of two encoders, or of the star and the drive)",
+    "E": "electrical",
+    "S": "sensor, clock or log",
+}
+
 
 def summary(data: dict[str, Any]) -> str:
-    """One sentence for the top of the page."""
+    """What was found and what it is worth, for the top of the page."""
     effects = data["effects"]
     if data["verdict"] == "nothing":
         return "Nothing is missing from the declared model that this log could show."
     if not effects:
         return ""
     top = effects[0]
-    place = f" on {top['stage']}" if top["stage"] else ""
     if data["verdict"] == "unknown":
-        return (
+        period = f" with a period of {1 / top['frequency_Hz']:.4g} s" if top["frequency_Hz"] else ""
+        first = (
             f"Something real is left that the catalogue does not name: a function of "
-            f"{top['domain'].replace('_', ' ')}"
-            f" in channel {top['channel']}."
+            f"{top['domain'].replace('_', ' ')}{period} in {CHANNELS.get(top['channel'], top['channel'])}."
         )
-    if data["verdict"] == "ambiguous":
-        return f"{top['name']}{place}, which this log cannot tell from {', '.join(top['equivalent'])}."
-    more = f", and {len(effects) - 1} more" if len(effects) > 1 else ""
-    return f"The declared model lacks {top['name']}{place}{more}."
+    elif data["verdict"] == "ambiguous":
+        first = f"{_say(top)}, which this log cannot tell from {', '.join(top['equivalent'])}."
+    else:
+        more = len(effects) - 1
+        first = f"The declared model lacks {_say(top)}" + (f", and {more} more." if more else ".")
+    return f"{first} {_worth(data['error'], top['channel'])}".strip()
+
+
+def _say(effect: dict[str, Any]) -> str:
+    place = f" on {effect['stage']}" if effect["stage"] else ""
+    size = effect["parameters"].get("amplitude")
+    period = f"period {1 / effect['frequency_Hz']:.5g} s" if effect["frequency_Hz"] else ""
+    amplitude = f"amplitude {size['value']:.3g} {size['unit']}" if size else ""
+    detail = ", ".join(x for x in (period, amplitude) if x)
+    return f"{effect['name']}{place}" + (f" ({detail})" if detail else "")
+
+
+def _worth(error: dict[str, Any], channel: str) -> str:
+    row = error.get(ROWS.get(channel, ""))
+    if not row:
+        return ""
+    return (
+        f"On data nothing was fitted to, the error goes from {row['before']:.3g} to {row['after']:.3g}"
+        f" {row['unit']} (floor {row['floor']:.2g})."
+    )
+
+
+def parameters(effect: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Parameters worth a line on the page: the knots of an unnamed function are drawn, not listed."""
+    return [(n, p) for n, p in effect["parameters"].items() if not n.startswith("knot_")]
 
 
 def page(data: dict[str, Any], pictures: list[dict[str, str]], title: str, subtitle: str) -> str:
@@ -34,5 +68,11 @@ def page(data: dict[str, Any], pictures: list[dict[str, str]], title: str, subti
     here = Path(__file__).parent
     env = Environment(loader=FileSystemLoader(here), autoescape=True)
     return env.get_template("report.html.j2").render(
-        r=data, plots=pictures, title=title, subtitle=subtitle, summary=summary(data)
+        r=data,
+        plots=pictures,
+        title=title,
+        subtitle=subtitle,
+        summary=summary(data),
+        parameters=parameters,
+        channels=CHANNELS,
     )

@@ -1,0 +1,1 @@
+"""From findings to the effects of a plant file."""

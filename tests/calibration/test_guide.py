@@ -1,0 +1,153 @@
+"""Guide logs as mounts and PHD2 versions write them: what is summed up, what is refused, what a worm is."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from plant.calibration.command import calibrate, read_logs
+from plant.calibration.errors import CalibrationInputError
+from plant.calibration.guide import SIDEREAL_DAY_S, known_mount
+from plant.calibration.readers.guide import read_guide_log
+from plant.calibration.readers.run import Array, Run
+from tests.calibration.test_readers import GUIDE
+
+HEAD = (
+    "Frame,Time,mount,dx,dy,RARawDistance,DECRawDistance,RAGuideDistance,DECGuideDistance,"
+    "RADuration,RADirection,DECDuration,DECDirection,XStep,YStep,StarMass,SNR,ErrorCode\n"
+)
+
+
+def section(start: str, t: Array, error: Array, mount: str = "EQMOD HEQ5/6", dither: int = 0) -> str:
+    """A guiding section whose corrections take away half of every raw distance; `error` in px."""
+    out = [
+        f"Guiding Begins at {start}",
+        "Pixel scale = 1.00 arc-sec/px, Binning = 1, Focal length = 800 mm",
+        f"Mount = {mount}, connected, guiding enabled, xAngle = -81.6",
+        HEAD.strip(),
+    ]
+    total = 0.0
+    for k, (at, e) in enumerate(zip(t, error, strict=True)):
+        if dither and k and k % dither == 0:
+            out.append("INFO: DITHER by 1.000, 0.000, new lock pos = 5.000, 5.000")
+        raw = e - total
+        out.append(f'{k + 1},{at:.3f},"Mount",0,0,{raw:.3f},0,{0.5 * raw:.3f},0,10,W,0,,,,999,20.0,0')
+        total += round(0.5 * raw, 3)
+    return "\n".join([*out, "Guiding Ends at 2026-01-01 09:00:00", "", ""])
+
+
+def night(teeth: int, phases: list[float], amplitude: float = 3.0, seed: int = 5, **more: Any) -> str:
+    """Sections of 80 minutes with a worm at its own phase in each, drift and star noise."""
+    rng = np.random.default_rng(seed)
+    text = "PHD2 version 2.6.13 [Windows], Log version 2.5. Log enabled at 2026-01-01 20:00:00\n\n"
+    for k, phase in enumerate(phases):
+        t = np.arange(0, 4800, 5.0) + rng.uniform(0, 0.3, 960)
+        worm = amplitude * np.sin(2 * np.pi * teeth / SIDEREAL_DAY_S * t + phase)
+        e = worm + 0.002 * t + np.cumsum(rng.normal(0, 0.03, 960)) + rng.normal(0, 0.3, 960)
+        text += section(f"2026-01-01 2{k}:00:00", t, e, **more)
+    return text
+
+
+def report(tmp_path: Path, text: str, hold: list[str] | None = None) -> dict[str, Any]:
+    path = tmp_path / "night.txt"
+    path.write_text(text)
+    assert calibrate([path], None, hold or [], tmp_path / "out", plots=False) == 0
+    data: dict[str, Any] = json.loads((tmp_path / "out" / "report.json").read_text())
+    return data
+
+
+@pytest.mark.slow
+def test_a_worm_with_a_phase_of_its_own_in_every_section_is_found_and_pays_on_held_out_frames(
+    tmp_path: Path,
+) -> None:
+    data = report(tmp_path, night(180, [0.3, 2.0, 4.4], dither=200))
+    assert [e["stage"] for e in data["effects"]] == ["worm of a 180-tooth wheel"]
+    amplitude = data["effects"][0]["parameters"]["amplitude"]
+    assert amplitude["low"] < 3.0 < amplitude["high"]
+    assert data["error"]["position"]["after"] < 0.6 * data["error"]["position"]["before"]
+    assert len(data["held_out"]) == 3
+
+
+@pytest.mark.slow
+def test_a_mount_without_periodic_error_gets_nothing(tmp_path: Path) -> None:
+    data = report(tmp_path, night(180, [0.0, 1.0], amplitude=0.0))
+    assert data["verdict"] == "nothing" and data["effects"] == []
+
+
+@pytest.mark.slow
+def test_short_sections_are_left_out_and_said(tmp_path: Path) -> None:
+    t = np.arange(0, 60, 5.0)
+    text = night(180, [0.3, 2.0]) + section("2026-01-01 23:00:00", t, 0 * t)
+    data = report(tmp_path, text)
+    assert data["effects"] and any("1 of 3 sections left out" in r for r in data["reasons"])
+    assert np.isfinite(data["error"]["position"]["before"])
+
+
+def test_a_log_of_ten_minutes_says_nothing(tmp_path: Path) -> None:
+    t = np.arange(0, 600, 5.0)
+    data = report(tmp_path, section("2026-01-01 20:00:00", t, 3 * np.sin(2 * np.pi * t / 478.7)))
+    assert data["verdict"] == "nothing" and data["reasons"]
+
+
+def test_a_correction_that_was_never_sent_is_not_summed_up(tmp_path: Path) -> None:
+    text = GUIDE.replace("0.100,0,0.050,0,10,W,0", "0.100,0,0.050,0,0,,0")
+    (tmp_path / "g.txt").write_text(text)
+    run = read_guide_log(tmp_path / "g.txt")[0]
+    assert run.columns["ra"][:2] == pytest.approx([0.2, 0.4])  # raw x 2 arcsec/px, nothing added by hand
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('"Mount",', '"AO",', "adaptive-optics"),
+        ('"Mount",', '"DROP",', "every frame is marked DROP"),
+        ("Pixel scale = 2.00", "Pixel scale = 0", ":14: the section above .* pixel scale '0'"),
+        ("1,1.0,", "1,,", ":14: column 'Time': is no time"),
+        (
+            '2,2.0,"Mount",0,0,0.200,0,0.000,0',
+            '2,2,0,"Mount",0,0,0,200,0,0,000,0',
+            ":15: column 'mount': '0' is none of .*decimal commas",
+        ),
+        ("RARawDistance", "RaDist", "the column 'RARawDistance' is missing"),
+    ],
+)
+def test_a_guide_log_that_cannot_be_summed_says_why(tmp_path: Path, old: str, new: str, says: str) -> None:
+    (tmp_path / "g.txt").write_text(GUIDE.replace(old, new))
+    with pytest.raises(CalibrationInputError, match=says):
+        read_guide_log(tmp_path / "g.txt")
+
+
+def test_code_pages_byte_order_marks_decimal_commas_in_the_scale_and_a_cut_end_are_read(
+    tmp_path: Path,
+) -> None:
+    text = GUIDE.replace("Pixel scale = 2.00", "Pixel scale = 2,00").replace(
+        "Mount = Astro", "Mount = Montüre Astro"
+    )
+    path = tmp_path / "g.txt"
+    for content in (
+        text.encode("cp1252"),
+        b"\xef\xbb\xbf" + text.encode(),
+        text.replace("\n", "\r\n").encode(),
+    ):
+        path.write_bytes(content)
+        kind, runs = read_logs([path], None)
+        assert kind == "guide" and runs[0].columns["ra"][0] == pytest.approx(0.2)
+    path.write_text(GUIDE[: GUIDE.index("INFO: DITHER")] + '5,5.0,"Mou')
+    assert read_guide_log(path)[0].rows == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "teeth"),
+    [
+        ("Celestron AVX/CGE/CGEM/CGX", (180, 144)),
+        ("EQMOD HEQ5/6 (ASCOM)", (135, 180)),
+        ("AstroPhysicsV2", (225,)),
+        ("ZWO AM5", ()),
+    ],
+)
+def test_the_wheel_follows_from_the_mounts_name_or_is_not_assumed(name: str, teeth: tuple[int, ...]) -> None:
+    assert known_mount([Run("a", Path("a"), "a", {}, header={"mount": name})]) == teeth
