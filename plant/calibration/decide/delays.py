@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from plant.calibration.decide.finding import Finding, Parameter
-from plant.calibration.decide.select import Selection, design
+from plant.calibration.decide.select import FEWEST_BLOCKS, Selection, design
 from plant.calibration.declaredplant import Declared
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.tails import student_reach
@@ -48,7 +48,8 @@ def delay_findings(selections: dict[str, Selection], declared: Declared) -> list
     lags: dict[str, tuple[float, float]] = {}
     for key, nominal in (("K", 0.0), ("S", WINDOW_DELAY_S)):
         index = COLUMN[key]
-        if key in selections:
+        p = selections[key].problem if key in selections else None
+        if p is not None and p.train.sum() >= FEWEST_BLOCKS * p.block:
             s = selections[key]
             value, error = -float(s.after.beta[index]), float(np.sqrt(s.after.covariance[index, index]))
             lags[key] = (value - nominal, error * student_reach(60))
