@@ -37,7 +37,7 @@ class Friction:
         """Torque through both trains at full rate, N m: they pull against each other."""
         both = np.abs(self.load) + 2 * np.abs(self.lagging)
         pick = self.level.motion.pick
-        return np.interp(np.arange(len(self.level.clock)), pick, both)
+        return np.asarray(np.interp(np.arange(len(self.level.clock)), pick, both))
 
 
 def direction_effects(c: Context, f: Friction) -> list[Candidate]:
@@ -179,7 +179,7 @@ def _onset(f: Friction) -> Callable[[Array], Array]:
 def _ramp(f: Friction) -> Callable[[Array], Array]:
     def shape(p: Array) -> Array:
         def rise(clock: Array) -> Array:
-            return np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1)
+            return np.asarray(np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1))
 
         return (f.level.answer(f.level.stiction * rise(f.level.clock)) + f.viscous * rise(f.clock))[:, None]
 

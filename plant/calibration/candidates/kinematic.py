@@ -110,7 +110,7 @@ def _slips(w: Array, acceleration: Array) -> list[Candidate]:
     size = np.abs(acceleration)
 
     def excess(p: Array) -> Array:
-        return (-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None]
+        return np.asarray((-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None])
 
     out = []
     for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):

@@ -54,7 +54,7 @@ def correct_and_replay(
     declared, _ = calibrate_model(
         with_declared_lines(model, axis, result, t.before if t else None), axis, numbers, run.name, unsure
     )
-    per_ampere = result.torque.per_ampere if result.torque is not None else 0.0
+    per_ampere = result.torque.drive.per_ampere if result.torque is not None else 0.0
     e = result.selections.get("E")
     mean = result.declared.ripple is not None
     mean |= e is not None and "current_ripple" in [name for name, _ in e.problem.base_labels]
@@ -94,7 +94,7 @@ def facts_of(result: AxisResult, verdict: Verdict, model: PlantModel, name: str)
         0.5 * part.gear.backlash.si * RATIO,
         resistance,
         max(resistance - sense, 0.1),
-        result.torque.per_ampere if result.torque is not None else 140.0,
+        result.torque.drive.per_ampere if result.torque is not None else 140.0,
         result.frame.scale["adc_A_per_count"],
         result.frame.scale["supply_V"],
         model.environment.warming.si,
