@@ -51,7 +51,7 @@ def run_all(drive: Drive, runs: list[Run], effects: dict[str, float], seed: int)
         if run.session != session:
             memory[:2] = 0.0
             session = run.session
-        elif values["HEAT"] > 0.0:
+        elif values.get("HEAT", 0.0) > 0.0:
             memory[:2] *= np.exp(-max(run.t_session - until, 0.0) / values["HEAT_TAU"])
         until = run.t_session + d.TICK_S * len(run.command)
         phase = float(np.random.default_rng([seed, 17, ord(session)]).uniform(0, 1e6))
