@@ -12,9 +12,10 @@ from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.frame import fill
 from plant.calibration.channels.level import level_of
 from plant.calibration.channels.torque import Torque, Transmission, torque_problem
+from plant.calibration.decide.accept import FEWEST_BLOCKS
 from plant.calibration.decide.broadband import wind
 from plant.calibration.decide.finding import Finding
-from plant.calibration.decide.select import FEWEST_BLOCKS, Selection, design, select
+from plant.calibration.decide.select import Selection, design, select
 from plant.calibration.decide.sizes import white_noise
 from plant.calibration.decide.tolerance import seen_speeds, telling, torque_changes
 from plant.calibration.readers.run import Array

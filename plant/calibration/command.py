@@ -35,12 +35,17 @@ def calibrate(
     log's held-out rows.
     """
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from threadpoolctl import threadpool_limits
 
     if not logs:
         raise CalibrationInputError("calibrate", "give at least one log")
-    with Progress(
-        SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True
-    ) as bar:
+    # the matrices are tall and narrow: more threads than one make the work three times as long
+    with (
+        threadpool_limits(1),
+        Progress(
+            SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True
+        ) as bar,
+    ):
         task = bar.add_task("reading")
         tell: Callable[[str], None] = lambda text: bar.update(task, description=text)  # noqa: E731
         declared = load_rig(rig) if rig is not None else None

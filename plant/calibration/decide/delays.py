@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from plant.calibration.decide.accept import FEWEST_BLOCKS
 from plant.calibration.decide.finding import Finding, Parameter
-from plant.calibration.decide.select import FEWEST_BLOCKS, Selection, design
+from plant.calibration.decide.select import Selection, design
 from plant.calibration.declaredplant import Declared
 from plant.calibration.statistics.regression import gls
 from plant.calibration.statistics.tails import student_reach

@@ -17,12 +17,14 @@ from plant.calibration.statistics.tails import student_reach
 # of a value, standard error: what the declared model itself is wrong by along a measured motion. From
 # development logs,
 # where estimates scatter by this much about the truth when the noise alone would allow a tenth of it
-MODEL_ERROR = 0.01
+MODEL_ERROR = 0.02
+STEP_ERROR = 0.15  # of a nonlinear parameter's small step, likewise
 
 
-def interval(value: float, error: float, blocks: int) -> tuple[float, float]:
-    """Student's 95 % interval with as many degrees of freedom as there are blocks."""
-    error = float(np.hypot(error, MODEL_ERROR * value))
+def interval(value: float, error: float, blocks: int, model: float | None = None) -> tuple[float, float]:
+    """Student's 95 % interval with as many degrees of freedom as there are blocks; `model` is the model's own
+    error, MODEL_ERROR of the value unless given."""
+    error = float(np.hypot(error, MODEL_ERROR * value if model is None else model))
     reach = student_reach(max(blocks - 2, 3)) * error
     return value - reach, value + reach
 
@@ -69,7 +71,7 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
     for k, name in enumerate(list(candidate.fixed)[: len(candidate.steps)]):
         value, unit = candidate.fixed[name]
         error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
-        low, high = interval(value, error, blocks)
+        low, high = interval(value, error, blocks, STEP_ERROR * candidate.steps[k])
         out[name] = Parameter(value, unit, low, high)
     return out
 

@@ -8,28 +8,16 @@ import numpy as np
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.problem import Problem
+from plant.calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_step
 from plant.calibration.decide.gate import gate
 from plant.calibration.decide.heldout import HeldOut, compare, cross_validate
+from plant.calibration.decide.refine import polish
 from plant.calibration.decide.scan import Contender, Look, fit_with, look
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
 from plant.calibration.statistics.surrogate import Scores
 
-# of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
-MARGIN = 0.05
-# for what a rigid balance misses of a compliant drive
-LUCK = 2.0  # z of the cross-validated gain over blocks
-HANDICAP = 0.12  # of the mean square: an unnamed function must do more than a named one
-LEAST_EVIDENCE = (
-    10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
-)
-# of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
-BURST = 0.05
-WORSE = 0.001  # of the held-out mean square: rounding, not harm
 MOST = 5  # effects per channel
-# of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
-# short logs would be named with confidence they do not have
-FEWEST_BLOCKS = 20
 
 
 @dataclass(frozen=True)
@@ -143,6 +131,8 @@ def select(
     if len(picks) > 1:
         for k in range(len(picks)):
             _again(problem, picks, classes, steps, k, candidates, margin, refused)
+    for k in range(len(picks)):
+        _polish(problem, picks, k)
     before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
     after = _fit(problem, picks)
     scores = gate(problem, before, after, candidates, problem.base, rng)
@@ -182,39 +172,16 @@ def _fit(problem: Problem, picks: list[Contender]) -> Fit:
     )
 
 
-def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float = MARGIN) -> str:
-    """Why a contender is not accepted; empty when it is.
-
-    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an
-    effect that the
-    held-out run does not excite may gain nothing there, but none may make it worse.
-    """
-    if contender.bayes <= 0:
-        return "gains less than its parameters cost"
-    if not np.isfinite(inside.after):
-        return "too few rows to test it on"
-    least = max(HANDICAP, margin) if contender.candidate.name == "unknown" else margin
-    if contender.evidence < max(LEAST_EVIDENCE, contender.candidate.least):
-        return f"too little evidence (-log10 p = {contender.evidence:.1f})"
-    if inside.share < least:
-        return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
-    if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
-        return f"cross-validated gain is within luck (z = {inside.z:.1f})"
-    if not np.isfinite(held.after):
-        return "no held-out rows to test it on"
-    if held.share < -WORSE:
-        return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
-    return ""
-
-
-def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
-    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or
-    empty."""
-    rows = problem.train
-    taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
-    if taken < problem.step**2:
-        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
-    return ""
+def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
+    """Move pick `k`'s nonlinear parameters together, beside the others."""
+    if len(picks[k].candidate.steps) < 2:
+        return
+    base = design(problem, [p.candidate for j, p in enumerate(picks) if j != k])
+    null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
+    better = polish(problem, base, null.residual, picks[k].candidate, picks[k].fit.whitener)
+    found = fit_with(problem, base, better, null)
+    if found is not None and found.fit.loglik > picks[k].fit.loglik:
+        picks[k] = found
 
 
 def _again(
@@ -263,30 +230,3 @@ def _retest(
             keep.remove(k)
             refused.append(Refusal(picks[k].candidate.say(), "superfluous once the others are in"))
     return [picks[k] for k in keep], [classes[k] for k in keep], [steps[k] for k in keep]
-
-
-def equivalents(problem: Problem, contenders: list[Contender], best: Contender) -> list[Contender]:
-    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood
-    test)."""
-    out = []
-    for other in contenders:
-        if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
-            continue
-        if other.candidate.width > best.candidate.width:
-            continue  # a richer form always fits as well
-        loss, spread = _paired(problem, best, other)
-        if loss < max(2.0, 2.0 * spread):
-            out.append(other)
-    return out
-
-
-def _paired(problem: Problem, best: Contender, other: Contender) -> tuple[float, float]:
-    """Log likelihood lost by `other`, and its standard error over blocks, in the best model's noise."""
-    w = best.fit.whitener
-    rows = problem.train
-    use = w.usable(rows)
-    eb = w.apply(np.where(rows, best.fit.residual, 0.0))[use]
-    eo = w.apply(np.where(rows, other.fit.residual, 0.0))[use]
-    d = (eo**2 - eb**2) / (2 * best.fit.sigma**2)
-    sums = np.add.reduceat(d, np.arange(0, len(d), problem.block))
-    return float(d.sum()), float(np.std(sums) * np.sqrt(len(sums)))

@@ -15,8 +15,9 @@ import numpy as np
 from plant.calibration.channels.declared import Friction
 from plant.calibration.channels.problem import Problem
 from plant.calibration.channels.torque import Torque
+from plant.calibration.decide.accept import FEWEST_BLOCKS
 from plant.calibration.decide.finding import Finding, Parameter
-from plant.calibration.decide.select import FEWEST_BLOCKS, Selection
+from plant.calibration.decide.select import Selection
 from plant.calibration.declaredplant import Declared
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.regression import Fit, gls
@@ -24,6 +25,7 @@ from plant.calibration.statistics.tails import student_reach
 
 # of a calibrated number, standard error: scatter about the truth on development logs beyond what noise allows
 MODEL_ERROR = 0.0025
+INERTIA_ERROR = 0.006  # likewise: gear trains and rotors beyond a rigid balance
 TOLERANCE = 1.29  # factor either way: clear of 20 % and of the scatter of an estimate
 SIGMA_TOLERANCE = (
     2.2  # sigma_0 is not published: only a factor beyond 1.7 with the scatter of an estimate is a change
@@ -121,12 +123,12 @@ def torque_changes(
     sigma_error = sigma_0 * float(np.hypot(moved["stiffness"][1], error[2] / max(coulomb, 1e-9)))
     speed_error = speed * float(moved["speed"][1])
 
-    def span(value: float, e: float, unit: str) -> Parameter:
-        e = float(np.hypot(e, MODEL_ERROR * value))
+    def span(value: float, e: float, unit: str, model: float = MODEL_ERROR) -> Parameter:
+        e = float(np.hypot(e, model * value))
         return Parameter(value, unit, value - reach * e, value + reach * e)
 
     calibrated = {
-        "inertia": span(float(beta[0]), float(error[0]), "kg m2"),
+        "inertia": span(float(beta[0]), float(error[0]), "kg m2", INERTIA_ERROR),
         "viscous": span(float(beta[1]), float(error[1]), "N m s/rad"),
         "coulomb": span(coulomb, float(error[2]), "N m"),
         "stiction": span(stiction, stiction_error, "N m"),
