@@ -25,7 +25,7 @@ from plant.calibration.statistics.whitening import Mask
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
 REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away
 LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training
-EXPLAINS = 0.4  # of the held-out mean square: what is left beside such an effect is its remainder
+EXPLAINS = 0.7  # of the held-out mean square: what is left beside such an effect is its remainder
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
 

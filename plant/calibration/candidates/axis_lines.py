@@ -19,6 +19,7 @@ MESHES = ("mesh3", "mesh2", "mesh1")
 COGGING = (
     72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
 )
+NEAR = 0.35  # resolution cells about a known order that are that order's
 FREE = 4  # free orders tried per spectrum
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
@@ -123,7 +124,7 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
     for name, weight in (("bearing_pass", np.ones(len(e))), ("position_friction", sided)):
         orders, power = order_spectrum(np.where(rows, e, 0.0), turns, np.where(rows, weight, 0.0), TOP)
         if name == "bearing_pass" and len(orders):
-            near = np.min(np.abs(orders[:, None] - known[None, :]), axis=1) < 0.8 / span
+            near = np.min(np.abs(orders[:, None] - known[None, :]), axis=1) < NEAR / span
             power = np.where(near, 0.0, power)
         for order in peaks(orders, power, FREE, 1.5 / span):
             for shift in (-0.2, 0.0, 0.2):
@@ -133,5 +134,6 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
                 else:
                     x = o * level.angle
                     columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])
-                out.append(line(c, name, None, None, o, columns, "axis_angle"))
+                one = line(c, name, None, None, o, columns, "axis_angle")
+                out.append(replace(one, searched=1 if name == "bearing_pass" else 0))
     return out

@@ -160,6 +160,19 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                         fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
                     )
                 )
+                shape = _weaker(f)
+                out.append(
+                    Candidate(
+                        "magnet_weakening",
+                        "time",
+                        shape(np.array([at, ramp * span])),
+                        (("fraction", "1"),),
+                        shape=shape,
+                        steps=(0.02 * span, 0.08 * max(ramp, 0.1) * span),
+                        fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
+                        sign=1,
+                    )
+                )
     return out
 
 
@@ -174,6 +187,15 @@ def _warmup(f: Friction, since: Array, full: Array, viscous: bool) -> Callable[[
 
 def _onset(f: Friction) -> Callable[[Array], Array]:
     return lambda p: f.level.answer((f.level.clock > p[0]).astype(float))[:, None]
+
+
+def _weaker(f: Friction) -> Callable[[Array], Array]:
+    """Torque that the currents promise and the magnets do not give: a share of the whole torque."""
+
+    def shape(p: Array) -> Array:
+        return (f.load * np.clip((f.clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
+
+    return shape
 
 
 def _ramp(f: Friction) -> Callable[[Array], Array]:

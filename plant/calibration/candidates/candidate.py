@@ -43,6 +43,7 @@ class Candidate:
         None  # columns as a function of the first len(steps) fixed parameters
     )
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
+    searched: int = 0  # parameters that were searched for beside the coefficients, and must pay
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
 
     @property

@@ -50,7 +50,7 @@ def paper_start(preload: str) -> Array:
 def shape_columns(m: Motion, p: Array, exponent: float = 2.0) -> Array:
     """Bristle shape (n,) at full rate for log parameters p = (log ratio, log vs, log stiffness)."""
     ratio, speed, stiffness = (float(np.exp(x)) for x in p)
-    return bristle(m.theta, m.fresh, _dt(m), ratio, speed, stiffness, exponent)
+    return bristle(m.theta, m.starts, _dt(m), ratio, speed, stiffness, exponent)
 
 
 def _dt(m: Motion) -> float:
@@ -157,7 +157,7 @@ def _linearised(
         )
     slip = np.zeros(len(shape))
     slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * _dt(m)) / float(np.exp(p[2]))  # dz/dt of the bristle, rad/s
-    slip[m.fresh] = 0.0
+    slip[m.starts] = 0.0
     return shape, np.column_stack([x[:, :3], *derivative, m.at(slip), lines]), beta
 
 

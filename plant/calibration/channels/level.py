@@ -66,7 +66,7 @@ class Level:
         f, m = self.friction, self.motion
         one = _response(
             m.theta,
-            m.fresh.astype(float),
+            m.starts.astype(float),
             m.period_s / m.width,
             np.array([f.ratio, f.stribeck_speed, f.stiffness]),
             self.exponent,

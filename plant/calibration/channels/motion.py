@@ -31,6 +31,7 @@ class Motion:
     acceleration: Array  # rad/s2
     pick: NDArray[np.int64]
     fresh: Mask  # first row of a run or after a long gap
+    starts: Mask  # first row of a run
     period_s: float
 
     def smooth(self, x: Array) -> Array:
@@ -56,7 +57,8 @@ def motion_of(frame: Frame, width: int) -> Motion:
     theta, trusted = fill(frame.columns["position"], frame.run)
     same = np.ones(len(theta), dtype=bool)
     same[1:] = frame.run[1:] == frame.run[:-1]
-    fresh = ~same
+    starts = ~same
+    fresh = starts.copy()
     fresh |= trusted & ~np.concatenate([[False], trusted[:-1]])
     d = width
     ahead, behind = _shift(theta, -d), _shift(theta, d)
@@ -78,7 +80,7 @@ def motion_of(frame: Frame, width: int) -> Motion:
     last = np.maximum.accumulate(np.where(fresh, np.arange(len(theta)), -(10**9)))
     usable &= np.arange(len(theta)) - last >= START_ROWS  # the bristles and the first step of the effort
     pick = np.arange(d // 2, len(theta), d)
-    return Motion(d, theta, usable, rate, acceleration, pick, fresh, d * dt)
+    return Motion(d, theta, usable, rate, acceleration, pick, fresh, starts, d * dt)
 
 
 def rate_response(width: int, cycles: Array) -> Array:

@@ -98,7 +98,7 @@ def fit_with(problem: Problem, base: Array, candidate: Candidate, null: Fit) -> 
     wald = float(fit.beta[at] @ np.linalg.pinv(fit.covariance[at, at], hermitian=True) @ fit.beta[at])
     evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0
-    bayes = gain / effect - candidate.width / 2 * float(np.log(fit.rows))
+    bayes = gain / effect - (candidate.width + candidate.searched) / 2 * float(np.log(fit.rows))
     if candidate.name == "unknown":
         bayes *= UNNAMED
     return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, at)
