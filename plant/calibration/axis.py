@@ -32,7 +32,7 @@ from plant.calibration.decide.delays import delay_findings
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.holdout import choose_held_out
 from plant.calibration.decide.select import fitted, select
-from plant.calibration.decide.sizes import largest_amplitude, white_noise
+from plant.calibration.decide.sizes import largest_amplitude
 from plant.calibration.decide.tolerance import compliance_change
 from plant.calibration.declaredplant import declared_numbers
 from plant.calibration.readers.drive import ARCSEC
@@ -89,8 +89,10 @@ def analyse(
         per_ampere = constant * frame.scale["gear_ratio"]
         left = electrical_candidates.weakened(fitted(s), clock)
         result.collect(s)
+        cold = float(s.after.beta[0])
+        result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
         over = s.after.residual
-        strange = unexplained_volts(over, s.problem, white_noise(over, s.problem), np.tile(turns, 2))
+        strange = unexplained_volts(over, s.problem, np.tile(turns, 2))
         if strange is not None and not s.chosen:
             result.findings.append(strange)
     tell("encoder channels")

@@ -130,7 +130,8 @@ def _pass(
 
 def believed(f: Finding) -> bool:
     """Whether a torque effect stands beside a broadband torque, which may be no more than its remainder."""
-    return f.evidence > SURE_IN_WIND or f.share > EXPLAINS
+    periodic = f.name == "unknown" and f.domain == "time"  # a wind has no period
+    return periodic or f.evidence > SURE_IN_WIND or f.share > EXPLAINS
 
 
 def left(s: Selection) -> float:

@@ -193,7 +193,7 @@ def _weaker(f: Friction) -> Callable[[Array], Array]:
     """Torque that the currents promise and the magnets do not give: a share of the whole torque."""
 
     def shape(p: Array) -> Array:
-        return (f.load * np.clip((f.clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
+        return np.asarray(f.load * np.clip((f.clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
 
     return shape
 

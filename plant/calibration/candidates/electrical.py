@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from plant.calibration.candidates.candidate import Candidate
 from plant.calibration.channels.electrical import Electrical
 from plant.calibration.channels.recursions import lowpass
+from plant.calibration.decide.finding import Finding
 from plant.calibration.readers.run import Array
 
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
@@ -153,3 +155,14 @@ def _heat(e: Electrical, clock: Array, tau: float) -> Array:
     """Low-passed i^2 of each motor, cold at the log's start."""
     n = len(clock)
     return np.concatenate([lowpass(e.current[:n] ** 2, clock, tau), lowpass(e.current[n:] ** 2, clock, tau)])
+
+
+def from_cold(f: Finding, ratio: float) -> Finding:
+    """A heating found with the mean resistance of the log, `ratio` times the cold one, told of the cold
+    one."""
+    if f.name != "winding_heating" or "thermal_resistance" not in f.parameters:
+        return f
+    p = f.parameters["thermal_resistance"]
+    k = ratio**2
+    told = replace(p, value=p.value * k, low=p.low * k, high=p.high * k)
+    return replace(f, parameters={**f.parameters, "thermal_resistance": told})

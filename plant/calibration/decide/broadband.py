@@ -8,6 +8,7 @@ import numpy as np
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.problem import Problem
 from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.decide.sizes import quiet_noise
 from plant.calibration.readers.run import Array
 from plant.calibration.statistics.whitening import autocovariance
 
@@ -41,12 +42,13 @@ def kurtosis(e: Array) -> float:
     return float(np.mean(x**4) / max(float(np.mean(x**2)) ** 2, 1e-300))
 
 
-def unexplained_volts(e: Array, problem: Problem, white: float, turns: Array) -> Finding | None:
+def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | None:
     """Volts far above the sensors' noise on training and held-out rows that no effect explains.
 
     `turns` (n,) of the motors; the domain is the motor's angle when the power of the residual varies over it
     more than it varies over time pieces of the same number.
     """
+    white = quiet_noise(e, problem)
     inside, outside = (float(np.sqrt(np.mean(e[k] ** 2))) for k in (problem.train, problem.test))
     if min(inside, outside) < VOLTS * white:
         return None

@@ -3,7 +3,10 @@ consequences."""
 
 from __future__ import annotations
 
-from plant.calibration.decide.finding import Finding
+from dataclasses import replace
+
+from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.readers.drive import STAGES
 
 #: a finding of the key's name (in that channel) explains away findings of these names
 CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
@@ -52,6 +55,7 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
     ("encoder_eccentricity", "K"): ("roller_ratio",),
     ("cable_wrap", "T"): ("preload_change", "friction_warmup"),
 }
+TWIST = "gear_eccentricity"
 SUPERFLUOUS = (
     0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
 )
@@ -60,6 +64,7 @@ SUPERFLUOUS = (
 def merge(findings: list[Finding]) -> list[Finding]:
     """Findings of all channels as a list of effects, strongest first."""
     out = _resolve_gain(findings)
+    out = _resolve_motor(out)
     out = _same_key(out)
     out = _consequences(out)
     out = _remainders(out)
@@ -76,6 +81,20 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
             if "adc_gain" in electrical or "magnet_weakening" in electrical:
                 continue
             f.equivalent = list(dict.fromkeys([*f.equivalent, "magnet_weakening"]))
+        out.append(f)
+    return out
+
+
+def _resolve_motor(findings: list[Finding]) -> list[Finding]:
+    """A torque line of the motor that the encoders see too is a twist of its gear: cogging twists nothing."""
+    twists = {f.harmonic for f in findings if (f.channel, f.name, f.stage) == ("K", TWIST, "motor")}
+    out = []
+    for f in findings:
+        if f.channel == "T" and TWIST in f.equivalent and f.stage == "motor" and f.harmonic in twists:
+            ratio = STAGES["motor"]  # cogging is told at the motor, a gear's torque at the axis
+            p = f.parameters["amplitude"]
+            told = Parameter(p.value * ratio, "N m", p.low * ratio, p.high * ratio)
+            f = replace(f, name=TWIST, equivalent=[], parameters={"amplitude": told})
         out.append(f)
     return out
 
