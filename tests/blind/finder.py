@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 COMMAND = "scenarios.cli:main"
+INTERRUPTED = 130  # exit status of the command line
 LIMIT_S = 300  # a finder that takes longer has not answered
 
 
@@ -64,6 +65,8 @@ def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     finally:
         signal.alarm(0)
         signal.signal(signal.SIGALRM, old)
+    if status == INTERRUPTED:
+        raise KeyboardInterrupt  # the run was stopped: this case has no answer yet
     if status != 0 and failure is None:
         failure = said.getvalue()[-2000:]
     if failure is None and not (out / "report.json").exists():
