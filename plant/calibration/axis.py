@@ -91,10 +91,6 @@ def analyse(
         result.collect(s)
         cold = float(s.after.beta[0])
         result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
-        over = s.after.residual
-        strange = unexplained_volts(over, s.problem, np.tile(turns, 2))
-        if strange is not None and not s.chosen:
-            result.findings.append(strange)
     tell("encoder channels")
     result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)
     context = _kinematic_context(frame, m)
@@ -148,6 +144,11 @@ def analyse(
     tell("torque channel")
     torque_channel(result, transmission(result, per_ampere, left), clock, rng)
     result.findings += delay_findings(result.selections, numbers)
+    if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
+        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
+        left_over = result.selections["E"]
+        strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
+        result.findings += [strange] if strange is not None else []
     return result
 
 

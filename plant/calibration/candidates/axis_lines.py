@@ -34,9 +34,10 @@ class Motors:
 
 
 def pair(turns: Array, c: Context, period_s: float, weight: Array | None = None, order: float = 1.0) -> Array:
-    """cos and sin of order*turns, dimmed like the analysis boxcars dim a line at that speed."""
-    slow = np.sinc(np.abs(c.speed) / c.turn * order * period_s) ** 2
-    slow = np.where(np.abs(c.speed) / c.turn * order * period_s < 0.9, slow, 0.0)
+    """cos and sin of order*turns, dimmed like the analysis boxcars (twice three rows) dim a line at that
+    speed."""
+    cycles = np.abs(c.speed) / c.turn * order * period_s
+    slow = np.where(cycles < 0.9, ((1 + 2 * np.cos(2 * np.pi * cycles / 3)) / 3) ** 2, 0.0)
     w = slow if weight is None else slow * weight
     x = 2 * np.pi * turns
     return np.column_stack([w * np.cos(x), w * np.sin(x)])

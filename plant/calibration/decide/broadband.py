@@ -7,6 +7,7 @@ import numpy as np
 
 from plant.calibration.channels.frame import Frame, fill
 from plant.calibration.channels.problem import Problem
+from plant.calibration.decide.accept import FEWEST_BLOCKS
 from plant.calibration.decide.finding import Finding, Parameter
 from plant.calibration.decide.sizes import quiet_noise
 from plant.calibration.readers.run import Array
@@ -32,7 +33,8 @@ def slow_ratio(e: Array, problem: Problem, white: float) -> float:
 
 STEPS = 2.0  # of problem.step
 BURSTS = 5.0  # kurtosis; a few hundred gusts of Gaussian wind scatter by 0.3 about 3
-VOLTS = 2.0  # rms of the volts left over the sensors' noise; sound logs lie below 1.5
+VOLTS = 2.0  # rms of the volts left over the quiet noise
+SECTOR = 0.6  # contrast over the motor's turn; one sector of sixteen alone gives 3.9
 BINS = 16  # of a motor's turn
 
 
@@ -43,36 +45,37 @@ def kurtosis(e: Array) -> float:
 
 
 def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | None:
-    """Volts far above the sensors' noise on training and held-out rows that no effect explains.
-
-    `turns` (n,) of the motors; the domain is the motor's angle when the power of the residual varies over it
-    more than it varies over time pieces of the same number.
+    """Volts far above the sensors' noise that no effect explains and that sit in one sector of a motor's
+    turn: a brush. `turns` (n,) of the motors; training and held-out rows must both show it.
     """
-    white = quiet_noise(e, problem)
-    inside, outside = (float(np.sqrt(np.mean(e[k] ** 2))) for k in (problem.train, problem.test))
-    if min(inside, outside) < VOLTS * white:
-        return None
     rows = problem.train
-    power = np.minimum(e**2, 25 * inside**2)
-
-    def contrast(bins: Array) -> float:
-        place = bins[rows].astype(np.int64)
-        count = np.bincount(place, minlength=BINS)
-        means = np.bincount(place, power[rows], BINS)[count > 20] / count[count > 20]
-        return float(np.std(means) / max(float(np.mean(means)), 1e-300))
-
-    span = float(np.ptp(problem.t)) or 1.0
-    over_angle = contrast((turns % 1.0) * BINS)
-    over_time = contrast(np.clip((problem.t - problem.t.min()) / span * BINS, 0, BINS - 1))
+    white = quiet_noise(e, problem)
+    if rows.sum() < FEWEST_BLOCKS * problem.block or problem.test.sum() < 100 or white <= 0:
+        return None
+    size = float(np.sqrt(np.mean(e[rows] ** 2)))
+    contrasts = [_contrast(e[k] ** 2, turns[k]) for k in (rows, problem.test)]
+    if size < VOLTS * white or min(contrasts) < SECTOR:
+        return None
     return Finding(
         "unknown",
         "E",
-        "motor_angle" if over_angle > over_time else "time",
-        evidence=40.0 * inside / white,
-        share=1 - (white / inside) ** 2,
-        note=f"volts {inside / white:.1f} times the sensors' noise that no effect of the catalogue explains",
-        parameters={"rms": Parameter(inside, "V", 0.8 * inside, 1.2 * inside)},
+        "motor_angle",
+        evidence=40.0 * size / white,
+        share=1 - (white / size) ** 2,
+        note=f"volts {size / white:.1f} times the quiet noise, in a sector of the motor's turn",
+        parameters={"rms": Parameter(size, "V", 0.8 * size, 1.2 * size)},
     )
+
+
+def _contrast(power: Array, turns: Array) -> float:
+    """Spread of the mean power over the sectors of a turn, over its mean; single rows are cut off."""
+    power = np.minimum(power, 100 * float(np.median(power)))
+    place = ((turns % 1.0) * BINS).astype(np.int64)
+    count = np.bincount(place, minlength=BINS)
+    if (count > 20).sum() < BINS // 2:
+        return 0.0
+    means = (np.bincount(place, power, BINS) / np.maximum(count, 1))[count > 20]
+    return float(np.std(means) / max(float(np.mean(means)), 1e-300))
 
 
 def wind(e: Array, problem: Problem, white: float) -> Finding | None:

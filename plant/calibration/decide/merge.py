@@ -90,7 +90,8 @@ def _resolve_motor(findings: list[Finding]) -> list[Finding]:
     twists = {f.harmonic for f in findings if (f.channel, f.name, f.stage) == ("K", TWIST, "motor")}
     out = []
     for f in findings:
-        if f.channel == "T" and TWIST in f.equivalent and f.stage == "motor" and f.harmonic in twists:
+        twist = f.channel == "T" and TWIST in f.equivalent and f.stage == "motor" and f.harmonic in twists
+        if twist and f.name == "motor_cogging":
             ratio = STAGES["motor"]  # cogging is told at the motor, a gear's torque at the axis
             p = f.parameters["amplitude"]
             told = Parameter(p.value * ratio, "N m", p.low * ratio, p.high * ratio)

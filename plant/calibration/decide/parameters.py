@@ -17,7 +17,7 @@ from plant.calibration.statistics.tails import student_reach
 # of a value, standard error: what the declared model itself is wrong by along a measured motion. From
 # development logs,
 # where estimates scatter by this much about the truth when the noise alone would allow a tenth of it
-MODEL_ERROR = 0.02
+MODEL_ERROR = 0.03
 STEP_ERROR = 0.15  # of a nonlinear parameter's small step, likewise
 
 
