@@ -55,7 +55,7 @@ def torque_channel(result: AxisResult, drive: Transmission, clock: Array, rng: n
     result.collect(s)
     enough = p.train.sum() >= FEWEST_BLOCKS * p.block
     blowing = wind(s.after.residual, p, white_noise(s.after.residual, p)) if enough else None
-    if blowing is not None:
+    if blowing is not None and (blowing.name != "unknown" or not s.chosen):
         result.findings = [x for x in result.findings if x.channel != "T" or believed(x)]
         result.findings.append(blowing)
     # long rests say where the bristles were left, not what they are; and an exponent below 1 has a cusp at

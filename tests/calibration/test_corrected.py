@@ -287,3 +287,10 @@ def test_the_emulators_own_logs_name_the_plant_file_that_is_declared() -> None:
     assert keep and model.name == "high_preload"
     model, keep = declared_model({"preload": "high"}, None)
     assert not keep and model.name == "high_preload"
+
+
+def test_an_unknown_without_a_function_is_a_remark() -> None:
+    brush = finding("unknown", domain="motor_angle", channel="E")
+    corrected, remarks = correct(load(), "ra", [brush], FACTS)
+    assert len(remarks) == 1 and "left out" in remarks[0]
+    assert all(e.name != "unknown" for e in corrected.axes.ra.effects)

@@ -22,7 +22,7 @@ def unnamed(f: Finding, facts: Facts) -> Made:
         _loops(made, f, facts)
     elif f.channel == "T" and f.domain == "time" and f.frequency:
         _in_time(made, f, facts)
-    elif f.channel == "E" and f.domain == "motor_angle":
+    elif f.channel == "E" and f.domain == "motor_angle" and "amplitude" in f.parameters:
         _brush(made, f, facts)
     elif f.channel == "E" and f.domain == "time" and f.frequency:
         size, period = value(f, "amplitude"), 1.0 / f.frequency
