@@ -61,6 +61,6 @@ def _resonance(
         w, zeta = np.tan(x) * 2 / period_s, zeta / narrow
         b, a = bilinear([2 * zeta * w, w * w], [1.0, 2 * zeta * w, w * w], fs=1 / period_s)
         out = [lfilter(b, a, acceleration[i:j]) for i, j in itertools.pairwise(starts)]
-        return np.asarray(np.concatenate(out)[pick][:, None])
+        return np.asarray(np.concatenate(out)[pick][:, None] / narrow)
 
     return shape

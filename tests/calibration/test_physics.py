@@ -1,0 +1,214 @@
+"""What an effect looks like in the residuals: friction levels, second masses, encoder errors, magnets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.electrical import from_cold, weakened
+from plant.calibration.candidates.modes import _resonance
+from plant.calibration.channels.declared import Friction
+from plant.calibration.channels.frame import Frame
+from plant.calibration.channels.friction import bristle
+from plant.calibration.channels.level import level_of
+from plant.calibration.channels.motion import Motion, motion_of, rate_response
+from plant.calibration.channels.problem import Problem
+from plant.calibration.channels.recursions import lowpass
+from plant.calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
+from plant.calibration.decide.finding import Finding, Parameter
+from plant.calibration.decide.heldout import predict_residual
+from plant.calibration.decide.merge import merge
+from plant.calibration.readers.drive import STAGES
+
+DT = 0.01
+FRICTION = Friction(2.7, 4e-4, 2.5e4, 229.0, 6700.0, 1960.0)
+
+
+def moved(position: np.ndarray, width: int = 3) -> Motion:
+    """Motion of one run with this position, rad."""
+    n = len(position)
+    zero = np.zeros(n)
+    frame = Frame(
+        [], DT, DT * np.arange(n), zero, zero.astype(int), zero.astype(int), {"position": position}, {}
+    )
+    return motion_of(frame, width)
+
+
+def back_and_forth(n: int = 6000) -> np.ndarray:
+    """Out and back over 0.01 rad, slow enough for the Stribeck curve to matter."""
+    return np.asarray(0.005 * np.sin(2 * np.pi * np.arange(n) * DT / 30.0))
+
+
+def level(position: np.ndarray):  # type: ignore[no-untyped-def]
+    m = moved(position)
+    n = len(position)
+    return level_of(m, FRICTION, 2.0, DT * np.arange(n), np.zeros(n, dtype=int))
+
+
+def test_a_higher_level_answers_as_the_bristle_equation_scaled_does() -> None:
+    """g -> (1 + e) g is (1 + e) times the solution with stiffness / (1 + e): equation (4) of the paper."""
+    position = back_and_forth()
+    known = level(position)
+    m, f, h = known.motion, FRICTION, 1e-4
+
+    def scaled(factor: float) -> np.ndarray:
+        z = bristle(m.theta, m.starts, DT, f.ratio, f.stribeck_speed, f.stiffness / factor)
+        return m.at(factor * z) * f.coulomb
+
+    numeric = (scaled(1 + h) - scaled(1 - h)) / (2 * h)
+    answer = known.answer(known.steady)
+    assert np.max(np.abs(answer - numeric)) < 0.01 * np.max(np.abs(numeric))
+
+
+def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristles_travel() -> None:
+    out = np.concatenate([np.linspace(0, 0.01, 3000), np.linspace(0.01, 0.0, 3000)])
+    known = level(out)
+    answer = known.answer(np.ones(len(out)))
+    turn = np.argmin(np.abs(known.motion.pick - 3000))
+    assert answer[turn - 50] == pytest.approx(1.0, abs=0.02)
+    assert answer[turn + 1] > 0.3  # still the old side
+    assert answer[turn + 200] == pytest.approx(-1.0, abs=0.02)
+
+
+@settings(max_examples=25, deadline=None)
+@given(cycles=st.floats(0.002, 0.25), width=st.sampled_from([1, 3]))
+def test_a_position_error_shows_in_the_rate_as_the_response_says(cycles: float, width: int) -> None:
+    k = np.arange(1200)
+    m = moved(np.sin(2 * np.pi * cycles * k), width)
+    inner = slice(40, -40)
+    own = 2 * np.pi * cycles / DT * np.cos(2 * np.pi * cycles * k)
+    expected = own * rate_response(width, np.full(len(k), cycles))
+    if cycles * width < 0.44:
+        assert np.allclose(m.rate[inner], expected[inner], atol=2e-3 * np.max(np.abs(own)))
+
+
+@pytest.mark.parametrize("hertz", [2.0, 6.0, 11.0])
+@pytest.mark.parametrize("zeta", [0.01, 0.05])
+def test_a_second_mass_has_the_width_and_height_of_its_equation(hertz: float, zeta: float) -> None:
+    n = 40_000
+    run = np.zeros(n, dtype=np.int64)
+    t = DT * np.arange(n)
+    for detune in (0.98, 1.0, 1.02):
+        w, w0 = 2 * np.pi * hertz * detune, 2 * np.pi * hertz
+        shape = _resonance(np.sin(w * t), run, DT, np.arange(n))
+        made = np.sqrt(2) * np.std(shape(np.array([hertz, zeta]))[n // 2 :, 0])
+        s = 1j * w
+        exact = abs((2 * zeta * w0 * s + w0**2) / (s**2 + 2 * zeta * w0 * s + w0**2))
+        assert made == pytest.approx(exact, rel=0.06)
+
+
+def test_a_second_mass_is_at_rest_when_a_run_begins() -> None:
+    run = np.repeat([0, 1], 500)
+    push = np.where(run == 0, 1.0, 0.0)
+    shape = _resonance(push, run, DT, np.arange(1000))(np.array([5.0, 0.005]))
+    assert np.all(shape[run == 1] == 0.0) and np.ptp(shape[run == 0]) > 1.0
+
+
+def test_windings_cool_in_a_pause() -> None:
+    clock = np.concatenate([DT * np.arange(3000), 1000.0 + DT * np.arange(100)])
+    heat = lowpass(np.ones(3100), clock, 50.0)
+    assert heat[2999] == pytest.approx(1 - np.exp(-30.0 / 50.0), rel=0.01)
+    assert heat[3000] < 1e-3
+
+
+def test_a_line_of_known_size_and_new_phase_is_taken_off_a_run_that_was_not_fitted() -> None:
+    rng = np.random.default_rng(3)
+    n = 4000
+    t, run = DT * np.arange(n), np.repeat([0, 1], n // 2)
+    x = 2 * np.pi * 3.0 * t
+    pair = np.column_stack([np.cos(x), np.sin(x)])
+    columns = np.hstack([pair * (run == k)[:, None] for k in (0, 1)])
+    y = 2.0 * np.cos(x + np.where(run == 0, 0.4, 2.1)) + 0.1 * rng.standard_normal(n)
+    one = np.ones(n, dtype=bool)
+    p = Problem("S", "1", y, np.zeros((n, 0)), [], t, run, run, one, run == 1, DT)
+    beta = np.array([2 * np.cos(0.4), -2 * np.sin(0.4), 0.0, 0.0])
+    left = predict_residual(p, columns, beta, p.test, [slice(0, 4)])
+    assert np.std(left) == pytest.approx(0.1, rel=0.1)
+    half = predict_residual(p, columns, beta / 2, p.test, [slice(0, 4)])  # the size is not fitted there
+    assert np.std(half) == pytest.approx(1.0 / np.sqrt(2), rel=0.1)
+
+
+@dataclass
+class Volts:
+    """An electrical residual with a brush that sticks in part of the turn, and its motor's turns."""
+
+    problem: Problem
+    e: np.ndarray
+    turns: np.ndarray
+
+
+def volts(sector: float, size: float) -> Volts:
+    rng = np.random.default_rng(5)
+    n = 12_000
+    turns = 0.003 * np.arange(n)
+    e = 0.01 * rng.standard_normal(n) + size * ((turns % 1.0) < sector) * rng.standard_normal(n)
+    zero = np.zeros(n, dtype=np.int64)
+    held = np.arange(n) > 8000
+    one = np.ones(n, dtype=bool)
+    p = Problem(
+        "E", "V", e, np.zeros((n, 0)), [], DT * 3 * np.arange(n), zero, zero, one, held, 3 * DT, block_s=3.0
+    )
+    return Volts(p, e, turns)
+
+
+def test_volts_in_a_sector_of_the_turn_are_a_brush_and_noise_is_not() -> None:
+    bad, good = volts(0.12, 0.12), volts(0.12, 0.0)
+    found = unexplained_volts(bad.e, bad.problem, bad.turns)
+    assert found is not None and (found.name, found.domain) == ("unknown", "motor_angle")
+    assert unexplained_volts(good.e, good.problem, good.turns) is None
+    # as loud, but everywhere in the turn
+    assert unexplained_volts(volts(1.0, 0.05).e, volts(1.0, 0.05).problem, good.turns) is None
+
+
+def test_wind_is_gaussian_and_pulses_are_not() -> None:
+    rng = np.random.default_rng(1)
+    gusts = np.convolve(rng.standard_normal(20_000), np.exp(-np.arange(100) / 20.0), "valid")
+    pulses = np.where((np.arange(20_000) % 1000) < 60, 1.0, 0.0) + 0.02 * rng.standard_normal(20_000)
+    assert kurtosis(gusts) < 4.0 < BURSTS < kurtosis(pulses)
+
+
+def test_what_the_volts_lost_of_a_magnet_is_lost_in_the_torque() -> None:
+    clock = np.linspace(0, 100, 11)
+    zero = np.zeros((1, 1))
+    both = Candidate(
+        "magnet_weakening",
+        "time",
+        zero,
+        (("fraction", "1"),),
+        fixed={"onset": (50.0, "s"), "ramp": (10.0, "s")},
+    )
+    left = weakened([(both, np.array([0.02]))], clock)
+    assert left["a"][0] == 1.0 and left["b"][-1] == pytest.approx(0.98)
+    one = Candidate(
+        "magnet_weakening", "velocity", zero, (("fraction", "1"),), fixed={"motor": (1.0, "0 A, 1 B")}
+    )
+    left = weakened([(one, np.array([0.05]))], clock)
+    assert left["a"].min() == 1.0 and left["b"].max() == pytest.approx(0.95)
+
+
+def test_heating_is_told_of_the_cold_resistance() -> None:
+    p = Parameter(2.0, "K/W", 1.8, 2.2)
+    f = from_cold(Finding("winding_heating", "E", "time", parameters={"thermal_resistance": p}), 1.1)
+    told = f.parameters["thermal_resistance"]
+    assert (told.value, told.low) == (pytest.approx(2.42), pytest.approx(2.178))
+
+
+def line(channel: str, name: str, **more: object) -> Finding:
+    a = {"amplitude": Parameter(0.01, "N m at the motor", 0.009, 0.011)}
+    return Finding(
+        name, channel, "motor_angle", "motor", 2, 2 * STAGES["motor"], parameters=a, share=0.5, **more
+    )  # type: ignore[arg-type]
+
+
+def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:
+    torque = line("T", "motor_cogging", equivalent=["gear_eccentricity"], evidence=100.0)
+    alone = merge([torque])
+    assert [f.name for f in alone] == ["motor_cogging"]
+    seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)])
+    assert [f.name for f in seen] == ["gear_eccentricity"]
+    assert seen[0].parameters["amplitude"].value == pytest.approx(0.01 * STAGES["motor"])
