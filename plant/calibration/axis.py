@@ -68,9 +68,28 @@ def analyse(
     result.findings += wraps[:1] + clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
+    per_ampere, left = _electrical(result, clock, rng)
+    tell("encoder channels")
+    _encoders(result, per_ampere, rng)
+    _fine(result, rng)
+    _command(result, rng)
+    tell("torque channel")
+    torque_channel(result, transmission(result, per_ampere, left), clock, rng)
+    result.findings += delay_findings(result.selections, numbers)
+    if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
+        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
+        left_over = result.selections["E"]
+        strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
+        result.findings += [strange] if strange is not None else []
+    return result
+
+
+def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> tuple[float, dict[str, Array]]:
+    """Volts: their findings; N m at the axis per A, and what each motor has left of its torque constant."""
+    frame, m, numbers = result.frame, result.motion, result.declared
     if numbers.ripple is not None and frame.get("current_a") is not None:
         undo_sampling(frame, numbers.ripple)
-    e = result.electrical = electrical_problem(frame, m, held, numbers)
+    e = result.electrical = electrical_problem(frame, m, result.held, numbers)
     per_ampere = (e.constant if e is not None else numbers.torque_constant) * frame.scale["gear_ratio"]
     left = electrical_candidates.weakened([], clock)
     if e is not None and e.problem.train.sum() > 200:
@@ -91,8 +110,13 @@ def analyse(
         result.collect(s)
         cold = float(s.after.beta[0])
         result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
-    tell("encoder channels")
-    result.kinematic = kinematic_problem(frame, m, held, per_ampere, numbers.lines)
+    return per_ampere, left
+
+
+def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -> None:
+    """Differences of encoders: motors against the axis, roller against the axis."""
+    frame, m, numbers = result.frame, result.motion, result.declared
+    result.kinematic = kinematic_problem(frame, m, result.held, per_ampere, numbers.lines)
     context = _kinematic_context(frame, m)
     if result.kinematic is not None:
         p = result.kinematic.problem
@@ -105,7 +129,7 @@ def analyse(
         found, stiffness = compliance_change(s, numbers)
         result.findings += found
         result.calibrated |= stiffness
-    roller = roller_problem(frame, m, held)
+    roller = roller_problem(frame, m, result.held)
     if roller is not None:
         alpha = m.acceleration[m.pick]
         s = select(
@@ -116,40 +140,35 @@ def analyse(
         )
         result.selections["S"] = s
         result.collect(s)
-    _fine(result, rng)
-    command = command_problem(frame, held, numbers.own)
-    if command is not None:
-        p, setpoint = command
-        null = gls(p.y, p.base, p.train, p.ar_order, p.block)
-        s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
-        result.selections["U"] = s
-        if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
-            result.collect(s)
-        size, period, score = pulses(p, s.after.residual)
-        if score > 8:
-            result.findings.append(
-                Finding(
-                    "unknown",
-                    "S",
-                    "command",
-                    evidence=score,
-                    share=0.1,
-                    note=f"pulses on the command, every {period:.2f} s",
-                    parameters={
-                        "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
-                        "period": Parameter(period, "s", 0.98 * period, 1.02 * period),
-                    },
-                )
+
+
+def _command(result: AxisResult, rng: np.random.Generator) -> None:
+    """Change of effort against the law of the controller."""
+    command = command_problem(result.frame, result.held, result.declared.own)
+    if command is None:
+        return
+    p, setpoint = command
+    null = gls(p.y, p.base, p.train, p.ar_order, p.block)
+    s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
+    result.selections["U"] = s
+    if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
+        result.collect(s)
+    size, period, score = pulses(p, s.after.residual)
+    if score > 8:
+        result.findings.append(
+            Finding(
+                "unknown",
+                "S",
+                "command",
+                evidence=score,
+                share=0.1,
+                note=f"pulses on the command, every {period:.2f} s",
+                parameters={
+                    "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
+                    "period": Parameter(period, "s", 0.98 * period, 1.02 * period),
+                },
             )
-    tell("torque channel")
-    torque_channel(result, transmission(result, per_ampere, left), clock, rng)
-    result.findings += delay_findings(result.selections, numbers)
-    if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
-        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
-        left_over = result.selections["E"]
-        strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
-        result.findings += [strange] if strange is not None else []
-    return result
+        )
 
 
 def transmission(result: AxisResult, per_ampere: float, left: dict[str, Array]) -> Transmission:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.candidate import Candidate, ramp
 from plant.calibration.candidates.context import Context
 from plant.calibration.candidates.friction import stop_operator
 from plant.calibration.channels.level import Level
@@ -113,17 +113,14 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
     for tau in (15.0, 30.0, 60.0, 100.0, 150.0, 220.0, 320.0):
         if tau > 3 * span:
             continue
-        for viscous, labels in (
-            (True, (("amplitude", "1"),)),
-            (False, (("amplitude", "1"),)),
-        ):
+        for viscous in (True, False):
             shape = _warmup(f, since, full, viscous)
             out.append(
                 Candidate(
                     "friction_warmup",
                     "time",
                     shape(np.array([tau])),
-                    labels,
+                    (("amplitude", "1"),),
                     fixed={"tau": (tau, "s")},
                     shape=shape,
                     steps=(0.2 * tau,),
@@ -145,9 +142,9 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
             )
         )
     for at in np.linspace(-0.4, 0.95, 19) * span + low:
-        for ramp in (0.02, 0.2, 0.5, 1.0):
+        for part in (0.02, 0.2, 0.5, 1.0):
             shape = _ramp(f)
-            columns = shape(np.array([at, ramp * span]))
+            columns = shape(np.array([at, part * span]))
             if np.ptp(columns) > 0 and np.mean(np.abs(columns) > 0) > 0.02:
                 out.append(
                     Candidate(
@@ -156,8 +153,8 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                         columns,
                         (("fraction", "1"),),
                         shape=shape,
-                        steps=(0.02 * span, 0.08 * max(ramp, 0.1) * span),
-                        fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
+                        steps=(0.02 * span, 0.08 * max(part, 0.1) * span),
+                        fixed={"onset": (float(at), "s"), "ramp": (part * span, "s")},
                     )
                 )
                 shape = _weaker(f)
@@ -165,11 +162,11 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                     Candidate(
                         "magnet_weakening",
                         "time",
-                        shape(np.array([at, ramp * span])),
+                        shape(np.array([at, part * span])),
                         (("fraction", "1"),),
                         shape=shape,
-                        steps=(0.02 * span, 0.08 * max(ramp, 0.1) * span),
-                        fixed={"onset": (float(at), "s"), "ramp": (ramp * span, "s")},
+                        steps=(0.02 * span, 0.08 * max(part, 0.1) * span),
+                        fixed={"onset": (float(at), "s"), "ramp": (part * span, "s")},
                         sign=1,
                     )
                 )
@@ -191,19 +188,13 @@ def _onset(f: Friction) -> Callable[[Array], Array]:
 
 def _weaker(f: Friction) -> Callable[[Array], Array]:
     """Torque that the currents promise and the magnets do not give: a share of the whole torque."""
-
-    def shape(p: Array) -> Array:
-        return np.asarray(f.load * np.clip((f.clock - p[0]) / max(float(p[1]), 1.0), 0, 1))[:, None]
-
-    return shape
+    return lambda p: (f.load * ramp(f.clock, float(p[0]), float(p[1])))[:, None]
 
 
 def _ramp(f: Friction) -> Callable[[Array], Array]:
     def shape(p: Array) -> Array:
-        def rise(clock: Array) -> Array:
-            return np.asarray(np.clip((clock - p[0]) / max(float(p[1]), 1.0), 0, 1))
-
-        return (f.level.answer(f.level.stiction * rise(f.level.clock)) + f.viscous * rise(f.clock))[:, None]
+        full, here = (ramp(clock, float(p[0]), float(p[1])) for clock in (f.level.clock, f.clock))
+        return (f.level.answer(f.level.stiction * full) + f.viscous * here)[:, None]
 
     return shape
 

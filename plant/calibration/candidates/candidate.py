@@ -77,3 +77,8 @@ def sine_columns(phase_cycles: Array, session: NDArray[Any], weight: Array | Non
         m = session == k
         parts += [np.where(m, c, 0.0), np.where(m, s, 0.0)]
     return np.column_stack(parts)
+
+
+def ramp(t: Array, onset: float, length: float) -> Array:
+    """0 before `onset`, 1 after `onset + length`, s; a length below 1 s is a step of 1 s."""
+    return np.asarray(np.clip((t - onset) / max(length, 1.0), 0.0, 1.0))

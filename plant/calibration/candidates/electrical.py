@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plant.calibration.candidates.candidate import Candidate
+from plant.calibration.candidates.candidate import Candidate, ramp
 from plant.calibration.channels.electrical import Electrical
 from plant.calibration.channels.recursions import lowpass
 from plant.calibration.decide.finding import Finding
@@ -124,11 +124,6 @@ def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
 def _weakening(e: Electrical, t: Array) -> Callable[[Array], Array]:
     """Volts per fraction of K lost, from an onset over a ramp."""
     return lambda p: (-e.constant * e.pulling * ramp(t, float(p[0]), float(p[1])))[:, None]
-
-
-def ramp(t: Array, onset: float, length: float) -> Array:
-    """0 before `onset`, 1 after `onset + length`, s."""
-    return np.asarray(np.clip((t - onset) / max(length, 1.0), 0.0, 1.0))
 
 
 def weakened(chosen: list[tuple[Candidate, Array]], clock: Array) -> dict[str, Array]:

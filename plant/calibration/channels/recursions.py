@@ -9,7 +9,7 @@ import numpy as np
 from plant.calibration.readers.run import Array
 from plant.compiled import entry
 
-PAUSE_S = 2.0
+PAUSE_S = 2.0  # s without a row: ASSUMPTION, far longer than a lost packet, shorter than a rest between runs
 
 
 @entry

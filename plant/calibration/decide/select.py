@@ -108,11 +108,9 @@ def select(
             )
         )
         left = []
-    first: Look | None = None
     while len(picks) < most and left:
         base = design(problem, [p.candidate for p in picks])
         now = look(problem, base, left)
-        first = first or now
         taken = None
         for contender in now.contenders[:4]:
             inside, held = judge(problem, now, picks, contender)
