@@ -4,9 +4,11 @@ Numba's own cache only notices a change in the file of the compiled function, no
 calls. The cache directory is therefore named by a hash of every compiled source of the plant: a stale cache
 is never used.
 
-`entry` is for functions that Python calls (cached on disk), `inner` for those that only compiled code calls
-(compiled with their caller, so they cost nothing when the caller comes from the cache). `entry` is also
-called `njit`. SCHMIDT_CACHE_DIR moves the cache.
+`kernel` and `entry` are for functions that Python calls (cached on disk), `inner` for those that only
+compiled code calls (compiled into their caller, so they cost nothing when the caller comes from the cache).
+`kernel` and `inner` work in the arrays they are given and allocate none: numba then leaves out the atomic
+reference counts of every row and slice, which were 62 % of the plant's time. `entry` may allocate; it is
+also called `njit`. SCHMIDT_CACHE_DIR moves the cache.
 """
 
 import atexit
@@ -71,17 +73,23 @@ def cache_folder() -> Path:
 numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
 
 
+def kernel(function: F) -> F:
+    """Compile for calls from Python; works in the arrays it is given. The machine code is kept on disk."""
+    return _njit(function, cache=True, _nrt=False)
+
+
 def entry(function: F) -> F:
-    """Compile for calls from Python; the machine code is kept on disk."""
+    """Compile for calls from Python; may allocate. The machine code is kept on disk."""
     return _njit(function, cache=True)
 
 
 def inner(function: F) -> F:
-    """Compile for calls from compiled code only."""
-    return _njit(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    """Compile into its callers, compiled code only; works in the arrays it is given."""
+    return _njit(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True, _nrt=False)
 
 
 def _njit(function: F, **options: bool) -> F:
+    """Compile. `_nrt` is private to numba: tests/plant/test_compiled.py tells when it changes its meaning."""
     compile_with: Any = numba.njit  # its stubs do not know all options
     compiled: F = compile_with(error_model="numpy", **options)(function)
     return compiled

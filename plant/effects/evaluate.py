@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from plant.compiled import Floats, entry
+from plant.compiled import Floats, kernel
 from plant.effects import REGISTRY, unknown
 from plant.effects.base import Term
 from plant.effects.dispatch import update, value
@@ -14,7 +14,7 @@ from plant.kernels.friction import steady
 from plant.kernels.layout import ROW, ROW_MEMORY
 
 
-@entry
+@kernel
 def values_over(kind: int, rows: Floats, p: Floats, y: Floats) -> None:
     """Fill y with a term's values, memory advancing with the time column."""
     for k in range(rows.shape[0]):
@@ -23,7 +23,7 @@ def values_over(kind: int, rows: Floats, p: Floats, y: Floats) -> None:
         y[k] = value(kind, rows[k], p)
 
 
-@entry
+@kernel
 def friction_over(kind: int, rows: Floats, p: Floats, y: Floats) -> None:
     """Fill y with the change of the steady friction torque on the axis, N m, positive accelerates."""
     for k in range(rows.shape[0]):

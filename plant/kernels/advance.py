@@ -1,6 +1,6 @@
 """Advance whole axes over whole grid steps: the one call that the plant makes into compiled code."""
 
-from plant.compiled import Floats, entry, inner
+from plant.compiled import Floats, inner, kernel
 from plant.kernels import layout as at
 from plant.kernels.readings import keep, read, record
 from plant.kernels.step import axis_step
@@ -28,7 +28,7 @@ def advance_axis(w: Floats, steps: int) -> None:
         keep(w)
 
 
-@entry
+@kernel
 def advance(world: Floats, steps: int) -> None:
     """Advance every axis (rows of `world`, see layout.py) by `steps` grid steps."""
     for k in range(world.shape[0]):

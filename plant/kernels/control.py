@@ -7,7 +7,7 @@ emulator.
 
 from math import floor
 
-from plant.compiled import Floats, entry, inner
+from plant.compiled import Floats, inner, kernel
 from plant.kernels import layout as at
 from plant.kernels.advance import advance_axis
 
@@ -85,7 +85,7 @@ def apply_effort(w: Floats, effort: int, s: Floats) -> None:
         w[at.DUTY + m] = duty
 
 
-@entry
+@kernel
 def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Floats, truth: Floats) -> None:
     """Run one axis: two control ticks per log row.
 
