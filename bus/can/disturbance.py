@@ -6,8 +6,16 @@ from bus.can.bits import TAIL_BITS, crc15, header_bits, stuff, stuffed_field
 from bus.can.frame import Frame
 
 ErrorKind = Literal["bit", "stuff", "form", "crc", "ack"]
+SenderCounts = Literal["transmits", "lost", "spared"]
+"""How an error counts at the node that had begun the frame (ISO 11898-1, fault confinement): as a
+transmitter's (TEC + 8); as a receiver's (REC + 1), because it had lost arbitration to the disturbance; not at
+all, because a stuff bit of the arbitration field, sent recessive, was monitored as dominant (second exception
+of the transmitter's rule)."""
 ERROR_FLAG_BITS = 6
 ERROR_DELIMITER_BITS = 8
+OVERLOAD_FLAG_BITS = ERROR_FLAG_BITS
+OVERLOAD_DELIMITER_BITS = ERROR_DELIMITER_BITS
+"""ISO 11898-1: an overload frame has the form of an active error frame."""
 
 
 class Flip(NamedTuple):
@@ -26,9 +34,7 @@ class Verdict(NamedTuple):
 
     kind: ErrorKind
     detected_bit: int
-    spares_sender: bool = False
-    """The sender's TEC stays: it lost arbitration to the disturbance, or a recessive stuff bit was
-    overwritten there."""
+    sender: SenderCounts = "transmits"
     received: bool = False
     """Receivers had already taken the frame (last bit of EOF): they will get it twice."""
 
@@ -54,11 +60,17 @@ def seen_by_all(frame: Frame, bit: int) -> Verdict | None:
         return Verdict("form", bit)
     if body[bit] and bit <= _arbitration_end(frame):
         if bit >= 5 and not any(body[bit - 5 : bit]):
-            return Verdict("stuff", bit, spares_sender=True)
+            return Verdict("stuff", bit, sender="spared")
         # The sender takes it for a stronger identifier and falls silent; six recessive bits later
         # everyone objects.
-        return Verdict("stuff", bit + 6, spares_sender=True)
+        return Verdict("stuff", bit + 6, sender="lost")
     return Verdict("bit", bit)
+
+
+def overloads(frame: Frame, bit: int) -> bool:
+    """Whether `bit` is the last of EOF: a receiver that sees it dominant has the frame already and answers
+    with an overload frame, which counts nowhere (ISO 11898-1, overload conditions)."""
+    return bit == len(stuff(stuffed_field(frame))) + TAIL_BITS - 3 - 1
 
 
 def seen_by_receiver(frame: Frame, bit: int) -> Verdict | None:

@@ -13,10 +13,13 @@ from bus.can.bits import INTERMISSION_BITS, wire_bits
 from bus.can.disturbance import (
     ERROR_DELIMITER_BITS,
     ERROR_FLAG_BITS,
+    OVERLOAD_DELIMITER_BITS,
+    OVERLOAD_FLAG_BITS,
     ErrorKind,
     Flip,
     Verdict,
     first_difference,
+    overloads,
     seen_by_all,
     seen_by_receiver,
 )
@@ -30,6 +33,9 @@ if TYPE_CHECKING:
 _NEVER = 1 << 62
 _RECESSIVE_TAIL_BITS = 1 + 7
 """ACK delimiter and EOF: already recessive when a frame ends."""
+_OVERLOAD_BITS = OVERLOAD_FLAG_BITS + 1 + OVERLOAD_DELIMITER_BITS
+"""One receiver begins its overload flag in the first bit of intermission; the others see that bit and begin
+theirs one bit later."""
 
 
 class Trouble:
@@ -42,6 +48,8 @@ class Trouble:
         self._excluded: list[Port] = []
         self._twins: list[Offer] = []
         self._recovery = Recovery(wire)
+        self._overload = False
+        """An overload frame follows what is being sent."""
 
     def check(self) -> None:
         """Look again whether trouble is near."""
@@ -88,7 +96,7 @@ class Trouble:
         for offer in sorted(ready):
             if offer.key == winner.key and offer.port is not winner.port:
                 rivals.setdefault(offer.port, offer)
-        self._twins, self._excluded = [], []
+        self._twins, self._excluded, self._overload = [], [], False
         for rival in rivals.values():
             winner = self._collide(winner, rival, sof_ns)
             if wire._free_ns > sof_ns:
@@ -134,6 +142,7 @@ class Trouble:
             if verdict is not None:
                 self._fail(offer, verdict, sof_ns, first=first)
                 return
+            self._overload = first is not None and overloads(offer.frame, flip.bit)
         if not listeners:
             self._fail(
                 offer, Verdict("ack", offer.bits - INTERMISSION_BITS - _RECESSIVE_TAIL_BITS - 1), sof_ns
@@ -141,6 +150,8 @@ class Trouble:
             return
         wire._remove(offer)
         wire._begin(offer, sof_ns)
+        if self._overload:
+            wire._free_ns += _OVERLOAD_BITS * wire.bit_ns
 
     def _fail(
         self,
@@ -177,10 +188,14 @@ class Trouble:
         wire = self._wire
         self.errors[verdict.kind] += 1
         receivers = [port for port in self.listeners(offer.port) if port not in senders]
-        if verdict.spares_sender:
-            confinement.receive_failed([*receivers, *senders])
+        if verdict.received:
+            # A dominant last bit of EOF is an overload condition for receivers: the frame counts as received.
+            confinement.received(receivers)
         else:
             confinement.receive_failed(receivers, first)
+        if verdict.sender == "lost":
+            confinement.receive_failed(senders)
+        elif verdict.sender == "transmits":
             for port in senders:
                 self._sender_failed(port, verdict.kind)
         for port in senders:
@@ -203,6 +218,11 @@ class Trouble:
         wire = self._wire
         offer = Offer(*entry)
         self._recovery.quiet_since_ns = t_ns - _RECESSIVE_TAIL_BITS * wire.bit_ns
+        if self._overload:
+            wire.bits += _OVERLOAD_BITS
+            delimiter = (OVERLOAD_DELIMITER_BITS + INTERMISSION_BITS) * wire.bit_ns
+            self._recovery.quiet_since_ns = wire._free_ns - delimiter
+            self._overload = False
         senders = [offer.port]
         for twin in self._twins:
             wire._remove(twin)
@@ -225,7 +245,9 @@ class Trouble:
         wire = self._wire
         assert wire._sending is not None
         offer, wire._sending = Offer(*wire._sending), None
-        begun_ns = wire._free_ns - offer.bits * wire.bit_ns
+        planned = offer.bits + (_OVERLOAD_BITS if self._overload else 0)
+        self._overload = False
+        begun_ns = wire._free_ns - planned * wire.bit_ns
         bits = 6 + ERROR_FLAG_BITS + ERROR_DELIMITER_BITS + INTERMISSION_BITS
         wire._free_ns = t_ns + bits * wire.bit_ns
         wire.bits += bits + (t_ns - begun_ns) // wire.bit_ns

@@ -78,6 +78,75 @@ def test_L1_a_recessive_identifier_bit_overwritten_is_lost_arbitration_not_the_s
     assert [(port.tec, port.rec) for port in wire.ports] == [(0, 1), (0, 0)]
 
 
+STUFFED = Frame(0x00F, b"stuff")
+"""SOF and four dominant identifier bits: the sixth bit on the wire is a recessive stuff bit."""
+
+
+def test_L1_a_recessive_stuff_bit_overwritten_in_arbitration_costs_the_sender_nothing() -> None:
+    """ISO 11898-1, fault confinement, second exception of the rule that adds 8 to the transmit error count: a
+    transmitter that sends an error flag because of a stuff error during arbitration, the stuff bit standing
+    before RTR, sent recessive and monitored as dominant, leaves its count as it is. Receivers add 1."""
+    assert wire_bits(STUFFED)[:7] == [0, 0, 0, 0, 0, 1, 0]
+    queue, wire = network(3)
+    left = [Flip(5), Flip(5)]
+    wire.disturb(lambda *_: left.pop() if left else None)
+    wire.ports[0].send(STUFFED, 0)
+    queue.run_until(60_000)  # two error frames, no good one yet
+    assert wire.errors == {"stuff": 2}
+    assert [(port.tec, port.rec) for port in wire.ports] == [(0, 0), (0, 2), (0, 2)]
+
+
+def test_L1_a_stuff_bit_behind_the_arbitration_field_is_the_transmitters_error() -> None:
+    """The exception ends with the RTR bit: the first stuff bit of the data field is an ordinary bit error."""
+    frame = Frame(0x7AA, bytes(2))
+    bits = wire_bits(frame)
+    stuffed = next(k for k in range(20, len(bits)) if bits[k] and not any(bits[k - 5 : k]))
+    queue, wire = network(2)
+    wire.disturb(once(Flip(stuffed)))
+    wire.ports[0].send(frame, 0)
+    queue.run_until(60_000)
+    assert wire.ports[0].tec == 8
+
+
+def test_L1_a_dominant_last_bit_of_eof_is_an_overload_condition_and_no_receive_error() -> None:
+    """ISO 11898-1: the frame is valid for receivers when no error is seen up to the last but one bit of EOF,
+    and a receiver that samples the last bit dominant begins an overload frame, which changes no counter. For
+    the transmitter the same bit is an error (+8), so it sends the frame again."""
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    for port in wire.ports[1:]:
+        port.rec = 5
+    wire.disturb(once(Flip(LENGTH - 1)))
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until((LENGTH + 6 + 8 + 3) * 1000)
+    assert wire.errors == {"form": 1}
+    assert [frame for _, frame in log] == [FRAME]
+    assert [(port.tec, port.rec) for port in wire.ports] == [(8, 0), (0, 4), (0, 4)]
+    queue.run_until(1_000_000)
+    assert [frame for _, frame in log] == [FRAME, FRAME]
+    assert [(port.tec, port.rec) for port in wire.ports] == [(7, 0), (0, 3), (0, 3)]
+
+
+def test_L1_one_receivers_overload_flag_delays_the_bus_and_counts_nowhere() -> None:
+    """ISO 11898-1: that receiver's flag begins in the first bit of intermission, which is an overload
+    condition for all others; their flags end one bit later, then eight recessive bits and intermission."""
+    times = []
+    for flip in (None, Flip(LENGTH - 1, seen_by="n2")):
+        queue, wire = network(3)
+        log = listen(wire, 1)
+        wire.disturb(once(flip) if flip else lambda *_: None)
+        wire.ports[0].send(FRAME, 0)
+        wire.ports[0].send(FRAME, 0)
+        queue.run_until(1_000_000)
+        assert [frame for _, frame in log] == [FRAME, FRAME]
+        assert not wire.errors
+        assert all(port.tec == port.rec == 0 for port in wire.ports)
+        times.append([t for t, _ in log])
+    plain, late = times
+    assert late[0] == plain[0]
+    assert late[1] - plain[1] == (6 + 1 + 8) * 1000
+
+
 @given(st.integers(0, LENGTH - 2))
 def test_L1_one_receivers_own_error_makes_everyone_repeat(bit: int) -> None:
     queue, wire = network(3)
