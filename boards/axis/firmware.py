@@ -180,7 +180,7 @@ class AxisBoard(PeriodicBoard):
         effort = self.effort * _EFFORT_SCALE // self.pwm.steps
         adc_a = self.adc.read(t_ns, 0)
         adc_b = self.adc.read(t_ns, 1)
-        data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b)
+        data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b, self.clip)
         if not self.send(_frame(Frame, (self._identifier, data, False, False)), end_ns):
             self.dropped += 1
         if mode == AxisMode.OPEN_LOOP:
@@ -196,7 +196,7 @@ class AxisBoard(PeriodicBoard):
     def _packet(self, end_ns: int) -> None:
         samples, self.samples = self.samples, []
         stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
-        self.uart.send(end_ns, pack_packet(self.device_type, self.sequence, stamp, samples))
+        self.uart.send(end_ns, pack_packet(self.device_type, self.sequence, stamp, samples, self.clip))
         self.sequence += 1
 
     def _slow(self, t_ns: int, end_ns: int) -> None:
@@ -209,7 +209,7 @@ class AxisBoard(PeriodicBoard):
             elif self.watch.disagree(motion.measured(t_ns, self.velocity)) and self.powered():
                 self.trip()
             distance = motion.distance_steps(t_ns, self.velocity)
-            data = pack_target(self.device_type, motion.selected, motion.settled, distance)
+            data = pack_target(self.device_type, motion.selected, motion.settled, distance, self.clip)
             self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
         elif ticks % _HEARTBEAT_TICKS == 3:
             self.heartbeat(end_ns)

@@ -11,6 +11,7 @@ from boards.silicon.can import FULL_MASK, CanController
 from bus.can import Frame, Wire
 from bus.protocol import (
     COMMAND_BASE,
+    FRAME_BYTES,
     HEARTBEAT_BASE,
     REPLY_BASE,
     Health,
@@ -25,6 +26,10 @@ CAN_LINE = "can"
 """Name of the CAN interrupt in every board's table."""
 BOOT_NS = 300_000_000
 """Power-up timer and self test, ASSUMPTION. Longer than any board's slowest timer."""
+WARNING_NS = 10_000_000_000
+"""How long the health bits FOREIGN and RANGE stand after the last cause. ASSUMPTION: long enough to be asked
+for, and one bad frame does not keep a telescope from being powered for the rest of the night."""
+_LONG_AGO = -WARNING_NS
 _INBOX = 8
 """Commands the firmware keeps until it serves them, ASSUMPTION (the chip itself holds two)."""
 
@@ -34,15 +39,21 @@ class Board:
 
     Subclasses give it `reset()` (state after power-up) and `start(t_ns)` (arm the timers), fill `mail`
     with what to do with measurement frames (identifier -> call(t_ns, data)) and call `heartbeat(t_ns)`
-    once a second.
+    once a second. A mailed frame is eight bytes long and begins with the device type its identifier ends
+    in; any other is dropped and counted as `foreign`.
     """
 
     __slots__ = (
+        "_clipped_ns",
+        "_command",
+        "_foreign_ns",
         "can",
+        "clipped",
         "commands",
         "cpu",
         "device_type",
         "dropped",
+        "foreign",
         "inbox",
         "mail",
         "name",
@@ -79,7 +90,11 @@ class Board:
         self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]))
         self.parameters = ParameterTable()
         self.commands: Mapping[int, Handler] = self.common_commands()
+        self._command = COMMAND_BASE + device_type
         self.dropped = 0
+        self.foreign = 0
+        self.clipped = 0
+        self._foreign_ns = self._clipped_ns = _LONG_AGO
         self.on = False
         self.started_ns = 0
 
@@ -127,9 +142,26 @@ class Board:
 
     # --- CAN --------------------------------------------------------------------------------------
     def _receive(self, t_ns: int, frame: Frame) -> None:
-        call = self.mail.get(frame[0])
-        if call is not None and not frame[2] and not frame[3]:  # standard data frames only
-            call(t_ns, frame[1])
+        identifier, data, extended, remote = frame
+        call = self.mail.get(identifier)
+        if call is None or extended:  # an extended identifier is nobody's here
+            return
+        if len(data) == FRAME_BYTES and data[0] == identifier & 0x7F and not remote:
+            call(t_ns, data)
+        elif identifier != self._command:
+            self.refuse(t_ns)
+        elif not remote:
+            call(t_ns, data)  # a command that is wrong is answered, not dropped
+
+    def refuse(self, t_ns: int) -> None:
+        """Count a frame that is no frame of the peer it claims to come from."""
+        self.foreign += 1
+        self._foreign_ns = t_ns
+
+    def clip(self) -> None:
+        """Count a value that did not fit its field."""
+        self.clipped += 1
+        self._clipped_ns = self.queue.now_ns
 
     def _take_command(self, t_ns: int, data: bytes) -> None:
         if len(self.inbox) >= _INBOX:
@@ -172,6 +204,11 @@ class Board:
             bits |= Health.OVERRUN
         if self.dropped:
             bits |= Health.DROPPED
+        now_ns = self.queue.now_ns
+        if now_ns - self._foreign_ns < WARNING_NS:
+            bits |= Health.FOREIGN
+        if now_ns - self._clipped_ns < WARNING_NS:
+            bits |= Health.RANGE
         return bits
 
     def _ping(self, _t_ns: int, _arguments: bytes) -> Answer:

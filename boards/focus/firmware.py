@@ -101,12 +101,14 @@ class FocusBoard(PeriodicBoard):
         self.samples.append((stepping.position, self._counts(), self.lvdt))
         if len(self.samples) == SAMPLES:
             stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
-            self.uart.send(end, pack_packet(self.device_type, self.packets, stamp, self.samples))
+            self.uart.send(end, pack_packet(self.device_type, self.packets, stamp, self.samples, self.clip))
             self.packets += 1
             self.samples = []
         if not self.ticks % _FRAME_TICKS:
             self._index = self.index_pin(t_ns)
-            data = pack_focus(self.device_type, self._flags(), stepping.position, self._counts(), self.lvdt)
+            data = pack_focus(
+                self.device_type, self._flags(), stepping.position, self._counts(), self.lvdt, self.clip
+            )
             self.transmit(self._identifier, data, end)
         elif self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

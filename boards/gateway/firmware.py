@@ -26,6 +26,8 @@ RING_SLOTS = 64
 _REPORTS = 16
 """Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
 _BASE_MASK = 0x700
+_END = MEASUREMENT_BASE + 0x80
+"""Beyond the last measurement: a device type has seven bits."""
 _NEVER = 1 << 62
 
 
@@ -37,7 +39,6 @@ class GatewayBoard(PeriodicBoard):
         "_flush_ns",
         "_own_command",
         "_reports",
-        "foreign",
         "hid",
         "hold_ns",
         "lost",
@@ -53,7 +54,6 @@ class GatewayBoard(PeriodicBoard):
         self.hold_ns = HOLD_NS
         self.ring: list[bytes] = []
         self.lost = 0
-        self.foreign = 0
         self._flush_ns = _NEVER
         self._reports: deque[bytes] = deque()
         self._commands: deque[Frame] = deque()
@@ -81,7 +81,7 @@ class GatewayBoard(PeriodicBoard):
         identifier, data, extended, remote = frame
         if extended or remote:
             return
-        if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE:
+        if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE and identifier < _END:
             self._put(t_ns, data)
         elif identifier == self._own_command:
             self._take_command(t_ns, data)
@@ -89,7 +89,7 @@ class GatewayBoard(PeriodicBoard):
             try:
                 self._put(t_ns, slot(frame))
             except ReportError:
-                self.foreign += 1
+                self.refuse(t_ns)
 
     def _put(self, t_ns: int, data: bytes) -> None:
         ring = self.ring

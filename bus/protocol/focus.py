@@ -1,8 +1,10 @@
 """FOCUS: the focus board's measurement frame, every 50 ms."""
 
 from enum import IntFlag
-from struct import Struct
+from struct import Struct, error
 from typing import NamedTuple
+
+from bus.protocol.saturate import Clip, fitted, nobody
 
 _focus = Struct("<BBhhH")
 
@@ -27,9 +29,15 @@ class Focus(NamedTuple):
     lvdt: int
 
 
-def pack_focus(device: int, flags: int, position: int, encoder: int, lvdt: int) -> bytes:
-    """Eight bytes of FOCUS."""
-    return _focus.pack(device, flags, position, encoder, lvdt)
+def pack_focus(
+    device: int, flags: int, position: int, encoder: int, lvdt: int, clip: Clip = nobody
+) -> bytes:
+    """Eight bytes of FOCUS; what does not fit is cut, and `clip` told."""
+    try:
+        return _focus.pack(device, flags, position, encoder, lvdt)
+    except error:
+        clip()
+        return _focus.pack(*fitted(_focus, (device, flags, position, encoder, lvdt)))
 
 
 def unpack_focus(data: bytes) -> Focus:

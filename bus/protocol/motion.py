@@ -3,6 +3,7 @@
 from enum import IntFlag
 from typing import NamedTuple
 
+from bus.protocol.saturate import Clip, nobody
 from bus.protocol.signed import SIGN_13, SIGN_15
 
 
@@ -28,9 +29,13 @@ class Motion(NamedTuple):
 
 
 def pack_motion(
-    device: int, mode: int, flags: int, velocity: int, effort: int, adc_a: int, adc_b: int
+    device: int, mode: int, flags: int, velocity: int, effort: int, adc_a: int, adc_b: int, clip: Clip = nobody
 ) -> bytes:
-    """Eight bytes; velocity is cut to 15 bits and effort to 13, as the firmware's shifts do."""
+    """Eight bytes; a velocity beyond 15 bits or an effort beyond 13 is cut to the largest, and `clip` told."""
+    if not (-SIGN_15 <= velocity < SIGN_15 and -SIGN_13 <= effort < SIGN_13):
+        clip()
+        velocity = min(max(velocity, -SIGN_15), SIGN_15 - 1)
+        effort = min(max(effort, -SIGN_13), SIGN_13 - 1)
     return (
         device
         | mode << 8

@@ -78,6 +78,10 @@ class Health(IntFlag):
     DROPPED = 0x10
     LIMIT = 0x20
     FAULT = 0x40
+    FOREIGN = 0x80
+    """Frames with a peer's identifier that are no frames of it, in the last ten seconds."""
+    RANGE = 0x100
+    """A value did not fit its field and was cut to the largest that does, in the last ten seconds."""
 
 
 class State(IntEnum):

@@ -36,9 +36,12 @@ def slot(frame: Frame) -> bytes:
     identifier, data, _, _ = frame
     if len(data) != FRAME_BYTES or not 0 < data[0] < _NOT_MEASUREMENT:
         raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} has no slot in a HID report")
-    if identifier - data[0] == MEASUREMENT_BASE:
+    base = identifier - data[0]
+    if base == MEASUREMENT_BASE:
         return data
-    kind = data[1] & 0x7F if identifier - data[0] == REPLY_BASE else data[1]
+    if base != REPLY_BASE and _KINDS.get(data[1]) != base:
+        raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} says it is another kind of frame")
+    kind = data[1] & 0x7F if base == REPLY_BASE else data[1]
     return bytes((data[0] | _NOT_MEASUREMENT, kind)) + data[2:]
 
 

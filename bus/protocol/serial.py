@@ -11,10 +11,11 @@ quantities (row L3).
 from binascii import crc_hqx
 from collections.abc import Sequence
 from itertools import starmap
-from struct import Struct
+from struct import Struct, error
 from typing import NamedTuple
 
 from bus.protocol.names import Device
+from bus.protocol.saturate import Clip, fitted, nobody
 
 SYNC = b"\xaa\x55"
 STAMP_UNIT_NS = 100_000
@@ -92,14 +93,24 @@ def packet_bytes(device: int) -> int:
     return len(SYNC) + _head.size + SAMPLES * _LAYOUTS[device][0].size + _crc.size
 
 
-def pack_packet(device: int, sequence: int, stamp: int, samples: Sequence[Sequence[int]]) -> bytes:
-    """A packet; sequence and stamp are taken modulo their width. Raises SerialError."""
+def pack_packet(
+    device: int, sequence: int, stamp: int, samples: Sequence[Sequence[int]], clip: Clip = nobody
+) -> bytes:
+    """A packet; sequence and stamp are taken modulo their width, samples are cut to theirs (`clip` is told).
+
+    Raises SerialError for a device without a serial line and a wrong number of samples.
+    """
     if device not in _LAYOUTS:
         raise SerialError(f"device type {device:#04x} has no serial line")
     if len(samples) != SAMPLES:
         raise SerialError(f"a packet holds {SAMPLES} samples, got {len(samples)}")
-    pack = _LAYOUTS[device][0].pack
-    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + b"".join(starmap(pack, samples))
+    layout = _LAYOUTS[device][0]
+    try:
+        rows = b"".join(starmap(layout.pack, samples))
+    except error:
+        clip()
+        rows = b"".join(layout.pack(*fitted(layout, sample)) for sample in samples)
+    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + rows
     return SYNC + body + _crc.pack(crc_hqx(body, _CRC_START))
 
 

@@ -1,7 +1,9 @@
 """TACH: a motor velocity board's measurement frame, every 10 ms."""
 
-from struct import Struct
+from struct import Struct, error
 from typing import NamedTuple
+
+from bus.protocol.saturate import fitted
 
 _tach = Struct("<BBih")
 tach_fields = _tach.unpack
@@ -19,8 +21,12 @@ class Tach(NamedTuple):
 
 
 def pack_tach(device: int, flags: int, counts: int, delta: int) -> bytes:
-    """Eight bytes; `counts` is cut to 32 bits (it runs free), `delta` must fit 16."""
-    return _tach.pack(device, flags, ((counts + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000, delta)
+    """Eight bytes; `counts` wraps at 32 bits (it runs free), a `delta` beyond 16 is cut to the largest."""
+    counts = ((counts + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000
+    try:
+        return _tach.pack(device, flags, counts, delta)
+    except error:
+        return _tach.pack(*fitted(_tach, (device, flags, counts, delta)))
 
 
 def unpack_tach(data: bytes) -> Tach:

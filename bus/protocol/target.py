@@ -1,9 +1,10 @@
 """TARGET: what an axis board is heading for, every 250 ms."""
 
-from struct import Struct
+from struct import Struct, error
 from typing import NamedTuple
 
 from bus.protocol.names import SUMMARY_KIND
+from bus.protocol.saturate import Clip, fitted, nobody
 
 _target = Struct("<BBBix")
 
@@ -17,9 +18,13 @@ class Target(NamedTuple):
     distance: int
 
 
-def pack_target(device: int, speed_class: int, settled: int, distance: int) -> bytes:
-    """Eight bytes of TARGET."""
-    return _target.pack(device, SUMMARY_KIND, speed_class | settled << 4, distance)
+def pack_target(device: int, speed_class: int, settled: int, distance: int, clip: Clip = nobody) -> bytes:
+    """Eight bytes of TARGET; a distance that does not fit is cut, and `clip` told."""
+    try:
+        return _target.pack(device, SUMMARY_KIND, speed_class | settled << 4, distance)
+    except error:
+        clip()
+        return _target.pack(*fitted(_target, (device, SUMMARY_KIND, speed_class | settled << 4, distance)))
 
 
 def unpack_target(data: bytes) -> Target:

@@ -1,0 +1,110 @@
+"""Frames with a peer's identifier that are no frames of it, and values that do not fit."""
+
+import pytest
+
+from bus.can import Frame
+from bus.protocol import Device, Health, Opcode, pack_tach, unpack_motion, unpack_target
+from bus.protocol.motion import pack_motion
+from bus.protocol.serial import SAMPLES, PacketDecoder, pack_packet
+from bus.protocol.tach import unpack_tach
+from bus.protocol.target import pack_target
+from tests.boards.lab import Lab
+
+PEERS = (0x221, 0x231, 0x232)
+
+
+def ill(lab: Lab) -> Health:
+    return Health(lab.command(Opcode.PING).value)
+
+
+@pytest.mark.parametrize("identifier", PEERS)
+@pytest.mark.parametrize("length", range(8))
+def test_a_short_frame_of_a_peer_is_dropped_counted_and_said(identifier: int, length: int) -> None:
+    lab = Lab()
+    lab.run(0.1)
+    lab.pc.send(Frame(identifier, bytes([identifier & 0x7F, *range(7)])[:length]), lab.queue.now_ns)
+    lab.run(0.1)
+    assert lab.axis.foreign == 1
+    assert Health.FOREIGN in ill(lab)
+    lab.run(11.0)
+    assert lab.axis.foreign == 1
+    assert Health.FOREIGN not in ill(lab), "ten seconds later the board is well again"
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        Frame(0x221, bytes([0x22, *range(7)])),  # another board's bytes
+        Frame(0x231, bytes(8)),
+        Frame(0x221, bytes(8), remote=True),
+    ],
+)
+def test_a_frame_that_names_another_board_or_none_is_dropped(frame: Frame) -> None:
+    lab = Lab()
+    lab.run(0.1)
+    position = lab.axis.motion.position
+    lab.pc.send(frame, lab.queue.now_ns)
+    lab.run(0.004)
+    assert (lab.axis.foreign, lab.axis.motion.position) == (1, position)
+
+
+def test_an_extended_frame_with_a_peers_number_is_nobodys() -> None:
+    lab = Lab()
+    lab.run(0.1)
+    lab.pc.send(Frame(0x221, bytes(8), extended=True), lab.queue.now_ns)
+    lab.run(0.1)
+    assert lab.axis.foreign == 0
+
+
+@pytest.mark.parametrize("phase_ms", range(0, 20))
+def test_a_forged_tach_whose_count_jumps_costs_no_packet(phase_ms: int) -> None:
+    lab = Lab()
+    lab.run(1.0 + phase_ms * 1e-3)
+    tach = pack_tach(Device.MOTOR_RA_A, 0, lab.boards[2].count + 40_000, 0)  # type: ignore[attr-defined]
+    before = len(lab.packets)
+    lab.pc.send(Frame(0x231, tach), lab.queue.now_ns)
+    lab.run(1.0)
+    assert len(lab.packets) >= before + 3
+    decoder = PacketDecoder()
+    samples = [s for _, data in lab.packets for packet in decoder.feed(data) for s in packet.samples]
+    assert decoder.crc_errors == 0
+    seen = {sample.tach_a for sample in samples}  # type: ignore[union-attr]
+    assert seen <= set(range(-32768, 32768))
+    if lab.axis.clipped:
+        assert 32767 in seen or -32768 in seen
+        assert Health.RANGE in ill(lab)
+
+
+def test_a_packet_takes_samples_beyond_its_fields() -> None:
+    lab = Lab()
+    lab.run(1.0)
+    sample = (0, 0, 0, 0, 0, 40_000, -40_000, 0, 0)
+    told: list[int] = []
+    data = pack_packet(Device.AXIS_RA, 0, 0, [sample] * SAMPLES, lambda: told.append(1))
+    (packet,) = PacketDecoder().feed(data)
+    assert {(s.tach_a, s.tach_b) for s in packet.samples} == {(32767, -32768)}  # type: ignore[union-attr]
+    assert told == [1]
+
+
+def test_packers_saturate_instead_of_wrapping() -> None:
+    told: list[int] = []
+
+    def clip() -> None:
+        told.append(1)
+
+    motion = unpack_motion(pack_motion(0x11, 1, 0, 20_000, -5000, 1, 2, clip))
+    assert (motion.velocity, motion.effort) == (16383, -4096)
+    assert unpack_target(pack_target(0x11, 1, 0, 1 << 40, clip)).distance == (1 << 31) - 1
+    assert unpack_tach(pack_tach(0x31, 0, 0, -70_000)).delta == -32768
+    assert told == [1, 1]
+
+
+def test_what_the_gateway_cannot_name_never_reaches_the_pc() -> None:
+    from tests.boards.gateway.test_board import Bench
+
+    bench = Bench()
+    for identifier, data in ((0x291, b"\x91" + bytes(7)), (0x311, b"\x11\x05" + bytes(6))):
+        bench.node.send(Frame(identifier, data), bench.queue.now_ns)
+    bench.queue.run_until(20_000_000)
+    assert bench.frames == []
+    assert bench.board.foreign == 2
