@@ -29,9 +29,16 @@ class Motion(NamedTuple):
 
 
 def pack_motion(
-    device: int, mode: int, flags: int, velocity: int, effort: int, adc_a: int, adc_b: int, clip: Clip = nobody
+    device: int,
+    mode: int,
+    flags: int,
+    velocity: int,
+    effort: int,
+    adc_a: int,
+    adc_b: int,
+    clip: Clip = nobody,
 ) -> bytes:
-    """Eight bytes; a velocity beyond 15 bits or an effort beyond 13 is cut to the largest, and `clip` told."""
+    """Eight bytes; a velocity beyond 15 bits or an effort beyond 13 is cut, and `clip` told."""
     if not (-SIGN_15 <= velocity < SIGN_15 and -SIGN_13 <= effort < SIGN_13):
         clip()
         velocity = min(max(velocity, -SIGN_15), SIGN_15 - 1)

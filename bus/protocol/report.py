@@ -40,7 +40,7 @@ def slot(frame: Frame) -> bytes:
     if base == MEASUREMENT_BASE:
         return data
     if base != REPLY_BASE and _KINDS.get(data[1]) != base:
-        raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} says it is another kind of frame")
+        raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} says another kind")
     kind = data[1] & 0x7F if base == REPLY_BASE else data[1]
     return bytes((data[0] | _NOT_MEASUREMENT, kind)) + data[2:]
 

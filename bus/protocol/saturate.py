@@ -20,11 +20,12 @@ def nobody() -> None:
 @cache
 def bounds(layout: str) -> tuple[tuple[int, int], ...]:
     """(low, high) of every value of a struct layout such as `<BBiHx`."""
-    fields = [letter for letter in layout if letter in _BITS]
-    return tuple(
-        (0, (1 << _BITS[each]) - 1) if each.isupper() else (-(1 << _BITS[each] - 1), (1 << _BITS[each] - 1) - 1)
-        for each in fields
-    )
+    found = []
+    for letter in layout:
+        if letter in _BITS:
+            span = 1 << _BITS[letter]
+            found.append((0, span - 1) if letter.isupper() else (-span // 2, span // 2 - 1))
+    return tuple(found)
 
 
 def fitted(layout: Struct, values: Sequence[int]) -> tuple[int, ...]:

@@ -56,7 +56,7 @@ def test_an_extended_frame_with_a_peers_number_is_nobodys() -> None:
     assert lab.axis.foreign == 0
 
 
-@pytest.mark.parametrize("phase_ms", range(0, 20))
+@pytest.mark.parametrize("phase_ms", range(20))
 def test_a_forged_tach_whose_count_jumps_costs_no_packet(phase_ms: int) -> None:
     lab = Lab()
     lab.run(1.0 + phase_ms * 1e-3)
