@@ -111,7 +111,7 @@ def calibrate(
     logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None, out: Path
 ) -> None:
     """Find what the model lacks in measured LOGS and write the corrected plant."""
-    from plant.calibration.command import calibrate as command
+    from calibration.command import calibrate as command
 
     sys.exit(command(list(logs), rig, list(hold_out), out, plant))
 

@@ -10,9 +10,9 @@ from time import perf_counter, process_time
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.calibration.axis import analyse
-from plant.calibration.readers.axis import read_axis_log
-from plant.calibration.readers.drive import STAGES
+from calibration.axis import analyse
+from calibration.readers.axis import read_axis_log
+from calibration.readers.drive import STAGES
 from tests.benchmarks.drives import TRUE_LINES, Drive
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from plant.calibration.readers.drive import STAGES
+from calibration.readers.drive import STAGES
 from tests.benchmarks.drives import LEVELS, programme
 from tests.benchmarks.peers import MissingPeer, Residual, rms, sindy, whole_vector
 

@@ -68,7 +68,7 @@ def test_a_finder_whose_process_dies_is_a_case_without_an_answer(tmp_path: Path)
 def test_small_deterministic_subset(tmp_path: Path) -> None:
     """The real finder on ten logs of a development seed: an answer to each, no name where there is
     nothing."""
-    pytest.importorskip("plant.calibration.command", reason="the finder is not built yet")
+    pytest.importorskip("calibration.command", reason="the finder is not built yet")
     results = harness.run(cells.quick(), 1900, tmp_path, 1)
     rows = {row["key"]: row for row in results["cases"]}
     failures = {key: row["failure"] for key, row in rows.items() if not row["answered"]}

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plant.calibration.command import calibrate, read_logs
-from plant.calibration.decide.tolerance import INFLATION, inflation
-from plant.calibration.errors import CalibrationInputError
-from plant.calibration.readers.rig import load_rig
-from plant.calibration.readers.table import read_table
+from calibration.command import calibrate, read_logs
+from calibration.decide.tolerance import INFLATION, inflation
+from calibration.errors import CalibrationInputError
+from calibration.readers.rig import load_rig
+from calibration.readers.table import read_table
 from tests.calibration.logs import tiny_log, write_logs
 from tests.calibration.test_readers import RIG
 

@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from plant.calibration.candidates.axis_lines import LABELS
-from plant.calibration.candidates.candidate import Candidate
-from plant.calibration.candidates.friction import stop_operator
-from plant.calibration.candidates.unknown import spline_columns
-from plant.calibration.channels.frame import build_frame
-from plant.calibration.channels.torque import Transmission, torque_problem
-from plant.calibration.corrected.convert import CONVERTERS, convert
-from plant.calibration.corrected.curves import curve_of
-from plant.calibration.corrected.lines import nearest_place
-from plant.calibration.corrected.making import Facts
-from plant.calibration.decide.finding import Curve, Finding, Parameter
-from plant.calibration.decide.select import select
-from plant.calibration.declaredplant import declared_numbers
-from plant.calibration.plantfile import correct, declared_model
-from plant.calibration.readers.axis import read_axis_log
+from calibration.candidates.axis_lines import LABELS
+from calibration.candidates.candidate import Candidate
+from calibration.candidates.friction import stop_operator
+from calibration.candidates.unknown import spline_columns
+from calibration.channels.frame import build_frame
+from calibration.channels.torque import Transmission, torque_problem
+from calibration.corrected.convert import CONVERTERS, convert
+from calibration.corrected.curves import curve_of
+from calibration.corrected.lines import nearest_place
+from calibration.corrected.making import Facts
+from calibration.decide.finding import Curve, Finding, Parameter
+from calibration.decide.select import select
+from calibration.declaredplant import declared_numbers
+from calibration.plantfile import correct, declared_model
+from calibration.readers.axis import read_axis_log
 from plant.effects import NAMES
 from plant.effects.evaluate import evaluate, evaluate_function, signals, values_over
 from plant.effects.rows import KINDS, _function

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plant.calibration.command import calibrate, read_logs
-from plant.calibration.errors import CalibrationInputError
-from plant.calibration.guide import SIDEREAL_DAY_S, known_mount
-from plant.calibration.readers.guide import read_guide_log
-from plant.calibration.readers.run import Array, Run
+from calibration.command import calibrate, read_logs
+from calibration.errors import CalibrationInputError
+from calibration.guide import SIDEREAL_DAY_S, known_mount
+from calibration.readers.guide import read_guide_log
+from calibration.readers.run import Array, Run
 from tests.calibration.test_readers import GUIDE
 
 HEAD = (

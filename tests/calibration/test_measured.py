@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from plant.calibration.command import calibrate
+from calibration.command import calibrate
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT.parent / "shared" / "data" / "measured"

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 import yaml
 
-from plant.calibration.command import calibrate
+from calibration.command import calibrate
 from scenarios import run as runner
 from scenarios.document import parse
 from scenarios.load import convert

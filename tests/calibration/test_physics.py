@@ -9,21 +9,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plant.calibration.candidates.candidate import Candidate
-from plant.calibration.candidates.electrical import from_cold, weakened
-from plant.calibration.candidates.modes import _resonance
-from plant.calibration.channels.declared import Friction
-from plant.calibration.channels.frame import Frame
-from plant.calibration.channels.friction import bristle
-from plant.calibration.channels.level import level_of
-from plant.calibration.channels.motion import Motion, motion_of, rate_response
-from plant.calibration.channels.problem import Problem
-from plant.calibration.channels.recursions import lowpass
-from plant.calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
-from plant.calibration.decide.finding import Finding, Parameter
-from plant.calibration.decide.heldout import predict_residual
-from plant.calibration.decide.merge import merge
-from plant.calibration.readers.drive import STAGES
+from calibration.candidates.candidate import Candidate
+from calibration.candidates.electrical import from_cold, weakened
+from calibration.candidates.modes import _resonance
+from calibration.channels.declared import Friction
+from calibration.channels.frame import Frame
+from calibration.channels.friction import bristle
+from calibration.channels.level import level_of
+from calibration.channels.motion import Motion, motion_of, rate_response
+from calibration.channels.problem import Problem
+from calibration.channels.recursions import lowpass
+from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
+from calibration.decide.finding import Finding, Parameter
+from calibration.decide.heldout import predict_residual
+from calibration.decide.merge import merge
+from calibration.readers.drive import STAGES
 
 DT = 0.01
 FRICTION = Friction(2.7, 4e-4, 2.5e4, 229.0, 6700.0, 1960.0)

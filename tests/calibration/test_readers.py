@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plant.calibration.channels.clock import repair_wraps
-from plant.calibration.command import calibrate, read_logs
-from plant.calibration.errors import CalibrationInputError
-from plant.calibration.readers.axis import read_axis_log, unwrap
-from plant.calibration.readers.guide import read_guide_log
-from plant.calibration.readers.rig import load_rig
-from plant.calibration.readers.table import read_table
+from calibration.channels.clock import repair_wraps
+from calibration.command import calibrate, read_logs
+from calibration.errors import CalibrationInputError
+from calibration.readers.axis import read_axis_log, unwrap
+from calibration.readers.guide import read_guide_log
+from calibration.readers.rig import load_rig
+from calibration.readers.table import read_table
 from tests.calibration.logs import tiny_log
 
 

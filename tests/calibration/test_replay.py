@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plant.calibration.channels.frame import Frame, build_frame
-from plant.calibration.command import calibrate
-from plant.calibration.readers.axis import read_axis_log
-from plant.calibration.replay.compare import breaking, comparable
-from plant.calibration.replay.gains import identify
-from plant.calibration.replay.held import replay
-from plant.calibration.replay.trace import ticks
+from calibration.channels.frame import Frame, build_frame
+from calibration.command import calibrate
+from calibration.readers.axis import read_axis_log
+from calibration.replay.compare import breaking, comparable
+from calibration.replay.gains import identify
+from calibration.replay.held import replay
+from calibration.replay.trace import ticks
 from plant.gears import RATIO
 from plant.loop import simulate
 from plant.model import default_files, load, with_effects, with_value

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
-from plant.calibration.candidates.context import direction_of, since_reversal, turning_points
-from plant.calibration.candidates.friction import stop_operator
-from plant.calibration.candidates.orders import order_spectrum, peaks
-from plant.calibration.channels.frame import boxcar
-from plant.calibration.statistics.regression import gls
-from plant.calibration.statistics.surrogate import orthonormal_blocks, score
-from plant.calibration.statistics.tails import chi2_log10
-from plant.calibration.statistics.whitening import fit_ar
+from calibration.candidates.context import direction_of, since_reversal, turning_points
+from calibration.candidates.friction import stop_operator
+from calibration.candidates.orders import order_spectrum, peaks
+from calibration.channels.frame import boxcar
+from calibration.statistics.regression import gls
+from calibration.statistics.surrogate import orthonormal_blocks, score
+from calibration.statistics.tails import chi2_log10
+from calibration.statistics.whitening import fit_ar
 
 
 def coloured(rng: np.random.Generator, n: int, a: float) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from plant.calibration.command import calibrate
+from calibration.command import calibrate
 from plant.model import load
 from plant.parts import EffectModel
 from tests.calibration.logs import effect, write_logs

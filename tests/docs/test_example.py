@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from plant.calibration.command import calibrate
-from plant.calibration.readers.drive import STAGES
+from calibration.command import calibrate
+from calibration.readers.drive import STAGES
 from plant.loop import simulate
 from plant.model import load
 

@@ -1,0 +1,240 @@
+"""The axis pipeline: from logs of one telescope axis to findings, channel by channel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from calibration.axisresult import AxisResult
+from calibration.axistorque import torque_channel
+from calibration.candidates import axis_torque
+from calibration.candidates import electrical as electrical_candidates
+from calibration.candidates import kinematic as kinematic_candidates
+from calibration.candidates.context import Context
+from calibration.channels.clock import clock_findings, repair_wraps
+from calibration.channels.command import command_candidates, command_problem, pulses
+from calibration.channels.electrical import (
+    electrical_problem,
+    mean_currents,
+    undo_sampling,
+)
+from calibration.channels.frame import Frame, build_frame, fill
+from calibration.channels.kinematic import (
+    kinematic_problem,
+    roller_problem,
+)
+from calibration.channels.motion import Motion, motion_of
+from calibration.channels.torque import WIDTH, Transmission
+from calibration.decide.broadband import pick_up, unexplained_volts
+from calibration.decide.delays import delay_findings
+from calibration.decide.finding import Finding, Parameter
+from calibration.decide.holdout import choose_held_out
+from calibration.decide.select import fitted, select
+from calibration.decide.sizes import largest_amplitude
+from calibration.decide.tolerance import compliance_change
+from calibration.declaredplant import declared_numbers
+from calibration.readers.drive import ARCSEC
+from calibration.readers.run import Array, Run
+from calibration.statistics.regression import gls
+
+# kg m2, one rotor at the axis: 3e-4 to 6e-3 kg m2 (hardware.md 1.2) times the ratio squared
+ROTORS = (39.0, 780.0)
+FINE_MARGIN = (
+    0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
+)
+SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
+LEAST_COMMAND = (
+    0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
+)
+
+
+def analyse(
+    runs: list[Run],
+    hold_out: list[str],
+    seed: int = 0,
+    tell: Callable[[str], None] = lambda s: None,
+    plant: Path | None = None,
+) -> AxisResult:
+    """Run every channel the logs have."""
+    rng = np.random.default_rng(seed)
+    wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
+    frame = build_frame(runs)
+    held, held_names = choose_held_out(frame, hold_out)
+    m = motion_of(frame, WIDTH)
+    numbers = declared_numbers(runs, plant)
+    result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
+    result.findings += wraps[:1] + clock_findings(frame)
+    clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
+    tell("electrical channel")
+    per_ampere, left = _electrical(result, clock, rng)
+    tell("encoder channels")
+    _encoders(result, per_ampere, rng)
+    _fine(result, rng)
+    _command(result, rng)
+    tell("torque channel")
+    torque_channel(result, transmission(result, per_ampere, left), clock, rng)
+    result.findings += delay_findings(result.selections, numbers)
+    if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
+        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
+        left_over = result.selections["E"]
+        strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
+        result.findings += [strange] if strange is not None else []
+    return result
+
+
+def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> tuple[float, dict[str, Array]]:
+    """Volts: their findings; N m at the axis per A, and what each motor has left of its torque constant."""
+    frame, m, numbers = result.frame, result.motion, result.declared
+    if numbers.ripple is not None and frame.get("current_a") is not None:
+        undo_sampling(frame, numbers.ripple)
+    e = result.electrical = electrical_problem(frame, m, result.held, numbers)
+    per_ampere = (e.constant if e is not None else numbers.torque_constant) * frame.scale["gear_ratio"]
+    left = electrical_candidates.weakened([], clock)
+    if e is not None and e.problem.train.sum() > 200:
+        turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
+        s = select(
+            e.problem,
+            electrical_candidates.electrical_effects(e, clock[m.pick])
+            + electrical_candidates.brush_effects(e, {"a": turns, "b": turns}),
+            rng,
+        )
+        result.selections["E"] = s
+        mean_currents(frame, e, s.after.beta)
+        constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
+        if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
+            constant = numbers.torque_constant
+        per_ampere = constant * frame.scale["gear_ratio"]
+        left = electrical_candidates.weakened(fitted(s), clock)
+        result.collect(s)
+        cold = float(s.after.beta[0])
+        result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
+    return per_ampere, left
+
+
+def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -> None:
+    """Differences of encoders: motors against the axis, roller against the axis."""
+    frame, m, numbers = result.frame, result.motion, result.declared
+    result.kinematic = kinematic_problem(frame, m, result.held, per_ampere, numbers.lines)
+    context = _kinematic_context(frame, m)
+    if result.kinematic is not None:
+        p = result.kinematic.problem
+        stacked = _stack(context)
+        s = select(
+            p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s, result.kinematic.motor), rng
+        )
+        result.selections["K"] = s
+        result.collect(s)
+        found, stiffness = compliance_change(s, numbers)
+        result.findings += found
+        result.calibrated |= stiffness
+    roller = roller_problem(frame, m, result.held)
+    if roller is not None:
+        alpha = m.acceleration[m.pick]
+        s = select(
+            roller,
+            kinematic_candidates.roller_effects(context, alpha, m.period_s)
+            + kinematic_candidates.subdivision(context, m),
+            rng,
+        )
+        result.selections["S"] = s
+        result.collect(s)
+
+
+def _command(result: AxisResult, rng: np.random.Generator) -> None:
+    """Change of effort against the law of the controller."""
+    command = command_problem(result.frame, result.held, result.declared.own)
+    if command is None:
+        return
+    p, setpoint = command
+    null = gls(p.y, p.base, p.train, p.ar_order, p.block)
+    s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
+    result.selections["U"] = s
+    if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
+        result.collect(s)
+    size, period, score = pulses(p, s.after.residual)
+    if score > 8:
+        result.findings.append(
+            Finding(
+                "unknown",
+                "S",
+                "command",
+                evidence=score,
+                share=0.1,
+                note=f"pulses on the command, every {period:.2f} s",
+                parameters={
+                    "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
+                    "period": Parameter(period, "s", 0.98 * period, 1.02 * period),
+                },
+            )
+        )
+
+
+def transmission(result: AxisResult, per_ampere: float, left: dict[str, Array]) -> Transmission:
+    """From currents to the axis, with the trains' stiffness and the rotors' lag where encoders show them."""
+    stiffness, softness = result.declared.stiffness, ROTORS[0] / result.declared.stiffness
+    if "K" in result.selections:
+        beta = result.selections["K"].after.beta
+        if beta[0] > 1e-8:
+            stiffness = 1.0 / float(beta[0])
+        softness = float(np.clip(-beta[1] * ARCSEC, ROTORS[0] / stiffness, ROTORS[1] / stiffness))
+    return Transmission(per_ampere, left, softness, stiffness)
+
+
+def _fine(result: AxisResult, rng: np.random.Generator) -> None:
+    """What only the log's full rate shows: interpolation error of the absolute encoder, pick-up on the
+    currents."""
+    frame = result.frame
+    full = motion_of(frame, 1)
+    problem = roller_problem(frame, full, result.held)
+    if problem is not None:
+        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full)
+        if candidates:
+            s = select(problem, candidates, rng, margin=FINE_MARGIN)
+            if s.chosen:
+                result.selections["S1"] = s
+                result.collect(s)
+    line = pick_up(frame)
+    if line is not None:
+        result.findings.append(line)
+
+
+def _kinematic_context(frame: Frame, m: Motion) -> Context:
+    pick = m.pick
+    zero = np.zeros(len(pick))
+    temperature = frame.get("temperature")
+    return Context(
+        frame.t[pick],
+        m.theta[pick],
+        m.rate[pick],
+        np.sign(m.rate[pick]),
+        zero,
+        frame.run[pick],
+        frame.session[pick],
+        "arcsec",
+        "rad",
+        2 * np.pi,
+        zero,
+        temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
+    )
+
+
+def _stack(c: Context) -> Context:
+    def twice(x: Array) -> Array:
+        return np.concatenate([x, x])
+
+    return Context(
+        twice(c.t),
+        twice(c.angle),
+        twice(c.speed),
+        twice(c.direction),
+        twice(c.since),
+        np.concatenate([c.run, c.run]),
+        np.concatenate([c.session, c.session]),
+        c.unit,
+        c.angle_unit,
+        c.turn,
+        twice(c.friction),
+        temperature=twice(c.temperature) if c.temperature is not None else None,
+    )

@@ -1,0 +1,37 @@
+"""What the axis pipeline found, channel by channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from calibration.channels.electrical import Electrical
+from calibration.channels.frame import Frame
+from calibration.channels.kinematic import Kinematic
+from calibration.channels.motion import Motion
+from calibration.channels.torque import Torque
+from calibration.decide.finding import Finding, Parameter
+from calibration.decide.parameters import finding_of
+from calibration.decide.select import Selection
+from calibration.declaredplant import Declared
+from calibration.statistics.whitening import Mask
+
+
+@dataclass
+class AxisResult:
+    """Everything the axis pipeline found, for the decision and the report."""
+
+    declared: Declared
+    frame: Frame
+    motion: Motion
+    held: Mask
+    electrical: Electrical | None
+    kinematic: Kinematic | None
+    torque: Torque | None
+    selections: dict[str, Selection] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    held_out: list[str] = field(default_factory=list)
+    calibrated: dict[str, Parameter] = field(default_factory=dict)
+
+    def collect(self, s: Selection) -> None:
+        """Take every effect that a channel's selection has chosen as a finding."""
+        self.findings += [finding_of(s, k) for k in range(len(s.chosen))]

@@ -1,0 +1,140 @@
+"""Lines of the telescope drive: gear stages, motor cogging and ripple, and orders that no stage has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.candidates.context import Context
+from calibration.candidates.orders import order_spectrum, peaks
+from calibration.channels.level import Level
+from calibration.readers.drive import STAGES
+from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
+
+SHAFTS = ("shaft2", "roller", "shaft1", "motor")
+MESHES = ("mesh3", "mesh2", "mesh1")
+COGGING = (
+    72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
+)
+NEAR = 0.35  # resolution cells about a known order that are that order's
+FREE = 4  # free orders tried per spectrum
+TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
+
+
+@dataclass
+class Motors:
+    """Motor angles in turns and torques (N m at the axis, signed) on the analysis grid."""
+
+    turns: dict[str, Array]
+    torque: dict[str, Array]
+    period_s: float
+
+
+def pair(turns: Array, c: Context, period_s: float, weight: Array | None = None, order: float = 1.0) -> Array:
+    """cos and sin of order*turns, dimmed like the analysis boxcars (twice three rows) dim a line at that
+    speed."""
+    cycles = np.abs(c.speed) / c.turn * order * period_s
+    slow = np.where(cycles < 0.9, ((1 + 2 * np.cos(2 * np.pi * cycles / 3)) / 3) ** 2, 0.0)
+    w = slow if weight is None else slow * weight
+    x = 2 * np.pi * turns
+    return np.column_stack([w * np.cos(x), w * np.sin(x)])
+
+
+def line(
+    c: Context, name: str, stage: str | None, harmonic: int | None, order: float, columns: Array, domain: str
+) -> Candidate:
+    """A line candidate in the context's unit."""
+    return Candidate(
+        name,
+        domain,
+        columns,
+        (("amplitude", c.unit),),
+        kind="line",
+        stage=stage,
+        harmonic=harmonic,
+        order=order,
+    )
+
+
+def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: int = 0) -> list[Candidate]:
+    """First and second harmonic of every shaft, first of every mesh; `extra` teeth for the negative
+    controls."""
+    out = []
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    for stage in (*SHAFTS, *MESHES):
+        for h in (1, 2):
+            order = STAGES[stage] * h
+            if span * order < 0.8:
+                continue
+            name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
+            domain = "motor_angle" if stage == "motor" else "axis_angle"
+            out.append(
+                line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain)
+            )
+    return out
+
+
+def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6) -> list[Candidate]:
+    """Cogging (independent of current) and ripple (proportional to it) of either motor at every small order.
+
+    Only the `keep` strongest of each kind in the residual `e` become candidates: high orders are all but
+    orthogonal to
+    the declared model, so that a plain projection ranks them.
+    """
+    found: dict[str, list[tuple[float, Candidate]]] = {"motor_cogging": [], "torque_ripple": []}
+    ratio = STAGES["motor"]
+    x = np.where(rows, e, 0.0)
+    for n in range(2, COGGING + 1):
+        order = n * ratio
+        plain = {k: pair(motors.turns[k] * n, c, motors.period_s, None, order) for k in "ab"}
+        if not rows.any() or np.mean(plain["a"][:, 0] ** 2) < 0.02:
+            continue
+        for name in found:
+            one = {
+                k: v * (ratio if name == "motor_cogging" else motors.torque[k][:, None])
+                for k, v in plain.items()
+            }
+            for motor, columns in ((0.0, one["a"]), (1.0, one["b"]), (None, np.hstack([one["a"], one["b"]]))):
+                # both motors' pairs are all but the same: their angles differ by their wind-up
+                q, _ = np.linalg.qr(np.where(rows[:, None], columns, 0.0))
+                score = float(np.sum((q.T @ x) ** 2)) - 0.5 * float(np.var(x)) * columns.shape[1]
+                made = line(c, name, "motor", n, order, columns, "motor_angle")
+                which = {} if motor is None else {"motor": (motor, "0 A, 1 B")}
+                found[name].append((score, replace(made, labels=(LABELS[name],), fixed=which)))
+    out = []
+    for ranked in found.values():
+        out += [k for _, k in sorted(ranked, key=lambda s: -s[0])[:keep]]
+    return out
+
+
+LABELS = {"motor_cogging": ("amplitude", "N m at the motor"), "torque_ripple": ("ripple", "1")}
+
+
+def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
+    """The strongest orders of the residual that no stage explains: even (bearing) and odd in direction
+    (friction)."""
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    known = np.array([v * h for k, v in STAGES.items() for h in (1, 2, 3) if k != "aux"])
+    out = []
+    sided = level.answer(np.ones(len(level.angle)))
+    for name, weight in (("bearing_pass", np.ones(len(e))), ("position_friction", sided)):
+        orders, power = order_spectrum(np.where(rows, e, 0.0), turns, np.where(rows, weight, 0.0), TOP)
+        if name == "bearing_pass" and len(orders):
+            near = np.min(np.abs(orders[:, None] - known[None, :]), axis=1) < NEAR / span
+            power = np.where(near, 0.0, power)
+        for order in peaks(orders, power, FREE, 1.5 / span):
+            for shift in (-0.2, 0.0, 0.2):
+                o = float(order + shift / span)
+                if name == "bearing_pass":
+                    columns = pair(turns * o, c, period_s, None, o)
+                else:
+                    x = o * level.angle
+                    columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])
+                one = line(c, name, None, None, o, columns, "axis_angle")
+                out.append(replace(one, searched=1 if name == "bearing_pass" else 0))
+    return out

@@ -1,0 +1,163 @@
+"""Electrical effects (channel E), as volts over duty, current, speed and time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate, ramp
+from calibration.channels.electrical import Electrical
+from calibration.channels.recursions import lowpass
+from calibration.decide.finding import Finding
+from calibration.readers.run import Array
+
+COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
+
+
+def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
+    """Candidates of the stacked E problem; `clock` (n,) is the session time of one motor's rows."""
+    r, k = e.resistance, e.constant
+    t = np.concatenate([clock, clock])
+    out = [
+        Candidate("pwm_deadband", "command", e.supply[:, None], (("u0", "1"),), sign=1),
+        Candidate("diode_braking", "velocity", (-k * e.dragged)[:, None], (("fraction", "1"),), sign=1),
+        Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("resistance", "ohm"),), sign=1),
+        Candidate(
+            "backlash_loss",
+            "reversal",
+            (e.duty * e.supply * e.lagging)[:, None],
+            (("counter_loss", "1"),),
+            sign=1,
+        ),
+    ]
+    offset = -r * e.ampere_per_count
+    each = offset * np.column_stack([e.motor == 0, e.motor == 1])
+    out.append(Candidate("adc_offset", "current", each, (("offset_a", "counts"), ("offset_b", "counts"))))
+    for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
+        out += [
+            Candidate(
+                "adc_offset",
+                "current",
+                (offset * mask)[:, None],
+                (("offset", "counts"),),
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
+            Candidate(
+                "adc_gain",
+                "current",
+                (-r * e.current * mask)[:, None],
+                (("gain", "1"),),
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
+            Candidate(
+                "magnet_weakening",
+                "velocity",
+                (-k * e.pulling * mask)[:, None],
+                (("fraction", "1"),),
+                sign=1,
+                fixed={"motor": (float(name == "b"), "0 A, 1 B")},
+            ),
+        ]
+    for tau in (20.0, 40.0, 60.0, 90.0, 140.0, 220.0, 350.0):
+        shape = _heating(e, clock)
+        out.append(
+            Candidate(
+                "winding_heating",
+                "time",
+                shape(np.array([tau])),
+                (("thermal_resistance", "K/W"),),
+                sign=1,
+                fixed={"tau": (tau, "s")},
+                shape=shape,
+                steps=(0.05 * tau,),
+            )
+        )
+    low, high = float(clock.min()), float(clock.max())
+    span = high - low
+    for at in np.linspace(0.05, 0.95, 16) * span + low:
+        if 0.02 < np.mean(t > at) < 0.98:
+            shape = _weakening(e, t)
+            out.append(
+                Candidate(
+                    "magnet_weakening",
+                    "time",
+                    shape(np.array([at, 0.05 * span])),
+                    (("fraction", "1"),),
+                    fixed={"onset": (float(at), "s"), "ramp": (0.05 * span, "s")},
+                    sign=1,
+                    shape=shape,
+                    steps=(0.02 * span, 0.02 * span),
+                )
+            )
+    return out
+
+
+def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
+    """`unknown` over the angle of either motor, as a resistance and as a voltage: six harmonics of the
+    motor turn.
+
+    `angle` (n,) per motor in turns.
+    """
+    out = []
+    for k, key in enumerate("ab"):
+        x = 2 * np.pi * np.concatenate([angle[key], angle[key]])
+        waves = np.column_stack([g(h * x) for h in range(1, 7) for g in (np.cos, np.sin)])
+        mask = (e.motor == k).astype(float)
+        for weight, unit in ((mask, "V"), (mask * e.current, "ohm")):
+            out.append(
+                Candidate(
+                    "unknown",
+                    "motor_angle",
+                    waves * weight[:, None],
+                    (("amplitude", unit),),
+                    kind="line",
+                    stage="motor",
+                    harmonic=1,
+                    fixed={"motor": (float(k), "0 A, 1 B")},
+                )
+            )
+    return out
+
+
+def _weakening(e: Electrical, t: Array) -> Callable[[Array], Array]:
+    """Volts per fraction of K lost, from an onset over a ramp."""
+    return lambda p: (-e.constant * e.pulling * ramp(t, float(p[0]), float(p[1])))[:, None]
+
+
+def weakened(chosen: list[tuple[Candidate, Array]], clock: Array) -> dict[str, Array]:
+    """Part of its torque constant that each motor has left, (n,) over `clock`, from the E channel's accepted
+    effects."""
+    out = {"a": np.ones(len(clock)), "b": np.ones(len(clock))}
+    for c, beta in chosen:
+        if c.name != "magnet_weakening":
+            continue
+        at = c.fixed
+        lost = float(beta[0]) * (ramp(clock, at["onset"][0], at["ramp"][0]) if "onset" in at else 1.0)
+        for k, key in enumerate("ab"):
+            if "motor" not in at or at["motor"][0] == k:
+                out[key] = out[key] - lost
+    return out
+
+
+def _heating(e: Electrical, clock: Array) -> Callable[[Array], Array]:
+    """Volts per K/W: R alpha R i (i^2 low-passed), the winding's own loss heating it."""
+    return lambda p: (COPPER * e.resistance**2 * e.current * _heat(e, clock, max(float(p[0]), 1.0)))[:, None]
+
+
+def _heat(e: Electrical, clock: Array, tau: float) -> Array:
+    """Low-passed i^2 of each motor, cold at the log's start."""
+    n = len(clock)
+    return np.concatenate([lowpass(e.current[:n] ** 2, clock, tau), lowpass(e.current[n:] ** 2, clock, tau)])
+
+
+def from_cold(f: Finding, ratio: float) -> Finding:
+    """A heating found with the mean resistance of the log, `ratio` times the cold one, told of the cold
+    one."""
+    if f.name != "winding_heating" or "thermal_resistance" not in f.parameters:
+        return f
+    p = f.parameters["thermal_resistance"]
+    k = ratio**2
+    told = replace(p, value=p.value * k, low=p.low * k, high=p.high * k)
+    return replace(f, parameters={**f.parameters, "thermal_resistance": told})

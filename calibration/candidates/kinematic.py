@@ -1,0 +1,220 @@
+"""Effects seen between encoders (channels K and S)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
+from calibration.candidates.candidate import Candidate
+from calibration.candidates.context import Context
+from calibration.candidates.orders import order_spectrum, peaks
+from calibration.channels.motion import Motion, rate_response
+from calibration.readers.drive import STAGES
+from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
+
+LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
+
+
+def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Candidate]:
+    """Candidates of the stacked K problem in arcsec; `c` holds the stacked columns."""
+    out = []
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    x = c.angle
+    out.append(
+        Candidate(
+            "encoder_eccentricity",
+            "axis_angle",
+            np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+            (("amplitude", "arcsec"),),
+            kind="line",
+            stage="axis",
+            harmonic=1,
+            order=1.0,
+        )
+    )
+    for stage in (*SHAFTS, *MESHES):
+        for h in (1, 2):
+            order = STAGES[stage] * h
+            if span * order < 0.8:
+                continue
+            name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
+            columns = pair(turns * order, c, period_s, None, order)
+            for one in (columns, columns * (motor == 0)[:, None], columns * (motor == 1)[:, None]):
+                out.append(
+                    line(c, name, stage, h, order, one, "motor_angle" if stage == "motor" else "axis_angle")
+                )
+    if c.temperature is not None and np.ptp(c.temperature) > 0.3:
+        out.append(
+            Candidate(
+                "encoder_thermal_drift",
+                "temperature",
+                (c.temperature.mean() - c.temperature)[:, None],
+                (("drift", "arcsec/K"),),
+            )
+        )
+    out.append(
+        Candidate(
+            "encoder_thermal_drift",
+            "time",
+            ((c.t - c.t.mean()) / (np.ptp(c.t) or 1.0))[:, None],
+            (("drift", "arcsec"),),
+        )
+    )
+    return out
+
+
+def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:
+    """Candidates of velocity minus rate in arcsec/s; `c.speed` in rad/s."""
+    w = c.speed * 206264.806
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
+    out += _slips(w, acceleration)
+    for h in (1, 2):
+        order = STAGES["roller"] * h
+        if span * order > 0.8:
+            out.append(
+                line(
+                    c,
+                    "encoder_eccentricity",
+                    "roller",
+                    h,
+                    order,
+                    pair(turns * order, c, period_s, w, order),
+                    "axis_angle",
+                )
+            )
+    x = c.angle
+    out.append(
+        Candidate(
+            "encoder_eccentricity",
+            "axis_angle",
+            w[:, None] * np.column_stack([np.cos(x), np.sin(x), np.cos(2 * x), np.sin(2 * x)]),
+            (("amplitude", "1"),),
+            kind="line",
+            stage="axis",
+            harmonic=1,
+            order=1.0,
+        )
+    )
+    return out
+
+
+def _slips(w: Array, acceleration: Array) -> list[Candidate]:
+    """Travel lost while the axis accelerates harder than a limit: a share of it, or as much as the limit is
+    exceeded."""
+    size = np.abs(acceleration)
+
+    def excess(p: Array) -> Array:
+        return np.asarray((-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None])
+
+    out = []
+    for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
+        if not 0.002 < np.mean(size > limit) < 0.6:
+            continue
+        share = _slip(w, acceleration)
+        for chatter in (0.1 * limit, 0.5 * limit, 2.0 * limit):
+            out.append(
+                Candidate(
+                    "roller_slip",
+                    "velocity",
+                    share(np.array([limit, chatter])),
+                    (("creep", "1"),),
+                    stage="roller",
+                    fixed={"limit": (limit, "rad/s2"), "chatter": (chatter, "rad/s2")},
+                    sign=1,
+                    shape=share,
+                    steps=(0.1 * limit, 0.2 * chatter),
+                )
+            )
+        out.append(
+            Candidate(
+                "roller_slip",
+                "velocity",
+                excess(np.array([limit])),
+                (("slip", "s"),),
+                stage="roller",
+                fixed={"limit": (limit, "rad/s2")},
+                sign=1,
+                shape=excess,
+                steps=(0.1 * limit,),
+            )
+        )
+    return out
+
+
+def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
+    """Rate lost, per unit of creep, for p = (limit, rms of the acceleration within a row): the share of a
+    row's time beyond the limit."""
+
+    def shape(p: Array) -> Array:
+        from scipy.special import ndtr
+
+        limit, chatter = abs(float(p[0])), max(abs(float(p[1])), 1e-6)
+        share = ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter)
+        return np.asarray(-w * share)[:, None]
+
+    return shape
+
+
+def subdivision(c: Context, m: Motion) -> list[Candidate]:
+    """Rate error of the absolute encoder's interpolation: its line count and twice it."""
+    x = 2 * np.pi * c.angle / c.turn * LINES
+    rate = c.speed * LINES  # arcsec/s per arcsec of error
+    cycles = c.speed / c.turn * LINES * m.period_s / m.width
+    parts = [
+        h * rate * rate_response(m.width, h * cycles) * g(h * x) for h in (1, 2) for g in (np.cos, np.sin)
+    ]
+    if np.mean(parts[0] != 0) < 0.02:
+        return []
+    return [
+        Candidate(
+            "encoder_subdivision",
+            "axis_angle",
+            np.column_stack(parts),
+            (("amplitude", "arcsec"),),
+            kind="line",
+            order=float(LINES),
+            harmonic=1,
+        )
+    ]
+
+
+def free_kinematic(c: Context, e: Array, rows: Mask, period_s: float, top: float = 3000.0) -> list[Candidate]:
+    """Strongest orders of the difference that no stage explains."""
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    orders, power = order_spectrum(np.where(rows, e, 0.0), turns, rows.astype(float), top)
+    out = []
+    for order in peaks(orders, power, 2, 1.5 / span if span else 1.0):
+        if min(abs(order - v * h) for v in STAGES.values() for h in (1, 2)) * span < 0.8:
+            continue
+        out.append(
+            line(
+                c,
+                "unknown",
+                None,
+                None,
+                float(order),
+                pair(turns * order, c, period_s, None, order),
+                "axis_angle",
+            )
+        )
+    return out
+
+
+def wind_up_loss(torque: Array, lagging: Array) -> list[Candidate]:
+    """Wind-up of the motor that should hold the counter torque: lost when its torque is."""
+    arcsec = 4.84813681e-6
+    return [
+        Candidate(
+            "backlash_loss",
+            "reversal",
+            (torque * lagging / arcsec)[:, None],
+            (("lost_compliance", "rad/(N m)"),),
+        )
+    ]

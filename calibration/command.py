@@ -1,0 +1,170 @@
+"""`schmidt calibrate`: logs in, report.json, report.html and plant.yaml out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from calibration.decide.verdict import Verdict, as_dict
+from calibration.errors import CalibrationInputError
+from calibration.readers.axis import is_axis_log, read_axis_log
+from calibration.readers.guide import is_guide_log, read_guide_log
+from calibration.readers.rig import Rig, load_rig
+from calibration.readers.run import Run
+from calibration.readers.table import read_table
+
+Plots = list[dict[str, str]]
+
+
+def calibrate(
+    logs: list[Path],
+    rig: Path | None = None,
+    hold_out: list[str] | None = None,
+    out: Path = Path("."),
+    plant: Path | None = None,
+    plots: bool = True,
+    replay: bool = True,
+) -> int:
+    """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
+
+    Returns 0 whenever there is an answer, "nothing" and "unknown" included. Raises CalibrationInputError (a
+    ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
+    file;
+    `plots=False` leaves the pictures out of the report, `replay=False` the closed loop run again on an axis
+    log's held-out rows.
+    """
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from threadpoolctl import threadpool_limits
+
+    if not logs:
+        raise CalibrationInputError("calibrate", "give at least one log")
+    # the matrices are tall and narrow: more threads than one make the work three times as long
+    with (
+        threadpool_limits(1),
+        Progress(
+            SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True
+        ) as bar,
+    ):
+        task = bar.add_task("reading")
+        tell: Callable[[str], None] = lambda text: bar.update(task, description=text)  # noqa: E731
+        declared = load_rig(rig) if rig is not None else None
+        kind, runs = read_logs(logs, declared)
+        _check_names(hold_out or [], runs, logs)
+        out.mkdir(parents=True, exist_ok=True)
+        verdict, pictures, title = answer(
+            kind, runs, declared, hold_out or [], out, plant, plots, tell, replay
+        )
+        tell("writing the report")
+        write_report(verdict, pictures, title, runs, out)
+    return 0
+
+
+def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
+    """Kind of input ("axis", "guide", "rig") and its runs; one kind per call."""
+    runs: list[Run] = []
+    kinds: dict[str, Path] = {}
+    for k, path in enumerate(logs):
+        if path.resolve() in [p.resolve() for p in logs[:k]]:
+            raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
+        if path.suffix.lower() == ".mat":
+            text = ""
+        else:
+            try:
+                text = path.read_text(encoding="utf-8-sig", errors="strict")
+            except UnicodeDecodeError as error:
+                head = error.object[:20000].decode("latin-1")
+                if is_guide_log(head):  # names in it may be in the computer's code page; numbers are ASCII
+                    kinds["guide"] = path
+                    runs += read_guide_log(path, error.object.decode("latin-1"))
+                    continue
+                line = error.object[: error.start].count(b"\n") + 1
+                raise CalibrationInputError(path, "is not UTF-8 text", line) from None
+            except OSError as error:
+                raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+        if path.suffix.lower() != ".mat" and not text.strip():
+            raise CalibrationInputError(path, "is empty", 1)
+        if is_axis_log(text):
+            kinds["axis"] = path
+            runs.append(read_axis_log(path, text))
+        elif is_guide_log(text):
+            kinds["guide"] = path
+            runs += read_guide_log(path, text)
+        elif rig is not None:
+            kinds["rig"] = path
+            runs.append(read_table(path, rig))
+        else:
+            raise CalibrationInputError(
+                path,
+                "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
+                "another drive's file needs --rig FILE",
+                1,
+            )
+    if len(kinds) > 1:
+        a, b = list(kinds)[:2]
+        raise CalibrationInputError(
+            kinds[b], f"is a {b} log, {kinds[a]} is a {a} log: calibrate one kind at a time"
+        )
+    kind = next(iter(kinds))
+    if kind == "axis":
+        axes = {r.header["axis"]: r.path for r in runs}
+        if len(axes) > 1:
+            (a, first), (b, second) = list(axes.items())[:2]
+            raise CalibrationInputError(
+                second, f"is an axis log of {b}, {first} one of {a}: calibrate one axis at a time"
+            )
+    return kind, runs
+
+
+def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None:
+    import difflib
+
+    known = {n for r in runs for n in (r.name, r.path.name, str(r.path))} | {str(p) for p in logs}
+    for name in hold_out:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, n=1, cutoff=0.3)
+            hint = (
+                f"; nearest is '{near[0]}'"
+                if near
+                else f"; there are {', '.join(sorted(r.name for r in runs))}"
+            )
+            raise CalibrationInputError("--hold-out", f"no run is called '{name}'{hint}")
+    if hold_out and all({r.name, r.path.name, str(r.path)} & set(hold_out) for r in runs):
+        raise CalibrationInputError("--hold-out", "every run is held out: nothing is left to fit")
+
+
+def answer(
+    kind: str,
+    runs: list[Run],
+    rig: Rig | None,
+    hold_out: list[str],
+    out: Path,
+    plant: Path | None,
+    plots: bool,
+    tell: Callable[[str], None],
+    replay: bool = True,
+) -> tuple[Verdict, Plots, str]:
+    """Verdict, pictures and title for runs of one kind."""
+    from calibration import answers
+
+    if kind == "guide":
+        from calibration.guideanswer import guide_answer
+
+        return guide_answer(runs, rig, hold_out, plots)
+    if kind == "rig":
+        assert rig is not None
+        tell("rig")
+        return answers.bench(runs, rig, hold_out, plots)
+    return answers.axis(runs, hold_out, out, plant, plots, tell, replay)
+
+
+def write_report(verdict: Verdict, pictures: Plots, title: str, runs: list[Run], out: Path) -> None:
+    """report.json and report.html."""
+    from calibration.report.page import page
+
+    data = as_dict(verdict)
+    (out / "report.json").write_text(json.dumps(data, indent=1, default=float) + "\n", encoding="utf-8")
+    subtitle = f"{len(runs)} run{'s' if len(runs) != 1 else ''}: " + ", ".join(
+        f"{r.name} ({r.duration_s:.0f} s, {r.rows} rows)" for r in runs[:12]
+    )
+    (out / "report.html").write_text(page(data, pictures, title, subtitle), encoding="utf-8")

@@ -1,0 +1,75 @@
+"""The function that an `unknown` of the torque channel is, over a signal of the plant, with its interval."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.context import Context
+from calibration.decide.finding import Curve
+from calibration.decide.select import Selection
+from calibration.readers.run import Array
+from calibration.statistics.tails import student_reach
+from plant.effects.evaluate import evaluate_function
+
+POINTS = 24  # knots: three for each of a smooth function's eight splines
+SLOW = 5e-5  # rad/s: knots over speed are as far apart as its logarithm from there on
+STIFF = 1e-6  # of the normal matrix: holds knots in a gap of the data to a straight line
+MODEL_ERROR = 0.01  # of a value, as for every parameter (decide/parameters.py)
+
+
+def domain_values(domain: str, c: Context) -> tuple[str, Array] | None:
+    """The plant's signal for a domain of the torque channel, and its values per row; None: it has none."""
+    table = {
+        "axis_angle": ("axis_angle", c.angle),
+        "velocity": ("velocity", c.speed),
+        "time": ("time", c.t),
+        "current": ("torque", c.load),
+    }
+    if domain == "temperature" and c.temperature is not None:
+        return "temperature", c.temperature
+    name, values = table.get(domain, ("", None))
+    return None if values is None else (name, values)
+
+
+def places(domain: str, u: Array) -> Array:
+    """Knots over the range of `u`, denser around zero speed."""
+    low, high = float(u.min()), float(u.max())
+    if domain != "velocity":
+        return np.linspace(low, high, POINTS)
+    first, last = (float(np.sign(x) * np.log1p(abs(x) / SLOW)) for x in (low, high))
+    z = np.linspace(first, last, POINTS)
+    return np.asarray(np.sign(z) * np.expm1(np.abs(z)) * SLOW)
+
+
+def curve_of(s: Selection, index: int, c: Context, clock: Array | None = None) -> Curve | None:
+    """The torque on the axis that chosen effect `index` adds, over its domain; None where it is no function.
+
+    Least squares of the plant's own interpolation through the effect's contribution on training rows; the
+    half-widths follow from the covariance of its coefficients, with Student's reach over blocks.
+    """
+    chosen = s.chosen[index].candidate
+    found = domain_values(chosen.domain, c)
+    if found is None or chosen.kind == "line":
+        return None
+    domain, u = found
+    if domain == "time" and clock is not None:
+        u = clock
+    rows = s.problem.train
+    at = s.problem.base.shape[1] + sum(x.candidate.width for x in s.chosen[:index])
+    where = slice(at, at + chosen.width)
+    x = chosen.columns[rows]
+    y = -(x @ s.after.beta[where])
+    variance = np.einsum("ij,jk,ik->i", x, s.after.covariance[where, where], x)
+    u = u[rows]
+    if float(np.ptp(u)) <= 0.0:
+        return None
+    knots = places(domain, u)
+    basis = np.column_stack([evaluate_function(knots, e, u) for e in np.eye(len(knots))])
+    bend = np.diff(np.eye(len(knots)), 2, axis=0)
+    weight = STIFF * float(np.trace(basis.T @ basis)) / len(knots)
+    normal = basis.T @ basis + weight * bend.T @ bend
+    values = np.linalg.solve(normal, basis.T @ y)
+    spread = np.sqrt(np.maximum(np.linalg.solve(normal, basis.T @ variance), 0.0))
+    blocks = max(int(rows.sum() / s.problem.block), 5)
+    half = student_reach(max(blocks - 2, 3)) * np.hypot(spread, MODEL_ERROR * values)
+    return Curve(domain, "N m", tuple(map(float, knots)), tuple(map(float, values)), tuple(map(float, half)))

@@ -1,0 +1,87 @@
+"""What is accepted, and what a log cannot tell from it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.channels.problem import Problem
+from calibration.decide.heldout import HeldOut
+from calibration.decide.scan import Contender
+from calibration.statistics.regression import Fit
+
+# of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
+MARGIN = 0.05
+# for what a rigid balance misses of a compliant drive
+LUCK = 2.0  # z of the cross-validated gain over blocks
+HANDICAP = 0.12  # of the mean square: an unnamed function must do more than a named one
+LEAST_EVIDENCE = (
+    10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
+)
+# of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
+BURST = 0.05
+WORSE = 0.001  # of the held-out mean square: rounding, not harm
+# of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
+# short logs would be named with confidence they do not have
+FEWEST_BLOCKS = 20
+
+
+def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float = MARGIN) -> str:
+    """Why a contender is not accepted; empty when it is.
+
+    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an
+    effect that the
+    held-out run does not excite may gain nothing there, but none may make it worse.
+    """
+    if contender.bayes <= 0:
+        return "gains less than its parameters cost"
+    if not np.isfinite(inside.after):
+        return "too few rows to test it on"
+    least = max(HANDICAP, margin) if contender.candidate.name == "unknown" else margin
+    if contender.evidence < max(LEAST_EVIDENCE, contender.candidate.least):
+        return f"too little evidence (-log10 p = {contender.evidence:.1f})"
+    if inside.share < least:
+        return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
+    if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
+        return f"cross-validated gain is within luck (z = {inside.z:.1f})"
+    if not np.isfinite(held.after):
+        return "no held-out rows to test it on"
+    if held.share < -WORSE:
+        return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
+    return ""
+
+
+def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
+    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or
+    empty."""
+    rows = problem.train
+    taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
+    if taken < problem.step**2:
+        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
+    return ""
+
+
+def equivalents(problem: Problem, contenders: list[Contender], best: Contender) -> list[Contender]:
+    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood
+    test)."""
+    out = []
+    for other in contenders:
+        if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
+            continue
+        if other.candidate.width > best.candidate.width:
+            continue  # a richer form always fits as well
+        loss, spread = _paired(problem, best, other)
+        if loss < max(2.0, 2.0 * spread):
+            out.append(other)
+    return out
+
+
+def _paired(problem: Problem, best: Contender, other: Contender) -> tuple[float, float]:
+    """Log likelihood lost by `other`, and its standard error over blocks, in the best model's noise."""
+    w = best.fit.whitener
+    rows = problem.train
+    use = w.usable(rows)
+    eb = w.apply(np.where(rows, best.fit.residual, 0.0))[use]
+    eo = w.apply(np.where(rows, other.fit.residual, 0.0))[use]
+    d = (eo**2 - eb**2) / (2 * best.fit.sigma**2)
+    sums = np.add.reduceat(d, np.arange(0, len(d), problem.block))
+    return float(d.sum()), float(np.std(sums) * np.sqrt(len(sums)))

@@ -1,0 +1,170 @@
+"""Effects without a phase: broadband torque over time (wind), and lines that only the full rate shows
+(pick-up)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.channels.frame import Frame, fill
+from calibration.channels.problem import Problem
+from calibration.decide.accept import FEWEST_BLOCKS
+from calibration.decide.finding import Finding, Parameter
+from calibration.decide.sizes import quiet_noise
+from calibration.readers.run import Array
+from calibration.statistics.whitening import autocovariance
+
+MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
+WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
+PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
+SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
+# amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
+COUNTS = 0.8
+
+
+def slow_ratio(e: Array, problem: Problem, white: float) -> float:
+    """rms of means over MEAN_S, over the white noise's rms per sample, while the axis slides."""
+    rows = problem.train & (np.abs(problem.base[:, 1]) > SLIDING)
+    size = max(round(MEAN_S / problem.period_s), 2)
+    n = len(e) // size * size
+    ok = rows[:n].reshape(-1, size).mean(axis=1) > 0.9
+    means = np.where(rows, e, 0.0)[:n].reshape(-1, size).mean(axis=1)[ok]
+    return float(np.sqrt(np.mean(means**2)) / max(white, 1e-12)) if len(means) > 20 else 0.0
+
+
+STEPS = 2.0  # of problem.step
+BURSTS = 5.0  # kurtosis; a few hundred gusts of Gaussian wind scatter by 0.3 about 3
+VOLTS = 2.0  # rms of the volts left over the quiet noise
+SECTOR = 0.6  # contrast over the motor's turn; one sector of sixteen alone gives 3.9
+BINS = 16  # of a motor's turn
+
+
+def kurtosis(e: Array) -> float:
+    """Fourth moment over the variance squared: 3 for a Gaussian."""
+    x = e - np.mean(e)
+    return float(np.mean(x**4) / max(float(np.mean(x**2)) ** 2, 1e-300))
+
+
+def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | None:
+    """Volts far above the sensors' noise that no effect explains and that sit in one sector of a motor's
+    turn: a brush. `turns` (n,) of the motors; training and held-out rows must both show it.
+    """
+    rows = problem.train
+    white = quiet_noise(e, problem)
+    if rows.sum() < FEWEST_BLOCKS * problem.block or problem.test.sum() < 100 or white <= 0:
+        return None
+    size = float(np.sqrt(np.mean(e[rows] ** 2)))
+    contrasts = [_contrast(e[k] ** 2, turns[k]) for k in (rows, problem.test)]
+    if size < VOLTS * white or min(contrasts) < SECTOR:
+        return None
+    return Finding(
+        "unknown",
+        "E",
+        "motor_angle",
+        evidence=40.0 * size / white,
+        share=1 - (white / size) ** 2,
+        note=f"volts {size / white:.1f} times the quiet noise, in a sector of the motor's turn",
+        parameters={"rms": Parameter(size, "V", 0.8 * size, 1.2 * size)},
+    )
+
+
+def _contrast(power: Array, turns: Array) -> float:
+    """Spread of the mean power over the sectors of a turn, over its mean; single rows are cut off."""
+    power = np.minimum(power, 100 * float(np.median(power)))
+    place = ((turns % 1.0) * BINS).astype(np.int64)
+    count = np.bincount(place, minlength=BINS)
+    if (count > 20).sum() < BINS // 2:
+        return 0.0
+    means = (np.bincount(place, power, BINS) / np.maximum(count, 1))[count > 20]
+    return float(np.std(means) / max(float(np.mean(means)), 1e-300))
+
+
+def wind(e: Array, problem: Problem, white: float) -> Finding | None:
+    """A stationary, broadband, slow torque that no domain explains."""
+    ratio = slow_ratio(e, problem, white)
+    if ratio < WIND:
+        return None
+    r = autocovariance(e, problem.train, 40)
+    variance = max(float(r[1] + 0.5 * (r[1] - r[2])), 1e-9)
+    late = int(np.argmax(r < 0.5 * variance)) or 20
+    corner = np.log(2) / (2 * np.pi * late * problem.period_s)
+    sigma = float(np.sqrt(variance))
+    if sigma < STEPS * problem.step:
+        return None  # two converters' rounding that a steady motion does not average out
+    tails = kurtosis(e[problem.train])
+    if tails > BURSTS:
+        return Finding(
+            "unknown",
+            "T",
+            "time",
+            evidence=40.0 * ratio,
+            share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
+            note=f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3) that no angle, speed or "
+            "reversal explains",
+            parameters={"rms": Parameter(sigma, "N m", 0.8 * sigma, 1.2 * sigma)},
+        )
+    turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
+    half = 1.96 * sigma / np.sqrt(2 * turns)
+    return Finding(
+        "wind_torque",
+        "T",
+        "time",
+        evidence=40.0 * ratio,
+        share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
+        parameters={
+            "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
+            "corner": Parameter(float(corner), "Hz", float(corner) * 0.6, float(corner) * 1.6),
+        },
+    )
+
+
+def pick_up(frame: Frame) -> Finding | None:
+    """A line at fixed Hz on the currents that keeps its frequency in every run, beyond the analysis band."""
+    if frame.get("current_a") is None:
+        return None
+    dt = frame.period_s
+    same: list[tuple[float, float, float]] = []
+    for name in ("current_a", "current_b"):
+        found = _lines(frame, name)
+        strong = [b for b in found if b[1] > PEAK and b[2] > COUNTS * frame.scale["adc_A_per_count"]]
+        if len(strong) < max(3, len(found) // 2):
+            continue
+        middle = float(np.median([b[0] for b in strong]))
+        near = [b for b in strong if abs(b[0] - middle) < 0.15]
+        if len(near) >= 0.7 * len(strong) and len(near) > len(same):
+            same = near
+    if not same:
+        return None
+    middle = float(np.median([b[0] for b in same]))
+    size = float(np.median([b[2] for b in same]))
+    return Finding(
+        "unknown",
+        "E",
+        "time",
+        frequency=middle,
+        evidence=30.0,
+        share=0.3,
+        note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
+        parameters={"amplitude": Parameter(size, "A", 0.8 * size, 1.2 * size)},
+    )
+
+
+def _lines(frame: Frame, name: str) -> list[tuple[float, float, float]]:
+    """(Hz, power over the median, amplitude in A) of the strongest fast line of a current in every run."""
+    out = []
+    dt = frame.period_s
+    x, ok = fill(frame.columns[name], frame.run)
+    for k in np.unique(frame.run):
+        rows = frame.run == k
+        part = x[rows] - np.convolve(np.pad(x[rows], 4, mode="edge"), np.ones(9) / 9, "valid")
+        busy = np.abs(np.gradient(x[rows])) < 0.1
+        part = np.where(ok[rows] & busy & (x[rows] > 0.05), part, 0.0)
+        used = int(np.count_nonzero(part))
+        if used < 1000:
+            continue
+        power = np.abs(np.fft.rfft(part)) ** 2
+        hertz = np.fft.rfftfreq(len(part), dt)
+        power[hertz < 15.0] = 0.0
+        j = int(np.argmax(power))
+        level = float(np.median(power[hertz > 15.0])) or 1e-30
+        out.append((float(hertz[j]), float(power[j] / level), 2 * float(np.sqrt(power[j])) / used))
+    return out

@@ -1,0 +1,99 @@
+"""Negative controls: the accepted effect made wrong on purpose, which must not be accepted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.decide.select import Selection, design
+from calibration.readers.drive import STAGES
+from calibration.readers.run import Array
+from calibration.statistics.regression import gls
+
+TEETH = {
+    "shaft1": (113, 123),
+    "shaft2": (123, 17),
+    "motor": (27, 27),
+    "mesh1": (27, 27),
+    "mesh2": (21, 21),
+    "mesh3": (250, 250),
+    "roller": (30, 30),
+}
+
+
+def controls(selection: Selection, angle_turns: Array | None, span_turns: float) -> list[dict[str, Any]]:
+    """One tooth more and less, sign flipped and time reversed, for every chosen effect."""
+    out = []
+    for k, chosen in enumerate(selection.chosen):
+        c = chosen.candidate
+        tests: list[tuple[str, Candidate]] = [
+            ("time reversed", replace(c, columns=c.columns[::-1].copy(), shape=None))
+        ]
+        if c.stage in TEETH and c.kind == "line" and c.order and angle_turns is not None:
+            teeth = TEETH[c.stage][0]
+            for step, word in ((1, "more"), (-1, "less")):
+                order = c.order * (teeth + step) / teeth
+                if abs(order - c.order) * span_turns < 0.7:
+                    out.append(
+                        {
+                            "what": f"one tooth {word} on {c.stage}",
+                            "accepted": False,
+                            "note": "this travel cannot tell one tooth from the next",
+                        }
+                    )
+                    continue
+                x = 2 * np.pi * angle_turns * order
+                tests.append(
+                    (
+                        f"one tooth {word} on {c.stage}",
+                        replace(c, columns=np.column_stack([np.cos(x), np.sin(x)]), shape=None),
+                    )
+                )
+        for what, wrong in tests:
+            row = {"what": f"{what} ({c.say()})", "accepted": _better(selection, k, wrong)}
+            if what == "time reversed" and _alike(c.columns, wrong.columns):
+                row = {
+                    "what": row["what"],
+                    "accepted": False,
+                    "note": "no test here: this motion reads the same backwards",
+                }
+            out.append(row)
+        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(selection, k)})
+    return out
+
+
+def _alike(a: Array, b: Array) -> bool:
+    """True when b's columns lie mostly in the span of a's: the control is then the effect itself."""
+    q, _ = np.linalg.qr(a)
+    return bool(np.sum((q.T @ b) ** 2) > 0.4 * np.sum(b**2))
+
+
+def _better(selection: Selection, k: int, wrong: Candidate) -> bool:
+    """True when the wrong candidate in the place of the right one fits at least as well on training rows."""
+    p = selection.problem
+    others = [x.candidate for j, x in enumerate(selection.chosen) if j != k]
+    fit = gls(p.y, design(p, [*others, wrong]), p.train, p.ar_order, p.block)
+    return bool(fit.loglik >= selection.after.loglik * fit.rows / selection.after.rows)
+
+
+def _flipped(selection: Selection, k: int) -> bool:
+    """True when the effect with its sign turned leaves less on held-out rows than no effect."""
+    p = selection.problem
+    if p.test.sum() < 20:
+        return False
+    at = p.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:k])
+    x = design(p, [c.candidate for c in selection.chosen])
+    beta = selection.after.beta.copy()
+    width = selection.chosen[k].candidate.width
+    without = beta.copy()
+    without[at : at + width] = 0.0
+    beta[at : at + width] *= -1
+    rows = p.test
+    e1, e0 = (p.y - x @ beta)[rows], (p.y - x @ without)[rows]
+    return bool(np.mean(e1**2) < np.mean(e0**2))
+
+
+__all__ = ["STAGES", "controls"]

@@ -1,0 +1,121 @@
+"""Errors on rows that were not fitted: before and after, raw and whitened, and whether a gain is more than
+luck."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.channels.problem import Problem
+from calibration.readers.run import Array
+from calibration.statistics.regression import solve
+from calibration.statistics.whitening import Mask, Whitener
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """rms before and after on held-out rows (channel's unit) and the z-score of the whitened gain over
+    blocks."""
+
+    before: float
+    after: float
+    z: float
+    share: float  # 1 - mean square after / before
+    everywhere: bool = False  # cross-validation only: every fold gained
+
+
+def predict_residual(
+    problem: Problem, x: Array, beta: Array, rows: Mask, phases: Sequence[slice] = ()
+) -> Array:
+    """y - x beta on `rows`, with the fresh nuisances fitted there: offsets of a new segment, and of the
+    columns in `phases` the phase of a run that training has not seen."""
+    e = problem.y[rows] - x[rows] @ beta
+    for at in phases:
+        e = e - _new_phase(x[:, at], beta[at], problem.train, rows, e)
+    if problem.fresh is not None:
+        f = problem.fresh[rows]
+        e = e - f @ solve(f, e)
+    return np.asarray(e)
+
+
+def _new_phase(pairs: Array, beta: Array, train: Mask, rows: Mask, e: Array) -> Array:
+    """What a line of known amplitude and a phase of its own in every run (cos, sin per run) takes off `e`
+    there."""
+    weight = np.abs(pairs[train]).max(axis=0)
+    known = [k for k in range(0, pairs.shape[1], 2) if weight[k] > 0]
+    out = np.zeros(len(e))
+    if not known:
+        return out
+    amplitude = float(np.median([np.hypot(beta[k], beta[k + 1]) for k in known]))
+    for k in range(0, pairs.shape[1], 2):
+        pair = pairs[rows, k : k + 2]
+        if weight[k] == 0 and np.abs(pair).max() > 0:
+            b = solve(pair, e)
+            out += pair @ b * (amplitude / max(float(np.hypot(b[0], b[1])), 1e-300))
+    return out
+
+
+def compare(
+    problem: Problem,
+    x0: Array,
+    beta0: Array,
+    x1: Array,
+    beta1: Array,
+    whitener: Whitener,
+    phases: tuple[Sequence[slice], Sequence[slice]] = ((), ()),
+) -> HeldOut:
+    """Compare two fitted models on the held-out rows; `phases` as in `predict_residual`, of either model."""
+    rows = problem.test
+    if rows.sum() < 20:
+        return HeldOut(float("nan"), float("nan"), 0.0, 0.0)
+    e0 = predict_residual(problem, x0, beta0, rows, phases[0])
+    e1 = predict_residual(problem, x1, beta1, rows, phases[1])
+    full0, full1 = np.zeros(len(problem.y)), np.zeros(len(problem.y))
+    full0[rows], full1[rows] = e0, e1
+    use = whitener.usable(rows)
+    w0, w1 = whitener.apply(full0)[use], whitener.apply(full1)[use]
+    z = paired_z(w0**2 - w1**2, problem.block)
+    b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
+    return HeldOut(b, a, z, 1 - (a / b) ** 2 if b > 0 else 0.0)
+
+
+def paired_z(gain: Array, block: int) -> float:
+    """z-score of the mean gain over blocks of rows."""
+    if len(gain) < 2 * block:
+        block = max(len(gain) // 4, 1)
+    edges = np.arange(0, len(gain), block)
+    sums = np.add.reduceat(gain, edges) if len(gain) else np.zeros(1)
+    if len(sums) < 2 or np.std(sums) == 0:
+        return 0.0
+    return float(np.mean(sums) / (np.std(sums, ddof=1) / np.sqrt(len(sums))))
+
+
+FOLDS = 5
+FOLD_S = 6.0  # s per piece: pieces of one fold are spread over all runs
+
+
+def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
+    """Score two designs on training rows they were not fitted to: pieces of FOLD_S dealt into FOLDS folds."""
+    rows = problem.train
+    use = whitener.usable(rows)
+    if use.sum() < 100:
+        return HeldOut(float("nan"), float("nan"), 0.0, 0.0)
+    piece = np.floor(problem.t / max(FOLD_S, 8 * problem.period_s)).astype(np.int64)
+    fold = (piece % FOLDS)[use]
+    y = whitener.apply(np.where(rows, problem.y, 0.0))[use]
+    left: list[Array] = []
+    for x in (x0, x1):
+        w = whitener.apply(np.where(rows[:, None], x, 0.0))[use]
+        e = np.empty(len(y))
+        for k in range(FOLDS):
+            out = fold == k
+            e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
+        left.append(e)
+    e0, e1 = left
+    b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
+    gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in range(FOLDS) if np.any(fold == k)]
+    return HeldOut(
+        b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0, min(gains) > 0
+    )

@@ -1,0 +1,230 @@
+"""Forward selection of effects in one channel, with out-of-run acceptance and re-tested earlier picks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.channels.problem import Problem
+from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_step
+from calibration.decide.gate import gate
+from calibration.decide.heldout import HeldOut, compare, cross_validate
+from calibration.decide.refine import polish
+from calibration.decide.scan import Contender, Look, fit_with, look
+from calibration.readers.run import Array
+from calibration.statistics.regression import Fit, gls
+from calibration.statistics.surrogate import Scores
+
+MOST = 5  # effects per channel
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A candidate that was looked at and refused, and why."""
+
+    what: str
+    why: str
+
+
+@dataclass
+class Selection:
+    """What one channel says."""
+
+    problem: Problem
+    chosen: list[Contender]
+    classes: list[list[Contender]]  # per chosen: those this log cannot separate from it
+    before: Fit
+    after: Fit
+    held: HeldOut
+    scores: Scores
+    candidates: list[Candidate]
+    refused: list[Refusal] = field(default_factory=list)
+    steps: list[HeldOut] = field(default_factory=list)
+
+    @property
+    def statistic(self) -> float:
+        """The largest score of all candidates."""
+        return float(self.scores.value.max()) if len(self.scores.value) else 0.0
+
+
+def design(problem: Problem, chosen: list[Candidate]) -> Array:
+    """Base and chosen candidates side by side."""
+    return np.hstack([problem.base, *[c.columns for c in chosen]])
+
+
+def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
+    """Every accepted effect with its coefficients in the joint fit."""
+    out, at = [], s.problem.base.shape[1]
+    for c in s.chosen:
+        out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
+        at += c.candidate.width
+    return out
+
+
+def phases(problem: Problem, chosen: list[Candidate]) -> list[slice]:
+    """Columns of `design` whose phase is every run's own."""
+    out, at = [], problem.base.shape[1]
+    for c in chosen:
+        if c.per_run:
+            out.append(slice(at, at + c.width))
+        at += c.width
+    return out
+
+
+def judge(
+    problem: Problem, look: Look, picks: list[Contender], contender: Contender
+) -> tuple[HeldOut, HeldOut]:
+    """Score a contender beside `picks`: on training rows it was not fitted to, and on the held-out rows."""
+    others = [p.candidate for p in picks]
+    base = design(problem, others)
+    x, w = np.hstack([base, contender.candidate.columns]), contender.fit.whitener
+    free = (phases(problem, others), phases(problem, [*others, contender.candidate]))
+    inside = cross_validate(problem, base, x, w)
+    return inside, compare(problem, base, look.null.beta, x, contender.fit.beta, w, free)
+
+
+def select(
+    problem: Problem,
+    candidates: list[Candidate],
+    rng: np.random.Generator,
+    most: int = MOST,
+    margin: float = MARGIN,
+) -> Selection:
+    """Pick effects one after another while each helps on held-out rows; then hold them against surrogates."""
+    picks: list[Contender] = []
+    classes: list[list[Contender]] = []
+    steps: list[HeldOut] = []
+    refused: list[Refusal] = []
+    left = list(candidates)
+    blocks = problem.train.sum() / problem.block
+    if left and blocks < FEWEST_BLOCKS:
+        refused.append(
+            Refusal(
+                "every candidate",
+                f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
+                f" an interval needs {FEWEST_BLOCKS}",
+            )
+        )
+        left = []
+    while len(picks) < most and left:
+        base = design(problem, [p.candidate for p in picks])
+        now = look(problem, base, left)
+        taken = None
+        for contender in now.contenders[:4]:
+            inside, held = judge(problem, now, picks, contender)
+            why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
+            if not why:
+                taken = contender
+                break
+            refused.append(Refusal(contender.candidate.say(), why))
+        if taken is None:
+            break
+        picks.append(taken)
+        classes.append(equivalents(problem, now.contenders, taken))
+        steps.append(held)
+        picks, classes, steps = _retest(problem, picks, classes, steps, refused)
+        left = [c for c in left if all(c.key != p.candidate.key for p in picks)]
+    if len(picks) > 1:
+        for k in range(len(picks)):
+            _again(problem, picks, classes, steps, k, candidates, margin, refused)
+    for k in range(len(picks)):
+        _polish(problem, picks, k)
+    before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
+    after = _fit(problem, picks)
+    scores = gate(problem, before, after, candidates, problem.base, rng)
+    keep = [p.evidence >= scores.threshold for p in picks]
+    for p, good in zip(picks, keep, strict=True):
+        if not good:
+            refused.append(
+                Refusal(
+                    p.candidate.say(),
+                    f"below the surrogate threshold ({p.evidence:.1f} < {scores.threshold:.1f})",
+                )
+            )
+    if not all(keep):
+        picks = [x for x, k in zip(picks, keep, strict=True) if k]
+        classes = [x for x, k in zip(classes, keep, strict=True) if k]
+        steps = [x for x, k in zip(steps, keep, strict=True) if k]
+        after = _fit(problem, picks)
+    held = compare(
+        problem,
+        problem.base,
+        before.beta,
+        design(problem, [p.candidate for p in picks]),
+        after.beta,
+        after.whitener,
+        ((), phases(problem, [p.candidate for p in picks])),
+    )
+    return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
+
+
+def _fit(problem: Problem, picks: list[Contender]) -> Fit:
+    return gls(
+        problem.y,
+        design(problem, [p.candidate for p in picks]),
+        problem.train,
+        problem.ar_order,
+        problem.block,
+    )
+
+
+def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
+    """Move pick `k`'s nonlinear parameters together, beside the others."""
+    if len(picks[k].candidate.steps) < 2:
+        return
+    base = design(problem, [p.candidate for j, p in enumerate(picks) if j != k])
+    null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
+    better = polish(problem, base, null.residual, picks[k].candidate, picks[k].fit.whitener)
+    found = fit_with(problem, base, better, null)
+    if found is not None and found.fit.loglik > picks[k].fit.loglik:
+        picks[k] = found
+
+
+def _again(
+    problem: Problem,
+    picks: list[Contender],
+    classes: list[list[Contender]],
+    steps: list[HeldOut],
+    k: int,
+    candidates: list[Candidate],
+    margin: float,
+    refused: list[Refusal],
+) -> None:
+    """Look at pick `k` again beside all the others: what was taken while they were missing may be another's
+    name."""
+    others = [p for j, p in enumerate(picks) if j != k]
+    base = design(problem, [p.candidate for p in others])
+    taken = {p.candidate.key for p in others}
+    now = look(problem, base, [c for c in candidates if c.key not in taken])
+    for contender in now.contenders[:3]:
+        inside, held = judge(problem, now, others, contender)
+        if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
+            continue
+        if contender.candidate.key != picks[k].candidate.key:
+            refused.append(
+                Refusal(picks[k].candidate.say(), f"{contender.candidate.say()} explains it better")
+            )
+        picks[k], steps[k] = contender, held
+        classes[k] = equivalents(problem, now.contenders, contender)
+        return
+
+
+def _retest(
+    problem: Problem,
+    picks: list[Contender],
+    classes: list[list[Contender]],
+    steps: list[HeldOut],
+    refused: list[Refusal],
+) -> tuple[list[Contender], list[list[Contender]], list[HeldOut]]:
+    """Drop earlier picks that the later ones made superfluous."""
+    keep = list(range(len(picks)))
+    for k in range(len(picks) - 1):
+        others = design(problem, [picks[j].candidate for j in keep if j != k])
+        null = gls(problem.y, others, problem.train, problem.ar_order, problem.block)
+        again = fit_with(problem, others, picks[k].candidate, null)
+        if again is None or again.bayes <= 0:
+            keep.remove(k)
+            refused.append(Refusal(picks[k].candidate.say(), "superfluous once the others are in"))
+    return [picks[k] for k in keep], [classes[k] for k in keep], [steps[k] for k in keep]

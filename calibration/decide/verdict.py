@@ -1,0 +1,90 @@
+"""The verdict: found, ambiguous, unknown or nothing; how sure; and what the log could not tell."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from calibration.decide.experiments import experiment
+from calibration.decide.finding import Finding, Parameter
+
+PHASES = (
+    "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
+    "effect, or of the difference of two encoders; plant.yaml has the effect's own torque or error, a sine."
+)
+
+
+@dataclass
+class Verdict:
+    """The answer, channel-independent; `error` and `controls` as in report.json."""
+
+    verdict: str
+    effects: list[Finding]
+    error: dict[str, dict[str, Any]] = field(default_factory=dict)
+    held_out: list[str] = field(default_factory=list)
+    calibrated: dict[str, Parameter] = field(default_factory=dict)
+    not_identifiable: list[str] = field(default_factory=list)
+    controls: list[dict[str, Any]] = field(default_factory=list)
+    separating: str | None = None
+    reasons: list[str] = field(default_factory=list)
+    thresholds: dict[str, dict[str, float]] = field(default_factory=dict)
+    refused: list[tuple[str, str, str]] = field(default_factory=list)
+    closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
+def judge(effects: list[Finding]) -> tuple[str, str | None]:
+    """Verdict and separating experiment for ranked effects."""
+    if not effects:
+        return "nothing", None
+    names = [n for e in effects if e.equivalent for n in (e.name, *e.equivalent)]
+    if any(e.name != "unknown" for e in effects):
+        verdict = "ambiguous" if effects[0].equivalent else "found"
+    else:
+        verdict, names = "unknown", ["unknown"]
+    return verdict, experiment(names)
+
+
+def probability(effect: Finding) -> float:
+    """Posterior-like weight: how far the evidence is beyond the gate, shared with the names it cannot be
+    told from."""
+    sure = 1.0 - 10.0 ** -min(max(effect.evidence, 0.3), 12.0) * 0.5
+    return float(np.clip(sure / (1 + 0.7 * len(effect.equivalent)), 0.0, 0.999))
+
+
+def effect_as_dict(effect: Finding) -> dict[str, Any]:
+    """One effect as in report.json."""
+    return {
+        "name": effect.name,
+        "equivalent": effect.equivalent,
+        "stage": effect.stage,
+        "harmonic": effect.harmonic,
+        "channel": effect.channel,
+        "probability": round(probability(effect), 4),
+        "parameters": {k: p.as_dict() for k, p in effect.parameters.items()},
+        "domain": effect.domain,
+        "order": effect.order,
+        "frequency_Hz": effect.frequency,
+        "evidence": round(effect.evidence, 2),
+        "note": effect.note,
+    } | ({} if effect.curve is None else {"curve": asdict(effect.curve)})
+
+
+def as_dict(v: Verdict) -> dict[str, Any]:
+    """report.json, with a few fields beside the contract's."""
+    return {
+        "verdict": v.verdict,
+        "effects": [effect_as_dict(e) for e in v.effects],
+        "error": v.error,
+        **({"closed_loop": v.closed_loop} if v.closed_loop else {}),
+        "held_out": v.held_out,
+        "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
+        "not_identifiable": v.not_identifiable,
+        "separating_experiment": v.separating,
+        "controls": v.controls,
+        "thresholds": v.thresholds,
+        "reasons": v.reasons,
+        "conventions": [PHASES] if any("phase" in e.parameters for e in v.effects) else [],
+        "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
+    }

@@ -1,0 +1,244 @@
+"""PHD2 guide logs as PHD2 writes them: several sections per file, calibrations, drops, dithers, settling.
+
+The open-loop drive error of a section is the raw distance plus the running sum of the earlier corrections,
+times the
+pixel scale (PHD2's own log analysis uses the same sum). A dither or a new lock position moves the star, not
+the drive:
+it starts a new segment with an offset of its own, and frames while settling are left out. PHD2 writes the
+distance it wanted to correct even when no pulse was sent (guiding disabled); such a row's RADuration is 0 and
+nothing is added.
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from calibration.errors import CalibrationInputError
+from calibration.readers.run import Run
+
+_SCALE = re.compile(r"[Pp]ixel scale\s*=\s*([0-9.,+-]+)\s*arc-sec/px")
+_BEGIN = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
+_MOUNT = re.compile(r"^Mount\s*=\s*([^,\r\n]+)", re.MULTILINE)
+_DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
+_SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
+COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
+_TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
+MARKS = ("Mount", "AO", "DROP")
+_NEEDED = ("Time", "RARawDistance", "RAGuideDistance")
+
+
+def is_guide_log(text: str) -> bool:
+    """True when the text looks like a PHD2 guide log, or like one of its guiding tables."""
+    head = text[:20000]
+    return "PHD2" in head[:200] or "Guiding Begins" in head or bool(_TABLE.match(head))
+
+
+def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
+    """Every guiding section of the file as one Run with columns t (s), ra, dec (arcsec), segment.
+
+    Sections without frames are skipped. Without a pixel scale (a bare table) the unit is pixels;
+    `header['unit']`
+    says so. Raises CalibrationInputError with line and column.
+    """
+    if text is None:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    lines = text.splitlines()
+    runs: list[Run] = []
+    head: list[str] = []
+    columns: list[str] | None = None
+    rows: list[tuple[int, list[str]]] = []
+    events: list[tuple[int, str]] = []
+    guiding = bool(_TABLE.match(text))
+    other: set[str] = set()
+    for number, line in enumerate(lines, 1):
+        if line.startswith(("Guiding Begins", "Calibration Begins")):
+            other |= _close(runs, path, head, columns, rows, events)
+            head, columns, rows, events = [line], None, [], []
+            guiding = line.startswith("Guiding")
+        elif line.startswith(("Guiding Ends", "Calibration complete")):
+            other |= _close(runs, path, head, columns, rows, events)
+            head, columns, rows, events, guiding = [], None, [], [], False
+        elif _TABLE.match(line):
+            columns = [c.strip().strip('"') for c in line.split(",")]
+            missing = [c for c in COLUMNS if c not in columns]
+            if missing:
+                raise CalibrationInputError(path, f"the column '{missing[0]}' is missing", number)
+        elif line.startswith("INFO"):
+            events.append((number, line))
+        elif columns is not None and guiding and line[:1].isdigit():
+            if (
+                number == len(lines)
+                and not text.endswith(("\n", "\r"))
+                and line.count(",") < len(columns) - 1
+            ):
+                break  # the log was copied while PHD2 was writing it
+            rows.append((number, line.split(",")))
+        else:
+            head.append(line)
+    other |= _close(runs, path, head, columns, rows, events)
+    if not runs:
+        raise CalibrationInputError(path, _empty(text, other), len(lines))
+    return runs
+
+
+def _empty(text: str, other: set[str]) -> str:
+    """Why there is nothing to read."""
+    if "AO" in other:
+        return (
+            "holds frames of an adaptive-optics unit (mount 'AO') only: it moves the star without the mount,"
+            " so the drive's error cannot be summed up"
+        )
+    if other:
+        return f"every frame is marked {', '.join(sorted(other))}: the star was never measured"
+    if "Calibration Begins" in text and "Guiding Begins" not in text:
+        return "holds a calibration only, no guiding section"
+    return "holds no guiding section with frames"
+
+
+def _number(path: Path, line: int, name: str, value: str) -> float:
+    try:
+        return float(value) if value else float("nan")
+    except ValueError:
+        raise CalibrationInputError(path, f"'{value}' is not a number", line, name) from None
+
+
+def _close(
+    runs: list[Run],
+    path: Path,
+    head: list[str],
+    columns: list[str] | None,
+    rows: list[tuple[int, list[str]]],
+    events: list[tuple[int, str]],
+) -> set[str]:
+    """Append the section as a run; the marks of frames that are no measurement of the mount."""
+    if columns is None or not rows:
+        return set()
+    text = "\n".join(head)
+    scale = _SCALE.search(text)
+    factor = _scale(path, rows[0][0], scale.group(1)) if scale else 1.0
+    where = {c: k for k, c in enumerate(columns)}
+    marks = {
+        "dither": [n for n, e in events if "DITHER" in e or "SET LOCK" in e],
+        "off": [n for n, e in events if "Settling started" in e],
+        "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e],
+    }
+    t, ra, dec, segment = [], [], [], []
+    total = total_dec = 0.0
+    drops = 0
+    other: set[str] = set()
+    before = -np.inf
+    for line, fields in rows:
+        if len(fields) <= where["RAGuideDistance"]:
+            raise CalibrationInputError(
+                path, f"{len(fields)} fields, the header row has {len(columns)}", line
+            )
+        mark = fields[where["mount"]].strip().strip('"')
+        if mark not in MARKS:
+            raise CalibrationInputError(
+                path, f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)", line, "mount"
+            )
+        if mark != "Mount":
+            drops += mark == "DROP"
+            other.add(mark)
+            continue
+        if len(fields) > len(columns) + 1:
+            raise CalibrationInputError(
+                path,
+                f"{len(fields)} fields, the header row has {len(columns)}: decimal commas? write points",
+                line,
+            )
+        v = {c: _number(path, line, c, fields[where[c]]) for c in _NEEDED}
+        if not np.isfinite(v["Time"]):
+            raise CalibrationInputError(path, "is no time in s", line, "Time")
+        if v["Time"] < before:
+            raise CalibrationInputError(
+                path, f"time goes backwards from {before:g} s to {v['Time']:g} s", line, "Time"
+            )
+        before = v["Time"]
+        d = (
+            _number(path, line, "DECRawDistance", fields[where["DECRawDistance"]])
+            if "DECRawDistance" in where
+            else 0.0
+        )
+        g = (
+            _number(path, line, "DECGuideDistance", fields[where["DECGuideDistance"]])
+            if "DECGuideDistance" in where
+            else 0.0
+        )
+        if np.isfinite(v["RARawDistance"]) and not _settling(line, marks):
+            t.append(v["Time"])
+            ra.append((v["RARawDistance"] + total) * factor)
+            dec.append((d + total_dec) * factor)
+            segment.append(sum(line > n for n in marks["dither"]))
+        total += (
+            v["RAGuideDistance"]
+            if np.isfinite(v["RAGuideDistance"]) and _sent(fields, where.get("RADuration"))
+            else 0.0
+        )
+        total_dec += g if np.isfinite(g) and _sent(fields, where.get("DECDuration")) else 0.0
+    if not t:
+        return other
+    header = {"unit": "arcsec" if scale else "px", "pixel_scale": f"{factor:g}", "drops": str(drops)}
+    for key, pattern in (("mount", _MOUNT), ("declination_deg", _DEC), ("pier_side", _SIDE)):
+        found = pattern.search(text)
+        if found:
+            header[key] = found.group(1).strip()
+    began = _BEGIN.search(text)
+    if began:
+        header["start_local"] = began.group(1)
+    notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
+    name = path.stem if not runs else f"{path.stem}#{len(runs) + 1}"
+    runs.append(
+        Run(
+            name,
+            path,
+            name,
+            {
+                "t": np.array(t),
+                "ra": np.array(ra),
+                "dec": np.array(dec),
+                "segment": np.array(segment, dtype=float),
+            },
+            header=header,
+            notes=notes,
+        )
+    )
+    return other
+
+
+def _sent(fields: list[str], at: int | None) -> bool:
+    """Whether a pulse went out; a table without durations is believed."""
+    return at is None or at >= len(fields) or fields[at].strip() not in ("0", "0.0")
+
+
+def _scale(path: Path, line: int, text: str) -> float:
+    """The pixel scale of a section's header; a decimal comma is the writing computer's language."""
+    try:
+        value = float(text.replace(",", "."))
+    except ValueError:
+        value = 0.0
+    if not 0.01 < value < 100:
+        raise CalibrationInputError(
+            path,
+            f"the section above this line has pixel scale '{text}', must be 0.01 to 100 arc-sec/px",
+            line,
+        )
+    return value
+
+
+def start_seconds(run: Run) -> float | None:
+    """Clock time of the section's beginning in s, by the computer's clock; None when it is not written."""
+    text = run.header.get("start_local")
+    if text is None:
+        return None
+    return (datetime.strptime(text, "%Y-%m-%d %H:%M:%S") - datetime(2000, 1, 1)).total_seconds()
+
+
+def _settling(line: int, marks: dict[str, list[int]]) -> bool:
+    started = max((n for n in marks["off"] if n < line), default=0)
+    ended = max((n for n in marks["on"] if n < line), default=0)
+    return started > ended

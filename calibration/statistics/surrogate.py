@@ -1,0 +1,103 @@
+"""Scores of candidate blocks and the surrogate distribution of their maximum.
+
+Surrogates are made of the user's own whitened residual: its sign is drawn anew per block of rows (a wild
+block
+bootstrap), which keeps colour inside a block and bursts of noise where they are, and destroys any coherence
+with angle,
+speed or time beyond a block. The threshold is a quantile of the largest score over all candidates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.readers.run import Array
+from calibration.statistics.tails import chi2_log10
+
+
+@dataclass(frozen=True)
+class Scores:
+    """-log10 p of every candidate, and the surrogate quantiles of the maximum."""
+
+    value: Array
+    gain: Array  # chi2 gain per candidate
+    threshold: float
+    surrogate_max: Array
+
+    @property
+    def p_of_maximum(self) -> float:
+        """Fraction of surrogates whose maximum reaches ours (never zero)."""
+        top = float(self.value.max()) if len(self.value) else 0.0
+        return float((1 + np.sum(self.surrogate_max >= top)) / (1 + len(self.surrogate_max)))
+
+
+def orthonormal_blocks(x: Array, base: Array, widths: list[int]) -> tuple[Array, list[int]]:
+    """Every candidate's columns made orthogonal to the base and orthonormal within the block.
+
+    Columns that lose more than 1 - 1e-6 of their length to the base are dropped; returns the columns and
+    widths left.
+    """
+    if base.shape[1]:
+        q, _ = np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))
+        left = x - q @ (q.T @ x)
+    else:
+        left = x.copy()
+    before = np.maximum(np.linalg.norm(x, axis=0), 1e-300)
+    out, kept, at = [], [], 0
+    for width in widths:
+        block = left[:, at : at + width]
+        norm = np.linalg.norm(block, axis=0)
+        good = norm > 1e-3 * before[at : at + width]
+        at += width
+        block = block[:, good] / np.maximum(norm[good], 1e-300)
+        if block.shape[1] > 1:
+            gram = block.T @ block
+            w, v = np.linalg.eigh(gram)
+            block = block @ (v[:, w > 1e-4] / np.sqrt(w[w > 1e-4]))
+        out.append(block)
+        kept.append(block.shape[1])
+    return (np.hstack(out) if out else np.zeros((len(x), 0))), kept
+
+
+def score(
+    e: Array,
+    noise: Array,
+    q: Array,
+    widths: list[int],
+    block: int,
+    draws: int,
+    rng: np.random.Generator,
+    level: float = 0.99,
+) -> Scores:
+    """Scores of the whitened residual `e` on the orthonormal blocks `q`; surrogates are made of `noise`.
+
+    `noise` is what is left once the effects found so far are out of the residual: an effect must not raise
+    its own
+    threshold. Every score is a Wald statistic with the covariance of the block sums of `noise`.
+    """
+    edges = np.arange(0, len(e), block)
+    total = q.T @ e
+    parts = np.add.reduceat(q * noise[:, None], edges, axis=0)
+    signs = rng.choice([-1.0, 1.0], size=(draws, len(edges)))
+    null = signs @ parts
+    floor = float(np.mean(noise**2)) or 1.0
+    value, gain = np.zeros(len(widths)), np.zeros(len(widths))
+    nulls = np.zeros((draws, len(widths)))
+    at = 0
+    for k, width in enumerate(widths):
+        if width == 0:
+            continue
+        block_parts = parts[:, at : at + width]
+        spread = block_parts.T @ block_parts
+        w, v = np.linalg.eigh(spread)
+        half = v / np.sqrt(np.maximum(w, floor))
+        gain[k] = float(np.sum((total[at : at + width] @ half) ** 2))
+        nulls[:, k] = np.sum((null[:, at : at + width] @ half) ** 2, axis=1)
+        at += width
+    dof = np.maximum(np.array(widths), 1)
+    value = chi2_log10(gain, dof)
+    value[np.array(widths) == 0] = 0.0
+    largest = chi2_log10(nulls, dof[None, :]).max(axis=1) if len(widths) else np.zeros(draws)
+    return Scores(value, gain, float(np.quantile(largest, level)), largest)
