@@ -35,6 +35,7 @@ CONVERTERS: dict[str, Converter] = {
     "winding_heating": scalars.heating,
     "encoder_thermal_drift": scalars.drift,
     "roller_slip": scalars.slip,
+    "play": scalars.play,
     "command_disturbance": scalars.disturbance,
     "channel_delay": recorded.late,
     "sample_loss": recorded.lost,

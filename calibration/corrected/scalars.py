@@ -171,6 +171,13 @@ def slip(f: Finding, facts: Facts) -> Made:
     return made
 
 
+def play(f: Finding, facts: Facts) -> Made:
+    """play: K compares the motors with the absolute encoder, so its coupling has the gap."""
+    made = Made()
+    made.add(f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)})
+    return made
+
+
 def disturbance(f: Finding, facts: Facts) -> Made:
     """command_disturbance: its phase is the first run's, every run has one of its own."""
     made = Made()

@@ -20,6 +20,7 @@ NAMES: tuple[str, ...] = (
     "damaged_tooth",
     "motor_cogging",
     "torque_ripple",
+    "play",
     "backlash_loss",
     "shaft_compliance",
     "structural_mode",

@@ -28,6 +28,7 @@ from plant.effects import (
     log_wrap,
     magnet_weakening,
     motor_cogging,
+    play,
     position_friction,
     preload_change,
     presliding,
@@ -83,54 +84,56 @@ def value(kind: int, x: Floats, p: Floats) -> float:
     if kind == 15:
         return torque_ripple.formula(x, p)
     if kind == 16:
-        return backlash_loss.formula(x, p)
+        return play.formula(x, p)
     if kind == 17:
-        return shaft_compliance.formula(x, p)
+        return backlash_loss.formula(x, p)
     if kind == 18:
-        return structural_mode.formula(x, p)
+        return shaft_compliance.formula(x, p)
     if kind == 19:
-        return encoder_eccentricity.formula(x, p)
+        return structural_mode.formula(x, p)
     if kind == 20:
-        return encoder_subdivision.formula(x, p)
+        return encoder_eccentricity.formula(x, p)
     if kind == 21:
-        return roller_ratio.formula(x, p)
+        return encoder_subdivision.formula(x, p)
     if kind == 22:
-        return roller_slip.formula(x, p)
+        return roller_ratio.formula(x, p)
     if kind == 23:
-        return adc_offset.formula(x, p)
+        return roller_slip.formula(x, p)
     if kind == 24:
-        return adc_gain.formula(x, p)
+        return adc_offset.formula(x, p)
     if kind == 25:
-        return pwm_deadband.formula(x, p)
+        return adc_gain.formula(x, p)
     if kind == 26:
-        return diode_braking.formula(x, p)
+        return pwm_deadband.formula(x, p)
     if kind == 27:
-        return supply_sag.formula(x, p)
+        return diode_braking.formula(x, p)
     if kind == 28:
-        return winding_heating.formula(x, p)
+        return supply_sag.formula(x, p)
     if kind == 29:
-        return magnet_weakening.formula(x, p)
+        return winding_heating.formula(x, p)
     if kind == 30:
-        return wind_torque.formula(x, p)
+        return magnet_weakening.formula(x, p)
     if kind == 31:
-        return cable_wrap.formula(x, p)
+        return wind_torque.formula(x, p)
     if kind == 32:
-        return brake_drag.formula(x, p)
+        return cable_wrap.formula(x, p)
     if kind == 33:
-        return bearing_pass.formula(x, p)
+        return brake_drag.formula(x, p)
     if kind == 34:
-        return encoder_thermal_drift.formula(x, p)
+        return bearing_pass.formula(x, p)
     if kind == 35:
-        return channel_delay.formula(x, p)
+        return encoder_thermal_drift.formula(x, p)
     if kind == 36:
-        return clock_jitter.formula(x, p)
+        return channel_delay.formula(x, p)
     if kind == 37:
-        return sample_loss.formula(x, p)
+        return clock_jitter.formula(x, p)
     if kind == 38:
-        return log_wrap.formula(x, p)
+        return sample_loss.formula(x, p)
     if kind == 39:
-        return command_disturbance.formula(x, p)
+        return log_wrap.formula(x, p)
     if kind == 40:
+        return command_disturbance.formula(x, p)
+    if kind == 41:
         return unknown.formula(x, p)
     return 0.0
 
@@ -140,15 +143,17 @@ def update(kind: int, x: Floats, p: Floats, dt: float) -> None:
     """Advance the memory of one term by `dt` seconds."""
     if kind == 7:
         friction_warmup.update(x, p, dt)
-    elif kind == 18:
+    elif kind == 16:
+        play.update(x, p, dt)
+    elif kind == 19:
         structural_mode.update(x, p, dt)
-    elif kind == 22:
+    elif kind == 23:
         roller_slip.update(x, p, dt)
-    elif kind == 28:
+    elif kind == 29:
         winding_heating.update(x, p, dt)
-    elif kind == 30:
-        wind_torque.update(x, p, dt)
     elif kind == 31:
+        wind_torque.update(x, p, dt)
+    elif kind == 32:
         cable_wrap.update(x, p, dt)
-    elif kind == 40:
+    elif kind == 41:
         unknown.update(x, p, dt)

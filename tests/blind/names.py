@@ -112,6 +112,7 @@ EFFECTS: dict[str, dict[str, Read]] = {
     "damaged_tooth": {"amplitude": raw("TOOTH_T")},
     "motor_cogging": {"cycles": raw("COG_N"), "amplitude": raw("COG_A", size=True)},
     "torque_ripple": {"cycles": raw("RIP_N"), "ripple": raw("RIP_A", size=True)},
+    "play": {"gap": raw("PLAY")},
     "backlash_loss": {"loss": raw("COUNTER_LOSS")},
     "shaft_compliance": {"compliance": compliance},
     "structural_mode": {"frequency": raw("W2", 0.5 / math.pi), "damping": raw("Z2"), "inertia": raw("J2")},

@@ -92,6 +92,7 @@ FORMS: list[tuple[Finding, str | None]] = [
     (finding("roller_ratio", "S", scale=5e-4), "roller_ratio"),
     (finding("roller_slip", "S", slip=0.02, limit=0.005), "roller_slip"),
     (finding("roller_slip", "S", creep=0.02, limit=0.005), "roller_slip"),
+    (finding("play", "K", gap=12.0), "play"),
     (finding("adc_offset", "E", offset=5.0, motor=1.0), "adc_offset"),
     (finding("adc_offset", offset_torque=5.0), "adc_offset"),
     (finding("adc_gain", "E", gain=0.05, motor=0.0), "adc_gain"),

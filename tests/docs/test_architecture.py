@@ -16,7 +16,7 @@ from bus.protocol.database import database
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
-ROOMS = ("bus", "boards", "plant", "host", "scenarios", "tests")
+ROOMS = ("bus", "boards", "plant", "calibration", "host", "scenarios", "tests")
 NAMED = {opcode.value: opcode.name for opcode in Opcode}
 _CLASS = re.compile(r"^    class (\w+)[^#]*#\s+([\w/]+\.py)")
 _DEF = re.compile(r"\bdef (\w+)\(((?:[^()]|\([^()]*\))*)\)")

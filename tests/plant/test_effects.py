@@ -32,6 +32,7 @@ FIGURES: dict[str, dict[str, float]] = {
 SHOWS: dict[str, set[str]] = {
     "encoder_eccentricity": {"absolute"},
     "encoder_subdivision": {"absolute"},
+    "play": {"auxiliary"},
     "roller_ratio": {"incremental"},
     "roller_slip": {"incremental"},
     "encoder_thermal_drift": {"absolute"},

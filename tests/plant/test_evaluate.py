@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import interp1d
 
+from plant.effects import play
 from plant.effects import signals as sig
 from plant.effects.evaluate import evaluate, signals, values_over
 from plant.effects.rows import KINDS, values, vector
@@ -145,3 +146,22 @@ def test_parameters_become_si_numbers_behind_the_order() -> None:
     effect = REGISTRY["encoder_eccentricity"]
     numbers = vector(effect, 24.5, values(EffectModel("encoder_eccentricity", "roller", 1, given_)), {})
     assert numbers == [24.5, pytest.approx(2.0 * ARCSEC), 0.0, 0.0, 0.0]
+
+
+def test_play_is_the_play_operator() -> None:
+    """A reading behind a gap of 10 arcsec stands still for 10 arcsec at each reversal."""
+    steps = np.concatenate([np.full(40, 1.0), np.full(40, -1.0), np.full(5, 1.0), np.full(60, -1.0)]) * ARCSEC
+    p = np.zeros(ROW)
+    p[sig.MEMORY] = 10.0 * ARCSEC
+    axis, reading = np.cumsum(steps), []
+    for k, step in enumerate(steps):
+        x = signals(1, {sig.RATE: np.array([step / 0.01])})[0]
+        play.update(x, p, 0.01)
+        reading.append(axis[k] + play.formula(x, p))
+    moved = np.diff(reading)
+    assert np.allclose(moved[10:39], ARCSEC)  # taken along
+    assert np.allclose(moved[39:49], 0.0, atol=1e-18)  # the gap closes
+    assert np.allclose(moved[49:79], -ARCSEC)
+    assert np.allclose(moved[79:84], 0.0, atol=1e-18)  # less than the gap back, and forth again
+    assert np.allclose(moved[84:89], 0.0, atol=1e-18)
+    assert np.allclose(moved[89:], -ARCSEC)

@@ -17,7 +17,8 @@ Draw = Callable[[np.random.Generator, Drive, float, float], Drawn]
 EFFECTS: tuple[Draw, ...] = (
     f.stribeck_change, f.presliding, f.viscous_change, f.coulomb_change, f.friction_asymmetry,
     f.position_friction, f.load_friction, f.friction_warmup, f.preload_change, t.gravity_imbalance,
-    t.gear_eccentricity, t.gear_mesh, t.damaged_tooth, m.motor_cogging, m.torque_ripple, t.backlash_loss,
+    t.gear_eccentricity, t.gear_mesh, t.damaged_tooth, m.motor_cogging, m.torque_ripple, s.play,
+    t.backlash_loss,
     t.shaft_compliance, t.structural_mode, s.encoder_eccentricity, s.encoder_subdivision, s.roller_ratio,
     s.roller_slip, m.adc_offset, m.adc_gain, m.pwm_deadband, m.diode_braking, m.supply_sag,
     m.winding_heating, m.magnet_weakening, t.wind_torque, t.cable_wrap, f.brake_drag, t.bearing_pass,

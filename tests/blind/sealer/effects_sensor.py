@@ -50,6 +50,13 @@ def roller_slip(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     )
 
 
+def play(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
+    """The coupling of the on-shaft encoder has a gap."""
+    return Drawn(
+        "play", "K", ("reversal", "velocity"), {"PLAY": 1.0}, {}, {"gap": ("PLAY", 1.0, "arcsec")}, "axis"
+    )
+
+
 def encoder_thermal_drift(rng: Rng, drive: Drive, span: float, ratio: float) -> Drawn:
     """On-shaft encoder drifts with temperature (column `temperature`)."""
     return Drawn(

@@ -35,8 +35,20 @@ def position_error(theta: Array, warmth: Array, v: dict[str, float]) -> Array:
     if "SUB_1" in v:
         x = SIGNAL_PERIODS * theta
         out += v["SUB_1"] * np.sin(x + v["SUB_1_PH"]) + v["SUB_2"] * np.sin(2 * x + v["SUB_2_PH"])
+    if "PLAY" in v:
+        out += gap(theta, v["PLAY"] / 2.0)
     if "DRIFT" in v:
         out += v["DRIFT"] * (warmth - 12.0)
+    return out
+
+
+def gap(theta: Array, half: float) -> Array:
+    """Reading less axis angle behind a coupling with a gap, arcsec; the run starts in the gap's middle."""
+    out = np.empty(len(theta))
+    at = 0.0
+    for k, step in enumerate(np.diff(theta, prepend=theta[:1]) / d.ARCSEC):
+        at = min(max(at - step, -half), half)
+        out[k] = at
     return out
 
 

@@ -1,0 +1,39 @@
+"""The coupling of one encoder has a gap: its reading stands still at a reversal until the gap is closed."""
+
+from plant.compiled import Floats, inner
+from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.signals import MEMORY, RATE
+
+
+@inner
+def formula(x: Floats, p: Floats) -> float:
+    """Return how far the encoder's shaft is from the middle of the gap, rad at the axis (p[0])."""
+    return p[0]
+
+
+@inner
+def update(x: Floats, p: Floats, dt: float) -> None:
+    """Let the axis move within the gap, and push the encoder's shaft along at either end."""
+    half = 0.5 * p[MEMORY]
+    p[0] = min(max(p[0] - x[RATE] * dt, -half), half)
+
+
+EFFECT = Effect(
+    name="play",
+    channel="K",
+    domain="reversal",
+    equation="reading -> angle + e; de/dt = -w within |e| <= gap / 2 (the play operator)",
+    parameters=(
+        Parameter("gap", "arcsec", 0.0, 1200.0, 20.0, "ASSUMPTION: a worn coupling"),
+        Parameter(
+            "encoder",
+            "1",
+            0.0,
+            2.0,
+            2.0,
+            "choice: 0 incremental, 1 absolute, 2 auxiliary (the one behind a gear of its own, 1:10.8)",
+        ),
+    ),
+    source=CATALOGUE + "; paper 2.2: auxiliary encoder through a gear",
+    terms=(Term("encoder", formula, update),),
+)
