@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import interp1d
 
-from plant.effects import play
 from plant.effects import signals as sig
 from plant.effects.evaluate import evaluate, signals, values_over
 from plant.effects.rows import KINDS, values, vector
@@ -151,13 +150,9 @@ def test_parameters_become_si_numbers_behind_the_order() -> None:
 def test_play_is_the_play_operator() -> None:
     """A reading behind a gap of 10 arcsec stands still for 10 arcsec at each reversal."""
     steps = np.concatenate([np.full(40, 1.0), np.full(40, -1.0), np.full(5, 1.0), np.full(60, -1.0)]) * ARCSEC
-    p = np.zeros(ROW)
-    p[sig.MEMORY] = 10.0 * ARCSEC
-    axis, reading = np.cumsum(steps), []
-    for k, step in enumerate(steps):
-        x = signals(1, {sig.RATE: np.array([step / 0.01])})[0]
-        play.update(x, p, 0.01)
-        reading.append(axis[k] + play.formula(x, p))
+    n = len(steps)
+    rows = signals(n, {sig.TIME: np.arange(n) * 0.01, sig.RATE: steps / 0.01})
+    reading = np.cumsum(steps) + evaluate("play", rows, {"gap": 10.0 * ARCSEC, "encoder": 2.0})
     moved = np.diff(reading)
     assert np.allclose(moved[10:39], ARCSEC)  # taken along
     assert np.allclose(moved[39:49], 0.0, atol=1e-18)  # the gap closes
