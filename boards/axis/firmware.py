@@ -2,9 +2,11 @@
 
 from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.fineparameters import fine_parameters
 from boards.axis.interrupts import FCY_HZ, TABLE
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import POINTING, STALE_NS, Motion
+from boards.axis.output import FineOutput
 from boards.axis.pi import IncrementalPi
 from boards.axis.pins import AxisPins
 from boards.axis.profile import UNITS_PER_STEP
@@ -50,7 +52,7 @@ class AxisBoard(PeriodicBoard):
 
     __slots__ = (
         "_fade", "_identifier", "adc", "config", "effort", "effort_command",
-        "fault", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
+        "fault", "fine", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
         "split", "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
     )  # fmt: skip
 
@@ -98,7 +100,9 @@ class AxisBoard(PeriodicBoard):
         self.mail.update(zip(remote, calls, strict=True))
         self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]), (FULL_MASK, remote))
         self.commands = self.common_commands() | axis_commands(self)
-        self.set_parameters(axis_parameters(self))
+        self.fine: FineOutput | None = None
+        """Set while parameter 12 or 13 is: duties finer than a PWM step, compensation."""
+        self.set_parameters([*axis_parameters(self), *fine_parameters(FineOutput(self))])
 
     def reset(self) -> None:
         """After power-up: off."""
@@ -130,19 +134,29 @@ class AxisBoard(PeriodicBoard):
         effort = self.effort_command
         if effort is None:
             effort = self.pi.step(setpoint, velocity)
-        self.effort = effort
-        if effort >= 0:
-            self.pwm.write(end, effort, self._lag(effort, velocity))
+        if self.fine is not None:
+            effort = self.fine.drive(end, velocity, setpoint)
+        elif effort >= 0:
+            self.pwm.write(end, effort, self.lag(effort, velocity))
         else:
-            self.pwm.write(end, self._lag(-effort, velocity), -effort)
+            self.pwm.write(end, self.lag(-effort, velocity), -effort)
+        self.effort = effort
         if self.ticks & 1:
             self._slow(t_ns, end)
         else:
             self._telemetry(t_ns, end, setpoint)
 
-    def _lag(self, effort: int, velocity: int) -> int:
-        """Duty register of the lagging motor for |effort|."""
+    def lag(self, effort: int, velocity: int) -> int:
+        """Duty register of the lagging motor for |effort|, whole steps: the paper's firmware."""
         counter = (effort * self.split + 50) // 100
+        fade = self._fade
+        if fade:
+            return counter * max(0, fade - abs(velocity)) // fade
+        return counter
+
+    def lag_q16(self, effort_q16: int, velocity: int) -> int:
+        """The same in Q16, where a little more effort is never a little less torque."""
+        counter = effort_q16 * self.split // 100
         fade = self._fade
         if fade:
             return counter * max(0, fade - abs(velocity)) // fade

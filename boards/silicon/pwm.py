@@ -3,9 +3,14 @@
 Edge aligned, duty = PDC / (2 (PTPER + 1)): bit 0 of PDC is half an instruction cycle (hardware.md 3.4).
 30 MIPS and 20 kHz give PTPER = 1499 and 3000 steps. PDC = 0 is off; PDC above 2 PTPER + 1 is fully on.
 A new PDC is taken at the end of the running period.
+
+`write` is what firmware does once a control tick. `write_spread` adds the PWM interrupt that changes the
+registers every period (spread.py).
 """
 
 from collections.abc import Callable
+
+from boards.silicon.spread import ONE, Spreader
 
 FCY_HZ = 30_000_000
 """dsPIC30F at its fastest. ASSUMPTION: the paper does not say."""
@@ -27,7 +32,10 @@ def steps_for(fcy_hz: int, pwm_hz: int) -> int:
 class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
-    __slots__ = ("_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "steps")
+    __slots__ = (
+        "_loads_ns", "_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "spread_a", "spread_b", "spreading",
+        "steps",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -42,12 +50,17 @@ class MotorPwm:
         self.pdc_a = 0
         self.pdc_b = 0
         self._phase_ns = phase_ns
+        self._loads_ns = 0
+        self.spreading = False
+        self.spread_a = Spreader()
+        self.spread_b = Spreader()
 
     def write(self, t_ns: int, pdc_a: int, pdc_b: int) -> None:
         """Write both duty registers at `t_ns`: they count from the next period on. Negative values are a
         bug."""
-        if pdc_a == self.pdc_a and pdc_b == self.pdc_b:
+        if pdc_a == self.pdc_a and pdc_b == self.pdc_b and not self.spreading:
             return
+        self.spreading = False
         self.pdc_a = pdc_a
         self.pdc_b = pdc_b
         steps = self.steps
@@ -60,3 +73,22 @@ class MotorPwm:
             pdc_a / steps if pdc_a <= steps else 1.0,
             pdc_b / steps if pdc_b <= steps else 1.0,
         )
+
+    def write_spread(self, t_ns: int, a_q16: int, b_q16: int) -> None:
+        """Write both duties in PWM steps, Q16, at `t_ns`; the PWM interrupt spreads the fractions.
+
+        Simplified: the switches get the mean of the register sequence instead of 20 000 changes a second. The
+        chip keeps the accumulators of the sequence, so the sequence itself can be had at any time.
+        """
+        period = self.period_ns
+        loads = t_ns + (self._phase_ns - t_ns) % period
+        gone = (loads - self._loads_ns) // period
+        self._loads_ns = loads
+        a, b = self.spread_a, self.spread_b
+        a.skip(gone)
+        b.skip(gone)
+        self.spreading = True
+        a.value_q16, b.value_q16 = a_q16, b_q16
+        self.pdc_a, self.pdc_b = a_q16 >> 16, b_q16 >> 16
+        full = self.steps * ONE
+        self.drive(loads, min(a_q16 / full, 1.0), min(b_q16 / full, 1.0))

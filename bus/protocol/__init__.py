@@ -7,6 +7,7 @@ from bus.protocol.motion import Motion, MotionFlag, pack_motion, unpack_motion
 from bus.protocol.names import (
     COMMAND_BASE,
     FRAME_BYTES,
+    HARMONICS,
     HEARTBEAT_BASE,
     HEARTBEAT_KIND,
     MEASUREMENT_BASE,
@@ -40,6 +41,7 @@ __all__ = [
     "AGE_UNIT_NS",
     "COMMAND_BASE",
     "FRAME_BYTES",
+    "HARMONICS",
     "HEARTBEAT_BASE",
     "HEARTBEAT_KIND",
     "LAYOUTS",

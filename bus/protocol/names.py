@@ -130,3 +130,18 @@ class AxisParameter(IntEnum):
     RATE_GUIDE_Q16 = 9
     RATE_FINE_Q16 = 10
     RATE_TRACK_Q16 = 11
+    DUTY_FRACTION = 12
+    """0: whole PWM steps, the paper's firmware. 1: the fraction is spread over PWM periods."""
+    COMPENSATION = 13
+    """0: off. 1: the table below and the friction model are added to the effort."""
+    FRICTION_LEVEL_Q8 = 14
+    """Effort that sliding friction takes, PWM steps in Q8."""
+    FRICTION_TRAVEL_COUNTS = 15
+    """Travel over which friction turns after a reversal, counts of the roller encoder."""
+    HARMONIC_FIRST = 16
+    """Line k of the table: 16 + 3k order, cycles per turn of the axis, Q16; 17 + 3k and 18 + 3k effort of its
+    cosine and sine over the absolute encoder's angle, PWM steps in Q8."""
+
+
+HARMONICS = 8
+"""Lines of the compensation table."""

@@ -1,0 +1,95 @@
+"""Effort that is known beforehand: waves over the position, and friction that turns at a reversal.
+
+All integers as a dsPIC has them: phases are 32 bit and wrap, the sine is a table of 1024 values in flash,
+products fit 64 bits. A shaft of the gear train turns with the axis while the teeth touch, so one angle, that of
+the absolute encoder, serves every stage: line k has its order in cycles per turn of the axis.
+"""
+
+from math import cos, pi, sin
+
+from bus.protocol import HARMONICS
+
+_TABLE_BITS = 10
+_SIZE = 1 << _TABLE_BITS
+_MASK = _SIZE - 1
+_SHIFT = 32 - _TABLE_BITS
+_HALF = 1 << (_SHIFT - 1)
+_COS = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE)]
+_SIN = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE)]
+_LEAD_Q16 = round(1.5 * (1 << 29) / 112_896_000 * 65536)
+"""Steps per count, one and a half ticks: the mean age of a position frame (up to one tick, both boards run on
+their own crystals) and half the tick in which the effort will be in force. ASSUMPTION."""
+
+
+class Compensator:
+    """on: parameter 13. orders_q16, cosines_q8, sines_q8: the table, PWM steps."""
+
+    __slots__ = (
+        "_friction_q16", "_level_q16", "_lines", "_reciprocal_q32", "_travel", "cosines_q8", "on",
+        "orders_q16", "sines_q8",
+    )  # fmt: skip
+
+    def __init__(self) -> None:
+        self.on = 0
+        self.orders_q16 = [0] * HARMONICS
+        self.cosines_q8 = [0] * HARMONICS
+        self.sines_q8 = [0] * HARMONICS
+        self._lines: list[tuple[int, int, int]] = []
+        self._level_q16 = 0
+        self._travel = 1
+        self._reciprocal_q32 = 0
+        self._friction_q16 = 0
+
+    def start(self) -> None:
+        """The friction model begins unloaded."""
+        self._friction_q16 = 0
+
+    def refresh(self) -> None:
+        """Keep the lines that do something."""
+        rows = zip(self.orders_q16, self.cosines_q8, self.sines_q8, strict=True)
+        self._lines = [row for row in rows if row[1] or row[2]]
+
+    @property
+    def lines(self) -> int:
+        """Lines in use."""
+        return len(self._lines)
+
+    @property
+    def level_q8(self) -> int:
+        """Effort of sliding friction, PWM steps in Q8."""
+        return self._level_q16 >> 8
+
+    @level_q8.setter
+    def level_q8(self, value: int) -> None:
+        self._level_q16 = value << 8
+
+    @property
+    def travel(self) -> int:
+        """Counts in which friction turns."""
+        return self._travel
+
+    @travel.setter
+    def travel(self, counts: int) -> None:
+        self._travel = counts
+        self._reciprocal_q32 = (1 << 32) // counts
+
+    def effort_q16(self, position: int, velocity: int, setpoint_q16: int) -> int:
+        """PWM steps, Q16. position: steps, as last received; velocity: counts/tick; setpoint: counts/tick."""
+        here = position + (velocity * _LEAD_Q16 >> 16)
+        total = 0
+        for order, a, b in self._lines:
+            place = ((here * order >> 13) + _HALF >> _SHIFT) & _MASK
+            total += a * _COS[place] + b * _SIN[place]
+        return (total >> 7) + self._friction(setpoint_q16)
+
+    def _friction(self, setpoint_q16: int) -> int:
+        """Dahl's model, driven by the reference: the force turns within `travel`, as the bristles do."""
+        if not self._level_q16:
+            return 0
+        forward = setpoint_q16 >= 0
+        share_q16 = (setpoint_q16 if forward else -setpoint_q16) * self._reciprocal_q32 >> 32
+        if share_q16 > 65536:
+            share_q16 = 65536
+        goal = self._level_q16 if forward else -self._level_q16
+        self._friction_q16 += (goal - self._friction_q16) * share_q16 >> 16
+        return self._friction_q16

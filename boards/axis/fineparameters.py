@@ -1,0 +1,61 @@
+"""Parameters 12 to 39: spread duty, compensation table, friction model."""
+
+from typing import TYPE_CHECKING
+
+from boards.axis.config import COUNTS_PER_TURN
+from boards.core import Parameter
+from bus.protocol import HARMONICS, AxisParameter
+
+if TYPE_CHECKING:
+    from boards.axis.output import FineOutput
+
+_EFFORT_Q8 = 3000 << 8
+"""All of the supply."""
+_ORDER_Q16 = (1 << 31) - 1
+"""32767 cycles per turn of the axis: motor orders up to 90."""
+
+
+def fine_parameters(output: "FineOutput") -> list[Parameter]:
+    """Rows of the parameter table; the interrupt table is booked again when one changes."""
+    compensator = output.compensator
+
+    def cell(number: int, name: str, bound: int, column: list[int], line: int) -> Parameter:
+        def write(value: int) -> None:
+            column[line] = value
+            output.refresh()
+
+        low = 0 if column is compensator.orders_q16 else -bound
+        return Parameter(number, f"{name}_{line}", low, bound, lambda: column[line], write)
+
+    def write_level(value: int) -> None:
+        compensator.level_q8 = value
+
+    def write_travel(value: int) -> None:
+        compensator.travel = value
+
+    columns: tuple[tuple[str, int, list[int]], ...] = (
+        ("harmonic_order_q16", _ORDER_Q16, compensator.orders_q16),
+        ("harmonic_cosine_q8", _EFFORT_Q8, compensator.cosines_q8),
+        ("harmonic_sine_q8", _EFFORT_Q8, compensator.sines_q8),
+    )
+    first = AxisParameter.HARMONIC_FIRST
+    return [
+        Parameter(AxisParameter.DUTY_FRACTION, "duty_fraction", 0, 1, lambda: output.spread, output.set_spread),
+        Parameter(
+            AxisParameter.COMPENSATION, "compensation", 0, 1,
+            lambda: compensator.on, output.set_compensation,
+        ),
+        Parameter(
+            AxisParameter.FRICTION_LEVEL_Q8, "friction_level_q8", 0, _EFFORT_Q8,
+            lambda: compensator.level_q8, write_level,
+        ),
+        Parameter(
+            AxisParameter.FRICTION_TRAVEL_COUNTS, "friction_travel_counts", 1, COUNTS_PER_TURN,
+            lambda: compensator.travel, write_travel,
+        ),
+        *(
+            cell(first + 3 * line + place, name, bound, column, line)
+            for line in range(HARMONICS)
+            for place, (name, bound, column) in enumerate(columns)
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,78 @@
+"""From the loop's effort to the duty registers when they are finer than a PWM step.
+
+The paper's firmware rounds effort and counter torque to whole steps (firmware.py, `routine`); this is what
+parameters 12 and 13 put in its place.
+"""
+
+from typing import TYPE_CHECKING
+
+from boards.axis.compensator import Compensator
+from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
+
+if TYPE_CHECKING:
+    from boards.axis.firmware import AxisBoard
+
+_HALF = 1 << 15
+
+
+class FineOutput:
+    """Parameters 12 to 39 of the axis board."""
+
+    __slots__ = ("_board", "compensator", "spread")
+
+    def __init__(self, board: "AxisBoard") -> None:
+        self._board = board
+        self.spread = 0
+        self.compensator = Compensator()
+
+    @property
+    def active(self) -> bool:
+        """Whether the plain way of the paper's firmware will not do."""
+        return bool(self.spread or self.compensator.on)
+
+    def set_spread(self, on: int) -> None:
+        """Switch the PWM interrupt on or off."""
+        self.spread = on
+        self.refresh()
+
+    def set_compensation(self, on: int) -> None:
+        """Add the compensation from the next tick on, with the friction model unloaded."""
+        self.compensator.on = on
+        self.compensator.start()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Book what the routines now cost."""
+        board = self._board
+        cpu, pwm = board.cpu, board.pwm
+        extra = 0
+        if self.compensator.on:
+            self.compensator.refresh()
+            extra = self.compensator.lines * HARMONIC_CYCLES + FRICTION_CYCLES
+        cpu.top.own_ns = cpu.cycles_ns(cpu.top.source.cost_cycles + extra)
+        cpu.steal(PWM_ROUTINE if self.spread else None, pwm.period_ns)
+        board.cost_ns = cpu.top.cost_ns
+        board.fine = self if self.active else None
+
+    def drive(self, end_ns: int, velocity: int, setpoint_q16: int) -> int:
+        """Write the duties for the loop's effort; returns the effort that went out, whole PWM steps."""
+        board = self._board
+        pwm = board.pwm
+        command = board.effort_command
+        if command is None:
+            effort_q16 = board.pi.effort_q16
+            if self.compensator.on and board.motion.fresh(end_ns):
+                effort_q16 += self.compensator.effort_q16(board.motion.position, velocity, setpoint_q16)
+                limit = pwm.steps << 16
+                effort_q16 = max(-limit, min(limit, effort_q16))
+        else:
+            effort_q16 = command << 16
+        if not self.spread:
+            effort_q16 = (effort_q16 + _HALF) >> 16 << 16
+        size = abs(effort_q16)
+        lag = board.lag_q16(size, velocity) if self.spread else board.lag(size >> 16, velocity) << 16
+        if effort_q16 >= 0:
+            pwm.write_spread(end_ns, size, lag)
+        else:
+            pwm.write_spread(end_ns, lag, size)
+        return (effort_q16 + _HALF) >> 16

@@ -1,0 +1,33 @@
+"""A duty finer than a PWM step: the fraction is spread over successive periods (first-order delta-sigma).
+
+What the PWM interrupt of the dsPIC does, once a period and for each channel: add the fraction to a 16-bit
+accumulator and load the whole steps plus the carry. Over n periods the registers sum up to n times the wanted
+value, to within one step, whatever n.
+"""
+
+from collections.abc import Iterator
+
+ONE = 1 << 16
+_MASK = ONE - 1
+
+
+class Spreader:
+    """One channel. `value_q16`: the wanted register value, PWM steps in Q16. `accumulator`: 16 bit."""
+
+    __slots__ = ("accumulator", "value_q16")
+
+    def __init__(self) -> None:
+        self.value_q16 = 0
+        self.accumulator = 0
+
+    def registers(self, periods: int) -> Iterator[int]:
+        """The values the interrupt loads in the next `periods` PWM periods, one by one."""
+        whole, fraction = divmod(self.value_q16, ONE)
+        for _ in range(periods):
+            total = self.accumulator + fraction
+            self.accumulator = total & _MASK
+            yield whole + (total >> 16)
+
+    def skip(self, periods: int) -> None:
+        """Go on by `periods` without looking at the values: the same accumulator, in one multiplication."""
+        self.accumulator = (self.accumulator + periods * self.value_q16) & _MASK
