@@ -1,4 +1,4 @@
-"""Parameters 12 to 39: spread duty, compensation table, friction model."""
+"""Parameters 12 to 42: spread duty, compensation table, friction model, bias, lock, blend."""
 
 from typing import TYPE_CHECKING
 
@@ -7,15 +7,18 @@ from boards.core import Parameter
 from bus.protocol import HARMONICS, AxisParameter
 
 if TYPE_CHECKING:
+    from boards.axis.motion import Motion
     from boards.axis.output import FineOutput
 
 _EFFORT_Q8 = 3000 << 8
 """All of the supply."""
+_BIAS_Q8 = 300 << 8
+"""A tenth of the supply."""
 _ORDER_Q16 = (1 << 31) - 1
 """32767 cycles per turn of the axis: motor orders up to 90."""
 
 
-def fine_parameters(output: "FineOutput") -> list[Parameter]:
+def fine_parameters(output: "FineOutput", motion: "Motion") -> list[Parameter]:
     """Rows of the parameter table; the interrupt table is booked again when one changes."""
     compensator = output.compensator
 
@@ -40,7 +43,10 @@ def fine_parameters(output: "FineOutput") -> list[Parameter]:
     )
     first = AxisParameter.HARMONIC_FIRST
     return [
-        Parameter(AxisParameter.DUTY_FRACTION, "duty_fraction", 0, 1, lambda: output.spread, output.set_spread),
+        Parameter(
+            AxisParameter.DUTY_FRACTION, "duty_fraction", 0, 1,
+            lambda: output.spread, output.set_spread,
+        ),
         Parameter(
             AxisParameter.COMPENSATION, "compensation", 0, 1,
             lambda: compensator.on, output.set_compensation,
@@ -57,5 +63,17 @@ def fine_parameters(output: "FineOutput") -> list[Parameter]:
             cell(first + 3 * line + place, name, bound, column, line)
             for line in range(HARMONICS)
             for place, (name, bound, column) in enumerate(columns)
+        ),
+        Parameter(
+            AxisParameter.COUNTER_BIAS_Q8, "counter_bias_q8", 0, _BIAS_Q8,
+            lambda: output.bias_q8, output.set_bias,
+        ),
+        Parameter(
+            AxisParameter.RATE_LOCK, "rate_lock", 0, 1,
+            lambda: int(motion.lock is not None), motion.set_lock,
+        ),
+        Parameter(
+            AxisParameter.POSITION_BLEND, "position_blend", 0, 15,
+            lambda: motion.blend.shift if motion.blend else 0, motion.set_blend,
         ),
     ]  # fmt: skip

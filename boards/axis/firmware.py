@@ -102,7 +102,7 @@ class AxisBoard(PeriodicBoard):
         self.commands = self.common_commands() | axis_commands(self)
         self.fine: FineOutput | None = None
         """Set while parameter 12 or 13 is: duties finer than a PWM step, compensation."""
-        self.set_parameters([*axis_parameters(self), *fine_parameters(FineOutput(self))])
+        self.set_parameters([*axis_parameters(self), *fine_parameters(FineOutput(self), self.motion)])
 
     def reset(self) -> None:
         """After power-up: off."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.hold import Blend, RateLock
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
@@ -29,8 +30,8 @@ class Motion:
 
     __slots__ = (
         "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_pointing",
-        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "classes", "good_ns",
-        "high", "ki_q12", "kp_q12", "latch_ns", "low", "mode", "near_ticks", "position",
+        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "good_ns",
+        "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks", "position",
         "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
     )  # fmt: skip
 
@@ -64,6 +65,8 @@ class Motion:
         self.setpoint_q16 = 0
         self.wanted_q16 = 0
         self.near_ticks = 0
+        self.lock: RateLock | None = None
+        self.blend: Blend | None = None
 
     # --- measurements -----------------------------------------------------------------------------
     def take_position(self, t_ns: int, data: bytes) -> None:
@@ -115,6 +118,8 @@ class Motion:
             self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_pointing
         else:
             self._velocity_gains()
+            if self.lock is not None:
+                self.lock.start()
         self.wanted_q16 = rate_q16
         self.rate = 0
         self.setpoint = self._ramp
@@ -156,8 +161,20 @@ class Motion:
         self.setpoint = self._point
 
     def _velocity_gains(self) -> None:
-        self._pi.kp_q12 = self.kp_q12
-        self._pi.ki_q12 = self.ki_q12
+        if self.lock is None:
+            self._pi.kp_q12, self._pi.ki_q12 = self.kp_q12, self.ki_q12
+        else:
+            self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_creep
+
+    def set_lock(self, on: int) -> None:
+        """RATE and CLASS hold the sum of the set point, with the gains of the pointing loop."""
+        self.lock = RateLock(self._gain) if on else None
+        if self.mode in (AxisMode.RATE, AxisMode.CLASS):
+            self._velocity_gains()
+
+    def set_blend(self, shift: int) -> None:
+        """Time constant of the blend of both encoders, 2**shift ticks; 0: the absolute encoder alone."""
+        self.blend = Blend(shift) if shift else None
 
     def set_gains(self, kp_q12: int, ki_q12: int) -> None:
         """Gains of RATE and CLASS; in force at once there, with the next change of mode elsewhere."""
@@ -174,7 +191,7 @@ class Motion:
         self.setpoint_q16 = velocity << 16
         return self.setpoint_q16
 
-    def _ramp(self, _t_ns: int, _velocity: int) -> int:
+    def _ramp(self, _t_ns: int, velocity: int) -> int:
         setpoint = self.setpoint_q16
         wanted = self.wanted_q16
         if setpoint != wanted:
@@ -186,6 +203,8 @@ class Motion:
             else:
                 setpoint = wanted
             self.setpoint_q16 = setpoint
+        elif self.lock is not None and self.mode is not AxisMode.STOP:
+            return setpoint + self.lock.step(setpoint, velocity)
         return setpoint
 
     def _point(self, t_ns: int, velocity: int) -> int:
@@ -193,11 +212,13 @@ class Motion:
         feed = profile.step()
         # measured(), written out: this runs 200 times a second
         measured = self.position * 55_125 + (velocity * (t_ns - self.latch_ns) * _NS_TO_UNIT >> 20)
+        creeping = -self._creep_rate < feed < self._creep_rate
+        if self.blend is not None:
+            measured = self.blend.step(measured, velocity, creeping)
         error = profile.target - profile.remaining - measured
         lag = self._lag
         if not -lag < error < lag:  # the axis cannot follow: the reference waits for it
             profile.remaining += error - (lag if error > 0 else -lag)
-        creeping = -self._creep_rate < feed < self._creep_rate
         self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         correction = error * self._gain >> 18
         limit = self._correction

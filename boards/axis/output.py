@@ -16,19 +16,24 @@ _HALF = 1 << 15
 
 
 class FineOutput:
-    """Parameters 12 to 39 of the axis board."""
+    """Parameters 12 to 42 of the axis board.
 
-    __slots__ = ("_board", "compensator", "spread")
+    bias_q8: duty both motors always get, PWM steps in Q8. It cancels at the axis, and keeps the lagging one's
+        teeth together where its share of a small effort would drown in dead band and cogging.
+    """
+
+    __slots__ = ("_board", "bias_q8", "compensator", "spread")
 
     def __init__(self, board: "AxisBoard") -> None:
         self._board = board
         self.spread = 0
+        self.bias_q8 = 0
         self.compensator = Compensator()
 
     @property
     def active(self) -> bool:
         """Whether the plain way of the paper's firmware will not do."""
-        return bool(self.spread or self.compensator.on)
+        return bool(self.spread or self.compensator.on or self.bias_q8)
 
     def set_spread(self, on: int) -> None:
         """Switch the PWM interrupt on or off."""
@@ -39,6 +44,11 @@ class FineOutput:
         """Add the compensation from the next tick on, with the friction model unloaded."""
         self.compensator.on = on
         self.compensator.start()
+        self.refresh()
+
+    def set_bias(self, value_q8: int) -> None:
+        """Duty that both motors always get while the axis is powered."""
+        self.bias_q8 = value_q8
         self.refresh()
 
     def refresh(self) -> None:
@@ -71,8 +81,9 @@ class FineOutput:
             effort_q16 = (effort_q16 + _HALF) >> 16 << 16
         size = abs(effort_q16)
         lag = board.lag_q16(size, velocity) if self.spread else board.lag(size >> 16, velocity) << 16
+        bias = self.bias_q8 << 8 if board.powered() else 0
         if effort_q16 >= 0:
-            pwm.write_spread(end_ns, size, lag)
+            pwm.write_spread(end_ns, size + bias, lag + bias)
         else:
-            pwm.write_spread(end_ns, lag, size)
+            pwm.write_spread(end_ns, lag + bias, size + bias)
         return (effort_q16 + _HALF) >> 16

@@ -142,6 +142,14 @@ class AxisParameter(IntEnum):
     """Line k of the table: 16 + 3k order, cycles per turn of the axis, Q16; 17 + 3k and 18 + 3k effort of its
     cosine and sine over the absolute encoder's angle, PWM steps in Q8."""
 
+    COUNTER_BIAS_Q8 = 40
+    """Duty that both motors always get, PWM steps in Q8."""
+    RATE_LOCK = 41
+    """1: RATE and CLASS hold the sum of the set point as well."""
+    POSITION_BLEND = 42
+    """Time constant, 2^n ticks of 5 ms, below which the position loop trusts the incremental encoder; 0: the
+    absolute encoder alone."""
+
 
 HARMONICS = 8
 """Lines of the compensation table."""

@@ -1,0 +1,56 @@
+"""Two small loops that the paper's firmware does not have: a locked rate, and a position from both encoders.
+
+RATE and CLASS close a loop around the velocity alone, so a torque that comes and goes every few seconds
+leaves its mark. The lock sums the velocity error up and returns it as a correction of the set point.
+The absolute encoder errs within each of its lines, by up to a few tenths of an arcsec every 2.6 s at the
+tracking rate, and the position loop follows. The blend takes what is faster than its time constant from the
+incremental encoder, which was sampled in the same tick, and only the slow rest from the absolute one.
+"""
+
+from boards.axis.config import COUNTS_PER_TURN
+from boards.axis.profile import UNIT_SHIFT
+
+LOCK_LIMIT_Q16 = round(2.0 / 1_296_000 * COUNTS_PER_TURN) << 16
+"""Largest position error the lock remembers, 2 arcsec: more is a set point that the axis cannot follow, and
+would be paid back with a swing. ASSUMPTION."""
+
+
+class RateLock:
+    """gain_q16: correction per count of position error, counts/tick."""
+
+    __slots__ = ("_error_q16", "_gain_q16")
+
+    def __init__(self, gain_q16: int) -> None:
+        self._gain_q16 = gain_q16
+        self._error_q16 = 0
+
+    def start(self) -> None:
+        """Nothing is owed."""
+        self._error_q16 = 0
+
+    def step(self, setpoint_q16: int, velocity: int) -> int:
+        """The correction, Q16 counts/tick; velocity: the counts of the last tick."""
+        error = self._error_q16 + setpoint_q16 - (velocity << 16)
+        error = max(-LOCK_LIMIT_Q16, min(LOCK_LIMIT_Q16, error))
+        self._error_q16 = error
+        return error * self._gain_q16 >> 16
+
+
+class Blend:
+    """shift: time constant, 2**shift ticks."""
+
+    __slots__ = ("_offset_q18", "counts", "shift")
+
+    def __init__(self, shift: int) -> None:
+        self.shift = shift
+        self.counts = 0
+        self._offset_q18 = 0
+
+    def step(self, absolute_q18: int, velocity: int, creeping: bool) -> int:
+        """Position, Q18 counts. Fast motion takes the absolute encoder as it is: the roller's ratio is not
+        exact."""
+        self.counts += velocity
+        summed = self.counts << UNIT_SHIFT
+        gap = absolute_q18 - summed - self._offset_q18
+        self._offset_q18 += gap >> self.shift if creeping else gap
+        return summed + self._offset_q18

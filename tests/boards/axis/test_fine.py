@@ -1,0 +1,178 @@
+"""B1: what parameters 12 to 42 change in the axis board, on chips and a rigid axis."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boards.axis.compensator import Compensator
+from boards.axis.config import rate_q16
+from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
+from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE, TABLE
+from boards.core.interrupts import InterruptController
+from bus.protocol import AxisParameter, Opcode, Result
+from bus.time import EventQueue
+from tests.boards.lab import Lab
+
+ONE = 1 << 16
+
+
+@pytest.fixture
+def lab() -> Lab:
+    lab = Lab()
+    lab.run(0.1)
+    assert lab.command(Opcode.POWER, 1).result == Result.OK
+    return lab
+
+
+def put(lab: Lab, number: int, value: int) -> None:
+    assert lab.command(Opcode.SET_PARAMETER, number, value).result == Result.OK
+
+
+@given(st.integers(0, 3000 * ONE), st.integers(0, 3000 * ONE), st.integers(10, 25))
+def test_B1_more_effort_is_never_less_net_torque(one: int, other: int, split: int) -> None:
+    lab = Lab()
+    lab.axis.set_split(split)
+    low, high = sorted((one, other))
+    assert low - lab.axis.lag_q16(low, 0) <= high - lab.axis.lag_q16(high, 0)
+
+
+def test_B1_the_papers_lag_swallows_one_step_in_ten() -> None:
+    # why E1 jumped with the effort: from 114 to 115 both registers grow by one
+    lab = Lab()
+    net = [effort - lab.axis.lag(effort, 0) for effort in range(100, 201)]
+    assert sum(a == b for a, b in pairwise(net)) == 10
+
+
+def test_B1_the_fraction_reaches_the_switches(lab: Lab) -> None:
+    put(lab, AxisParameter.DUTY_FRACTION, 1)
+    lab.command(Opcode.SET_RATE, rate_q16(200.0))
+    lab.run(3.0)
+    wanted = lab.axis.pi.effort_q16 / ONE / 3000
+    assert wanted * 3000 % 1
+    assert lab.plant.duties == pytest.approx((wanted, wanted / 10), abs=1e-6)
+
+
+def test_B1_off_again_is_the_papers_firmware(lab: Lab) -> None:
+    put(lab, AxisParameter.DUTY_FRACTION, 1)
+    lab.command(Opcode.SET_RATE, rate_q16(600.0))
+    lab.run(1.0)
+    put(lab, AxisParameter.DUTY_FRACTION, 0)
+    lab.run(0.1)
+    assert lab.axis.fine is None
+    assert lab.axis.cost_ns == 40_000
+    duty_a, duty_b = (round(duty * 3000, 9) for duty in lab.plant.duties)
+    assert (duty_a, duty_b) == (lab.axis.pwm.pdc_a, lab.axis.pwm.pdc_b) == (int(duty_a), int(duty_b))
+
+
+def test_B1_the_bias_is_on_both_motors_and_only_under_power(lab: Lab) -> None:
+    put(lab, AxisParameter.COUNTER_BIAS_Q8, 40 * 256)
+    lab.command(Opcode.OPEN_LOOP, -1000)
+    lab.run(0.1)
+    assert lab.plant.duties == pytest.approx((140 / 3000, 1040 / 3000))
+    lab.command(Opcode.POWER, 0)
+    lab.run(0.1)
+    assert lab.plant.duties == (0.0, 0.0)
+
+
+def test_B1_cycles_of_the_pwm_interrupt_are_booked() -> None:
+    cpu = InterruptController(EventQueue(), 30_000_000, TABLE)
+    cpu.steal(PWM_ROUTINE, 50_000)
+    each = 834  # 25 cycles of 33.3 ns, rounded up
+    # by hand: 40 us of control routine meet one PWM interrupt; 30 us of the CAN routine one
+    assert cpu.lines["control"].cost_ns == 40_000 + each
+    assert cpu.lines["can"].cost_ns == 30_000 + each
+    cpu.steal(None)
+    assert cpu.lines["control"].cost_ns == 40_000
+
+
+def test_B1_cycles_of_the_compensation_are_booked(lab: Lab) -> None:
+    first = AxisParameter.HARMONIC_FIRST
+    for line in range(8):
+        put(lab, first + 3 * line + 1, 256)
+    put(lab, AxisParameter.COMPENSATION, 1)
+    cycles = 1200 + 8 * HARMONIC_CYCLES + FRICTION_CYCLES
+    assert lab.axis.cost_ns == math.ceil(cycles * 1e9 / 30e6)
+    put(lab, AxisParameter.DUTY_FRACTION, 1)
+    assert lab.axis.cost_ns == math.ceil(cycles * 1e9 / 30e6) + 2 * 834  # 66 us meet two
+    lab.run(1.0)
+    assert lab.axis.cpu.overruns == 0
+
+
+@given(
+    st.integers(0, (1 << 29) - 1),
+    st.floats(0.1, 30_000.0),
+    st.floats(-50.0, 50.0),
+    st.floats(-50.0, 50.0),
+)
+def test_B1_a_line_of_the_table_is_a_wave_over_the_position(
+    position: int, order: float, cosine: float, sine: float
+) -> None:
+    compensator = Compensator()
+    compensator.orders_q16[3] = round(order * 65536)
+    compensator.cosines_q8[3], compensator.sines_q8[3] = round(cosine * 256), round(sine * 256)
+    compensator.refresh()
+    got = compensator.effort_q16(position, 0, 0) / 65536
+    phase = 2 * math.pi * (compensator.orders_q16[3] / 65536 * position / 2**29 % 1.0)
+    wanted = cosine * math.cos(phase) + sine * math.sin(phase)
+    size = abs(cosine) + abs(sine)
+    # half a place of the table of 1024 is 3.1 mrad; amplitudes are rounded to 1/512 step
+    assert abs(got - wanted) <= 0.0035 * size + 0.01
+
+
+def test_B1_friction_turns_within_its_travel() -> None:
+    compensator = Compensator()
+    compensator.level_q8, compensator.travel = 100 * 256, 1500
+    rate = 6 * ONE  # counts per tick
+    for _ in range(2000):
+        settled = compensator.effort_q16(0, 0, rate)
+    assert settled / ONE == pytest.approx(100.0, abs=0.1)
+    # Dahl by hand: after x counts the other way F = -F0 + 2 F0 exp(-x / travel)
+    for _ in range(250):
+        turned = compensator.effort_q16(0, 0, -rate)
+    assert turned / ONE == pytest.approx(-100.0 + 200.0 * math.exp(-1.0), abs=0.5)
+    assert compensator.effort_q16(0, 0, 0) == turned  # at rest it stays
+
+
+def test_B1_open_loop_is_not_compensated(lab: Lab) -> None:
+    put(lab, AxisParameter.HARMONIC_FIRST + 1, 50 * 256)  # order 0: a constant
+    put(lab, AxisParameter.COMPENSATION, 1)
+    lab.command(Opcode.OPEN_LOOP, 1000)
+    lab.run(0.1)
+    assert lab.plant.duties == pytest.approx((1000 / 3000, 100 / 3000))
+
+
+def test_B1_the_lock_pays_back_and_forgets_beyond_two_arcsec() -> None:
+    lock = RateLock(ONE // 32)
+    for _ in range(8):
+        lock.step(4 * ONE, 3)  # eight counts behind
+    assert lock.step(4 * ONE, 4) == 8 * ONE // 32
+    for _ in range(10_000):
+        lock.step(4 * ONE, 0)
+    assert lock.step(4 * ONE, 4) == LOCK_LIMIT_Q16 // 32
+
+
+def test_B1_a_locked_rate_holds_the_sum_of_the_set_point(lab: Lab) -> None:
+    put(lab, AxisParameter.DUTY_FRACTION, 1)
+    put(lab, AxisParameter.RATE_LOCK, 1)
+    lab.command(Opcode.SET_RATE, rate_q16(100.0))
+    lab.run(10.0)
+    start = lab.angle_arcsec
+    lab.run(20.0)
+    # the board's crystal is 12 ppm off: 0.024 arcsec; one count is 0.0115
+    assert lab.angle_arcsec - start == pytest.approx(2000.0, abs=0.1)
+
+
+def test_B1_the_blend_passes_a_slow_difference_and_stops_a_fast_one() -> None:
+    count, shift = 1 << 18, 6
+    blend = Blend(shift)
+    blend.step(0, 0, creeping=False)
+    out = [blend.step(round(100 * count * math.sin(k / 4)), 0, creeping=True) / count for k in range(2000)]
+    # first-order low-pass by hand: time constant 64 ticks, 1/4 rad per tick
+    assert max(out[1000:]) == pytest.approx(100 / math.hypot(1, 64 / 4), rel=0.1)
+    for _ in range(1000):
+        slow = blend.step(500 * count, 0, creeping=True)
+    assert slow / count == pytest.approx(500, abs=0.01)
+    assert blend.step(700 * count, 0, creeping=False) == 700 * count
