@@ -27,7 +27,7 @@ from bus.protocol import (
     unpack_reply,
 )
 from host.link import HidLink
-from host.logs.ascii import AsciiLogs
+from host.logs.journal import Logs
 
 TICK_NS = 50_000_000
 """20 Hz, ASSUMPTION: the paper's consoles refresh at 4 Hz, its threads poll faster."""
@@ -45,6 +45,10 @@ Procedure = Generator[None, None, Any]
 
 class ClientError(ValueError):
     """A procedure that cannot go on; the message says which device and why."""
+
+
+class CommandRefused(ClientError):
+    """A board answered, but does not do it."""
 
 
 @dataclass
@@ -73,7 +77,7 @@ class Client:
     link: the HID link. logs: where commands, status and errors go. devices: the boards expected to live.
     """
 
-    def __init__(self, link: HidLink, logs: AsciiLogs, devices: tuple[Device, ...] = tuple(Device)) -> None:
+    def __init__(self, link: HidLink, logs: Logs, devices: tuple[Device, ...] = tuple(Device)) -> None:
         self.link = link
         self.logs = logs
         self.devices = devices
@@ -96,8 +100,14 @@ class Client:
         assert pending.reply is not None
         if pending.reply.result != Result.OK:
             reason = Result(pending.reply.result).name.lower().replace("_", " ")
-            raise ClientError(f"{device.name}: {pending.text()} was refused: {reason}")
+            raise CommandRefused(f"{device.name}: {pending.text()} was refused: {reason}")
         return pending.reply
+
+    def forget(self, device: Device) -> None:
+        """Give up what is waiting for a device, so that a stop is not queued behind it."""
+        for pending in self._waiting.get(device, ()):
+            pending.failed = "given up"
+        self._waiting[device] = []
 
     def wait(self, seconds: float) -> Procedure:
         """Do nothing for a while."""

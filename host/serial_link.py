@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from bus.protocol import Device
 from bus.protocol.serial import PACKET_NS, Packet, PacketDecoder
-from host.logs.ascii import AsciiLogs
 from host.logs.files import LogError
+from host.logs.journal import Logs
 
 SILENCE_NS = 4 * PACKET_NS
 """A port is silent when four packets have not come. ASSUMPTION."""
@@ -20,7 +20,7 @@ class SerialLink:
     and is passed on.
     """
 
-    def __init__(self, device: Device, logs: AsciiLogs, consume: Callable[[int, Packet], None]) -> None:
+    def __init__(self, device: Device, logs: Logs, consume: Callable[[int, Packet], None]) -> None:
         self.device = device
         self.packets = 0
         self.lost = 0

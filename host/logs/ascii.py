@@ -19,9 +19,14 @@ _HEADERS = {
 class AsciiLogs:
     """Four files in one folder; every line starts with UTC and the simulated time in seconds."""
 
-    def __init__(self, folder: Path, utc: Callable[[float], str]) -> None:
+    def __init__(
+        self, folder: Path, utc: Callable[[float], str], make: Callable[[Path], LineFile] | None = None
+    ) -> None:
+        """utc: text for a time in s. make: opens one file, such as `rotation.rotating`; None: one that
+        grows."""
         self._utc = utc
-        self._files = {name: LineFile(folder / f"{name}.log", buffer_bytes=1 << 13) for name in NAMES}
+        make = make or _growing
+        self._files = {name: make(folder / f"{name}.log") for name in NAMES}
         for name, file in self._files.items():
             file.write(_HEADERS[name] + "\n")
 
@@ -50,6 +55,11 @@ class AsciiLogs:
         """The four files."""
         return list(self._files.values())
 
+    def close(self) -> None:
+        """Bring all four to disk and close them."""
+        for file in self._files.values():
+            file.close()
+
     def flush(self) -> None:
         """Bring all four to disk."""
         for file in self._files.values():
@@ -58,3 +68,7 @@ class AsciiLogs:
     def _write(self, name: str, t_ns: int, text: str) -> None:
         t_s = t_ns / 1e9
         self._files[name].write(f"{self._utc(t_s)}  {t_s:.3f}  {text}\n")
+
+
+def _growing(path: Path) -> LineFile:
+    return LineFile(path, buffer_bytes=1 << 13)

@@ -96,6 +96,10 @@ class LineFile:
         finally:
             self._file.close()
 
+    def reopen(self) -> None:
+        """Begin an empty file in the place of the one that was closed; the digest goes on."""
+        self._file = BlockFile(self.path)
+
     def hexdigest(self) -> str:
         """SHA-256 of all that was flushed."""
         return self._digest.hexdigest()

@@ -63,3 +63,14 @@ def _at_rest(client: Client) -> bool:
 def _referenced(client: Client) -> bool:
     now = client.focus()
     return now is not None and bool(now.flags & FocusFlag.REFERENCED)
+
+
+def moving(client: Client) -> bool:
+    """Whether the board says that the motor turns."""
+    return client.focus() is not None and not _at_rest(client)
+
+
+def is_free(client: Client) -> bool:
+    """Whether nothing holds the shaft."""
+    now = client.focus()
+    return now is not None and bool(now.flags & FocusFlag.FREE)

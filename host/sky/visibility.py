@@ -21,6 +21,10 @@ class Unreachable(ValueError):
     """A target the telescope must not be sent to; the message says why and when."""
 
 
+class BelowHorizon(Unreachable):
+    """It is, or will be, below the horizon limit."""
+
+
 def check_reachable(
     star: Star,
     site: Site,
@@ -36,7 +40,7 @@ def check_reachable(
     low = np.flatnonzero(altitude < horizon_rad)
     if low.size:
         index = int(low[0])
-        raise Unreachable(
+        raise BelowHorizon(
             f"{star.name} is at altitude {format_degrees(altitude[index])} {_when(index, times, clock)}, "
             f"below the horizon limit of {math.degrees(horizon_rad):g}°"
         )

@@ -1,0 +1,85 @@
+"""Between the encoders and the places astronomers' programs speak of: apparent places of date ("JNow").
+
+JNow here is the apparent geocentric place: equinox and equator of date, with precession, nutation and
+aberration, without refraction. That is what INDI's LX200 drivers, Stellarium's LX200 plug-in and Alpaca's
+equatorial system 1 mean. ERFA's `atci13`, `atic13` and `atoi13` do all of it.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import NamedTuple
+
+import erfa
+
+from host.sky.catalogue import Star
+from host.sky.observed import Clock, Observed
+from host.sky.site import Site
+
+
+class Place(NamedTuple):
+    """An apparent place of date in radians: right ascension 0..2π, declination."""
+
+    right_ascension_rad: float
+    declination_rad: float
+
+
+def apparent_of_star(star: Star, clock: Clock, t_s: float) -> Place:
+    """Apparent place of date of a catalogue star (proper motion and parallax left out: below 1″ a year)."""
+    ra, dec, origins = erfa.atci13(
+        star.right_ascension_rad, star.declination_rad, 0.0, 0.0, 0.0, 0.0, *_terrestrial(clock, t_s)
+    )
+    return Place(float(erfa.anp(ra - origins)), float(dec))
+
+
+def star_of_apparent(place: Place, clock: Clock, t_s: float, name: str) -> Star:
+    """The ICRS place that has this apparent place now; a telescope tracks it like a star."""
+    terrestrial = _terrestrial(clock, t_s)
+    origins = erfa.eo06a(*terrestrial)
+    ra, dec, _ = erfa.atic13(place.right_ascension_rad + origins, place.declination_rad, *terrestrial)
+    return Star(name, float(erfa.anp(ra)), float(dec))
+
+
+def apparent_of_observed(
+    hour_angle_rad: float, declination_rad: float, site: Site, clock: Clock, t_s: float
+) -> Place:
+    """Apparent place of date that is seen, through the air, at an observed hour angle and declination."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        ra, dec = erfa.atoi13(
+            "H", hour_angle_rad, declination_rad, *clock.julian(t_s), site.ut1_minus_utc_s,
+            site.longitude_rad, site.latitude_rad, site.height_m, site.polar_motion_x_rad,
+            site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c, site.humidity, site.wavelength_um,
+        )  # fmt: skip
+    return Place(float(erfa.anp(ra - erfa.eo06a(*_terrestrial(clock, t_s)))), float(dec))
+
+
+def horizontal(hour_angle_rad: float, declination_rad: float, site: Site) -> Observed:
+    """Altitude and azimuth (north through east) of an observed hour angle and declination."""
+    azimuth, altitude = erfa.hd2ae(hour_angle_rad, declination_rad, site.latitude_rad)
+    return Observed(hour_angle_rad, declination_rad, float(altitude), float(azimuth))
+
+
+def equatorial(azimuth_rad: float, altitude_rad: float, site: Site) -> Observed:
+    """Observed hour angle and declination of an azimuth (north through east) and altitude."""
+    hour_angle, declination = erfa.ae2hd(azimuth_rad, altitude_rad, site.latitude_rad)
+    wrapped = math.remainder(float(hour_angle), 2 * math.pi)
+    return Observed(wrapped, float(declination), altitude_rad, azimuth_rad)
+
+
+def sidereal_time_rad(site: Site, clock: Clock, t_s: float) -> float:
+    """Local apparent sidereal time, 0..2π."""
+    day, fraction = clock.julian(t_s)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        universal = erfa.utcut1(day, fraction, site.ut1_minus_utc_s)
+    greenwich = erfa.gst06a(*universal, *_terrestrial(clock, t_s))
+    return float(erfa.anp(greenwich + site.longitude_rad))
+
+
+def _terrestrial(clock: Clock, t_s: float) -> tuple[float, float]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        day, fraction = erfa.taitt(*erfa.utctai(*clock.julian(t_s)))
+    return float(day), float(fraction)

@@ -1,0 +1,104 @@
+"""Two ways to sit at the telescope from another thread: plain (blocking) and async.
+
+    desk = AsyncDesk(telescope)
+    await desk.run(lambda t: t.drive.goto(star))        # until the telescope is on target
+    await desk.do(lambda t: t.paddle.press("n", SpeedClass.FINE))
+    print(desk.now.ra.rate_arcsec_s)
+
+`do` returns when the command was taken or raises `Refused`; `run` waits until its job has ended.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import TimeoutError as FutureTimeout
+from typing import TypeVar
+
+from host.telescope.jobs import Job
+from host.telescope.refused import Reason, Refused
+from host.telescope.state import Snapshot
+from host.telescope.telescope import Telescope
+
+T = TypeVar("T")
+ANSWER_S = 5.0
+"""Wall time until a tick must have come; ticks are 50 ms apart at speed 1, 0.5 s at speed 0.1. ASSUMPTION."""
+
+
+class _Desk:
+    """What both have in common."""
+
+    def __init__(self, telescope: Telescope, console: bool = False) -> None:
+        self.telescope = telescope
+        self._console = console
+
+    @property
+    def now(self) -> Snapshot:
+        """The telescope at the last tick."""
+        return self.telescope.snapshot
+
+    def _guarded(self, act: Callable[[Telescope], T], always: bool) -> Callable[[Telescope], T]:
+        """Consoles respect the console lock; programs do not, and a stop never does."""
+        if not self._console or always:
+            return act
+
+        def unless_locked(telescope: Telescope) -> T:
+            if telescope.locked:
+                raise Refused(Reason.LOCKED, "the console is locked; unlock it first")
+            return act(telescope)
+
+        return unless_locked
+
+
+class PlainDesk(_Desk):
+    """Blocking; for threads other than the ticking one."""
+
+    def do(self, act: Callable[[Telescope], T], always: bool = False) -> T:
+        """Have a command carried out at the next tick; returns its value or raises `Refused`."""
+        future = self.telescope.call(self._guarded(act, always))
+        try:
+            return future.result(ANSWER_S)
+        except FutureTimeout:
+            future.cancel()
+            raise Refused(Reason.SILENT, f"no tick within {ANSWER_S:g} s; is it paused?") from None
+
+    def run(self, act: Callable[[Telescope], Job[T]], timeout_s: float | None = None) -> T:
+        """Have a command carried out and wait until its job has ended."""
+        job = self.do(act)
+        try:
+            return job.finished.result(timeout_s)
+        except FutureTimeout:
+            raise Refused(Reason.SILENT, f"{job.name}: not done within {timeout_s} s") from None
+
+    def emergency_stop(self) -> None:
+        """Stop everything, whatever the lock says."""
+        self.do(lambda telescope: telescope.emergency_stop(), always=True)
+
+    def lock(self, on: bool) -> None:
+        """Lock the consoles, or unlock them."""
+        self.do(lambda telescope: setattr(telescope, "locked", on), always=True)
+
+
+class AsyncDesk(_Desk):
+    """For one asyncio loop in a thread of its own."""
+
+    async def do(self, act: Callable[[Telescope], T], always: bool = False) -> T:
+        """Have a command carried out at the next tick; returns its value or raises `Refused`."""
+        future = asyncio.wrap_future(self.telescope.call(self._guarded(act, always)))
+        try:
+            return await asyncio.wait_for(future, ANSWER_S)
+        except TimeoutError:
+            raise Refused(Reason.SILENT, f"no tick within {ANSWER_S:g} s; is it paused?") from None
+
+    async def run(self, act: Callable[[Telescope], Job[T]]) -> T:
+        """Have a command carried out and wait until its job has ended."""
+        job = await self.do(act)
+        return await asyncio.shield(asyncio.wrap_future(job.finished))
+
+    async def emergency_stop(self) -> None:
+        """Stop everything, whatever the lock says."""
+        await self.do(lambda telescope: telescope.emergency_stop(), always=True)
+
+    async def lock(self, on: bool) -> None:
+        """Lock the consoles, or unlock them."""
+        await self.do(lambda telescope: setattr(telescope, "locked", on), always=True)

@@ -1,0 +1,128 @@
+"""Moving by hand: keys held down, rates of one axis, and a guider's pulses."""
+
+from __future__ import annotations
+
+import math
+
+from bus.protocol import Device, Opcode, SpeedClass
+from host.client import Procedure
+from host.procedures.manual import AXIS
+from host.rates import rate_q16
+from host.sky.mount import STEP_ARCSEC
+from host.telescope.drive import Drive
+from host.telescope.jobs import Activity, Job, Side
+from host.telescope.refused import Reason, Refused
+from host.telescope.tracks import SIDEREAL_ARCSEC_S, SkyTrack
+
+CLASS_ARCSEC_S = {
+    SpeedClass.SLEW: 7200.0,
+    SpeedClass.SET: 600.0,
+    SpeedClass.GUIDE: 100.0,
+    SpeedClass.FINE: 15.0,
+}
+"""Rates of the keys: what the axis boards are programmed with (parameters 7 to 10; ASSUMPTION there)."""
+FASTEST_ARCSEC_S = CLASS_ARCSEC_S[SpeedClass.SLEW]
+LOCKED_ARCSEC_S = 1000.0
+"""Up to this rate a key moves the target of the position loop: the velocity loop sticks and slips below some
+1000″/s (paper, Fig. 12) and would be tens of percent off within ten seconds."""
+DIRECTIONS = {"n": ("dec", 1), "s": ("dec", -1), "e": ("ra", -1), "w": ("ra", 1)}
+"""Axis and sign; hour angle grows to the west."""
+GUIDE_ARCSEC_S = 0.5 * SIDEREAL_ARCSEC_S
+"""Guide rate until somebody sets another: half the sidereal rate, as is common. ASSUMPTION."""
+
+
+class Paddle:
+    """The hand paddle and what guiding programs send instead of one.
+
+    guide_arcsec_s: rates of a pulse, right ascension and declination.
+    """
+
+    def __init__(self, drive: Drive, side: Side) -> None:
+        self.drive = drive
+        self.guide_arcsec_s = (GUIDE_ARCSEC_S, GUIDE_ARCSEC_S)
+        self._side = side
+        self._rates: dict[str, float] = {}
+        self._over_sky = True
+        self._pulse_end_ns = 0
+
+    @property
+    def pulsing(self) -> bool:
+        """Whether a pulse still lasts."""
+        return self.drive.client.now_ns < self._pulse_end_ns
+
+    @property
+    def held(self) -> frozenset[str]:
+        """Axes that are being moved by hand."""
+        return frozenset(self._rates) if self.drive.activity is Activity.PADDLE else frozenset()
+
+    def press(self, direction: str, speed: SpeedClass, wake: bool = False) -> None:
+        """Hold a key (n, s, e, w): move at a speed class, over the sky while tracking, until `release`."""
+        if direction not in DIRECTIONS:
+            raise Refused(Reason.VALUE, f"direction {direction!r}; there are n, s, e and w")
+        if speed not in CLASS_ARCSEC_S:
+            raise Refused(Reason.VALUE, f"speed {speed!r}; there are slew, set, guide and fine")
+        axis, sign = DIRECTIONS[direction]
+        self.move(axis, sign * CLASS_ARCSEC_S[speed], over_sky=True, wake=wake)
+
+    def move(self, axis: str, rate_arcsec_s: float, over_sky: bool = False, wake: bool = False) -> None:
+        """Move one axis (`ra`: hour angle, positive west; `dec`) at a rate until it is released."""
+        self.drive.unparked(wake)
+        if not abs(rate_arcsec_s) <= FASTEST_ARCSEC_S:
+            raise Refused(Reason.VALUE, f"{rate_arcsec_s:g}″/s is more than {FASTEST_ARCSEC_S:g}″/s")
+        self._rates = {**{each: self._rates[each] for each in self.held}, axis: rate_arcsec_s}
+        self._over_sky = over_sky
+        self.drive.begin(f"{axis} by hand, {rate_arcsec_s:g}″/s", self._run(), Activity.PADDLE)
+
+    def release(self, axis: str | None = None) -> None:
+        """Let go of one axis or both; tracking goes on when it is on. Without a key held: nothing."""
+        held = self.held
+        if not held or (axis is not None and axis not in held):
+            return
+        if axis is not None and held != {axis}:
+            del self._rates[axis]
+            self.drive.begin(f"{axis} released", self._run(), Activity.PADDLE)
+            return
+        self.drive.abort()
+
+    def pulse(self, direction: str, seconds: float) -> None:
+        """Shift what is tracked by guide rate × seconds, exactly; `pulsing` lasts as long as the pulse.
+
+        The shift is made at once, as a NUDGE: the boards have no guide input, and the sum is the same.
+        """
+        drive = self.drive
+        track = drive.pointing.track
+        if drive.activity is not Activity.TRACKING or not isinstance(track, SkyTrack):
+            raise Refused(Reason.STATE, "guiding needs a telescope that tracks")
+        if direction not in DIRECTIONS or not 0 <= seconds <= 60:
+            raise Refused(Reason.VALUE, "a pulse is n, s, e or w and lasts 0 to 60 s")
+        axis, sign = DIRECTIONS[direction]
+        arcsec = sign * seconds * self.guide_arcsec_s[0 if axis == "ra" else 1]
+        steps = round(arcsec / STEP_ARCSEC)
+        if not steps:
+            return
+        track.shift(*((arcsec, 0.0) if axis == "ra" else (0.0, arcsec)))
+        self._pulse_end_ns = drive.client.now_ns + round(seconds * 1e9)
+        job = Job(f"pulse {direction}", self._nudge(AXIS[axis], steps), Activity.TRACKING)
+        self._side.start(job)
+
+    def set_guide_rates(self, ra_arcsec_s: float, dec_arcsec_s: float) -> None:
+        """Rates of a pulse, ″/s, up to the sidereal rate."""
+        for rate in (ra_arcsec_s, dec_arcsec_s):
+            if not (math.isfinite(rate) and 0 < rate <= SIDEREAL_ARCSEC_S * 1.0001):
+                raise Refused(Reason.VALUE, f"guide rate {rate:g}″/s is outside 0 to {SIDEREAL_ARCSEC_S:g}")
+        self.guide_arcsec_s = (ra_arcsec_s, dec_arcsec_s)
+
+    def _run(self) -> Procedure:
+        client, rates = self.drive.client, dict(self._rates)
+        yield from self.drive.power()
+        follow = SIDEREAL_ARCSEC_S if self.drive.tracking else 0.0
+        for name, device in AXIS.items():
+            base = follow if name == "ra" and (self._over_sky or name not in rates) else 0.0
+            rate = rates.get(name, 0.0) + base
+            locked = abs(rate) <= LOCKED_ARCSEC_S
+            yield from client.ask(device, Opcode.TRACK_RATE if locked else Opcode.SET_RATE, rate_q16(rate))
+        while True:
+            yield
+
+    def _nudge(self, device: Device, steps: int) -> Procedure:
+        yield from self.drive.client.ask(device, Opcode.NUDGE, steps)

@@ -1,0 +1,161 @@
+"""What the telescope looks like at one moment, as plain values that any thread may read."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from bus.protocol import (
+    AxisMode,
+    Device,
+    FocusFlag,
+    Health,
+    MotionFlag,
+    State,
+    unpack_tach,
+    unpack_target,
+)
+from host.client import SILENCE_NS, Client
+from host.rates import CURRENT_A_PER_COUNT, EFFORT_FULL, rate_arcsec_s
+from host.sky.mount import STEP_ARCSEC
+
+_TACH_PERIOD_S = 0.01
+_TACH_COUNTS = 4096
+AXES = {
+    "ra": (Device.AXIS_RA, Device.POSITION_RA, Device.MOTOR_RA_A, Device.MOTOR_RA_B),
+    "dec": (Device.AXIS_DEC, Device.POSITION_DEC, Device.MOTOR_DEC_A, Device.MOTOR_DEC_B),
+}
+"""Boards of each axis: controller, encoder, motors A and B."""
+
+
+class AxisState(NamedTuple):
+    """One axis. None where no frame has come yet. `latched_s`: when the encoder was read."""
+
+    steps: int | None
+    latched_s: float
+    mode: AxisMode
+    powered: bool
+    moving: bool
+    soft_limit: bool
+    fault: bool
+    rate_arcsec_s: float
+    effort: float
+    """Share of the supply, −1..1; positive: motor A leads."""
+    currents_a: tuple[float, float]
+    motor_turns_s: tuple[float | None, float | None]
+    to_go_arcsec: float
+
+
+class FocusState(NamedTuple):
+    """The focus drive: half steps of 6.25 µm, encoder counts, LVDT in ADC counts (0..1023)."""
+
+    half_steps: int
+    encoder: int
+    lvdt: int
+    moving: bool
+    referenced: bool
+    hold: bool
+    free: bool
+
+
+class BoardState(NamedTuple):
+    """One board as its heartbeat shows it; `health` is the answer to the last PING, None before one."""
+
+    device: Device
+    alive: bool
+    state: State | None
+    uptime_s: int
+    overruns: int
+    tec: int
+    health: Health | None
+
+
+class Snapshot(NamedTuple):
+    """Everything at one tick."""
+
+    t_s: float
+    ra: AxisState
+    dec: AxisState
+    focus: FocusState | None
+    boards: tuple[BoardState, ...]
+    activity: str
+    powered: bool
+    slewing: bool
+    """On the way to a target or to the park position, or moved by hand."""
+    tracking: bool
+    """Tracking is on: what the axes do, or go back to when a slew or a stop has ended."""
+    parked: bool
+    pulse_guiding: bool
+    target: str
+    errors_arcsec: tuple[float, float] | None
+    """Target less encoder, hour angle and declination."""
+    locked: bool
+
+
+def axis_state(client: Client, name: str) -> AxisState:
+    """One axis from the last frames."""
+    board, encoder, *motors = AXES[name]
+    motion, reading = client.motion(board), client.position(encoder)
+    summary = client.link.summaries.get(board)
+    tachs = [client.link.measurements.get(motor) for motor in motors]
+    turns = [unpack_tach(data).delta / _TACH_COUNTS / _TACH_PERIOD_S if data else None for data in tachs]
+    latched_s = 0.0
+    if reading is not None:
+        latched_s = (client.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
+    flags = MotionFlag(motion.flags) if motion else MotionFlag(0)
+    return AxisState(
+        steps=reading.position if reading else None,
+        latched_s=latched_s,
+        mode=AxisMode(motion.mode) if motion and motion.mode in _MODES else AxisMode.OFF,
+        powered=bool(flags & MotionFlag.POWERED),
+        moving=bool(flags & MotionFlag.MOVING),
+        soft_limit=bool(flags & MotionFlag.SOFT_LIMIT),
+        fault=bool(flags & MotionFlag.FAULT),
+        rate_arcsec_s=rate_arcsec_s(motion.velocity) if motion else 0.0,
+        effort=motion.effort / EFFORT_FULL if motion else 0.0,
+        currents_a=(
+            (motion.adc_a * CURRENT_A_PER_COUNT, motion.adc_b * CURRENT_A_PER_COUNT) if motion else (0.0, 0.0)
+        ),
+        motor_turns_s=(turns[0], turns[1]),
+        to_go_arcsec=unpack_target(summary).distance * STEP_ARCSEC if summary else 0.0,
+    )
+
+
+def focus_state(client: Client) -> FocusState | None:
+    """The focus from its last frame."""
+    now = client.focus()
+    if now is None:
+        return None
+    flags = FocusFlag(now.flags)
+    return FocusState(
+        half_steps=now.position,
+        encoder=now.encoder,
+        lvdt=now.lvdt,
+        moving=bool(flags & FocusFlag.MOVING),
+        referenced=bool(flags & FocusFlag.REFERENCED),
+        hold=bool(flags & FocusFlag.HOLD),
+        free=bool(flags & FocusFlag.FREE),
+    )
+
+
+def board_states(client: Client, health: dict[Device, Health]) -> tuple[BoardState, ...]:
+    """Every board that is expected to live."""
+    states = []
+    for device in client.devices:
+        beat = client.heartbeat(device)
+        heard_ns = client.link.heard_ns.get(device, -SILENCE_NS)
+        states.append(
+            BoardState(
+                device=device,
+                alive=beat is not None and client.now_ns - heard_ns <= SILENCE_NS,
+                state=State(beat.state) if beat and beat.state in _STATES else None,
+                uptime_s=beat.uptime if beat else 0,
+                overruns=beat.overruns if beat else 0,
+                tec=beat.tec if beat else 0,
+                health=health.get(device),
+            )
+        )
+    return tuple(states)
+
+
+_MODES = {int(mode) for mode in AxisMode}
+_STATES = {int(state) for state in State}

@@ -1,0 +1,126 @@
+"""The telescope as programs see it: commands that start or are refused at once, a snapshot at every tick.
+
+Everything here runs on the ticking thread. Other threads come in by `Telescope.call`, which hands a function
+over to the next tick, and look at `Telescope.snapshot`, which is replaced as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from queue import Empty, SimpleQueue
+from typing import Any, TypeVar
+
+from bus.protocol import Device, Opcode
+from host.client import Client
+from host.logs.journal import Journal
+from host.procedures.manual import AXIS
+from host.telescope.boards import Boards
+from host.telescope.drive import Drive
+from host.telescope.focuser import Focuser
+from host.telescope.jobs import Activity, Job, Side
+from host.telescope.observatory import Observatory
+from host.telescope.paddle import Paddle
+from host.telescope.refused import Reason, Refused
+from host.telescope.state import Snapshot, axis_state, board_states, focus_state
+
+T = TypeVar("T")
+_SLEWING = (Activity.SLEWING, Activity.PARKING, Activity.PADDLE, Activity.STOPPING)
+
+
+class Telescope:
+    """Drive, paddle, focus and boards of one telescope, and the fence other threads come in by.
+
+    locked: the console lock (H2); doors that respect it refuse everything but the stop and the way out.
+    """
+
+    def __init__(self, client: Client, observatory: Observatory, journal: Journal) -> None:
+        self.client = client
+        self.observatory = observatory
+        self.journal = journal
+        self.side = Side()
+        self.drive = Drive(client, observatory, journal)
+        self.paddle = Paddle(self.drive, self.side)
+        self.focuser = Focuser(client, journal)
+        self.boards = Boards(client, observatory, self.side)
+        self.locked = False
+        self._closed = False
+        self._inbox: SimpleQueue[tuple[Callable[[Telescope], Any], Future[Any]]] = SimpleQueue()
+        self.snapshot = self._look()
+
+    def emergency_stop(self) -> Job[None]:
+        """Both axes and the focus stop; nothing that was on its way is sent after it."""
+        self.journal.command(self.client.now_ns, "HOST", "emergency stop", "sent")
+        job = self.drive.stop()
+        for device in AXIS.values():
+            self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
+        self.focuser.halt()
+        return job
+
+    def set_horizon(self, altitude_rad: float) -> None:
+        """Altitude below which nothing is gone to or tracked."""
+        self.observatory.horizon_rad = altitude_rad
+
+    def call(self, act: Callable[[Telescope], T]) -> Future[T]:
+        """Have `act(telescope)` called at the next tick; from any thread. The future holds its value or
+        what it raised, `Refused` above all."""
+        future: Future[T] = Future()
+        if self._closed:
+            future.set_exception(Refused(Reason.SILENT, "the telescope is shut down"))
+        else:
+            self._inbox.put((act, future))
+        return future
+
+    def tick(self, t_ns: int) -> None:
+        """One tick of the host: what came in, what goes on, what goes out, and a new snapshot."""
+        self.client.now_ns = t_ns
+        self._let_in()
+        self.drive.tick()
+        self.focuser.tick()
+        self.side.tick()
+        self.client.tick(t_ns)
+        self.snapshot = self._look()
+
+    def close(self) -> None:
+        """No more ticks: whoever waits is told so."""
+        self._closed = True
+        while True:
+            try:
+                _, future = self._inbox.get_nowait()
+            except Empty:
+                return
+            if future.set_running_or_notify_cancel():
+                future.set_exception(Refused(Reason.SILENT, "the telescope is shut down"))
+
+    def _let_in(self) -> None:
+        for _ in range(self._inbox.qsize()):
+            act, future = self._inbox.get()
+            if not future.set_running_or_notify_cancel():
+                continue  # whoever asked has gone
+            try:
+                future.set_result(act(self))
+            except Exception as error:  # belongs to the caller; a door's mistake must not stop the telescope
+                future.set_exception(error)
+
+    def _ask(self, device: Device, opcode: Opcode) -> Any:
+        yield from self.client.ask(device, opcode)
+
+    def _look(self) -> Snapshot:
+        client, drive = self.client, self.drive
+        track = drive.pointing.track
+        return Snapshot(
+            t_s=client.now_ns * 1e-9,
+            ra=axis_state(client, "ra"),
+            dec=axis_state(client, "dec"),
+            focus=focus_state(client),
+            boards=board_states(client, self.boards.health),
+            activity=drive.activity.value,
+            powered=drive.powered,
+            slewing=drive.activity in _SLEWING,
+            tracking=drive.tracking,
+            parked=bool(drive.parked),
+            pulse_guiding=self.paddle.pulsing,
+            target=track.star.name if track is not None else "",
+            errors_arcsec=drive.pointing.errors_arcsec(),
+            locked=self.locked,
+        )

@@ -1,0 +1,76 @@
+"""What the axes can be made to follow: a star, a star and a guider's shifts, a place fixed to the ground."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from host.sky.catalogue import Star
+from host.sky.mount import STEP_ARCSEC, Mount
+from host.sky.observed import Clock, Observed, Rates
+from host.sky.site import Site
+from host.sky.track import StarTrack
+
+SIDEREAL_ARCSEC_S = 15.041067
+"""Hour angle of the sky per second of UTC (IAU 2006 Earth rotation rate 7.292115e-5 rad/s)."""
+
+
+class DriveRate(Enum):
+    """Rates of hour angle, ″/s: what the sky, the Moon and the Sun do on average (ASCOM's DriveRates)."""
+
+    SIDEREAL = SIDEREAL_ARCSEC_S
+    LUNAR = 14.685
+    SOLAR = 15.0
+    KING = 15.0369
+
+
+class SkyTrack(StarTrack):
+    """A star, shifted by a guider and drifting at a rate of its own.
+
+    Shifts and drifts are of the axes, in ″ and ″/s of hour angle (positive west) and declination.
+    """
+
+    def __init__(
+        self,
+        star: Star,
+        site: Site,
+        clock: Clock,
+        mount: Mount,
+        drift_arcsec_s: tuple[float, float] = (0.0, 0.0),
+        since_s: float = 0.0,
+    ) -> None:
+        super().__init__(star, site, clock, mount)
+        self._drift = drift_arcsec_s
+        self._since_s = since_s
+        self._shift = (0.0, 0.0)
+
+    def shift(self, hour_angle_arcsec: float, declination_arcsec: float) -> None:
+        """Follow a place beside the one followed so far."""
+        self._shift = (self._shift[0] + hour_angle_arcsec, self._shift[1] + declination_arcsec)
+
+    def rates(self, t_s: float) -> Rates:
+        """Rates of the axes at a time, ″/s."""
+        plain = super().rates(t_s)
+        return Rates(plain[0] + self._drift[0], plain[1] + self._drift[1])
+
+    def steps(self, t_s: float) -> tuple[int, int]:
+        """Encoder readings on which the place is at a time."""
+        ra, dec = super().steps(t_s)
+        age_s = t_s - self._since_s
+        shifts = [each + drift * age_s for each, drift in zip(self._shift, self._drift, strict=True)]
+        return ra + round(shifts[0] / STEP_ARCSEC), dec + round(shifts[1] / STEP_ARCSEC)
+
+
+class GroundTrack(StarTrack):
+    """A place that stands still over the ground: altitude and azimuth."""
+
+    def __init__(self, place: Observed, site: Site, clock: Clock, mount: Mount) -> None:
+        super().__init__(Star("altitude and azimuth", 0.0, 0.0), site, clock, mount)
+        self._steps = (mount.ra.steps(place.hour_angle_rad), mount.dec.steps(place.declination_rad))
+
+    def rates(self, t_s: float) -> Rates:
+        """Nothing moves."""
+        return Rates(0.0, 0.0)
+
+    def steps(self, t_s: float) -> tuple[int, int]:
+        """The same at all times."""
+        return self._steps

@@ -1,0 +1,68 @@
+"""A telescope client on the emulated boards, advanced by the test in simulated time."""
+
+import datetime as dt
+from collections.abc import Callable, Iterator
+from math import pi, radians
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+from host.sky.apparent import Place, sidereal_time_rad, star_of_apparent
+from host.sky.catalogue import Star
+from host.sky.observed import Clock
+from host.telescope import Job, Telescope
+from plant.plant import Plant
+from scenarios.hosted import Hosted
+from scenarios.load import DEFAULT_PLANT
+from scenarios.model import Scenario
+from scenarios.network import build, config_from
+from scenarios.plants import plant_model
+from scenarios.session import soft_limits, start_steps
+
+T = TypeVar("T")
+START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
+"""The night of the main scenario: Pollux is well up in the east."""
+
+
+class Rig:
+    """Boards, plant and telescope client on one queue."""
+
+    def __init__(self, logs: Path | None = None) -> None:
+        self.scenario = Scenario(Path("rig"), "rig", "", Clock(START), ())
+        self.plant = Plant(plant_model({"file": DEFAULT_PLANT}, Path()), 1, start_steps(self.scenario))
+        self.network = build(config_from({}, soft_limits(self.scenario)), self.plant, 1)
+        self.hosted = Hosted(self.network, self.scenario, logs)
+        self.telescope: Telescope = self.hosted.telescope
+        self.advance(2.0)
+
+    def advance(self, seconds: float) -> None:
+        self.network.run_until(self.network.queue.now_ns + round(seconds * 1e9))
+
+    def do(self, act: Callable[[Telescope], T]) -> T:
+        """What a door does: the next tick carries it out."""
+        future = self.telescope.call(act)
+        self.advance(0.1)
+        return future.result(0)
+
+    def run(self, act: Callable[[Telescope], Job[T]], limit_s: float = 400.0) -> T:
+        job = self.do(act)
+        for _ in range(round(limit_s / 0.5)):
+            if not job.running:
+                return job.finished.result(0)
+            self.advance(0.5)
+        raise AssertionError(f"{job.name} has not ended within {limit_s} s")
+
+    def up(self, name: str = "here", hour_angle_h: float = -1.0, dec_deg: float = 20.0) -> Star:
+        """A place in the sky that is up now, given by hour angle and declination."""
+        about, t_s = self.hosted.observatory, self.telescope.snapshot.t_s
+        sidereal = sidereal_time_rad(about.site, about.clock, t_s)
+        place = Place((sidereal - hour_angle_h * pi / 12) % (2 * pi), radians(dec_deg))
+        return star_of_apparent(place, about.clock, t_s, name)
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[Rig]:
+    made = Rig(tmp_path)
+    yield made
+    made.hosted.close()
