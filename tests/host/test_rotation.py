@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from host.logs.ascii import AsciiLogs
 from host.logs.rotation import RotatingFile, rotating
 
 
+@settings(max_examples=30, deadline=None)
 @given(lines=st.lists(st.text("abcé ", max_size=30), max_size=60), full=st.integers(20, 200))
 def test_all_lines_are_there_in_order_and_whole(
     tmp_path_factory: "object", lines: list[str], full: int
@@ -19,7 +20,7 @@ def test_all_lines_are_there_in_order_and_whole(
     for line in lines:
         file.write(line + "\n")
     file.close()
-    names = sorted(folder.glob("x.log.*"), key=lambda path: -int(path.suffix[1:])) + [folder / "x.log"]
+    names = [*sorted(folder.glob("x.log.*"), key=lambda path: -int(path.suffix[1:])), folder / "x.log"]
     found: list[str] = []
     for name in names:
         text = name.read_text(encoding="utf-8")
