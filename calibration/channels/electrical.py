@@ -19,7 +19,7 @@ from calibration.channels.problem import Problem
 from calibration.channels.torque import STEP, saturated, transients
 from calibration.declaredplant import Declared
 from calibration.readers.run import Array
-from calibration.statistics.regression import gls
+from calibration.statistics.regression import gls, under
 from calibration.statistics.whitening import Mask
 
 CLIPPED = (
@@ -186,8 +186,13 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
     sag = duty * power
 
     def fit(*columns: Array) -> tuple[float, Array, Array]:
-        f = gls(p.y, np.column_stack([p.base, *columns]), p.train, p.ar_order, p.block)
-        return f.loglik, f.beta, np.sqrt(np.maximum(np.diag(f.covariance), 1e-300))
+        x = np.column_stack([p.base, *columns])
+        f = gls(p.y, x, p.train, p.ar_order, p.block)
+        loglik = under(p.y, x, p.train, common)
+        return loglik, f.beta, np.sqrt(np.maximum(np.diag(f.covariance), 1e-300))
+
+    richest = np.column_stack([p.base, ripple, offset, sag])
+    common = gls(p.y, richest, p.train, p.ar_order, p.block).whitener
 
     at = p.base.shape[1]
 

@@ -11,7 +11,7 @@ from calibration.candidates.candidate import Candidate
 from calibration.decide.select import Selection, design
 from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
-from calibration.statistics.regression import gls
+from calibration.statistics.regression import under
 
 TEETH = {
     "shaft1": (113, 123),
@@ -72,11 +72,13 @@ def _alike(a: Array, b: Array) -> bool:
 
 
 def _better(selection: Selection, k: int, wrong: Candidate) -> bool:
-    """True when the wrong candidate in the place of the right one fits at least as well on training rows."""
+    """True when the wrong candidate in the place of the right one fits at least as well on training rows,
+    through the same filter."""
     p = selection.problem
-    others = [x.candidate for j, x in enumerate(selection.chosen) if j != k]
-    fit = gls(p.y, design(p, [*others, wrong]), p.train, p.ar_order, p.block)
-    return bool(fit.loglik >= selection.after.loglik * fit.rows / selection.after.rows)
+    right = [x.candidate for x in selection.chosen]
+    other = [wrong if j == k else c for j, c in enumerate(right)]
+    true, false = (under(p.y, design(p, x), p.train, selection.after.whitener) for x in (right, other))
+    return false >= true
 
 
 def _flipped(selection: Selection, k: int) -> bool:

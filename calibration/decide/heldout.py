@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.channels.problem import Problem
 from calibration.readers.run import Array
@@ -93,29 +94,52 @@ def paired_z(gain: Array, block: int) -> float:
 
 
 FOLDS = 5
-FOLD_S = 6.0  # s per piece: pieces of one fold are spread over all runs
+FOLD_S = 6.0  # s per piece at most: pieces of one fold are spread over all runs
+PER_FOLD = 2  # pieces of a fold at least: a short log is cut finer, never left in one piece
+LEAST_PIECE = 8  # rows
+
+
+def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
+    """Fold of every row in `use`: pieces of each run, numbered on from run to run and dealt out in turn.
+
+    A piece lasts FOLD_S, or less where that would leave a fold with fewer than PER_FOLD pieces.
+    """
+    run, t = problem.run[use], problem.t[use]
+    begin = {k: float(t[run == k].min()) for k in np.unique(run)}
+    since = t - np.array([begin[k] for k in run.tolist()])
+    total = sum(float(since[run == k].max()) + problem.period_s for k in begin)
+    piece_s = max(min(FOLD_S, total / (FOLDS * PER_FOLD)), LEAST_PIECE * problem.period_s)
+    piece = np.floor(since / piece_s + 1e-9).astype(np.int64)
+    rank = np.unique(np.column_stack([run, piece]), axis=0, return_inverse=True)[1]
+    return np.asarray(rank.reshape(-1) % FOLDS, dtype=np.int64)
 
 
 def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
-    """Score two designs on training rows they were not fitted to: pieces of FOLD_S dealt into FOLDS folds."""
+    """Score two designs on training rows they were not fitted to, in FOLDS folds of pieces in time.
+
+    Not a number where the rows make fewer than two folds: nothing could then be predicted.
+    """
     rows = problem.train
     use = whitener.usable(rows)
+    nothing = HeldOut(float("nan"), float("nan"), 0.0, 0.0)
     if use.sum() < 100:
-        return HeldOut(float("nan"), float("nan"), 0.0, 0.0)
-    piece = np.floor(problem.t / max(FOLD_S, 8 * problem.period_s)).astype(np.int64)
-    fold = (piece % FOLDS)[use]
+        return nothing
+    fold = folds(problem, use)
+    dealt = np.unique(fold)
+    if len(dealt) < 2:
+        return nothing
     y = whitener.apply(np.where(rows, problem.y, 0.0))[use]
     left: list[Array] = []
     for x in (x0, x1):
         w = whitener.apply(np.where(rows[:, None], x, 0.0))[use]
         e = np.empty(len(y))
-        for k in range(FOLDS):
+        for k in dealt:
             out = fold == k
             e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
         left.append(e)
     e0, e1 = left
     b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
-    gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in range(FOLDS) if np.any(fold == k)]
+    gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in dealt]
     return HeldOut(
         b, a, paired_z(e0**2 - e1**2, problem.block), 1 - (a / b) ** 2 if b > 0 else 0.0, min(gains) > 0
     )

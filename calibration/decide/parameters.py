@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.special import chndtrix
 
@@ -39,17 +41,11 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
     blocks = int(problem.train.sum() / problem.block)
     out: dict[str, Parameter] = {}
     if candidate.per_run:
-        out["amplitude"] = _common_amplitude(candidate, beta, cov, blocks)
+        pairs = range(0, candidate.width, 2)
+        out["amplitude"] = _common_amplitude(candidate, beta, cov, blocks, pairs)
     elif candidate.kind == "line":
-        for k in range(min(candidate.width // 2, 6)):
-            name, unit = candidate.labels[0]
-            pair = slice(2 * k, 2 * k + 2)
-            amplitude, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
-            out[name if k == 0 else f"{name}_{k + 1}"] = Parameter(amplitude, unit, low, high)
-            phase = float(np.arctan2(-beta[2 * k + 1], beta[2 * k]))
-            spread = float(np.sqrt(np.trace(cov[pair, pair]) / 2)) / max(amplitude, 1e-300)
-            low, high = interval(phase, min(spread, 2.0), blocks)
-            out["phase" if k == 0 else f"phase_{k + 1}"] = Parameter(phase, "rad", low, high)
+        sections = pairs_by_section(candidate.columns)
+        out = _waves(candidate, beta, cov, blocks, sections)
     else:
         for k, (name, unit) in enumerate(candidate.labels):
             low, high = interval(float(beta[k]), float(np.sqrt(cov[k, k])), blocks)
@@ -76,11 +72,58 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
     return out
 
 
-def _common_amplitude(candidate: Candidate, beta: Array, cov: Array, blocks: int) -> Parameter:
-    """One amplitude of a line whose phase is every run's own; runs that hardly show it do not count."""
+MOST_WAVES = 6  # sine pairs of one section that are told
+
+
+def pairs_by_section(columns: Array) -> list[list[int]]:
+    """First columns of the sine pairs of every section: pairs that live on the same rows are harmonics of
+    one section, a pair on rows of its own is the same sine in another one."""
+    rows: list[Array] = []
+    out: list[list[int]] = []
+    for k in range(0, columns.shape[1] - 1, 2):
+        here = np.flatnonzero(np.any(columns[:, k : k + 2] != 0, axis=1))
+        ends = here[[0, -1]] if len(here) else np.zeros(2)
+        for j, other in enumerate(rows):
+            if ends[0] <= other[1] and other[0] <= ends[1]:
+                out[j].append(k)
+                break
+        else:
+            rows.append(ends)
+            out.append([k])
+    return out
+
+
+def _waves(
+    candidate: Candidate, beta: Array, cov: Array, blocks: int, sections: list[list[int]]
+) -> dict[str, Parameter]:
+    """Amplitude of every harmonic, one for all sections, and its phase where there is one section only: a
+    section's phase is a nuisance."""
+    out: dict[str, Parameter] = {}
+    name, unit = candidate.labels[0]
+    for h in range(min(max(len(s) for s in sections), MOST_WAVES)):
+        word = "" if h == 0 else f"_{h + 1}"
+        here = [s[h] for s in sections if len(s) > h]
+        if len(here) > 1:
+            out[name + word] = _common_amplitude(candidate, beta, cov, blocks, here)
+            continue
+        pair = slice(here[0], here[0] + 2)
+        amplitude, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
+        out[name + word] = Parameter(amplitude, unit, low, high)
+        phase = float(np.arctan2(-beta[pair][1], beta[pair][0]))
+        spread = float(np.sqrt(np.trace(cov[pair, pair]) / 2)) / max(amplitude, 1e-300)
+        low, high = interval(phase, min(spread, 2.0), blocks)
+        out["phase" + word] = Parameter(phase, "rad", low, high)
+    return out
+
+
+def _common_amplitude(
+    candidate: Candidate, beta: Array, cov: Array, blocks: int, pairs: Sequence[int]
+) -> Parameter:
+    """One amplitude of a line whose phase is every section's own; sections that hardly show it do not
+    count."""
     found = []
-    top = max(float(np.hypot(beta[k], beta[k + 1])) for k in range(0, candidate.width, 2))
-    for k in range(0, candidate.width, 2):
+    top = max(float(np.hypot(beta[k], beta[k + 1])) for k in pairs)
+    for k in pairs:
         pair = slice(k, k + 2)
         if float(np.hypot(*beta[pair])) > 0.2 * top:
             value, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)

@@ -10,13 +10,15 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.decide.refine import refine
 from calibration.readers.run import Array
-from calibration.statistics.regression import Fit, gls
+from calibration.statistics.regression import Fit, gls, under
 from calibration.statistics.surrogate import orthonormal_blocks
 from calibration.statistics.tails import chi2_log10
+from calibration.statistics.whitening import Whitener
 
 UNNAMED = 0.85  # a smooth function must beat a named effect clearly: it can imitate most of them
 SURE = 4.0  # standard errors above zero for a coefficient that makes the effect what it is
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
+PLAIN = 2  # of them at least from the ranking on the residual as it is
 
 
 @dataclass(frozen=True)
@@ -40,29 +42,47 @@ class Look:
 
 
 def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
-    """Rank every candidate on the training rows given `base`; fit the best ones in full."""
+    """Rank every candidate on the training rows given `base`; fit the best ones in full.
+
+    The likelihoods of the best ones are then compared through one filter, that of the fit which leaves least.
+    """
     null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
     if not candidates:
         return Look(null, [])
-    share = _share(problem, null, base, candidates, True)
-    chosen: list[Contender] = []
+    fits: list[tuple[Candidate, Fit]] = []
+    for k in _worth_fitting(problem, null, base, candidates):
+        moved = refine(problem, base, null.residual, candidates[k], null.whitener)
+        fit = _fit_beside(problem, base, moved)
+        if fit is not None:
+            fits.append((moved, fit))
+    if not fits:
+        return Look(null, [])
+    common = max((fit for _, fit in fits), key=lambda f: f.loglik / f.rows).whitener
+    without = under(problem.y, base, problem.train, common)
+    chosen = [_scored(problem, base, c, fit, common, without) for c, fit in fits]
+    best: dict[object, Contender] = {}
+    for one in sorted(chosen, key=lambda c: -c.bayes):
+        best.setdefault(one.candidate.key, one)
+    return Look(null, list(best.values()))
+
+
+def _worth_fitting(problem: Problem, null: Fit, base: Array, candidates: list[Candidate]) -> list[int]:
+    """Places of the candidates that are fitted in full: the best by the whitened residual, and PLAIN more by
+    the plain one, because a filter fitted to a line's own residual takes the line away."""
+    chosen: list[int] = []
     seen: dict[object, int] = {}
-    for k in np.argsort(-share):
+    for k in np.argsort(-_share(problem, null, base, candidates, True)):
         place = (candidates[k].key, candidates[k].domain)
         if seen.get(place, 0) >= 2 or (len(chosen) >= CONTENDERS and place in seen):
             continue
-        found = fit_with(
-            problem, base, refine(problem, base, null.residual, candidates[k], null.whitener), null
-        )
-        if found is not None:
-            chosen.append(found)
-            seen[place] = seen.get(place, 0) + 1
+        chosen.append(int(k))
+        seen[place] = seen.get(place, 0) + 1
         if len(seen) >= CONTENDERS:
             break
-    best: dict[object, Contender] = {}
-    for c in sorted(chosen, key=lambda c: -c.bayes):
-        best.setdefault(c.candidate.key, c)
-    return Look(null, list(best.values()))
+    if len(null.whitener.a):
+        plain = [int(k) for k in np.argsort(-_share(problem, null, base, candidates, False))]
+        chosen += [k for k in plain[:PLAIN] if k not in chosen]
+    return chosen
 
 
 def _share(problem: Problem, null: Fit, base: Array, candidates: list[Candidate], white: bool) -> Array:
@@ -84,17 +104,34 @@ def _share(problem: Problem, null: Fit, base: Array, candidates: list[Candidate]
     return np.asarray(taken - 3.0 * np.array(widths) / len(e))
 
 
-def fit_with(problem: Problem, base: Array, candidate: Candidate, null: Fit) -> Contender | None:
+def fit_with(problem: Problem, base: Array, candidate: Candidate) -> Contender | None:
     """Fit base and candidate together; None when physics refuses the sign."""
+    fit = _fit_beside(problem, base, candidate)
+    if fit is None:
+        return None
+    without = under(problem.y, base, problem.train, fit.whitener)
+    return _scored(problem, base, candidate, fit, fit.whitener, without)
+
+
+def _fit_beside(problem: Problem, base: Array, candidate: Candidate) -> Fit | None:
     p = base.shape[1]
     fit = gls(problem.y, np.hstack([base, candidate.columns]), problem.train, problem.ar_order, problem.block)
     if not candidate.allowed(fit.beta[p:]):
         return None
-    at = slice(p, p + candidate.width)
     for k in candidate.positive:
         if fit.beta[p + k] < SURE * float(np.sqrt(fit.covariance[p + k, p + k])):
             return None
-    gain = fit.loglik - null.loglik * fit.rows / null.rows
+    return fit
+
+
+def _scored(
+    problem: Problem, base: Array, candidate: Candidate, fit: Fit, common: Whitener, without: float
+) -> Contender:
+    """The contender's evidence from its own fit, its gain from the likelihoods through the filter `common`,
+    through which the base alone has `without`."""
+    at = slice(base.shape[1], base.shape[1] + candidate.width)
+    columns = np.hstack([base, candidate.columns])
+    gain = under(problem.y, columns, problem.train, common) - without
     wald = float(fit.beta[at] @ np.linalg.pinv(fit.covariance[at, at], hermitian=True) @ fit.beta[at])
     evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0

@@ -14,7 +14,7 @@ from calibration.decide.heldout import HeldOut, compare, cross_validate
 from calibration.decide.refine import polish
 from calibration.decide.scan import Contender, Look, fit_with, look
 from calibration.readers.run import Array
-from calibration.statistics.regression import Fit, gls
+from calibration.statistics.regression import Fit, gls, under
 from calibration.statistics.surrogate import Scores
 
 MOST = 5  # effects per channel
@@ -177,8 +177,15 @@ def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
     base = design(problem, [p.candidate for j, p in enumerate(picks) if j != k])
     null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
     better = polish(problem, base, null.residual, picks[k].candidate, picks[k].fit.whitener)
-    found = fit_with(problem, base, better, null)
-    if found is not None and found.fit.loglik > picks[k].fit.loglik:
+    found = fit_with(problem, base, better)
+    if found is None:
+        return
+    common = found.fit.whitener
+    now, was = (
+        under(problem.y, np.hstack([base, c.columns]), problem.train, common)
+        for c in (found.candidate, picks[k].candidate)
+    )
+    if now > was:
         picks[k] = found
 
 
@@ -222,8 +229,7 @@ def _retest(
     keep = list(range(len(picks)))
     for k in range(len(picks) - 1):
         others = design(problem, [picks[j].candidate for j in keep if j != k])
-        null = gls(problem.y, others, problem.train, problem.ar_order, problem.block)
-        again = fit_with(problem, others, picks[k].candidate, null)
+        again = fit_with(problem, others, picks[k].candidate)
         if again is None or again.bayes <= 0:
             keep.remove(k)
             refused.append(Refusal(picks[k].candidate.say(), "superfluous once the others are in"))

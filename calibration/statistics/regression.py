@@ -60,6 +60,21 @@ def gls(y: Array, x: Array, valid: Mask, order: int, block: int = 200, rounds: i
     return Fit(beta, cov, y - x @ beta, whitener, sigma, float(loglik), n)
 
 
+def under(y: Array, x: Array, valid: Mask, whitener: Whitener) -> float:
+    """Log likelihood of y = x beta + noise on the valid rows with the noise's filter given, x refitted.
+
+    Two models are compared through one filter: each one's own filter also takes out what the other explains.
+    """
+    use = whitener.usable(valid)
+    yw = whitener.apply(np.where(valid, y, 0.0))[use]
+    e = yw
+    if x.shape[1]:
+        xw = whitener.apply(np.where(valid[:, None], x, 0.0))[use]
+        e = yw - xw @ solve(xw, yw)
+    n = max(len(e), 1)
+    return float(-n * np.log(max(float(np.sqrt(np.sum(e**2) / n)), 1e-300)))
+
+
 def block_covariance(x: Array, e: Array, block: int) -> Array:
     """Sandwich covariance with scores summed over blocks of rows, small-sample corrected."""
     n, p = x.shape

@@ -8,14 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
+from calibration.candidates.candidate import Candidate, sine_columns
 from calibration.candidates.context import direction_of, since_reversal, turning_points
 from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.frame import boxcar
+from calibration.channels.problem import Problem
+from calibration.decide.heldout import FOLDS, cross_validate, folds
+from calibration.decide.parameters import pairs_by_section
+from calibration.decide.scan import look
 from calibration.statistics.regression import gls
 from calibration.statistics.surrogate import orthonormal_blocks, score
 from calibration.statistics.tails import chi2_log10
-from calibration.statistics.whitening import fit_ar
+from calibration.statistics.whitening import Whitener, fit_ar
 
 
 def coloured(rng: np.random.Generator, n: int, a: float) -> np.ndarray:
@@ -115,3 +120,43 @@ def test_smoothing_and_second_differences_are_consistent() -> None:
     second = (theta[2 * d :] - 2 * theta[d:-d] + theta[: -2 * d]) / (d * 0.01) ** 2
     # the double sum runs one row late, so compare with the acceleration one row later
     assert second == pytest.approx(boxcar(boxcar(acceleration, d), d)[d + 1 : -d + 1], abs=1e-6)
+
+
+def regression(y: np.ndarray, base: np.ndarray, period_s: float, runs: int = 1) -> Problem:
+    n = len(y)
+    run = np.repeat(np.arange(runs), n // runs)
+    t = np.tile(np.arange(n // runs) * period_s, runs)  # every file's own time
+    nothing = np.zeros(n, dtype=bool)
+    return Problem(
+        "T", "N m", y, base, [("offset", "N m")], t, run, run, ~nothing, nothing, period_s, ar_order=4
+    )
+
+
+@pytest.mark.parametrize(("rows", "runs"), [(300, 1), (1000, 2), (6000, 3)])
+def test_every_fold_holds_rows_and_short_logs_are_predicted_too(rows: int, runs: int) -> None:
+    rng = np.random.default_rng(rows)
+    x = rng.standard_normal((rows, 1))
+    p = regression(x[:, 0] + 0.3 * rng.standard_normal(rows), np.ones((rows, 1)), 0.01, runs)
+    fold = folds(p, p.train)
+    assert np.bincount(fold, minlength=FOLDS).min() > 0.1 * rows
+    score = cross_validate(p, p.base, np.hstack([p.base, x]), Whitener(np.zeros(0)))
+    assert score.share == pytest.approx(1 - 0.09 / 1.09, abs=0.05)  # variance of what was added over all
+
+
+def test_an_exact_line_gains_through_one_filter_though_its_own_residual_is_whitened_by_another() -> None:
+    rng = np.random.default_rng(4)
+    t = np.arange(3000) * 0.01
+    columns = np.column_stack([np.cos(2 * np.pi * 0.7 * t), np.sin(2 * np.pi * 0.7 * t)])
+    p = regression(columns @ [1.0, 0.5] + 0.02 * rng.standard_normal(3000), np.ones((3000, 1)), 0.01)
+    line = Candidate("bearing_pass", "axis_angle", columns, (("amplitude", "N m"),), kind="line", order=7.0)
+    top = look(p, p.base, [line]).contenders[0]
+    # n log(rms with / rms without): sqrt(0.625 + 0.0004) over 0.02 in white noise, less through a filter
+    assert top.gain > 0.5 * 3000 * np.log(np.sqrt(0.6254) / 0.02)
+    assert top.bayes > 0
+
+
+def test_pairs_on_the_same_rows_are_harmonics_and_pairs_on_rows_of_their_own_are_sections() -> None:
+    phase, section = np.arange(600) / 97.0, np.repeat([0, 1, 2], 200)
+    assert pairs_by_section(sine_columns(phase, section)) == [[0], [2], [4]]
+    one = np.zeros(600, dtype=int)
+    assert pairs_by_section(np.hstack([sine_columns(h * phase, one) for h in (1, 2)])) == [[0, 2]]
