@@ -19,32 +19,10 @@ from calibration.readers.run import Array, Run
 Answer = tuple[Verdict, list[dict[str, str]], str]
 
 
-#: second differences of white noise averaged twice over three rows, per variance: 6 - 8 * 4/19
-AVERAGED = 6.0 - 32.0 / 19.0
-SENSORS = ("torque", "voltage", "position", "velocity")
-
-
-def white_floor(s: Selection) -> float:
-    """rms of what changes from sample to sample in the final residual on held-out rows: the sensors'
-    noise."""
-    p = s.problem
-    rows = p.test if p.test.sum() > 50 else p.valid
-    e = np.where(rows, s.after.residual, np.nan)
-    second = e[2:] - 2 * e[1:-1] + e[:-2]
-    second = second[np.isfinite(second)]
-    share = AVERAGED if s.problem.channel in "TEKS" and s.problem.sensor in SENSORS else 6.0
-    return float(np.sqrt(np.mean(second**2) / share)) if len(second) > 20 else float(np.nanstd(e))
-
-
-def error_row(s: Selection, floor: float | None = None) -> dict[str, Any]:
-    """One row of the error table."""
-    left = white_floor(s) if floor is None or floor <= 0 else floor
-    return {
-        "unit": s.problem.unit,
-        "before": s.held.before,
-        "after": s.held.after,
-        "floor": min(left, s.held.after),
-    }
+def error_row(s: Selection, floor: float | None) -> dict[str, Any]:
+    """One row of the error table; `floor` is measured apart from the fit, None where it is not known."""
+    known = floor if floor is not None and np.isfinite(floor) and floor > 0 else None
+    return {"unit": s.problem.unit, "before": s.held.before, "after": s.held.after, "floor": known}
 
 
 def errors(name: str, s: Selection, floor: float | None = None) -> dict[str, dict[str, Any]]:

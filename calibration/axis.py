@@ -13,6 +13,7 @@ from calibration.candidates import axis_torque
 from calibration.candidates import electrical as electrical_candidates
 from calibration.candidates import kinematic as kinematic_candidates
 from calibration.candidates.context import Context
+from calibration.channels import noise
 from calibration.channels.clock import clock_findings, repair_wraps
 from calibration.channels.command import command_candidates, command_problem, pulses
 from calibration.channels.electrical import (
@@ -74,7 +75,9 @@ def analyse(
     _fine(result, rng)
     _command(result, rng)
     tell("torque channel")
-    torque_channel(result, transmission(result, per_ampere, left), clock, rng)
+    drive = transmission(result, per_ampere, left)
+    torque_channel(result, drive, clock, rng)
+    result.floors = sensor_floors(result, drive)
     result.findings += delay_findings(result.selections, numbers)
     if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
         turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
@@ -82,6 +85,22 @@ def analyse(
         strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
         result.findings += [strange] if strange is not None else []
     return result
+
+
+def sensor_floors(result: AxisResult, drive: Transmission) -> dict[str, float]:
+    """Per channel, what the sensors' noise and quanta leave (channels/noise.py)."""
+    frame, m = result.frame, result.motion
+    n = noise.column_noise(frame)
+    inertia = result.calibrated["inertia"].value if "inertia" in result.calibrated else 0.0
+    resistance = result.electrical.resistance if result.electrical is not None else 0.0
+    rows = result.held[m.pick] & m.trusted[m.pick]
+    found = {
+        "T": noise.torque_floor(n, drive, inertia, m.period_s),
+        "E": noise.electrical_floor(n, resistance),
+        "K": noise.encoder_floor(n, frame, m, rows, drive),
+        "S": noise.roller_floor(n),
+    }
+    return {key: value for key, value in found.items() if value is not None}
 
 
 def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> tuple[float, dict[str, Array]]:

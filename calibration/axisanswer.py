@@ -73,7 +73,7 @@ def axis_answer(
         v.calibrated |= calibrated(result.selections["E"], ("electrical_lag",))
     for key, s in result.selections.items():
         if key in SENSORS and np.isfinite(s.held.before):
-            v.error[SENSORS[key]] = error_row(s)
+            v.error[SENSORS[key]] = error_row(s, result.floors.get(key))
     _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
     again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)

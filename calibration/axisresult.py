@@ -31,6 +31,7 @@ class AxisResult:
     findings: list[Finding] = field(default_factory=list)
     held_out: list[str] = field(default_factory=list)
     calibrated: dict[str, Parameter] = field(default_factory=dict)
+    floors: dict[str, float] = field(default_factory=dict)  # per channel, what the sensors leave
 
     def collect(self, s: Selection) -> None:
         """Take every effect that a channel's selection has chosen as a finding."""

@@ -52,7 +52,7 @@ def _worth(error: dict[str, Any], channel: str) -> str:
         return ""
     return (
         f"On data nothing was fitted to, the error goes from {row['before']:.3g} to {row['after']:.3g}"
-        f" {row['unit']} (floor {row['floor']:.2g})."
+        f" {row['unit']} (floor {'not known' if row['floor'] is None else format(row['floor'], '.2g')})."
     )
 
 

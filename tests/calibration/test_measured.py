@@ -12,7 +12,7 @@ from calibration.command import calibrate
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT.parent / "shared" / "data" / "measured"
-RIGS = ROOT / "plant" / "calibration" / "rigs"
+RIGS = ROOT / "calibration" / "rigs"
 
 pytestmark = [
     pytest.mark.slow,

@@ -13,6 +13,7 @@ from calibration.candidates.context import direction_of, since_reversal, turning
 from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.frame import boxcar
+from calibration.channels.noise import rough
 from calibration.channels.problem import Problem
 from calibration.decide.heldout import FOLDS, cross_validate, folds
 from calibration.decide.parameters import pairs_by_section
@@ -160,3 +161,13 @@ def test_pairs_on_the_same_rows_are_harmonics_and_pairs_on_rows_of_their_own_are
     assert pairs_by_section(sine_columns(phase, section)) == [[0], [2], [4]]
     one = np.zeros(600, dtype=int)
     assert pairs_by_section(np.hstack([sine_columns(h * phase, one) for h in (1, 2)])) == [[0, 2]]
+
+
+def test_the_noise_of_a_column_is_found_beside_a_smooth_motion_and_a_burst() -> None:
+    rng = np.random.default_rng(8)
+    t = np.arange(6000) * 0.01
+    x = 50 * np.sin(2 * np.pi * t / 7) + 0.3 * rng.standard_normal(6000)
+    x[3000:3010] += 40  # a transient is no noise
+    for order in (2, 4):
+        assert rough(x, order) == pytest.approx(0.3, rel=0.05)
+    assert np.isnan(rough(x[:150], 2))
