@@ -3,50 +3,21 @@ explain."""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
-from calibration.channels.guide import guide_problem, named, usable
+from calibration.channels.guide import SLOWEST_S, guide_problem, named, usable
 from calibration.channels.problem import Problem
-from calibration.decide.finding import Finding
+from calibration.decide.finding import Finding, Parameter
 from calibration.decide.heldout import cross_validate
-from calibration.decide.parameters import finding_of
+from calibration.decide.parameters import amplitude_interval, finding_of
 from calibration.decide.select import Refusal, Selection, select
+from calibration.guidemounts import SIDEREAL_DAY_S, Part, known_mount, parts
 from calibration.readers.rig import Rig
 from calibration.readers.run import Array, Run
 
-SIDEREAL_DAY_S = 86164.0905
-#: mount name in the log -> teeth of its RA worm wheel (makers' data sheets; the periods listed in the PHD2
-#: project's wiki, "Mount Worm Period Info", are the sidereal day over these)
-MOUNTS = (
-    (r"astro.?physics|\bAP ?(900|1100|1200|1600)|GTO", (225,)),
-    (r"HEQ5|Sirius|SkyScan.*HEQ", (135, 180)),
-    (r"Celestron.*AVX/", (180, 144)),  # one driver for the whole family
-    (r"EQ6|AZ-?EQ|Atlas|CGEM|CPC|LX200|EM-?200|EM-?400", (180,)),
-    (r"EQ8", (435,)),
-    (r"G11|Gemini|Losmandy", (360,)),
-    (r"CEM60|CEM70", (216,)),
-    (r"\bAVX|Advanced VX|CEM25", (144,)),
-    (r"iEQ45", (256,)),
-    (r"CGX|CGE", (180,)),
-    (r"Paramount|MYT|TheSkyX|TheSky", (576, 375, 320)),
-)
-COMMON = (
-    130,
-    135,
-    144,
-    180,
-    192,
-    216,
-    225,
-    288,
-    359,
-    360,
-    435,
-)  # wheels of mounts in use, tried when none is named
 LEAST_IN_SESSION = 1.2  # turns in a section's training part for its own phase to mean anything
 LEAST_GAIN = 0.02  # of the held-out mean square
 LEAST_ROWS = 100  # frames to fit
@@ -55,6 +26,7 @@ ON_THE_CLOCK = (
     "whole sections are held out: the worm's phase is carried there by the clock, which a slew breaks;"
     " without --hold-out the end of every section is held out"
 )
+NEXT = 0.9  # of the slowest period looked for: a found one below it lets more be drift
 LEAST_TURNS = 2.0  # worm turns in the training span below which a worm cannot be told from drift
 HARMONICS = 8
 
@@ -70,21 +42,6 @@ class GuideResult:
     held_out: list[str]
     not_identifiable: list[str]
     notes: list[str]
-
-
-def worms(runs: list[Run], rig: Rig | None) -> dict[str, float]:
-    """Turns per second of every periodic part that is known: from the rig, the mount's name, else usual
-    wheels."""
-    if rig is not None:
-        return {s.name: 1.0 / s.period_s for s in rig.stages if s.period_s}
-    teeth = known_mount(runs) or COMMON
-    return {f"worm of a {n}-tooth wheel": n / SIDEREAL_DAY_S for n in teeth}
-
-
-def known_mount(runs: list[Run]) -> tuple[int, ...]:
-    """Teeth that go with the mount's name in the log; empty when the name is not known."""
-    mount = " ".join(r.header.get("mount", "") for r in runs)
-    return next((teeth for pattern, teeth in MOUNTS if re.search(pattern, mount, re.IGNORECASE)), ())
 
 
 def harmonics(problem: Problem, rate: float, count: int) -> Array:
@@ -117,8 +74,8 @@ def longest_span(problem: Problem) -> float:
     )
 
 
-def worm_candidates(problem: Problem, name: str, rate: float, counts: tuple[int, ...]) -> list[Candidate]:
-    """One worm with different numbers of harmonics."""
+def part_candidates(problem: Problem, part: Part, counts: tuple[int, ...]) -> list[Candidate]:
+    """One part with different numbers of harmonics."""
     return [
         Candidate(
             "gear_eccentricity",
@@ -126,24 +83,25 @@ def worm_candidates(problem: Problem, name: str, rate: float, counts: tuple[int,
             columns,
             (("amplitude", problem.unit),),
             kind="line",
-            stage=name,
+            stage=part.name,
             harmonic=1,
-            order=rate * SIDEREAL_DAY_S,
-            frequency=rate,
+            order=part.rate * SIDEREAL_DAY_S,
+            frequency=part.rate,
         )
         for count in counts
-        if rate * count < 0.4 / problem.period_s and (columns := harmonics(problem, rate, count)).shape[1] > 0
+        if part.rate * count < 0.4 / problem.period_s
+        and (columns := harmonics(problem, part.rate, count)).shape[1] > 0
     ]
 
 
-def best_count(problem: Problem, selection: Selection, name: str, rate: float) -> int:
-    """Harmonics of an accepted worm that predict best the training pieces they were not fitted to.
+def best_count(problem: Problem, selection: Selection, part: Part) -> int:
+    """Harmonics of an accepted part that predict best the training pieces they were not fitted to.
 
     A worm's error is a periodic function, not a sine: its first harmonics establish the period, how many of
     them to keep is a question of prediction.
     """
     left: dict[int, tuple[float, int]] = {}
-    for c in worm_candidates(problem, name, rate, tuple(range(1, HARMONICS + 1))):
+    for c in part_candidates(problem, part, tuple(range(1, HARMONICS + 1))):
         x = np.hstack([problem.base, c.columns])
         score = cross_validate(problem, problem.base, x, selection.after.whitener)
         left[c.width] = (score.after, len(left) + 1)
@@ -155,51 +113,99 @@ def analyse_guide(runs: list[Run], rig: Rig | None, hold_out: list[str], seed: i
     runs, notes = usable(runs, hold_out)
     if not runs or not any(not named(r, hold_out) for r in runs):
         return "no section is long enough to say anything"
-    problem, names = guide_problem(runs, hold_out)
+    known = parts(runs, rig)
+    slowest = max((1.0 / part.rate for part in known), default=SLOWEST_S)
+    problem, names = guide_problem(runs, hold_out, slowest)
     if problem.train.sum() < LEAST_ROWS:
         return f"{int(problem.train.sum())} frames to fit are too few to say anything (at least {LEAST_ROWS})"
     if problem.domains:
         notes.append(ON_THE_CLOCK)
-    stages = worms(runs, rig)
     span = longest_span(problem)
-    short = [n for n, rate in stages.items() if span * rate < LEAST_TURNS]
-    candidates = [
-        c
-        for name, rate in stages.items()
-        if name not in short
-        for c in worm_candidates(problem, name, rate, (1, 2, 5, HARMONICS))
-    ]
-    candidates += free_periods(problem, stages, span)
+    short = [part for part in known if span * part.rate < LEAST_TURNS]
+    seen = [part for part in known if part not in short]
+    s = _search(problem, seen, known, span, seed)
+    if s.chosen:
+        found = max(1.0 / (c.candidate.frequency or 1.0) for c in s.chosen)
+        if found < NEXT * slowest:  # what is slower than twice the slowest that was found is drift, then
+            quicker = guide_problem(runs, hold_out, found)[0]
+            rest = [part for part in seen if part.rate * found > 0.99]
+            again = _search(quicker, rest, known, span, seed)
+            if again.chosen:
+                again.refused = s.refused + again.refused
+                problem, s = quicker, again
+    findings = [_finding(s, k) for k in range(len(s.chosen))]
+    for f in findings:
+        f.note = _note(f, known, span, rig is None and not known_mount(runs))
+    few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
+    lack = [f"{part.name} ({few})" for part in short]
+    stages = {part.name: part.rate for part in known}
+    return GuideResult(problem, s, findings, stages, names, lack, notes)
+
+
+def _search(problem: Problem, seen: list[Part], known: list[Part], span: float, seed: int) -> Selection:
+    """Select parts with a few numbers of harmonics and free periods, then give each part its best number."""
+    candidates = [c for part in seen for c in part_candidates(problem, part, (1, 2, 5, HARMONICS))]
+    candidates += free_periods(problem, known, span)
     s = settle(problem, candidates, seed)
+    by_name = {part.name: part for part in seen}
     for chosen in list(s.chosen):
-        c = chosen.candidate
-        if c.stage and c.frequency:
-            count = best_count(problem, s, c.stage, c.frequency)
+        stage = chosen.candidate.stage
+        if stage in by_name:
+            count = best_count(problem, s, by_name[stage])
             kept = {x.candidate.key for x in s.chosen if x is not chosen}
             candidates = [x for x in candidates if x.key in kept]
-            candidates += worm_candidates(problem, c.stage, c.frequency, (count,))
+            candidates += part_candidates(problem, by_name[stage], (count,))
             s = settle(problem, candidates, seed)
-    findings = [finding_of(s, k) for k in range(len(s.chosen))]
-    assumed = rig is None and not known_mount(runs)
-    for f in findings:
-        others = [
-            n for n, r in stages.items() if f.frequency and n != f.stage and abs(r - f.frequency) * span < 0.5
-        ]
-        remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
-        if f.stage and assumed:
-            remarks.insert(
-                0, "the log names no mount that is known here: the wheel is the usual one that fits"
-            )
-        f.note = "; ".join(remarks)
-    missing = [f"{n} (fewer than {LEAST_TURNS:.0f} turns in one section's fitted part)" for n in short]
-    return GuideResult(problem, s, findings, stages, names, missing, notes)
+    return s
 
 
-def free_periods(problem: Problem, stages: dict[str, float], span: float) -> list[Candidate]:
+def _note(f: Finding, known: list[Part], span: float, assumed: bool) -> str:
+    """What the report says beside a finding: neighbours within the resolution, a wheel that is assumed."""
+    others = [
+        part.name
+        for part in known
+        if f.frequency and part.name != f.stage and abs(part.rate - f.frequency) * span < 0.5
+    ]
+    remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
+    if f.stage and assumed:
+        remarks.insert(0, "the log names no mount that is known here: the wheel is the usual one that fits")
+    return "; ".join(remarks)
+
+
+def _finding(s: Selection, k: int) -> Finding:
+    """The finding with one amplitude per harmonic: the root mean square of its amplitudes in the sections,
+    whose phases are each section's own."""
+    found = finding_of(s, k)
+    problem, c = s.problem, s.chosen[k].candidate
+    sections = sum(
+        1
+        for one in np.unique(problem.session)
+        if np.any(c.columns[(problem.session == one) & problem.train] != 0)
+    )
+    at = problem.base.shape[1] + sum(x.candidate.width for x in s.chosen[:k])
+    blocks = int(problem.train.sum() / problem.block)
+    count = c.width // (2 * max(sections, 1))
+    parameters: dict[str, Parameter] = {}
+    for h in range(count):
+        spans = []
+        for one in range(sections):
+            pair = slice(at + 2 * (one * count + h), at + 2 * (one * count + h) + 2)
+            spans.append(amplitude_interval(s.after.beta[pair], s.after.covariance[pair, pair], blocks))
+        value, low, high = np.sqrt(np.mean(np.square(spans), axis=0))
+        half = (high - low) / 2 / np.sqrt(sections)
+        name = "amplitude" if h == 0 else f"amplitude_{h + 1}"
+        low, high = max(float(value - half), 0.0), float(value + half)
+        parameters[name] = Parameter(float(value), problem.unit, low, high)
+    if sections == 1:
+        parameters |= {n: p for n, p in found.parameters.items() if n.startswith("phase")}
+    return replace(found, parameters=parameters)
+
+
+def free_periods(problem: Problem, known: list[Part], span: float) -> list[Candidate]:
     """Periods that no known part has, between two turns in a section and five frames a turn."""
     if span <= 0:
         return []
-    known = [h * r for r in stages.values() for h in range(1, HARMONICS + 1)]
+    taken = [h * part.rate for part in known for h in range(1, (HARMONICS if part.worm else 2) + 1)]
     return [
         Candidate(
             "unknown",
@@ -210,7 +216,7 @@ def free_periods(problem: Problem, stages: dict[str, float], span: float) -> lis
             frequency=float(rate),
         )
         for rate in np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span)
-        if all(abs(rate - k) * span > 0.4 for k in known)
+        if all(abs(rate - k) * span > 0.4 for k in taken)
         and (columns := harmonics(problem, float(rate), 2)).shape[1] > 0
     ]
 

@@ -12,7 +12,8 @@ from calibration.decide.controls import _better, _flipped
 from calibration.decide.merge import merge
 from calibration.decide.select import Selection
 from calibration.decide.verdict import Verdict, judge
-from calibration.guide import SIDEREAL_DAY_S, GuideResult, analyse_guide, harmonics
+from calibration.guide import GuideResult, analyse_guide, harmonics
+from calibration.guidemounts import SIDEREAL_DAY_S
 from calibration.readers.rig import Rig
 from calibration.readers.run import Run
 from calibration.report import plots as draw
@@ -24,13 +25,25 @@ def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: b
     found = analyse_guide(runs, rig, hold_out)
     if isinstance(found, str):
         return (
-            Verdict("nothing", [], reasons=[found], not_identifiable=["everything: the log is too short"]),
+            Verdict(
+                "cannot tell",
+                [],
+                reasons=[found],
+                separating="guide one section for at least three turns of the worm (half an hour for most"
+                " mounts), without a slew",
+                not_identifiable=["everything: the log is too short"],
+            ),
             [],
             title,
         )
     s = found.selection
     effects = merge(found.findings)
     verdict, separating = judge(effects)
+    if not effects and found.not_identifiable:
+        verdict = "cannot tell"
+        separating = "a longer section without a slew: two turns in its first 60 %, for " + "; ".join(
+            found.not_identifiable
+        )
     v = Verdict(
         verdict,
         effects,

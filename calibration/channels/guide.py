@@ -1,17 +1,25 @@
-"""The drive error of a guided mount as a regression: an offset per segment, a drift per section, the rest."""
+"""The drive error of a guided mount as a regression: star offsets, a slow drift per section, the rest."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
 
 from calibration.channels.problem import Problem
 from calibration.errors import CalibrationInputError
 from calibration.readers.guide import start_seconds
 from calibration.readers.run import Array, Run
+from calibration.statistics.whitening import Mask
 
 LEAST_PART = 0.25  # of the longest section: shorter ones only add an offset and a drift each
 LEAST_FRAMES = 30  # in a section
 CELL_S = 3.0  # quick frames are averaged over this: the eighth harmonic of the quickest worm lasts 19 s
+DRIFT_TURNS = 2.0  # of the slowest period: what has not come round twice is not known to be periodic
+LEAST_DEGREE = 2  # of the drift: refraction and polar alignment change its rate
+SLOWEST_S = 663.0  # s, the worm of a 130-tooth wheel: the slowest of those in use
 HELD_PART = 0.4  # of every section, at its end, unless runs are named
 
 
@@ -38,9 +46,26 @@ def named(run: Run, hold_out: list[str]) -> bool:
     return bool({run.name, run.path.name, str(run.path)} & set(hold_out))
 
 
-def guide_problem(runs: list[Run], hold_out: list[str]) -> tuple[Problem, list[str]]:
+@dataclass
+class _Rows:
+    """Rows of one section on a regular grid, and where they belong."""
+
+    y: Array
+    t: Array
+    clock: Array
+    dither: Array
+    run: int
+    segment: NDArray[np.int64]
+    held: Mask
+
+
+def guide_problem(
+    runs: list[Run], hold_out: list[str], slowest_s: float = SLOWEST_S
+) -> tuple[Problem, list[str]]:
     """Problem and the names of what is held out: the end of every section, or the sections that are named.
 
+    `slowest_s` is the longest period that is looked for: what takes longer than two of it is drift, a
+    nuisance like the star's offset, of the fitted and of the held-out rows on their own.
     `session` is where a period keeps its phase: a section, because a slew between two turns the worm; when
     whole sections are held out, all of them on the clock (`domains["clock"]`), for nothing else could be
     predicted there.
@@ -53,66 +78,100 @@ def guide_problem(runs: list[Run], hold_out: list[str]) -> tuple[Problem, list[s
     unit = next(iter(units))
     frame = float(np.median(np.concatenate([np.diff(r.columns["t"]) for r in runs])))
     period = frame if 2 * frame > CELL_S else CELL_S
-    starts = [start_seconds(r) for r in runs]
-    y, t, clock, run, segment, held, names = [], [], [], [], [], [], []
-    count, offset = 0, 0.0
-    for k, r in enumerate(runs):
-        grid = np.arange(r.columns["t"][0], r.columns["t"][-1] + 1e-9, period)
-        y.append(_on_grid(r, grid, period))
-        t.append(grid - grid[0] + offset)
-        start = starts[k]
-        clock.append(t[-1] if start is None else grid + start)
-        near = np.clip(np.searchsorted(r.columns["t"], grid), 1, r.rows - 1)
-        part = r.columns["segment"][near].astype(int)
-        segment.append(part + count)
-        count += int(part.max()) + 1
-        run.append(np.full(len(grid), k))
-        test = np.full(len(grid), named(r, hold_out))
-        if not hold_out:
-            test[int((1 - HELD_PART) * len(grid)) :] = True
-            names.append(f"{r.name} from {(1 - HELD_PART) * (grid[-1] - grid[0]):.0f} s")
-        elif test.all():
-            names.append(r.name)
-        held.append(test)
-        offset = t[-1][-1] + 20 * period
-    yy, tt, rr = np.concatenate(y), np.concatenate(t), np.concatenate(run).astype(np.int64)
-    ss, hh = np.concatenate(segment), np.concatenate(held)
-    columns, labels, fresh = [], [], []
-    for s in np.unique(ss):
-        columns.append((ss == s).astype(float))
-        labels.append(("offset", unit))
-        fresh.append(columns[-1])
-    for k in range(len(runs)):
-        m = rr == k
-        columns.append(np.where(m, tt - tt[m].mean(), 0.0))
-        labels.append(("drift", f"{unit}/s"))
-        if (m & hh).sum() == m.sum():
-            fresh.append(columns[-1])
-    valid = np.isfinite(yy)
-    whole = bool(hold_out) and all(s is not None for s in starts)
+    parts, names = _sections(runs, hold_out, period)
+    y, t = np.concatenate([r.y for r in parts]), np.concatenate([r.t for r in parts])
+    run = np.concatenate([np.full(len(r.y), r.run) for r in parts]).astype(np.int64)
+    segment, held = np.concatenate([r.segment for r in parts]), np.concatenate([r.held for r in parts])
+    valid = np.isfinite(y)
+    base, labels, fresh = _nuisances(t, run, segment, valid & ~held, valid & held, slowest_s, unit)
+    dither = np.concatenate([r.dither for r in parts])
+    if np.ptp(dither) > 0:
+        base = np.column_stack([base, dither - dither.mean()])
+        labels.append(("guide_gain_error", "1"))
+    whole = bool(hold_out) and all(start_seconds(r) is not None for r in runs)
     problem = Problem(
         "K",
         unit,
-        np.where(valid, yy, 0.0),
-        np.column_stack(columns),
+        np.where(valid, y, 0.0),
+        base,
         labels,
-        tt,
-        rr,
-        np.zeros_like(rr) if whole else rr,
+        t,
+        run,
+        np.zeros_like(run) if whole else run,
         valid,
-        hh,
+        held,
         period,
         ar_order=3,
         block_s=max(12 * period, 40.0),
         sensor="position",
-        fresh=np.column_stack(fresh),
-        domains={"clock": np.concatenate(clock)} if whole else {},
+        fresh=fresh,
+        domains={"clock": np.concatenate([r.clock for r in parts])} if whole else {},
     )
-    steps = np.diff(yy)
+    steps = np.diff(y)
     steps = steps[np.isfinite(steps)]
     if len(steps):
         problem.floor = float(np.median(np.abs(steps - np.median(steps))) * 1.4826 / np.sqrt(2))
     return problem, names
+
+
+def _sections(runs: list[Run], hold_out: list[str], period: float) -> tuple[list[_Rows], list[str]]:
+    """Every section on its grid, one after another in time, and the names of what is held out."""
+    parts: list[_Rows] = []
+    names: list[str] = []
+    count, offset = 0, 0.0
+    for k, r in enumerate(runs):
+        grid = np.arange(r.columns["t"][0], r.columns["t"][-1] + 1e-9, period)
+        t = grid - grid[0] + offset
+        start = start_seconds(r)
+        near = np.clip(np.searchsorted(r.columns["t"], grid), 1, r.rows - 1)
+        segment = r.columns["segment"][near].astype(np.int64) + count
+        count = int(segment.max()) + 1
+        held = np.full(len(grid), named(r, hold_out))
+        if not hold_out:
+            held[int((1 - HELD_PART) * len(grid)) :] = True
+            names.append(f"{r.name} from {(1 - HELD_PART) * (grid[-1] - grid[0]):.0f} s")
+        elif held.all():
+            names.append(r.name)
+        clock = t if start is None else grid + start
+        dither = r.columns["dither"][near] if "dither" in r.columns else np.zeros(len(grid))
+        parts.append(_Rows(_on_grid(r, grid, period), t, clock, dither, k, segment, held))
+        offset = t[-1] + 20 * period
+    return parts, names
+
+
+def _nuisances(
+    t: Array,
+    run: NDArray[np.int64],
+    segment: NDArray[np.int64],
+    train: Mask,
+    test: Mask,
+    slowest_s: float,
+    unit: str,
+) -> tuple[Array, list[tuple[str, str]], Array]:
+    """Offsets per segment and drift per section: of the fitted rows with labels, and of the held-out rows."""
+    sides: list[list[Array]] = [[], []]
+    labels: list[tuple[str, str]] = []
+    for side, rows in enumerate((train, test)):
+        for s in np.unique(segment[rows]):
+            sides[side].append(((segment == s) & rows).astype(float))
+            labels += [("offset", unit)] * (side == 0)
+        for k in np.unique(run[rows]):
+            here = (run == k) & rows
+            drift = _drift(t, here, slowest_s)
+            sides[side] += list(drift.T)
+            labels += [("drift", unit)] * (drift.shape[1] * (side == 0))
+    empty = np.zeros((len(t), 0))
+    base, fresh = (np.column_stack(side) if side else empty for side in sides)
+    return base, labels, fresh
+
+
+def _drift(t: Array, here: Mask, slowest_s: float) -> Array:
+    """Legendre polynomials over the rows `here`, zero elsewhere: refraction and the polar axis' error bend
+    the drift, flexure bends it further; a polynomial of degree d follows d / 2 waves."""
+    span = float(np.ptp(t[here]))
+    degree = max(round(span / (DRIFT_TURNS * slowest_s / 2)), LEAST_DEGREE)
+    x = np.where(here, 2 * (t - t[here].min()) / max(span, 1e-9) - 1, 0.0)
+    return np.where(here[:, None], legvander(x, degree)[:, 1:], 0.0)
 
 
 def _on_grid(run: Run, grid: Array, period: float) -> Array:

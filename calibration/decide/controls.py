@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
+from calibration.decide.heldout import predict_residual
 from calibration.decide.select import Selection, design
 from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
@@ -94,7 +95,7 @@ def _flipped(selection: Selection, k: int) -> bool:
     without[at : at + width] = 0.0
     beta[at : at + width] *= -1
     rows = p.test
-    e1, e0 = (p.y - x @ beta)[rows], (p.y - x @ without)[rows]
+    e1, e0 = predict_residual(p, x, beta, rows), predict_residual(p, x, without, rows)
     return bool(np.mean(e1**2) < np.mean(e0**2))
 
 

@@ -2,17 +2,22 @@
 
 The open-loop drive error of a section is the raw distance plus the running sum of the earlier corrections,
 times the
-pixel scale (PHD2's own log analysis uses the same sum). A dither or a new lock position moves the star, not
-the drive:
-it starts a new segment with an offset of its own, and frames while settling are left out. PHD2 writes the
-distance it wanted to correct even when no pulse was sent (guiding disabled); such a row's RADuration is 0 and
-nothing is added.
+pixel scale (PHD2's own log analysis uses the same sum). A dither moves the star, not the drive, by the amount
+that
+its line tells, along the mount's axes: it is added. A new lock position that no dither tells starts a new
+segment
+with an offset of its own. Frames while settling are left out. PHD2 writes the distance it wanted to correct
+even
+when no pulse was sent (guiding disabled); such a row's RADuration is 0 and nothing is added.
 """
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
+from dataclasses import dataclass
 from datetime import datetime
+from math import hypot
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +30,9 @@ _BEGIN = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
 _MOUNT = re.compile(r"^Mount\s*=\s*([^,\r\n]+)", re.MULTILINE)
 _DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
 _SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
+_DITHER = re.compile(r"DITHER by ([+-]?[0-9.]+), ([+-]?[0-9.]+)")
+_LOCK = re.compile(r"[Ll]ock pos(?:ition)?\s*=\s*([+-]?[0-9.]+), ([+-]?[0-9.]+)")
+SAME_PX = 0.01  # a lock position that is written again, to PHD2's last digits
 COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
 MARKS = ("Mount", "AO", "DROP")
@@ -122,11 +130,11 @@ def _close(
     factor = _scale(path, rows[0][0], scale.group(1)) if scale else 1.0
     where = {c: k for k, c in enumerate(columns)}
     marks = {
-        "dither": [n for n, e in events if "DITHER" in e or "SET LOCK" in e],
         "off": [n for n, e in events if "Settling started" in e],
         "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e],
     }
-    t, ra, dec, segment = [], [], [], []
+    moves = _moves(text, events)
+    t, ra, dec, segment, dithered = [], [], [], [], []
     total = total_dec = 0.0
     drops = 0
     other: set[str] = set()
@@ -170,10 +178,12 @@ def _close(
             else 0.0
         )
         if np.isfinite(v["RARawDistance"]) and not _settling(line, marks):
+            by_ra, by_dec, new = moves.before(line)
             t.append(v["Time"])
-            ra.append((v["RARawDistance"] + total) * factor)
-            dec.append((d + total_dec) * factor)
-            segment.append(sum(line > n for n in marks["dither"]))
+            ra.append((v["RARawDistance"] + total + by_ra) * factor)
+            dec.append((d + total_dec + by_dec) * factor)
+            segment.append(new)
+            dithered.append(by_ra * factor)
         total += (
             v["RAGuideDistance"]
             if np.isfinite(v["RAGuideDistance"]) and _sent(fields, where.get("RADuration"))
@@ -202,12 +212,52 @@ def _close(
                 "ra": np.array(ra),
                 "dec": np.array(dec),
                 "segment": np.array(segment, dtype=float),
+                "dither": np.array(dithered),
             },
             header=header,
             notes=notes,
         )
     )
     return other
+
+
+@dataclass(frozen=True)
+class _Moves:
+    """Where the star was told to be: dithers so far (px along the axes), jumps of unknown size; by line."""
+
+    lines: list[int]
+    ra: list[float]
+    dec: list[float]
+    jumps: list[int]
+
+    def before(self, line: int) -> tuple[float, float, int]:
+        """Sums of all dithers above this line, and how many jumps there were."""
+        k = bisect_left(self.lines, line)
+        return (self.ra[k - 1], self.dec[k - 1], self.jumps[k - 1]) if k else (0.0, 0.0, 0)
+
+
+def _moves(head: str, events: list[tuple[int, str]]) -> _Moves:
+    """Dithers and new lock positions of one section; PHD2 writes the old lock position before a dither."""
+    at = _LOCK.search(head)
+    lock = (float(at[1]), float(at[2])) if at else None
+    moves = _Moves([], [], [], [])
+    ra = dec = 0.0
+    jumps = 0
+    for line, event in events:
+        dither, new = _DITHER.search(event), _LOCK.search(event)
+        if not dither and not ("SET LOCK" in event or "DITHER" in event):
+            continue
+        place = (float(new[1]), float(new[2])) if new else None
+        if dither:
+            ra, dec = ra + float(dither[1]), dec + float(dither[2])
+        elif place is None or lock is None or hypot(place[0] - lock[0], place[1] - lock[1]) > SAME_PX:
+            jumps += 1
+        lock = place or lock
+        moves.lines.append(line)
+        moves.ra.append(ra)
+        moves.dec.append(dec)
+        moves.jumps.append(jumps)
+    return moves
 
 
 def _sent(fields: list[str], at: int | None) -> bool:

@@ -11,7 +11,7 @@ import pytest
 
 from calibration.command import calibrate, read_logs
 from calibration.errors import CalibrationInputError
-from calibration.guide import SIDEREAL_DAY_S, known_mount
+from calibration.guidemounts import SIDEREAL_DAY_S, known_mount
 from calibration.readers.guide import read_guide_log
 from calibration.readers.run import Array, Run
 from tests.calibration.test_readers import GUIDE
@@ -23,18 +23,22 @@ HEAD = (
 
 
 def section(start: str, t: Array, error: Array, mount: str = "EQMOD HEQ5/6", dither: int = 0) -> str:
-    """A guiding section whose corrections take away half of every raw distance; `error` in px."""
+    """A guiding section whose corrections take away half of every raw distance; `error` in px.
+
+    `dither`: every so many frames the lock position moves by 1 px in RA, and the raw distance with it.
+    """
     out = [
         f"Guiding Begins at {start}",
         "Pixel scale = 1.00 arc-sec/px, Binning = 1, Focal length = 800 mm",
         f"Mount = {mount}, connected, guiding enabled, xAngle = -81.6",
         HEAD.strip(),
     ]
-    total = 0.0
+    total, lock = 0.0, 0.0
     for k, (at, e) in enumerate(zip(t, error, strict=True)):
         if dither and k and k % dither == 0:
-            out.append("INFO: DITHER by 1.000, 0.000, new lock pos = 5.000, 5.000")
-        raw = e - total
+            lock += 1.0
+            out.append(f"INFO: DITHER by 1.000, 0.000, new lock pos = {lock:.3f}, 5.000")
+        raw = e - total - lock
         out.append(f'{k + 1},{at:.3f},"Mount",0,0,{raw:.3f},0,{0.5 * raw:.3f},0,10,W,0,,,,999,20.0,0')
         total += round(0.5 * raw, 3)
     return "\n".join([*out, "Guiding Ends at 2026-01-01 09:00:00", "", ""])
@@ -87,10 +91,11 @@ def test_short_sections_are_left_out_and_said(tmp_path: Path) -> None:
     assert np.isfinite(data["error"]["position"]["before"])
 
 
-def test_a_log_of_ten_minutes_says_nothing(tmp_path: Path) -> None:
+def test_a_log_of_ten_minutes_cannot_tell(tmp_path: Path) -> None:
     t = np.arange(0, 600, 5.0)
     data = report(tmp_path, section("2026-01-01 20:00:00", t, 3 * np.sin(2 * np.pi * t / 478.7)))
-    assert data["verdict"] == "nothing" and data["reasons"]
+    assert data["verdict"] == "cannot tell" and data["reasons"]
+    assert "turns of the worm" in data["separating_experiment"]
 
 
 def test_a_correction_that_was_never_sent_is_not_summed_up(tmp_path: Path) -> None:

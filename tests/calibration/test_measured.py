@@ -46,21 +46,6 @@ def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_b
     assert data["error"]["torque"]["after"] < 0.8 * data["error"]["torque"]["before"]
 
 
-def test_the_worm_of_the_astro_physics_mount_is_found_with_its_period(tmp_path: Path) -> None:
-    data = report(tmp_path, "phd2/performance_dataset03.txt")
-    top = data["effects"][0]
-    assert data["verdict"] == "found" and top["name"] == "gear_eccentricity"
-    assert 1 / top["frequency_Hz"] == pytest.approx(382.95, rel=1e-4)
-    # effects.md: 2.76 to 0.39 arcsec
-    assert data["error"]["position"]["before"] == pytest.approx(2.76, rel=0.05)
-    assert data["error"]["position"]["after"] < 0.6
-
-
-def test_the_worm_of_the_heq5_is_not_supported(tmp_path: Path) -> None:
-    data = report(tmp_path, "phd2/performance_dataset02.txt")
-    assert data["verdict"] in ("nothing", "unknown")
-
-
 def test_the_servo_shows_orders_of_its_motor_and_friction_over_position(tmp_path: Path) -> None:
     data = report(tmp_path, "servo_cogging/motorCoggingTorque.txt", "servo_cogging")
     orders = {e["harmonic"] for e in data["effects"] if e["name"] == "motor_cogging"}

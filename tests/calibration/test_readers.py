@@ -165,14 +165,39 @@ Guiding Ends at 2017-02-18 22:07:41
 
 def test_a_guide_log_with_sections_drops_dither_and_settling(tmp_path: Path) -> None:
     first, second = read_guide_log(write(tmp_path / "g.txt", GUIDE))
-    # raw distance plus the sum of the earlier corrections, times the pixel scale, by hand
-    assert first.columns["ra"] == pytest.approx([0.2, 0.5, 0.7, 2.1])
-    assert first.columns["segment"].tolist() == [0, 0, 0, 1]
+    # raw distance plus the sum of the earlier corrections and dithers, times the pixel scale, by hand
+    assert first.columns["ra"] == pytest.approx([0.2, 0.5, 0.7, 4.1])
+    assert first.columns["dither"] == pytest.approx([0.0, 0.0, 0.0, 2.0])
+    assert first.columns["segment"].tolist() == [0, 0, 0, 0]
     assert first.header["drops"] == "1" and first.header["mount"] == "AstroPhysicsV2"
     assert second.columns["ra"] == pytest.approx([1.0])
     bad = GUIDE.replace('4,4.0,"Mount",0,0,0.300', '4,4.0,"Mount",0,0,far')
     with pytest.raises(CalibrationInputError, match=":17: column 'RARawDistance'"):
         read_guide_log(write(tmp_path / "b.txt", bad))
+
+
+@pytest.mark.parametrize(
+    ("event", "segments"),
+    [
+        ("INFO: SET LOCK POSITION, new lock pos = 5.000, 5.000", [0, 0, 0, 1]),  # unknown before: a jump
+        ("INFO: DITHER somewhere", [0, 0, 0, 1]),  # a dither that does not tell how far
+        ("INFO: Server received PAUSE", [0, 0, 0, 0]),
+    ],
+)
+def test_a_star_that_is_moved_by_an_unknown_amount_starts_a_new_segment(
+    tmp_path: Path, event: str, segments: list[int]
+) -> None:
+    text = GUIDE.replace("INFO: DITHER by 1.000, 0.000, new lock pos = 5.000, 5.000", event)
+    assert read_guide_log(write(tmp_path / "g.txt", text))[0].columns["segment"].tolist() == segments
+
+
+def test_a_lock_position_that_is_written_again_moves_nothing(tmp_path: Path) -> None:
+    text = GUIDE.replace("Pier side = West", "Pier side = West\nLock position = 7.0, 8.0").replace(
+        "INFO: DITHER by", "INFO: SET LOCK POSITION, new lock pos = 7.000, 8.000\nINFO: DITHER by"
+    )
+    first = read_guide_log(write(tmp_path / "g.txt", text))[0]
+    assert first.columns["segment"].tolist() == [0, 0, 0, 0]
+    assert first.columns["ra"][-1] == pytest.approx(4.1)
 
 
 RIG = """rig: bench
