@@ -13,41 +13,16 @@ from calibration.command import calibrate, read_logs
 from calibration.errors import CalibrationInputError
 from calibration.guidemounts import SIDEREAL_DAY_S, known_mount
 from calibration.readers.guide import read_guide_log
-from calibration.readers.run import Array, Run
+from calibration.readers.run import Run
+from tests.calibration import guidelogs
+from tests.calibration.guidelogs import TOP, section
 from tests.calibration.test_readers import GUIDE
-
-HEAD = (
-    "Frame,Time,mount,dx,dy,RARawDistance,DECRawDistance,RAGuideDistance,DECGuideDistance,"
-    "RADuration,RADirection,DECDuration,DECDirection,XStep,YStep,StarMass,SNR,ErrorCode\n"
-)
-
-
-def section(start: str, t: Array, error: Array, mount: str = "EQMOD HEQ5/6", dither: int = 0) -> str:
-    """A guiding section whose corrections take away half of every raw distance; `error` in px.
-
-    `dither`: every so many frames the lock position moves by 1 px in RA, and the raw distance with it.
-    """
-    out = [
-        f"Guiding Begins at {start}",
-        "Pixel scale = 1.00 arc-sec/px, Binning = 1, Focal length = 800 mm",
-        f"Mount = {mount}, connected, guiding enabled, xAngle = -81.6",
-        HEAD.strip(),
-    ]
-    total, lock = 0.0, 0.0
-    for k, (at, e) in enumerate(zip(t, error, strict=True)):
-        if dither and k and k % dither == 0:
-            lock += 1.0
-            out.append(f"INFO: DITHER by 1.000, 0.000, new lock pos = {lock:.3f}, 5.000")
-        raw = e - total - lock
-        out.append(f'{k + 1},{at:.3f},"Mount",0,0,{raw:.3f},0,{0.5 * raw:.3f},0,10,W,0,,,,999,20.0,0')
-        total += round(0.5 * raw, 3)
-    return "\n".join([*out, "Guiding Ends at 2026-01-01 09:00:00", "", ""])
 
 
 def night(teeth: int, phases: list[float], amplitude: float = 3.0, seed: int = 5, **more: Any) -> str:
     """Sections of 80 minutes with a worm at its own phase in each, drift and star noise."""
     rng = np.random.default_rng(seed)
-    text = "PHD2 version 2.6.13 [Windows], Log version 2.5. Log enabled at 2026-01-01 20:00:00\n\n"
+    text = TOP
     for k, phase in enumerate(phases):
         t = np.arange(0, 4800, 5.0) + rng.uniform(0, 0.3, 960)
         worm = amplitude * np.sin(2 * np.pi * teeth / SIDEREAL_DAY_S * t + phase)
@@ -156,3 +131,28 @@ def test_code_pages_byte_order_marks_decimal_commas_in_the_scale_and_a_cut_end_a
 )
 def test_the_wheel_follows_from_the_mounts_name_or_is_not_assumed(name: str, teeth: tuple[int, ...]) -> None:
     assert known_mount([Run("a", Path("a"), "a", {}, header={"mount": name})]) == teeth
+
+
+@pytest.mark.slow
+def test_worm_free_nights_of_fresh_seeds_get_no_worm(tmp_path: Path) -> None:
+    """Seeds that nothing was set on (0 to 29 were): one wrong name in eight would be too many."""
+    for seed in range(500, 508):
+        text, _, _ = guidelogs.night(seed, 0.0)
+        (tmp_path / str(seed)).mkdir()
+        assert report(tmp_path / str(seed), text)["effects"] == [], seed
+
+
+@pytest.mark.slow
+def test_worms_of_fresh_seeds_are_named_where_the_mount_is_known(tmp_path: Path) -> None:
+    """A worm of 4 arcsec in a wander of 1 to 3: the right wheel, or none, never another one."""
+    named = 0
+    for seed in range(600, 606):
+        text, mount, teeth = guidelogs.night(seed, 4.0)
+        (tmp_path / str(seed)).mkdir()
+        data = report(tmp_path / str(seed), text)
+        stages = [e["stage"] for e in data["effects"] if e["stage"]]
+        rate = teeth / SIDEREAL_DAY_S
+        for e in data["effects"]:
+            assert not e["stage"] or abs(e["frequency_Hz"] - rate) * 7000 < 1.0, (seed, mount, stages)
+        named += bool(stages)
+    assert named >= 4
