@@ -27,7 +27,7 @@ def sent(port: Port) -> None:
 def received(ports: Iterable[Port]) -> None:
     """A frame came in well."""
     for port in ports:
-        if port.rec:
+        if port.rec and not port.listen_only:
             port.rec = _REC_AFTER_PASSIVE_OK if port.rec > PASSIVE_ABOVE else port.rec - 1
 
 
@@ -45,4 +45,6 @@ def receive_failed(ports: Iterable[Port], first: Port | None = None) -> None:
     """Receivers saw an error; `first` was alone in seeing it and then sees the others' flags after its
     own."""
     for port in ports:
+        if port.listen_only:
+            continue
         port.rec = min(port.rec + (9 if port is first and port.state == "active" else 1), _REC_MAX)

@@ -81,11 +81,11 @@ def seen_by_receiver(frame: Frame, bit: int) -> Verdict | None:
         return None
     wire[bit] ^= 1
     start = wire.index(0)  # a receiver that missed SOF takes the next dominant bit for it
-    verdict = _receive(wire[start:])
+    verdict = receive(wire[start:])
     return verdict and verdict._replace(detected_bit=verdict.detected_bit + start)
 
 
-def _receive(wire: list[int]) -> Verdict | None:
+def receive(wire: list[int]) -> Verdict | None:
     """A receiver's own view of the bits of one frame."""
     plain: list[int] = []
     run, last, end = 0, -1, None

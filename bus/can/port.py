@@ -1,10 +1,11 @@
 """One node's connection to a wire: what its CAN controller drives."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from bus.can.frame import Frame, arbitration_key
 from bus.can.length import frame_bits, plain_bits
+from bus.can.sampling import BitTiming
 
 if TYPE_CHECKING:
     from bus.can.wire import Wire
@@ -31,6 +32,28 @@ class Offer(NamedTuple):
     bits: int
 
 
+class Watcher(Protocol):
+    """A controller that wants to know what befalls its node, not only what is sent and received.
+
+    A wire with a watcher on it is decided when it happens: exact, and slower than the planned one.
+    """
+
+    def began(self, t_ns: int) -> None:
+        """The node's own frame has won the bus; its start of frame was a bit before `t_ns`."""
+
+    def lost(self, t_ns: int) -> None:
+        """The node's frame lost arbitration; it stays in its buffer unless the watcher withdraws it."""
+
+    def failed(self, t_ns: int, *, sending: bool) -> None:
+        """An error frame ended what the node was sending or receiving; a sent one will be tried again."""
+
+    def counted(self, t_ns: int) -> None:
+        """TEC or REC may have changed."""
+
+    def activity(self, t_ns: int) -> None:
+        """A frame has started on the wire while the node was asleep."""
+
+
 class Port:
     """A node on a wire; made by `Wire.attach`.
 
@@ -42,13 +65,17 @@ class Port:
     """
 
     __slots__ = (
+        "_asleep",
         "_bus_off",
         "_filters",
         "_free",
+        "_listen_only",
         "_on_receive",
         "_online",
         "_quiet_ns",
         "_routes",
+        "_timing",
+        "_watcher",
         "_wire",
         "name",
         "on_sent",
@@ -69,6 +96,10 @@ class Port:
         self._filters: tuple[tuple[int, int], ...] | None = None
         self._on_receive: Receive | None = None
         self._routes: dict[int, tuple[Receive, ...]] = {}
+        self._watcher: Watcher | None = None
+        self._listen_only = False
+        self._timing: BitTiming | None = None
+        self._asleep = False
 
     @property
     def state(self) -> State:
@@ -98,6 +129,54 @@ class Port:
         if on != self._online:
             self._online = on
             self._wire._switched(self)
+
+    @property
+    def watcher(self) -> Watcher | None:
+        """Who is told of errors, lost arbitrations and counters; None: nobody."""
+        return self._watcher
+
+    @watcher.setter
+    def watcher(self, watcher: Watcher | None) -> None:
+        self._watcher = watcher
+        self._wire._trouble.check()
+
+    @property
+    def listen_only(self) -> bool:
+        """True: the node hears and never drives the bus: no acknowledge, no error flag, no counting."""
+        return self._listen_only
+
+    @listen_only.setter
+    def listen_only(self, silent: bool) -> None:
+        if silent != self._listen_only:
+            self._listen_only = silent
+            self._wire._trouble.check()
+            self._wire._forget_routes()
+
+    @property
+    def asleep(self) -> bool:
+        """True: off, but the next frame wakes it: its watcher hears of it."""
+        return self._asleep
+
+    @asleep.setter
+    def asleep(self, asleep: bool) -> None:
+        self._asleep = asleep
+        self._wire._trouble.check()
+
+    @property
+    def timing(self) -> BitTiming | None:
+        """Bit timing of the node's controller; None: the wire's own rate, exactly."""
+        return self._timing
+
+    @timing.setter
+    def timing(self, timing: BitTiming | None) -> None:
+        if timing is not None and timing.fits(self._wire.bit_ns):
+            timing = None
+        self._timing = timing
+        self._wire._trouble.check()
+
+    def withdraw(self, frame: Frame) -> bool:
+        """Take a frame that is not on the bus yet out of its buffer; False: it has begun, or is not here."""
+        return self._wire._withdraw(self, frame)
 
     def accept(self, filters: Sequence[tuple[int, int]] | None) -> None:
         """Let through identifiers with `identifier & mask == code & mask` for any (mask, code); None:

@@ -59,6 +59,8 @@ class Recovery:
             del self._back_at[port]
             port._bus_off = False
             port.tec = port.rec = 0
+            if port.watcher is not None:
+                port.watcher.counted(t_ns)
         if back:
             wire._forget_routes()
             wire._trouble.check()

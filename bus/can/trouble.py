@@ -26,6 +26,7 @@ from bus.can.disturbance import (
 from bus.can.frame import Frame
 from bus.can.port import Entry, Offer, Port, Receive
 from bus.can.recovery import Recovery
+from bus.can.strangers import Strangers
 
 if TYPE_CHECKING:
     from bus.can.wire import Wire
@@ -36,6 +37,11 @@ _RECESSIVE_TAIL_BITS = 1 + 7
 _OVERLOAD_BITS = OVERLOAD_FLAG_BITS + 1 + OVERLOAD_DELIMITER_BITS
 """One receiver begins its overload flag in the first bit of intermission; the others see that bit and begin
 theirs one bit later."""
+
+
+def _needs_care(port: Port) -> bool:
+    """Whether a node makes its wire decide everything when it happens."""
+    return bool(port.watcher or port.timing or port.listen_only or port.asleep)
 
 
 class Trouble:
@@ -62,6 +68,7 @@ class Trouble:
             or len(live) < 2
             or self._recovery.pending
             or any(port.tec or port.rec for port in live)
+            or any(_needs_care(port) for port in wire.ports)
         )
         if near and not wire._near:
             wire.trouble_nears()
@@ -97,11 +104,29 @@ class Trouble:
             if offer.key == winner.key and offer.port is not winner.port:
                 rivals.setdefault(offer.port, offer)
         self._twins, self._excluded, self._overload = [], [], False
+        self._wake(sof_ns + wire.bit_ns)
         for rival in rivals.values():
             winner = self._collide(winner, rival, sof_ns)
             if wire._free_ns > sof_ns:
                 return  # it ended in an error frame
         self._judge(winner, sof_ns)
+        self._tell(winner, ready, sof_ns + wire.bit_ns)
+
+    def _wake(self, t_ns: int) -> None:
+        """Nodes asleep wake up at the start of a frame, and miss this one."""
+        for port in self._wire.ports:
+            if port.asleep and port.watcher is not None:
+                self._excluded.append(port)
+                port.watcher.activity(t_ns)
+
+    def _tell(self, winner: Offer, ready: list[Offer], t_ns: int) -> None:
+        """Tell watchers who has begun and who has lost."""
+        if winner.port.watcher is not None:
+            winner.port.watcher.began(t_ns)
+        told = {winner.port, *(twin.port for twin in self._twins)}
+        for port in dict.fromkeys(offer.port for offer in sorted(ready)):
+            if port not in told and port.watcher is not None:
+                port.watcher.lost(t_ns)
 
     def _collide(self, one: Offer, other: Offer, sof_ns: int) -> Offer:
         """Two nodes send one identifier: whoever sends the first recessive bit that differs has a bit
@@ -118,6 +143,8 @@ class Trouble:
             # Its recessive flag disturbs nobody: the other frame goes on.
             self.errors["bit"] += 1
             self._sender_failed(loser.port, "bit")
+            if loser.port.watcher is not None:
+                loser.port.watcher.failed(sof_ns, sending=True)
             loser.port._quiet_ns = sof_ns + (winner.bits + confinement.SUSPEND_BITS) * self._wire.bit_ns
             return winner
         self._fail(winner, Verdict("bit", index), sof_ns, also=loser.port)
@@ -133,22 +160,33 @@ class Trouble:
             first = next((port for port in listeners if port.name == flip.seen_by), None)
             if first is None and not everyone:
                 verdict = None  # that node is off, or not here
-            if verdict is not None and first is not None and first.state == "passive":
-                # Its recessive flag disturbs nobody: it just misses the frame.
+            if verdict is not None and first is not None and (first.state == "passive" or first.listen_only):
+                # Its flag is recessive, or there is none: it just misses the frame.
                 self.errors[verdict.kind] += 1
                 confinement.receive_failed([first])
                 self._excluded.append(first)
+                self._tell_failed([first], sof_ns)
                 verdict = None
             if verdict is not None:
                 self._fail(offer, verdict, sof_ns, first=first)
                 return
             self._overload = first is not None and overloads(offer.frame, flip.bit)
-        if not listeners:
+        heard = Strangers(self._wire, offer, listeners).judge()
+        for port in heard.deaf:
+            self.errors["stuff"] += 1
+            self._excluded.append(port)
+            confinement.receive_failed([port])
+            self._tell_failed([port], sof_ns)
+        if heard.error_bit is not None:
+            self._fail(offer, Verdict("bit", heard.error_bit), sof_ns, first=heard.first)
+            return
+        offer = heard.offer
+        if not heard.acknowledged:
             self._fail(
                 offer, Verdict("ack", offer.bits - INTERMISSION_BITS - _RECESSIVE_TAIL_BITS - 1), sof_ns
             )
             return
-        wire._remove(offer)
+        wire._remove(heard.entry)
         wire._begin(offer, sof_ns)
         if self._overload:
             wire._free_ns += _OVERLOAD_BITS * wire.bit_ns
@@ -201,11 +239,22 @@ class Trouble:
         for port in senders:
             if port.state == "passive":
                 port._quiet_ns = wire._free_ns + confinement.SUSPEND_BITS * wire.bit_ns
+        for port in senders:
+            if port.watcher is not None:
+                port.watcher.failed(t_ns, sending=True)
+        self._tell_failed(receivers, t_ns)
         self.check()
         wire._await_ready()
         if verdict.received:
             for call in wire._calls(receivers, offer.frame):
                 call(t_ns, offer.frame)
+
+    @staticmethod
+    def _tell_failed(ports: list[Port], t_ns: int) -> None:
+        """Tell receivers' watchers of an error and of their counters."""
+        for port in ports:
+            if port.watcher is not None:
+                port.watcher.failed(t_ns, sending=False)
 
     def _sender_failed(self, port: Port, kind: ErrorKind) -> None:
         if port.online and confinement.send_failed(port, acknowledge=kind == "ack"):
@@ -236,6 +285,9 @@ class Trouble:
                 port._quiet_ns = wire._free_ns + confinement.SUSPEND_BITS * wire.bit_ns
         listeners = self.listeners(offer.port)
         confinement.received(listeners)
+        for port in (*senders, *listeners):
+            if port.watcher is not None:
+                port.watcher.counted(t_ns)
         self._twins, self._excluded = [], []
         self.check()
         return wire._calls(listeners, offer.frame)

@@ -174,6 +174,16 @@ class Wire:
         self._trouble.decide(t_ns - self.bit_ns)
         self._decided_ns = t_ns - 1  # what has begun here is no plan any more
 
+    def _withdraw(self, port: Port, frame: Frame) -> bool:
+        unplanned = self._unplan()
+        found = next((offer for offer in self._waiting if offer[3] is port and offer[4] == frame), None)
+        if found is not None:
+            self._remove(found)
+            port._free += 1
+        if unplanned:
+            self._await_ready()
+        return found is not None
+
     def _remove(self, offer: Entry) -> None:
         self._waiting.remove(offer)
         heapify(self._waiting)
