@@ -130,7 +130,13 @@ def bare(requirement: str) -> str:
 
 def package(name: str) -> str:
     """The package that an imported module comes from."""
-    return {"yaml": "pyyaml", "can": "python-can", "erfa": "pyerfa", "serial": "pyserial"}.get(name, name)
+    return {
+        "yaml": "pyyaml",
+        "can": "python-can",
+        "erfa": "pyerfa",
+        "serial": "pyserial",
+        "adafruit_mcp2515": "adafruit-circuitpython-mcp2515",
+    }.get(name, name)
 
 
 def test_every_dependency_has_a_reason_and_every_reason_a_dependency() -> None:
