@@ -2,7 +2,7 @@
 
 import can
 
-from bus.can.frame import Frame, FrameError
+from bus.can.frame import MAX_DATA_BYTES, Frame, FrameError
 
 
 def to_message(frame: Frame, t_ns: int, channel: str | None = None, is_rx: bool = True) -> can.Message:
@@ -24,5 +24,9 @@ def to_frame(message: can.Message) -> Frame:
     if message.is_fd or message.is_error_frame:
         kind = "a CAN FD frame" if message.is_fd else "an error frame"
         raise FrameError(f"{kind} ({message.arbitration_id:#x}) cannot go onto a CAN 2.0 wire")
+    if not isinstance(message.arbitration_id, int):
+        raise FrameError(f"{message.arbitration_id!r} is no identifier")
+    if message.is_remote_frame and not 0 <= message.dlc <= MAX_DATA_BYTES:
+        raise FrameError(f"{message.dlc!r} is no length of a CAN 2.0 frame")
     data = bytes(message.dlc) if message.is_remote_frame else bytes(message.data)
-    return Frame(message.arbitration_id, data, message.is_extended_id, message.is_remote_frame)
+    return Frame(message.arbitration_id, data, bool(message.is_extended_id), bool(message.is_remote_frame))

@@ -11,6 +11,10 @@ import click
 
 UNUSABLE = 2
 INTERRUPTED = 130
+SPEED = click.FloatRange(0.01, 1000)
+"""`bus.pacer` has the same bounds; not imported here, so that the command starts at once."""
+SEED = click.IntRange(0, 2**63 - 1)
+SECONDS = click.FloatRange(min=0, min_open=True, max=1e7)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -82,23 +86,68 @@ def paper(
 
 @cli.command()
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
-@click.option("--can", "channel", required=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0.")
-@click.option("--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, show_default=True)
-@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's.")
+@click.option(
+    "--can", multiple=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0; repeatable."
+)
+@click.option(
+    "--serial",
+    multiple=True,
+    metavar="pty:DIR|tcp:PORT|rfc2217:PORT",
+    help="The five RS232 lines: pseudo-terminals named in DIR, or five TCP ports from PORT on.",
+)
+@click.option(
+    "--hid", multiple=True, metavar="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket."
+)
+@click.option("--control", metavar="[HOST:]PORT", help="Speed, pause, status, stop (see schmidt control).")
+@click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
+@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
+@click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
-@click.option("--duration", type=click.FloatRange(min=0, min_open=True), help="End after this many seconds.")
+@click.option("--duration", type=SECONDS, help="End after this many seconds.")
+@click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
     scenario: Path | None,
-    channel: str,
+    can: tuple[str, ...],
+    serial: tuple[str, ...],
+    hid: tuple[str, ...],
+    control: str | None,
+    token: str | None,
     speed: float,
     seed: int | None,
     plant: str | None,
     duration: float | None,
+    record: Path | None,
 ) -> None:
-    """Pace the network in real time and join it to a python-can interface; its boards answer to anyone."""
+    """Pace the network in real time and open its doors; its boards answer to anyone."""
+    from scenarios.doors.options import DoorOptions
     from scenarios.serve import serve as command
 
-    sys.exit(command(scenario, channel, speed, seed, plant, duration))
+    options = DoorOptions(can=can, serial=serial, hid=hid, control=control, token=token)
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record))
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: FOLDER-replayed).")
+def replay(folder: Path, out: Path | None) -> None:
+    """Run a session again that serve --record left in FOLDER (exit 0: to the same digest)."""
+    from scenarios.doors.replay import replay as command
+
+    again, before = command(folder, out or folder.with_name(folder.name + "-replayed"))
+    same = "" if before is None else " as recorded" if again == before else f", recorded was {before[:16]}"
+    click.echo(f"digest {again[:16]}{same}")
+    sys.exit(0 if before in (None, again) else 1)
+
+
+@cli.command()
+@click.argument("command", nargs=-1, required=True)
+@click.option("--at", default="127.0.0.1:7411", show_default=True, metavar="[HOST:]PORT")
+@click.option("--token", help="The word serve has printed; for other machines.")
+def control(command: tuple[str, ...], at: str, token: str | None) -> None:
+    """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop."""
+    from scenarios.doors.tell import tell
+
+    click.echo(tell(" ".join(command), at, token))
 
 
 @cli.command()

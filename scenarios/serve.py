@@ -1,84 +1,169 @@
-"""`schmidt serve [SCENARIO] --can INTERFACE:CHANNEL [--speed X]`: the network in real time, for others
-to join."""
+"""`schmidt serve [SCENARIO] [doors]`: the network in real time, for others to join."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
 
-from bus.door import Door
-from bus.external import open_bus
-from bus.pacer import Pacer
-from scenarios.network import Network
-from scenarios.served import network
+from bus.pacer import checked_speed
+from scenarios.doors import Door, Keeper, Served
+from scenarios.doors.interrupt import interrupts
+from scenarios.doors.options import DoorOptions, make_doors
+from scenarios.doors.parking import park
+from scenarios.doors.recording import Recording
+from scenarios.served import chosen, wire
 
 _STATUS_S = 1.0
+_WARM_NS = 20_000_000
 
 
 def serve(
-    scenario: Path | None,
-    can: str,
+    scenario_file: Path | None,
+    options: DoorOptions,
     speed: float = 1.0,
     seed: int | None = None,
     plant: str | None = None,
     duration_s: float | None = None,
+    record: Path | None = None,
 ) -> int:
-    """Pace the network and join it to the bus `can` names, until Ctrl-C or `duration_s` (wall time).
+    """Pace the network with its doors open, until Ctrl-C, `schmidt control stop`, or `duration_s` (wall).
 
     The scenario's steps are not run (see `scenarios.served`). Returns the exit status, 0; raises ValueError
-    subclasses with one line for input that cannot be used.
+    subclasses and OSError with one line for input that cannot be used.
     """
     console = Console()
-    with open_bus(can) as outside, console.status("starting (the first time compiles)") as line:
-        served = network(scenario, seed, plant)
-        served.run_until(1)  # every kernel is compiled before the clock starts
-        door = Door(served.queue, served.wire, outside)
-        pacer = Pacer(served.queue, speed)
-        status = _Status(served, door, pacer, duration_s)
-        boards = len(served.boards)
-        console.print(f"serving {boards} boards on {can} at {speed:g} times real time; Ctrl-C ends it")
+    checked_speed(speed)
+    options.check()
+    scenario, model = chosen(scenario_file, seed, plant)
+    with console.status("starting (the first time compiles)") as line:
+        recording = Recording(record, scenario, model) if record is not None else None
+        served = Served(scenario, model, speed, recording)
+        doors = make_doors(options, served)
+        if recording is not None:
+            recording.attach(served)
+        wire(scenario, model).run_until(
+            _WARM_NS
+        )  # another one, so that all is compiled before the clock starts
+        keepers = [Keeper(door, console.print) for door in doors]
         try:
-            pacer.run(each_slice=lambda: status.slice(line.update))
-        except KeyboardInterrupt:
-            pass
+            for keeper in keepers:
+                keeper.open()
+            _say_hello(console, served, doors)
+            loop = _Loop(served, keepers, console, line.update, duration_s, recording)
+            with interrupts(served.stop):
+                loop.run()
         finally:
-            door.close()
-    console.print(status.text())
+            for keeper in keepers:
+                keeper.close()
+            ended = park(served)
+            digest = recording.close(served.now_ns) if recording is not None else ""
+    console.print(loop.text())
+    for door in doors:
+        console.print(f"  {door.name}: {door.state()}")
+    console.print(f"{served.punctual.text()}; {ended}")
+    if recording is not None:
+        console.print(f"recorded in {record}, digest {digest[:16]}; schmidt replay {record} repeats it")
     return 0
 
 
-class _Status:
-    """Looks outside before every slice, says once a second how things stand, and knows when time is up."""
+def _say_hello(console: Console, served: Served, doors: Sequence[Door]) -> None:
+    on = ", ".join(door.name.partition(" ")[2] or door.name for door in doors)
+    boards, speed = len(served.network.boards), served.pacer.speed
+    console.print(f"serving {boards} boards on {on} at {speed:g} times real time; Ctrl-C ends it")
 
-    def __init__(self, served: Network, door: Door, pacer: Pacer, duration_s: float | None) -> None:
+
+class _Loop:
+    """Looks at the doors before every slice and says once a second how things stand."""
+
+    def __init__(
+        self,
+        served: Served,
+        keepers: Sequence[Keeper],
+        console: Console,
+        show: Callable[[str], None],
+        duration_s: float | None,
+        recording: Recording | None,
+    ) -> None:
         self._served = served
-        self._door = door
-        self._pacer = pacer
+        self._keepers = keepers
+        self._console = console
+        self._show = show
+        self._recording = recording
         self._start_s = perf_counter()
-        self._start_ns = served.queue.now_ns
+        self._start_ns = served.now_ns
         self._next_s = self._start_s + _STATUS_S
-        self._end_s = None if duration_s is None else self._start_s + duration_s
+        self._second = (self._start_s, self._start_ns, 0)
+        self._slow = False
+        self._duration_s = duration_s
+        self._end_s: float | None = None
+        self._end_wall_s = self._start_s
 
-    def slice(self, show: Callable[[str], None]) -> bool:
-        """Between two slices; True when time is up."""
-        self._door.poll()
+    def run(self) -> None:
+        """Until somebody ends it."""
+        gc.collect()
+        gc.freeze()  # a collection that walks the whole network makes a tick late
+        served = self._served
+        self._start_s = now_s = perf_counter()
+        self._next_s = now_s + _STATUS_S
+        self._second = (now_s, served.now_ns, 0)
+        self._end_s = None if self._duration_s is None else now_s + self._duration_s
+        try:
+            served.pacer.run(each_slice=self._slice)
+        finally:
+            served.entry.running = False
+            served.punctual.counting = False
+            self._end_wall_s = perf_counter()
+            gc.unfreeze()
+
+    def _slice(self) -> bool:
+        """Between two slices; True when it is over."""
+        served = self._served
+        served.entry.running = False
+        now_ns = served.now_ns
+        for keeper in self._keepers:
+            keeper.poll(now_ns)
         now_s = perf_counter()
         if now_s >= self._next_s:
-            self._next_s = now_s + _STATUS_S
-            show(self.text())
-        return self._end_s is not None and now_s >= self._end_s
+            self._each_second(now_s)
+        served.entry.running = True
+        return served.ending or (self._end_s is not None and now_s >= self._end_s)
+
+    def _each_second(self, now_s: float) -> None:
+        self._next_s = now_s + _STATUS_S
+        self._end_wall_s = now_s
+        self._show(self.text())
+        if self._recording is not None:
+            self._recording.flush()
+        self._keeping_up(now_s)
+
+    def _keeping_up(self, now_s: float) -> None:
+        """Say it once when the machine is too slow, and once when it is quick enough again."""
+        served = self._served
+        before_s, before_ns, slips = self._second
+        self._second = (now_s, served.now_ns, served.pacer.slips)
+        pace = (served.now_ns - before_ns) * 1e-9 / max(now_s - before_s, 1e-9)
+        slow = served.pacer.slips > slips
+        if slow and not self._slow:
+            wanted = served.pacer.speed
+            self._console.print(
+                f"this machine cannot keep up: {pace:.2f} of {wanted:g} times real time; "
+                "time runs slower, no frame is lost"
+            )
+        elif self._slow and not slow:
+            self._console.print(f"keeping up again at {pace:.2f} times real time")
+        self._slow = slow
 
     def text(self) -> str:
         """One line of how things stand."""
-        now_ns = self._served.queue.now_ns
-        wall_s = max(perf_counter() - self._start_s, 1e-9)
-        pace = (now_ns - self._start_ns) * 1e-9 / wall_s
-        door, pacer = self._door, self._pacer
-        lost = door.lost_in + door.lost_out + door.rejected
+        served = self._served
+        pace = (served.now_ns - self._start_ns) * 1e-9 / max(self._end_wall_s - self._start_s, 1e-9)
+        paused = ", paused" if served.pacer.paused else ""
         return (
-            f"{now_ns * 1e-9:.1f} s simulated at {pace:.2f} times real time, "
-            f"bus load {self._served.wire.load:.1%}, "
-            f"{door.frames_in} frames in, {door.frames_out} out, {lost} lost, "
-            f"{pacer.lateness_s * 1e3:.1f} ms late (worst {pacer.worst_lateness_s * 1e3:.0f} ms)"
+            f"{served.now_ns * 1e-9:.1f} s simulated at {pace:.2f} times real time{paused}, "
+            f"bus load {served.network.wire.load:.1%}, {served.entry.count} entries, "
+            f"{served.pacer.worst_lateness_s * 1e3:.0f} ms late at worst"
         )

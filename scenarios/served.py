@@ -1,38 +1,56 @@
 """The network as it stands before anybody commands it: what `serve` and the conformance checks work on."""
 
+from __future__ import annotations
+
 import datetime as dt
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from host.sky.observed import Clock
 from scenarios.model import Scenario
 from scenarios.network import Network, build, config_from
 
+if TYPE_CHECKING:
+    from plant.model import PlantModel
+
 _UNUSED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 """Nothing here looks at the sky, so the date is of no account."""
 
 
-def network(scenario_file: Path | None = None, seed: int | None = None, plant: str | None = None) -> Network:
-    """Plant, boards and bus of a scenario, or of the lab network when None, parked and powered up.
+def chosen(
+    scenario_file: Path | None = None, seed: int | None = None, plant: str | None = None
+) -> tuple[Scenario, PlantModel]:
+    """Scenario and plant of a file, or of the lab network when None.
 
-    The scenario's network, plant, mount, seed and faults count; its steps are not run: whoever is on the bus
-    commands. Raises ValueError subclasses with one line for what cannot be used.
+    Raises ValueError subclasses with one line for what cannot be used.
+    """
+    from scenarios.load import DEFAULT_PLANT
+    from scenarios.plants import plant_model
+    from scenarios.run import prepare
+
+    if scenario_file is not None:
+        return prepare(scenario_file, seed, plant)
+    scenario = Scenario(Path("lab"), "lab", "", _UNUSED, (), seed=1 if seed is None else seed)
+    return scenario, plant_model({"file": plant or DEFAULT_PLANT}, Path())
+
+
+def wire(scenario: Scenario, model: PlantModel) -> Network:
+    """Plant, boards and bus of a scenario, parked and powered up, with its faults.
+
+    Its steps are not run: whoever is on the bus commands.
     """
     from plant.plant import Plant
     from scenarios import faults
-    from scenarios.plants import plant_model
-    from scenarios.run import prepare
     from scenarios.session import soft_limits, start_steps
 
-    if scenario_file is None:
-        scenario = Scenario(Path("lab"), "lab", "", _UNUSED, (), seed=1 if seed is None else seed)
-        from scenarios.load import DEFAULT_PLANT
-
-        model = plant_model({"file": plant or DEFAULT_PLANT}, Path())
-    else:
-        scenario, model = prepare(scenario_file, seed, plant)
     pins = Plant(model, scenario.seed, start_steps(scenario))
     faults.stick_sensors(pins, scenario.faults)
     config = config_from(scenario.network, soft_limits(scenario))
     made = build(config, pins, scenario.seed)
     faults.apply(made, scenario.faults, scenario.seed)
     return made
+
+
+def network(scenario_file: Path | None = None, seed: int | None = None, plant: str | None = None) -> Network:
+    """Both in one: what the checks in this process work on."""
+    return wire(*chosen(scenario_file, seed, plant))

@@ -34,7 +34,7 @@ class Session:
     def __init__(self, scenario: Scenario, model: PlantModel, folder: Path) -> None:
         self.scenario = scenario
         self.plant = Plant(model, scenario.seed, start_steps(scenario))
-        self.recorder = Recorder(folder, scenario, self.plant, _headers(scenario, model))
+        self.recorder = Recorder(folder, scenario, self.plant, log_headers(scenario, model))
         faults.stick_sensors(self.plant, scenario.faults)
         config = config_from(scenario.network, soft_limits(scenario))
         self.network: Network = build(config, self.plant, scenario.seed)
@@ -119,7 +119,7 @@ def soft_limits(scenario: Scenario) -> dict[str, tuple[int, int]]:
     return {name: (scale.low_steps, scale.high_steps) for name, scale in scales.items()}
 
 
-def _headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]:
+def log_headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]:
     """Header of each axis log; `loop` is open when every step that moves the axis directly is open loop."""
     stamp = scenario.clock.iso(0.0)
     name = model.name.lower()

@@ -25,6 +25,8 @@ RING_SLOTS = 64
 """512 bytes of the PIC's 2 KB. ASSUMPTION."""
 _REPORTS = 16
 """Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
+_COMMANDS = 64
+"""Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
 _BASE_MASK = 0x700
 _END = MEASUREMENT_BASE + 0x80
 """Beyond the last measurement: a device type has seven bits."""
@@ -51,6 +53,7 @@ class GatewayBoard(PeriodicBoard):
         super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
         self.hid = HidEndpoint()
         self.hid.from_host = self._take_report
+        self.hid.ready = self._ready
         self.hold_ns = HOLD_NS
         self.ring: list[bytes] = []
         self.lost = 0
@@ -128,6 +131,10 @@ class GatewayBoard(PeriodicBoard):
         self._put(self.queue.now_ns, slot(Frame(identifier, data)))
 
     # --- PC to bus
+    def _ready(self) -> bool:
+        """Whether the endpoint takes a report: there is room for it and for the commands before it."""
+        return len(self._reports) < _REPORTS and len(self._commands) < _COMMANDS
+
     def _take_report(self, t_ns: int, report: bytes) -> None:
         if not self.on:
             return

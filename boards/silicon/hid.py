@@ -13,13 +13,15 @@ class HidEndpoint:
 
     to_host: called with (t_ns, report) at the frame that carries it; set by the PC's side.
     from_host: called by the PC's side with (t_ns, report); set by the firmware.
+    ready: whether the firmware takes a report now, or lets the endpoint NAK; set by the firmware.
     """
 
-    __slots__ = ("from_host", "to_host")
+    __slots__ = ("from_host", "ready", "to_host")
 
     def __init__(self) -> None:
         self.to_host: Callable[[int, bytes], None] | None = None
         self.from_host: Callable[[int, bytes], None] = _nobody
+        self.ready: Callable[[], bool] = _always
 
     def write(self, t_ns: int, report: bytes) -> None:
         """The PC hands over an output report at `t_ns` (the present). Raises ValueError unless it has 64
@@ -31,6 +33,11 @@ class HidEndpoint:
 
 def _nobody(_t_ns: int, _report: bytes) -> None:
     """Reports before the firmware has started are lost."""
+
+
+def _always() -> bool:
+    """An endpoint whose firmware does not say is never busy."""
+    return True
 
 
 def next_frame_ns(t_ns: int) -> int:

@@ -18,14 +18,19 @@ Sink = Callable[[int, bytes], None]
 
 
 class Uart:
-    """Transmitter. sink: whoever listens, or None (the cable is out; the board cannot tell)."""
+    """Transmitter. sink: whoever listens, or None (the cable is out; the board cannot tell).
 
-    __slots__ = ("_free_ns", "_packets", "_queue", "baud", "dropped", "sink")
+    line: called with (t_ns of the first start bit, packet) when a packet is handed in, for who needs the time
+    of every byte: the byte numbered i is through `duration_ns(i + 1)` after that.
+    """
+
+    __slots__ = ("_free_ns", "_packets", "_queue", "baud", "dropped", "line", "sink")
 
     def __init__(self, queue: EventQueue, baud: int = BAUD, sink: Sink | None = None) -> None:
         self._queue = queue
         self.baud = baud
         self.sink = sink
+        self.line: Sink | None = None
         self.dropped = 0
         self._free_ns = 0
         self._packets: deque[bytes] = deque()
@@ -41,7 +46,10 @@ class Uart:
             self.dropped += 1
             return False
         self._packets.append(packet)
-        self._free_ns = max(t_ns, self._free_ns) + self.duration_ns(len(packet))
+        start_ns = max(t_ns, self._free_ns)
+        if self.line is not None:
+            self.line(start_ns, packet)
+        self._free_ns = start_ns + self.duration_ns(len(packet))
         self._queue.at(self._free_ns, self._through)
         return True
 

@@ -29,9 +29,7 @@ class Focus(NamedTuple):
     lvdt: int
 
 
-def pack_focus(
-    device: int, flags: int, position: int, encoder: int, lvdt: int, clip: Clip = nobody
-) -> bytes:
+def pack_focus(device: int, flags: int, position: int, encoder: int, lvdt: int, clip: Clip = nobody) -> bytes:
     """Eight bytes of FOCUS; what does not fit is cut, and `clip` told."""
     try:
         return _focus.pack(device, flags, position, encoder, lvdt)

@@ -1,4 +1,5 @@
 from collections import deque
+from typing import Any
 
 import can
 import pytest
@@ -18,7 +19,7 @@ class Outside(can.BusABC):
     def __init__(self) -> None:
         super().__init__("outside")
         self.out: list[can.Message] = []
-        self.into: deque[can.Message] = deque()
+        self.into: deque[Any] = deque()
         self.broken = False
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
@@ -27,6 +28,8 @@ class Outside(can.BusABC):
         self.out.append(msg)
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        if self.into and isinstance(self.into[0], Exception):
+            raise self.into.popleft()
         return (self.into.popleft() if self.into else None), False
 
 
@@ -78,7 +81,9 @@ def test_a_burst_waits_for_transmit_buffers_and_a_flood_is_cut_off(joined: Joine
     joined.run(200)
     # Three were in transmit buffers when the thousand waiting places had filled up.
     assert len(joined.got) == 1003
-    assert joined.door.lost_in == 1500 - 1003
+    assert joined.door.refused == 1500 - 1003
+    (error,) = [message for message in joined.outside.out if message.is_error_frame]
+    assert (error.arbitration_id, error.data[1]) == (0x004, 0x01), "a full controller says so"
 
 
 def test_outside_takes_part_in_arbitration(joined: Joined) -> None:
@@ -100,6 +105,46 @@ def test_what_the_wire_cannot_carry_and_a_broken_interface_are_counted(joined: J
     assert (joined.got, joined.door.rejected, joined.door.lost_out) == ([], 1, 1)
 
 
+def unreadable() -> can.CanOperationError:
+    error = can.CanOperationError("could not unpack received message")
+    error.__cause__ = ValueError("not msgpack")
+    return error
+
+
+def test_a_message_that_is_none_is_counted_and_the_next_one_read(joined: Joined) -> None:
+    joined.outside.into.extend([unreadable(), MESSAGE])
+    joined.run()
+    assert (joined.door.rejected, joined.door.frames_in) == (1, 1)
+
+
+def test_an_interface_that_is_gone_is_said(joined: Joined) -> None:
+    error = can.CanOperationError("Network is down")
+    error.__cause__ = OSError(100, "Network is down")
+    joined.outside.into.append(error)
+    with pytest.raises(can.CanError, match="down"):
+        joined.door.poll()
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        can.Message(arbitration_id=1, dlc=15, is_remote_frame=True),
+        can.Message(arbitration_id=0x900, is_extended_id=False, data=b""),
+        can.Message(arbitration_id=-1, data=b""),
+        can.Message(arbitration_id="x", data=b""),  # type: ignore[arg-type]
+        can.Message(arbitration_id=1.5, data=b""),  # type: ignore[arg-type]
+        can.Message(arbitration_id=1, dlc=1e300, is_remote_frame=True),  # type: ignore[arg-type]
+        can.Message(arbitration_id=1, dlc=1 << 60, is_remote_frame=True),
+        can.Message(arbitration_id=1, is_fd=True, data=bytes(64)),
+    ],
+)
+def test_messages_that_no_can_controller_could_send(joined: Joined, message: can.Message) -> None:
+    joined.outside.into.extend([message, MESSAGE])
+    joined.run()
+    assert [frame.identifier for _, frame in joined.got] == [0x091]
+    assert joined.door.rejected == 1
+
+
 def test_a_bus_that_echoes_does_not_send_our_frames_back_in(
     joined: Joined, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -107,6 +152,7 @@ def test_a_bus_that_echoes_does_not_send_our_frames_back_in(
     assert echoes(joined.outside)
     door = Door(joined.queue, joined.wire, joined.outside)
     joined.door.close()
+    assert joined.door.frames_out == 0
     joined.node.send(Frame(0x211, b"\x11"), 0)
     joined.run()
     joined.outside.into.extend(joined.outside.out)  # the echo of our own

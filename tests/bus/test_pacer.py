@@ -3,6 +3,7 @@ from time import perf_counter, sleep
 import pytest
 
 from bus.pacer import Pacer, SpeedError
+from bus.punctual import Punctuality
 from bus.time import EventQueue
 
 
@@ -30,10 +31,56 @@ def test_lateness_is_reported_and_a_long_pause_is_not_made_up_for() -> None:
     pacer.run(until_ns=20_000_000)
     assert pacer.slips == 1
     assert pacer.worst_lateness_s >= 1.0
+    assert pacer.slipped_s >= 1.0
     assert perf_counter() - start >= 1.1 + 0.014
 
 
-@pytest.mark.parametrize("speed", [0.0, -1.0, float("nan")])
+@pytest.mark.parametrize("speed", [0.0, -1.0, 1e-9, 1e12, float("nan"), float("inf")])
 def test_speeds_that_are_none(speed: float) -> None:
-    with pytest.raises(SpeedError, match="above 0"):
+    with pytest.raises(SpeedError, match=r"within 0\.01 to 1000"):
         Pacer(EventQueue(), speed)
+    pacer = Pacer(EventQueue())
+    with pytest.raises(SpeedError):
+        pacer.speed = speed
+    assert pacer.speed == 1.0
+
+
+def test_the_speed_changes_while_it_runs() -> None:
+    queue = EventQueue()
+    pacer = Pacer(queue)
+
+    def faster(_t_ns: int) -> None:
+        pacer.speed = 10.0
+
+    queue.at(50_000_000, faster)
+    start = perf_counter()
+    pacer.run(until_ns=1_050_000_000)
+    assert 0.14 <= perf_counter() - start < 0.9
+
+
+def test_while_it_is_paused_time_stands_still_and_does_not_catch_up() -> None:
+    queue = EventQueue()
+    pacer = Pacer(queue)
+    slices: list[int] = []
+    start = perf_counter()
+
+    def each() -> None:
+        slices.append(queue.now_ns)
+        pacer.paused = 0.05 < perf_counter() - start < 0.25
+
+    pacer.run(until_ns=100_000_000, each_slice=each)
+    assert perf_counter() - start >= 0.1 + 0.19
+    assert max(slices.count(t) for t in set(slices)) > 20
+
+
+def test_punctuality_counts_what_is_early_and_late() -> None:
+    queue = EventQueue()
+    pacer = Pacer(queue)
+    probe = Punctuality(pacer)
+    queue.at(50_000_000, lambda _: sleep(0.03))
+    pacer.run(until_ns=100_000_000)
+    assert probe.ticks == 20
+    assert probe.worst_s > 0.02
+    assert probe.on_time < 1.0
+    assert probe.quantile_s(1.0) == float("inf")
+    assert "of 20 ticks" in probe.text()

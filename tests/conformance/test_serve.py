@@ -7,6 +7,7 @@ import pytest
 
 from bus import protocol as p
 from bus.external import SpecError
+from scenarios.doors.options import DoorOptions
 from scenarios.serve import serve
 
 
@@ -18,7 +19,7 @@ def test_serve_joins_the_bus_and_ends_by_itself(capsys: pytest.CaptureFixture[st
     )
     with can.Bus(interface="virtual", channel="test-serve") as outside:
         outside.send(ping)  # nobody is there yet
-        assert serve(None, "virtual:test-serve", speed=2.0, duration_s=0.3) == 0
+        assert serve(None, DoorOptions(can=("virtual:test-serve",)), speed=2.0, duration_s=0.5) == 0
         heard = []
         while (message := outside.recv(timeout=0)) is not None:
             heard.append(message)
@@ -33,10 +34,10 @@ def test_serve_joins_the_bus_and_ends_by_itself(capsys: pytest.CaptureFixture[st
 @pytest.mark.parametrize("spec", ["virtual", "nonsense:x"])
 def test_a_bus_that_cannot_be_opened_is_refused_before_anything_is_built(spec: str) -> None:
     with pytest.raises(SpecError, match=spec):
-        serve(None, spec)
+        serve(None, DoorOptions(can=(spec,)))
 
 
 def test_a_scenario_that_does_not_exist_is_one_line() -> None:
     with pytest.raises(ValueError, match=r"nowhere\.yaml") as error:
-        serve(Path("nowhere.yaml"), "virtual:test-serve")
+        serve(Path("nowhere.yaml"), DoorOptions(can=("virtual:test-serve",)))
     assert "\n" not in str(error.value)

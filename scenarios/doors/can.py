@@ -1,0 +1,89 @@
+"""`--can INTERFACE:CHANNEL`: a python-can bus of the outside joined to the wire."""
+
+from __future__ import annotations
+
+import os
+import socket
+from contextlib import suppress
+
+import can
+
+from bus.can.frame import Frame
+from bus.door import Door as Fence
+from bus.external import open_bus
+from bus.node import OutsideNode
+from scenarios.doors.entry import Entry
+from scenarios.doors.payload import pack_frame, unpack_frame
+from scenarios.network import Network
+
+_BUFFER_BYTES = 1 << 23
+"""Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
+
+
+class CanDoor:
+    """One interface. Its node stays on the wire while the interface is away."""
+
+    def __init__(self, spec: str, index: int, network: Network, entry: Entry) -> None:
+        self.name = f"--can {spec}"
+        self._spec = spec
+        self._network = network
+        self._entry = entry
+        self.kind = f"can{index}"
+        self.node = OutsideNode(network.queue, network.wire, f"outside {index}" if index else "outside")
+        entry.register(self.kind, self._arrive)
+        self._bus: can.BusABC | None = None
+        self.fence: Fence | None = None
+        self._before = [0, 0, 0, 0, 0]
+        """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out."""
+
+    def _arrive(self, data: bytes) -> None:
+        self.node.arrive(unpack_frame(data))
+
+    def _enter(self, frame: Frame) -> None:
+        self._entry.enter(self.kind, pack_frame(frame))
+
+    def open(self) -> None:
+        """Open the interface; raises SpecError."""
+        self._bus = bus = open_bus(self._spec)
+        with (
+            suppress(OSError, NotImplementedError, AttributeError, ValueError),
+            socket.socket(fileno=os.dup(bus.fileno())) as copy,
+        ):
+            copy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
+        self.fence = Fence(self._network.queue, self._network.wire, bus, self.node, self._enter)
+
+    def poll(self, _now_ns: int) -> None:
+        """Bring in what has arrived; what the boards say goes out as they say it."""
+        if self.fence is not None:
+            self.fence.poll()
+
+    def close(self) -> None:
+        """Shut the interface down."""
+        fence, bus = self.fence, self._bus
+        self.fence = self._bus = None
+        if fence is not None:
+            fence.close()
+            self._before = self._counts(fence)
+        if bus is not None:
+            bus.shutdown()
+
+    def _counts(self, fence: Fence | None) -> list[int]:
+        if fence is None:
+            return self._before
+        now = (fence.frames_in, fence.frames_out, fence.refused, fence.rejected, fence.lost_out)
+        return [before + each for before, each in zip(self._before, now, strict=True)]
+
+    def state(self) -> str:
+        """Frames in and out, and what was not carried."""
+        frames_in, frames_out, refused, rejected, lost = self._counts(self.fence)
+        dropped = self.fence.system_lost if self.fence is not None else 0
+        words = [f"{frames_in} frames in, {frames_out} out"]
+        if refused:
+            words.append(f"{refused} refused (the bus was full)")
+        if dropped:
+            words.append(f"{dropped} dropped by the system's buffer")
+        if rejected:
+            words.append(f"{rejected} were no CAN 2.0 frames")
+        if lost:
+            words.append(f"{lost} not taken outside")
+        return ", ".join(words)

@@ -1,0 +1,164 @@
+"""`--control [HOST:]PORT`: speed, pause, state and end of a served network, one line of text each.
+
+    status | speed X | pause | resume | power BOARD on|off | stop | help
+
+A client of this machine just asks; any other must say `token WORD` first. Answers begin with `ok` or `error`.
+"""
+
+from __future__ import annotations
+
+import hmac
+import json
+import os
+import secrets
+from collections.abc import Callable
+
+from scenarios.doors.address import address, is_local, listen
+from scenarios.doors.clients import Client, Clients
+from scenarios.doors.served import Served
+
+_LINE_LIMIT = 1000
+"""Longer lines are nobody's command."""
+_LINES_PER_POLL = 8
+TOKEN_VARIABLE = "SCHMIDT_TOKEN"
+
+
+class ControlError(ValueError):
+    """A command that cannot be carried out; one line."""
+
+
+class ControlDoor:
+    """The control plane. token: for clients of other machines; made up when none is given."""
+
+    def __init__(self, where: str, token: str | None, served: Served) -> None:
+        self.host, self.port = address(where, "--control")
+        self._served = served
+        self.token = token or os.environ.get(TOKEN_VARIABLE) or secrets.token_urlsafe(16)
+        self.name = f"--control {where}"
+        if not is_local(self.host):
+            self.name += f" (token {self.token})" if token is None else " (with your token)"
+        self._clients: Clients | None = None
+        self._rest: dict[Client, bytes] = {}
+        self._trusted: set[Client] = set()
+        self.refused = 0
+        self._commands: dict[str, Callable[[list[str]], str]] = {
+            "status": self._status, "speed": self._speed, "pause": self._pause, "resume": self._resume,
+            "power": self._power, "stop": self._stop, "help": self._help,
+        }  # fmt: skip
+
+    def open(self) -> None:
+        """Listen; raises OSError."""
+        self._clients = Clients(listen(self.host, self.port))
+
+    def poll(self, _now_ns: int) -> None:
+        """Take commands and answer them."""
+        if self._clients is None:
+            return
+        for client in self._clients.accept():
+            self._rest[client] = b""
+            if is_local(client.peer):
+                self._trusted.add(client)
+        for client in self._clients.all:
+            self._listen_to(client)
+            if client.gone:
+                self._forget(client)
+        self._clients.sweep()
+
+    def _listen_to(self, client: Client) -> None:
+        *lines, rest = (self._rest[client] + client.receive()).split(b"\n")
+        if len(rest) > _LINE_LIMIT or any(len(line) > _LINE_LIMIT for line in lines):
+            client.send(b"error: a command is one short line\n")
+            client.gone = True
+            return
+        for line in lines[:_LINES_PER_POLL]:
+            client.send((self._answer(client, line) + "\n").encode())
+        self._rest[client] = b"".join(each + b"\n" for each in lines[_LINES_PER_POLL:]) + rest
+
+    def _answer(self, client: Client, line: bytes) -> str:
+        words = line.decode("utf-8", "replace").split()
+        if not words:
+            return "error: nothing said; try help"
+        if words[0] == "token":
+            return self._check(client, words[1:])
+        if client not in self._trusted:
+            self.refused += 1
+            return "error: this needs a token: token WORD"
+        command = self._commands.get(words[0])
+        if command is None:
+            return f"error: no command {words[0][:40]!r}; use one of {', '.join(self._commands)}"
+        try:
+            return "ok " + command(words[1:])
+        except ValueError as error:
+            return f"error: {' '.join(str(error).split())}"
+
+    def _check(self, client: Client, words: list[str]) -> str:
+        if len(words) == 1 and hmac.compare_digest(words[0].encode(), self.token.encode()):
+            self._trusted.add(client)
+            return "ok"
+        self.refused += 1
+        client.gone = True
+        return "error: wrong token"
+
+    def _status(self, _words: list[str]) -> str:
+        served = self._served
+        pacer, wire = served.pacer, served.network.wire
+        return json.dumps(
+            {
+                "simulated_s": served.now_ns * 1e-9,
+                "speed": pacer.speed,
+                "paused": pacer.paused,
+                "late_ms": pacer.lateness_s * 1e3,
+                "slips": pacer.slips,
+                "on_time": served.punctual.on_time if served.punctual.ticks else None,
+                "bus_load": wire.load,
+                "frames": wire.frames,
+                "boards": {name: board.on for name, board in served.network.boards.items()},
+            }
+        )
+
+    def _speed(self, words: list[str]) -> str:
+        try:
+            (text,) = words
+            speed = float(text)
+        except ValueError:
+            raise ControlError("speed X, a number, for example speed 2") from None
+        self._served.pacer.speed = speed
+        return f"speed {speed:g}"
+
+    def _pause(self, _words: list[str]) -> str:
+        self._served.pacer.paused = True
+        return "paused"
+
+    def _resume(self, _words: list[str]) -> str:
+        self._served.pacer.paused = False
+        return "running"
+
+    def _power(self, words: list[str]) -> str:
+        if len(words) != 2 or words[1] not in ("on", "off"):
+            raise ControlError("power BOARD on|off")
+        self._served.switch(words[0], words[1] == "on")
+        return f"{words[0]} {words[1]}"
+
+    def _stop(self, _words: list[str]) -> str:
+        self._served.stop()
+        return "ending"
+
+    def _help(self, _words: list[str]) -> str:
+        return "status | speed X | pause | resume | power BOARD on|off | stop"
+
+    def _forget(self, client: Client) -> None:
+        self._rest.pop(client, None)
+        self._trusted.discard(client)
+
+    def close(self) -> None:
+        """Hang up and stop listening."""
+        if self._clients is not None:
+            self._clients.close()
+        self._clients = None
+        self._rest.clear()
+        self._trusted.clear()
+
+    def state(self) -> str:
+        """Who is connected."""
+        count = len(self._clients.all) if self._clients is not None else 0
+        return f"{count} clients" + (f", {self.refused} refused for want of a token" if self.refused else "")

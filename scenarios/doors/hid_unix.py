@@ -1,0 +1,108 @@
+"""`--hid unix:PATH`: the gateway's reports over a local socket, where the kernel has no uhid.
+
+SOCK_SEQPACKET: one report of 64 bytes a message, both ways (65 with a leading 0 are taken too).
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import stat
+from pathlib import Path
+
+from scenarios.doors.clients import Client, Clients
+from scenarios.doors.door import DoorError
+from scenarios.doors.hid_report import BYTES, out_report
+from scenarios.doors.served import Served
+from scenarios.doors.usb import UsbPlug
+
+_READS = 16
+"""Reports taken from one client in one look."""
+
+
+class UnixDoor:
+    """Any number of host programs."""
+
+    def __init__(self, path: str, served: Served) -> None:
+        self.name = f"--hid unix:{path}"
+        self._path = Path(path)
+        self._served = served
+        self._clients: Clients | None = None
+        self._plug: UsbPlug | None = None
+        self.rejected = 0
+
+    def open(self) -> None:
+        """Listen; raises OSError, with one line."""
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        try:
+            self._clear()
+            listener.bind(str(self._path))
+            os.chmod(self._path, 0o600)
+            listener.listen(16)
+            listener.setblocking(False)
+        except (OSError, ValueError) as error:
+            listener.close()
+            reason = getattr(error, "strerror", None) or str(error)
+            raise DoorError(f"--hid unix: {self._path}: {reason}") from None
+        self._clients = Clients(listener)
+        self._plug = self._served.usb.plug(self.name)
+
+    def _clear(self) -> None:
+        """Remove the socket of a server that is no more; raises OSError when it lives."""
+        try:
+            mode = self._path.stat().st_mode
+        except FileNotFoundError:
+            return
+        if not stat.S_ISSOCK(mode):
+            raise DoorError("exists and is no socket")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as probe:
+            try:
+                probe.connect(str(self._path))
+            except ConnectionRefusedError:
+                self._path.unlink()
+                return
+        raise DoorError("another server listens there")
+
+    def poll(self, _now_ns: int) -> None:
+        """Reports both ways; while the gateway is busy nothing is read, so that writers wait."""
+        clients, plug = self._clients, self._plug
+        if clients is None or plug is None:
+            return
+        clients.accept()
+        reports = plug.reports()
+        for client in clients.all:
+            for _, report in reports:
+                client.send(report)
+            self._take(client, plug)
+        clients.sweep()
+
+    def _take(self, client: Client, plug: UsbPlug) -> None:
+        for _ in range(_READS):
+            if not plug.ready:
+                return
+            data = client.receive()
+            if not data:
+                return
+            report = out_report(data)
+            if report is None:
+                self.rejected += 1
+            else:
+                plug.write(self._served.now_ns, report)
+
+    def close(self) -> None:
+        """Hang up and remove the socket."""
+        if self._plug is not None:
+            self._plug.unplug()
+        if self._clients is not None:
+            self._clients.close()
+            self._path.unlink(missing_ok=True)
+        self._clients = self._plug = None
+
+    def state(self) -> str:
+        """Who is connected."""
+        clients = self._clients.all if self._clients is not None else []
+        lost = sum(client.lost for client in clients) // BYTES
+        words = f"{len(clients)} programs"
+        if self.rejected:
+            words += f", {self.rejected} were no reports of {BYTES} bytes"
+        return words + (f", {lost} reports lost by slow readers" if lost else "")

@@ -1,0 +1,77 @@
+"""The five RS232 lines (L3), byte by byte: what has gone over the line until now."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+
+from boards.silicon.uart import Uart
+
+_WAITING_PACKETS = 64
+"""A feed that nobody empties keeps this much, sixteen seconds; older packets are gone. ASSUMPTION."""
+
+
+class Feed:
+    """One listener of one line. lost: packets it did not fetch in time."""
+
+    def __init__(self, uart: Uart) -> None:
+        self.lost = 0
+        self._uart = uart
+        self._packets: deque[tuple[int, bytes]] = deque()
+        self._sent = 0
+        """Bytes of the first packet that have been handed out."""
+
+    def hear(self, start_ns: int, packet: bytes) -> None:
+        """A packet's first start bit goes out at `start_ns`."""
+        if len(self._packets) >= _WAITING_PACKETS:
+            self._packets.popleft()
+            self._sent = 0
+            self.lost += 1
+        self._packets.append((start_ns, packet))
+
+    def until(self, now_ns: int) -> bytes:
+        """The bytes whose stop bit is over by `now_ns` and that have not been handed out."""
+        found = bytearray()
+        while self._packets:
+            start_ns, packet = self._packets[0]
+            bit_ns = 1_000_000_000 / self._uart.baud
+            through = min(len(packet), int((now_ns - start_ns) / (10 * bit_ns))) if now_ns > start_ns else 0
+            while through < len(packet) and start_ns + self._uart.duration_ns(through + 1) <= now_ns:
+                through += 1
+            found += packet[self._sent : through]
+            self._sent = max(self._sent, through)
+            if self._sent < len(packet):
+                break
+            self._packets.popleft()
+            self._sent = 0
+        return bytes(found)
+
+
+class Lines:
+    """All lines of a network by board name; any number of feeds on each."""
+
+    def __init__(self, uarts: Mapping[str, Uart]) -> None:
+        self.uarts = dict(uarts)
+        self._feeds: dict[str, list[Feed]] = {name: [] for name in uarts}
+        for name, uart in uarts.items():
+            uart.line = self._fan(name)
+
+    def _fan(self, name: str) -> Callable[[int, bytes], None]:
+        feeds = self._feeds[name]
+
+        def hear(start_ns: int, packet: bytes) -> None:
+            for feed in feeds:
+                feed.hear(start_ns, packet)
+
+        return hear
+
+    def feed(self, name: str) -> Feed:
+        """A new listener on the line of board `name`."""
+        feed = Feed(self.uarts[name])
+        self._feeds[name].append(feed)
+        return feed
+
+    def drop(self, name: str, feed: Feed) -> None:
+        """Listen no more; twice does nothing."""
+        if feed in self._feeds[name]:
+            self._feeds[name].remove(feed)

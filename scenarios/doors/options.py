@@ -1,0 +1,82 @@
+"""Which doors the command line asks for, and the objects that stand for them.
+
+A new door: a field here, an option in `scenarios/cli.py`, a line in `make_doors`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from scenarios.doors.door import Door
+from scenarios.doors.served import Served
+
+
+class OptionError(ValueError):
+    """A door that cannot be meant."""
+
+
+@dataclass(frozen=True)
+class DoorOptions:
+    """As written after `--can`, `--serial`, `--hid`, `--control` (None: not asked for)."""
+
+    can: tuple[str, ...] = ()
+    serial: tuple[str, ...] = ()
+    hid: tuple[str, ...] = ()
+    control: str | None = None
+    token: str | None = None
+
+    def check(self) -> None:
+        """Raise OptionError unless there is a door at all."""
+        if all(
+            value == default for value, default in zip(_values(self), _values(DoorOptions()), strict=True)
+        ):
+            raise OptionError(
+                "serve needs a door: --can, --serial, --hid or --control (see schmidt serve -h)"
+            )
+
+
+def _values(options: DoorOptions) -> list[object]:
+    return list(vars(replace(options, token=None)).values())
+
+
+def make_doors(options: DoorOptions, served: Served) -> list[Door]:
+    """The doors, closed. Their nodes on the wire are there from now on, in this order."""
+    from scenarios.doors.can import CanDoor
+
+    doors: list[Door] = [
+        CanDoor(spec, index, served.network, served.entry) for index, spec in enumerate(options.can)
+    ]
+    doors += [_serial(spec, served) for spec in options.serial]
+    doors += [_hid(spec, served) for spec in options.hid]
+    if options.control is not None:
+        from scenarios.doors.control import ControlDoor
+
+        doors.append(ControlDoor(options.control, options.token, served))
+    return doors
+
+
+def _serial(spec: str, served: Served) -> Door:
+    from scenarios.doors.serial_pty import PtyDoor
+    from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
+
+    kinds: dict[str, Callable[[str, Served], Door]] = {"pty": PtyDoor, "tcp": TcpDoor, "rfc2217": Rfc2217Door}
+    return _pick("--serial", spec, kinds, "pty:DIR, tcp:[HOST:]PORT or rfc2217:[HOST:]PORT", served)
+
+
+def _hid(spec: str, served: Served) -> Door:
+    from scenarios.doors.hid_uhid import UhidDoor
+    from scenarios.doors.hid_unix import UnixDoor
+
+    if spec == "uhid":
+        return UhidDoor(served)
+    return _pick("--hid", spec, {"unix": UnixDoor}, "uhid or unix:PATH", served)
+
+
+def _pick(
+    option: str, spec: str, kinds: dict[str, Callable[[str, Served], Door]], expected: str, served: Served
+) -> Door:
+    kind, _, rest = spec.partition(":")
+    if kind not in kinds or not rest:
+        raise OptionError(f'{option} "{spec}": expected {expected}')
+    return kinds[kind](rest, served)

@@ -1,0 +1,93 @@
+"""`--record DIR`: all logs of a served session, and what entered it, so that it can be run again."""
+
+from __future__ import annotations
+
+import json
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from bus.protocol import Device
+from host.logs.files import LineFile, LogError
+from host.serial_link import SerialLink
+from plant.model import PlantModel, dump
+from scenarios.doors.served import Served
+from scenarios.model import Scenario
+from scenarios.recorder import AXES, Recorder
+from scenarios.session import SERIAL, log_headers
+
+SESSION, ENTERED, PLANT, SCENARIO = "session.json", "entered.log", "plant.yaml", "scenario.yaml"
+
+
+class Recording:
+    """Owns the folder: the files of a run (`scenarios.recorder`), and
+
+    entered.log: `t_ns kind hex` for every entry; session.json: what the session was made of, and its digest.
+    """
+
+    def __init__(self, folder: Path, scenario: Scenario, model: PlantModel) -> None:
+        self.folder = folder
+        self._scenario = scenario
+        self._model = model
+        self._recorder: Recorder | None = None
+        self._facts: dict[str, Any] = {}
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise LogError(f"{folder}: cannot be made: {error.strerror}") from None
+        self._entered = LineFile(folder / ENTERED, buffer_bytes=1 << 13)
+
+    def attach(self, served: Served) -> None:
+        """Record this session, from its very start; its doors are made (not open) by now."""
+        scenario, model = self._scenario, self._model
+        self._recorder = recorder = Recorder(
+            self.folder, scenario, served.network.plant, log_headers(scenario, model)
+        )
+        served.network.wire.tap(recorder.can.take)
+        for device in SERIAL:
+            served.network.uarts[device.name].sink = self._link(device, recorder).receive
+        dump(model, self.folder / PLANT)
+        if scenario.file.is_file():
+            (self.folder / SCENARIO).write_bytes(scenario.file.read_bytes())
+        self._facts = {
+            "scenario": scenario.file.is_file(),
+            "seed": scenario.seed,
+            "kinds": served.entry.kinds(),
+            "version": version("schmidt"),
+        }
+        self._save()
+
+    @staticmethod
+    def _link(device: Device, recorder: Recorder) -> SerialLink:
+        axis = next((name for name, board in AXES.items() if board == device), None)
+        consume = recorder.axis[axis].packet if axis else (lambda _t, _packet: None)
+        return SerialLink(device, recorder.ascii, consume)
+
+    def write(self, t_ns: int, kind: str, data: bytes) -> None:
+        """One entry."""
+        self._entered.write(f"{t_ns} {kind} {data.hex()}\n")
+
+    def flush(self) -> None:
+        """Bring what there is to disk."""
+        self._entered.flush()
+        if self._recorder is not None:
+            self._recorder.flush()
+
+    def close(self, end_ns: int) -> str:
+        """Close all files; returns the trace digest. Raises LogError when the disk took not all of it."""
+        self._entered.close()
+        if self._recorder is None:
+            return ""
+        failures = self._recorder.close()
+        if failures:
+            raise LogError(failures[0])
+        digest = self._recorder.digest()
+        self._facts |= {"end_ns": end_ns, "digest": digest}
+        self._save()
+        return digest
+
+    def _save(self) -> None:
+        try:
+            (self.folder / SESSION).write_text(json.dumps(self._facts, indent=1) + "\n", encoding="utf-8")
+        except OSError as error:
+            raise LogError(f"{self.folder / SESSION}: {error.strerror}") from None

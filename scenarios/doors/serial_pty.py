@@ -1,0 +1,129 @@
+"""`--serial pty:DIR`: the five lines as pseudo-terminals, with stable names in DIR."""
+
+from __future__ import annotations
+
+import os
+import select
+import termios
+import tty
+from pathlib import Path
+
+from scenarios.doors.door import DoorError
+from scenarios.doors.lines import Feed
+from scenarios.doors.served import Served
+
+_CHUNK = 4096
+
+
+class PtyPort:
+    """One line. heard, lost: bytes that went to a reader, and that it was too slow for."""
+
+    def __init__(self, link: Path, feed: Feed) -> None:
+        self.link = link
+        self.feed = feed
+        self.heard = 0
+        self.lost = 0
+        self.in_use = False
+        self._master, slave = os.openpty()
+        try:
+            os.set_blocking(self._master, False)
+            tty.setraw(slave)
+            target = os.ttyname(slave)
+        finally:
+            os.close(slave)  # from now on POLLHUP tells that nobody has the port open
+        self._poll = select.poll()
+        self._poll.register(self._master, select.POLLIN)
+        try:
+            self._name(target)
+        except OSError:
+            os.close(self._master)
+            raise
+
+    def _name(self, target: str) -> None:
+        if self.link.is_symlink():
+            self.link.unlink()  # of an earlier run
+        elif self.link.exists():
+            raise DoorError(f"{self.link} exists and is no symbolic link; another folder?")
+        self.link.symlink_to(target)
+
+    def poll(self, now_ns: int) -> None:
+        """Put on the line what is through by now; a port that nobody has open hears nothing."""
+        data = self.feed.until(now_ns)
+        events = self._poll.poll(0)
+        state = events[0][1] if events else 0
+        if state & select.POLLHUP:
+            if self.in_use:
+                self.in_use = False
+                tty.setraw(self._master)
+            return
+        if not self.in_use:
+            self.in_use = True
+            termios.tcflush(self._master, termios.TCIOFLUSH)  # what the last reader left
+        if state & select.POLLIN:
+            self._swallow()
+        if data:
+            self._write(data)
+
+    def _write(self, data: bytes) -> None:
+        try:
+            count = os.write(self._master, data)
+        except BlockingIOError:
+            count = 0
+        self.heard += count
+        self.lost += len(data) - count
+
+    def _swallow(self) -> None:
+        """The boards' lines have no receiver: what a program sends goes nowhere."""
+        try:
+            os.read(self._master, _CHUNK)
+        except OSError:  # the reader has just gone
+            return
+
+    def close(self) -> None:
+        """Take the port and its name away."""
+        os.close(self._master)
+        if self.link.is_symlink():
+            self.link.unlink()
+
+
+class PtyDoor:
+    """The five ports."""
+
+    def __init__(self, folder: str, served: Served) -> None:
+        self.name = f"--serial pty:{folder}"
+        self._folder = Path(folder)
+        self._served = served
+        self.ports: list[PtyPort] = []
+
+    def open(self) -> None:
+        """Make folder, terminals and names; raises OSError."""
+        if "\0" in str(self._folder):
+            raise DoorError("--serial pty: the folder's name holds a NUL byte")
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            for name in self._served.lines.uarts:
+                self.ports.append(PtyPort(self._folder / name, self._served.lines.feed(name)))
+        except OSError as error:
+            self.close()
+            if isinstance(error, DoorError):
+                raise
+            raise DoorError(f"--serial pty: {self._folder}: {error.strerror or error}") from None
+
+    def poll(self, now_ns: int) -> None:
+        """Every line, byte by byte."""
+        for port in self.ports:
+            port.poll(now_ns)
+
+    def close(self) -> None:
+        """Remove all of them."""
+        for port in self.ports:
+            self._served.lines.drop(port.link.name, port.feed)
+            port.close()
+        self.ports.clear()
+
+    def state(self) -> str:
+        """Who is open."""
+        used = [port.link.name for port in self.ports if port.in_use]
+        lost = sum(port.lost for port in self.ports)
+        words = f"{sum(port.heard for port in self.ports)} bytes read, in use: {', '.join(used) or 'none'}"
+        return words + (f", {lost} bytes lost by slow readers" if lost else "")

@@ -1,0 +1,33 @@
+"""The other end of the control plane: one command, one answer."""
+
+from __future__ import annotations
+
+import socket
+
+from scenarios.doors.address import address
+from scenarios.doors.control import ControlError
+
+_PATIENCE_S = 5.0
+
+
+def tell(command: str, at: str, token: str | None = None) -> str:
+    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ControlError."""
+    host, port = address(at, "--at")
+    lines = ([f"token {token}"] if token else []) + [" ".join(command.split())]
+    try:
+        with (
+            socket.create_connection((host, port), _PATIENCE_S) as connection,
+            connection.makefile("rw", encoding="utf-8", newline="\n") as stream,
+        ):
+            answer = ""
+            for line in lines:
+                stream.write(line + "\n")
+                stream.flush()
+                answer = stream.readline().rstrip("\n")
+                if not answer.startswith("ok"):
+                    break
+    except (OSError, UnicodeError) as error:
+        raise ControlError(f"{host}:{port}: no answer: {error}") from None
+    if not answer.startswith("ok"):
+        raise ControlError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
+    return answer.removeprefix("ok").strip()
