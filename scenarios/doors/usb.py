@@ -39,7 +39,10 @@ class UsbPlug:
         self._reports: deque[tuple[int, bytes]] = deque()
 
     def write(self, t_ns: int, report: bytes) -> None:
-        """Send an OUT report of 64 bytes, now (`t_ns` is there for `HidLink`); raises ValueError for another length, `UsbFull`."""
+        """Send an OUT report of 64 bytes, now (`t_ns` is there for `HidLink`).
+
+        Raises ValueError for another length, `UsbFull` when too many wait.
+        """
         if len(report) != REPORT_BYTES:
             raise ValueError(f"HID report has {len(report)} bytes, the endpoint takes {REPORT_BYTES}")
         self._usb.write(report)
