@@ -33,7 +33,7 @@ class AxisCommands:
         on = u8(data)
         if on > 1:
             return OUT_OF_RANGE
-        if on and not self._motion.fresh(t_ns):
+        if on and not self._motion.fresh(self._board.clock_ns(t_ns)):
             return NOT_ALLOWED
         self._board.switch(bool(on))
         return OK
@@ -73,7 +73,9 @@ class AxisCommands:
         if not self._ready(t_ns):
             return NOT_ALLOWED
         self._board.command_effort(None)
-        self._motion.move(t_ns, self._board.velocity, target, self._motion.classes[number - 1])
+        self._motion.move(
+            self._board.clock_ns(t_ns), self._board.velocity, target, self._motion.classes[number - 1]
+        )
         self._motion.selected = number
         return OK
 
@@ -85,7 +87,7 @@ class AxisCommands:
         if not self._ready(t_ns):
             return NOT_ALLOWED
         self._board.command_effort(None)
-        self._motion.track(t_ns, self._board.velocity, rate)
+        self._motion.track(self._board.clock_ns(t_ns), self._board.velocity, rate)
         if not self._motion.selected:
             self._motion.selected = SpeedClass.TRACK
         return OK
@@ -113,7 +115,7 @@ class AxisCommands:
         return OK
 
     def _ready(self, t_ns: int) -> bool:
-        return self._board.powered() and self._motion.fresh(t_ns)
+        return self._board.powered() and self._motion.fresh(self._board.clock_ns(t_ns))
 
 
 def axis_commands(board: "AxisBoard") -> dict[int, Handler]:
@@ -134,6 +136,9 @@ def axis_commands(board: "AxisBoard") -> dict[int, Handler]:
 def axis_parameters(board: "AxisBoard") -> list[Parameter]:
     """Parameters 1..11; what depends on one is worked out again when it changes."""
     motion, limits = board.motion, board.limits
+
+    def set_split(value: int) -> None:
+        board.counter.split = value
 
     def set_kp(value: int) -> None:
         motion.set_gains(value, motion.ki_q12)
@@ -163,7 +168,7 @@ def axis_parameters(board: "AxisBoard") -> list[Parameter]:
         )
 
     return [
-        Parameter(1, "counter_split_percent", *_SPLIT_BOUNDS, lambda: board.split, board.set_split),
+        Parameter(1, "counter_split_percent", *_SPLIT_BOUNDS, lambda: board.counter.split, set_split),
         Parameter(2, "kp_q12", 0, _GAIN_BOUND, lambda: motion.kp_q12, set_kp),
         Parameter(3, "ki_q12", 0, _GAIN_BOUND, lambda: motion.ki_q12, set_ki),
         Parameter(4, "soft_limit_low_steps", 0, STEPS_PER_TURN - 1, lambda: motion.low, set_low),

@@ -2,6 +2,7 @@
 
 from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.counter import CounterTorque
 from boards.axis.fineparameters import fine_parameters
 from boards.axis.interrupts import FCY_HZ, TABLE
 from boards.axis.limits import SoftLimits
@@ -51,9 +52,9 @@ class AxisBoard(PeriodicBoard):
     """
 
     __slots__ = (
-        "_fade", "_identifier", "adc", "config", "effort", "effort_command",
+        "_identifier", "adc", "config", "counter", "effort", "effort_command",
         "fault", "fine", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
-        "split", "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
+        "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
     )  # fmt: skip
 
     def __init__(
@@ -79,8 +80,7 @@ class AxisBoard(PeriodicBoard):
         self.limits = SoftLimits(self.motion)
         self.tach_a = RemoteTachometer(config.frame_ns)
         self.tach_b = RemoteTachometer(config.frame_ns)
-        self.set_split(config.counter_split)
-        self._fade = config.split_fade_counts
+        self.counter = CounterTorque(config.counter_split, config.split_fade_counts)
         self.velocity = 0
         self.poscnt = 0
         self.effort = 0
@@ -107,7 +107,11 @@ class AxisBoard(PeriodicBoard):
     def reset(self) -> None:
         """After power-up: off."""
         self.motion.off()
+        self.motion.forget()
+        self.tach_a.forget()
+        self.tach_b.forget()
         self.pi.start(0, 0, 0)
+        self.counter.register = 0
         self.effort = 0
         self.effort_command = 0
         self.velocity = 0
@@ -130,41 +134,32 @@ class AxisBoard(PeriodicBoard):
         self.poscnt = poscnt
         self.watch.counts += velocity
         motion = self.motion
-        setpoint = motion.setpoint(t_ns, velocity)
+        setpoint = motion.setpoint(t_ns - self.epoch_ns, velocity)
         effort = self.effort_command
+        counter = self.counter
         if effort is None:
             effort = self.pi.step(setpoint, velocity)
+            if self.fine is None:
+                moved = counter.follow(effort, velocity)
+                if moved and -1 <= effort - self.effort <= 1:  # at rest but for single steps: no bump
+                    effort += self.pi.shift(moved)
+        else:
+            counter.follow(effort, velocity)
         if self.fine is not None:
             effort = self.fine.drive(end, velocity, setpoint)
         elif effort >= 0:
-            self.pwm.write(end, effort, self.lag(effort, velocity))
+            self.pwm.write(end, effort, counter.register)
         else:
-            self.pwm.write(end, self.lag(-effort, velocity), -effort)
+            self.pwm.write(end, counter.register, -effort)
         self.effort = effort
         if self.ticks & 1:
             self._slow(t_ns, end)
         else:
             self._telemetry(t_ns, end, setpoint)
 
-    def lag(self, effort: int, velocity: int) -> int:
-        """Duty register of the lagging motor for |effort|, whole steps: the paper's firmware."""
-        counter = (effort * self.split + 50) // 100
-        fade = self._fade
-        if fade:
-            return counter * max(0, fade - abs(velocity)) // fade
-        return counter
-
-    def lag_q16(self, effort_q16: int, velocity: int) -> int:
-        """The same in Q16, where a little more effort is never a little less torque."""
-        counter = effort_q16 * self.split // 100
-        fade = self._fade
-        if fade:
-            return counter * max(0, fade - abs(velocity)) // fade
-        return counter
-
     def set_split(self, percent: int) -> None:
         """Share of the effort that the lagging motor gets."""
-        self.split = percent
+        self.counter.split = percent
 
     def command_effort(self, effort: int | None) -> None:
         """Fixed effort in PWM steps, or None: the loop decides."""
@@ -181,7 +176,8 @@ class AxisBoard(PeriodicBoard):
         motion = self.motion
         velocity = self.velocity
         limits = self.limits
-        if limits.hit(velocity) or (motion.mode in POINTING and t_ns - motion.good_ns > STALE_NS):
+        now = t_ns - self.epoch_ns
+        if limits.hit(velocity) or (motion.mode in POINTING and now - motion.good_ns > STALE_NS):
             self.stop()
         mode = motion.mode
         flags = _POWERED if mode else 0
@@ -199,8 +195,8 @@ class AxisBoard(PeriodicBoard):
             self.dropped += 1
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT
-        position = motion.measured(t_ns, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF
-        tach_a, tach_b = self.tach_a.sample(t_ns), self.tach_b.sample(t_ns)
+        position = motion.measured(now, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF
+        tach_a, tach_b = self.tach_a.sample(now), self.tach_b.sample(now)
         if not self.samples:
             self.stamp_ns = t_ns
         self.samples.append((effort, position, velocity, adc_a, adc_b, tach_a, tach_b, 0, setpoint))
@@ -218,11 +214,12 @@ class AxisBoard(PeriodicBoard):
         ticks = self.ticks
         if ticks % _TARGET_TICKS == 1:
             motion = self.motion
-            if not motion.fresh(t_ns):
+            now = t_ns - self.epoch_ns
+            if not motion.fresh(now):
                 self.watch.forget()
-            elif self.watch.disagree(motion.measured(t_ns, self.velocity)) and self.powered():
+            elif self.watch.disagree(motion.measured(now, self.velocity)) and self.powered():
                 self.trip()
-            distance = motion.distance_steps(t_ns, self.velocity)
+            distance = motion.distance_steps(now, self.velocity)
             data = pack_target(self.device_type, motion.selected, motion.settled, distance, self.clip)
             self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
         elif ticks % _HEARTBEAT_TICKS == 3:
@@ -261,7 +258,7 @@ class AxisBoard(PeriodicBoard):
     def health(self) -> Health:
         """Adds position data, soft limit and fault to the common bits."""
         bits = super().health()
-        if not self.motion.fresh(self.queue.now_ns):
+        if not self.motion.fresh(self.clock_ns(self.queue.now_ns)):
             bits |= Health.STALE
         if self.limits.reached:
             bits |= Health.LIMIT

@@ -13,7 +13,7 @@ FCY_HZ = 30_000_000
 TABLE = (
     Source(
         "control", priority=6, latency_cycles=9, cost_cycles=1200
-    ),  # 40 us: QEI, PI in 32 bit, PWM, SPI load of a frame
+    ),  # 40 us: QEI, PI (32-bit errors, 64-bit products), PWM, SPI load of a frame
     Source(
         "can", priority=4, latency_cycles=9, cost_cycles=900, level=True
     ),  # 30 us: SPI read, dispatch, SPI load

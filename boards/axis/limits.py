@@ -2,11 +2,15 @@
 
 from boards.axis.motion import POINTING, Motion
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP
+from boards.core.widths import INT64_TOP
 from bus.protocol import AxisMode
 
 _REACTION_TICKS = 30
 """Time in which the velocity loop begins to follow the braking set point, 150 ms. ASSUMPTION: its settling
 time."""
+_COUNTS_TOP = INT64_TOP >> (UNIT_SHIFT - 16)
+"""Q16 counts whose Q18 still fits 64 bits; only the slightest acceleration with the greatest speed gets
+there."""
 
 
 class SoftLimits:
@@ -32,7 +36,7 @@ class SoftLimits:
         """Steps the axis needs to stop from `velocity` counts/5 ms."""
         counts_q16 = (velocity << 16) * (velocity << 16) // (2 * self._motion.acceleration)
         counts_q16 += abs(velocity) * _REACTION_TICKS << 16
-        return (counts_q16 << (UNIT_SHIFT - 16)) // UNITS_PER_STEP
+        return (min(counts_q16, _COUNTS_TOP) << (UNIT_SHIFT - 16)) // UNITS_PER_STEP
 
     def hit(self, velocity: int) -> bool:
         """True when the axis has to stop now."""

@@ -16,6 +16,8 @@ _NS_TO_UNIT = round((1 << UNIT_SHIFT) / TICK_NS * (1 << 20))
 _POSITION_MASK = 0x1FFFFFFF
 STALE_NS = 50_000_000
 """Ten missed position frames: the position is gone. ASSUMPTION."""
+_OLDEST_NS = 2 * STALE_NS
+"""A reading is carried on no further than this."""
 _SETTLE_TICKS = 100
 """The axis is settled when it has been near its target for this long, 0.5 s. ASSUMPTION."""
 _BAD_POSITION = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
@@ -26,7 +28,10 @@ target."""
 
 
 class Motion:
-    """Set point generator. `setpoint(t_ns, velocity)` is replaced when the mode changes; Q16 counts/tick."""
+    """Set point generator. `setpoint(now_ns, velocity)` is replaced when the mode changes; Q16 counts/tick.
+
+    Times are those of the board's own clock (`Board.clock_ns`).
+    """
 
     __slots__ = (
         "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_pointing",
@@ -69,21 +74,28 @@ class Motion:
         self.blend: Blend | None = None
 
     # --- measurements -----------------------------------------------------------------------------
-    def take_position(self, t_ns: int, data: bytes) -> None:
+    def take_position(self, now_ns: int, data: bytes) -> None:
         """A POSITION frame from this axis' encoder board."""
         if data[1] & _BAD_POSITION:
             return
-        self.good_ns = t_ns
+        self.good_ns = now_ns
         self.position = (data[2] | data[3] << 8 | data[4] << 16 | data[5] << 24) & _POSITION_MASK
-        self.latch_ns = t_ns - data[6] * AGE_UNIT_NS - self._frame_ns
+        self.latch_ns = now_ns - data[6] * AGE_UNIT_NS - self._frame_ns
 
-    def fresh(self, t_ns: int) -> bool:
+    def fresh(self, now_ns: int) -> bool:
         """Whether the position is recent enough to act on."""
-        return t_ns - self.good_ns < STALE_NS
+        return now_ns - self.good_ns < STALE_NS
 
-    def measured(self, t_ns: int, velocity: int) -> int:
+    def measured(self, now_ns: int, velocity: int) -> int:
         """Position now, Q18 counts: the last reading carried on at the current velocity."""
-        return self.position * UNITS_PER_STEP + (velocity * (t_ns - self.latch_ns) * _NS_TO_UNIT >> 20)
+        age = now_ns - self.latch_ns
+        if age > _OLDEST_NS:
+            age = _OLDEST_NS
+        return self.position * UNITS_PER_STEP + (velocity * age * _NS_TO_UNIT >> 20)
+
+    def forget(self) -> None:
+        """After power-up: no position is known."""
+        self.good_ns = self.latch_ns = -STALE_NS
 
     def set_acceleration(self, acceleration_q16: int) -> None:
         """Limit of the set point's change, Q16 counts/5 ms per tick."""
@@ -124,14 +136,14 @@ class Motion:
         self.rate = 0
         self.setpoint = self._ramp
 
-    def move(self, t_ns: int, velocity: int, target_steps: int, top_q16: int) -> None:
+    def move(self, now_ns: int, velocity: int, target_steps: int, top_q16: int) -> None:
         """Position loop: to `target_steps`, which moves on with the tracking rate from now."""
-        self._enter_pointing(t_ns, velocity)
+        self._enter_pointing(now_ns, velocity)
         self.profile.top = top_q16 << _RATE_TO_UNIT
         self.profile.aim(target_steps * UNITS_PER_STEP)
         self.mode = AxisMode.MOVE
 
-    def track(self, t_ns: int, velocity: int, rate_q16: int) -> None:
+    def track(self, now_ns: int, velocity: int, rate_q16: int) -> None:
         """Position-locked tracking; while a move is under way its target gets the rate."""
         if self.mode in POINTING:
             # the relative speed keeps the velocity continuous
@@ -140,7 +152,7 @@ class Motion:
             self.rate = rate_q16
         else:
             self.rate = rate_q16
-            self._enter_pointing(t_ns, velocity)
+            self._enter_pointing(now_ns, velocity)
         if self.profile.top <= 0:
             self.profile.top = self.classes[1] << _RATE_TO_UNIT
         self.mode = AxisMode.MOVE
@@ -151,11 +163,11 @@ class Motion:
         self.profile.top = max(self.profile.top, self.classes[2] << _RATE_TO_UNIT)
         self.mode = AxisMode.MOVE
 
-    def _enter_pointing(self, t_ns: int, velocity: int) -> None:
+    def _enter_pointing(self, now_ns: int, velocity: int) -> None:
         if self.mode in POINTING:
             return
         self.profile.rate = self.rate << _RATE_TO_UNIT
-        self.profile.take_over(self.measured(t_ns, velocity), self.setpoint_q16 << _RATE_TO_UNIT)
+        self.profile.take_over(self.measured(now_ns, velocity), self.setpoint_q16 << _RATE_TO_UNIT)
         self.near_ticks = 0
         self._pi.kp_q12 = self._kp_pointing
         self.setpoint = self._point
@@ -184,14 +196,14 @@ class Motion:
             self._velocity_gains()
 
     # --- set points -------------------------------------------------------------------------------
-    def _idle(self, _t_ns: int, _velocity: int) -> int:
+    def _idle(self, _now_ns: int, _velocity: int) -> int:
         return 0
 
-    def _follow(self, _t_ns: int, velocity: int) -> int:
+    def _follow(self, _now_ns: int, velocity: int) -> int:
         self.setpoint_q16 = velocity << 16
         return self.setpoint_q16
 
-    def _ramp(self, _t_ns: int, velocity: int) -> int:
+    def _ramp(self, _now_ns: int, velocity: int) -> int:
         setpoint = self.setpoint_q16
         wanted = self.wanted_q16
         if setpoint != wanted:
@@ -207,18 +219,23 @@ class Motion:
             return setpoint + self.lock.step(setpoint, velocity)
         return setpoint
 
-    def _point(self, t_ns: int, velocity: int) -> int:
+    def _point(self, now_ns: int, velocity: int) -> int:
         profile = self.profile
         feed = profile.step()
         # measured(), written out: this runs 200 times a second
-        measured = self.position * 55_125 + (velocity * (t_ns - self.latch_ns) * _NS_TO_UNIT >> 20)
+        age = now_ns - self.latch_ns
+        if age > _OLDEST_NS:
+            age = _OLDEST_NS
+        measured = self.position * 55_125 + (velocity * age * _NS_TO_UNIT >> 20)
         creeping = -self._creep_rate < feed < self._creep_rate
         if self.blend is not None:
             measured = self.blend.step(measured, velocity, creeping)
         error = profile.target - profile.remaining - measured
         lag = self._lag
         if not -lag < error < lag:  # the axis cannot follow: the reference waits for it
-            profile.remaining += error - (lag if error > 0 else -lag)
+            held = lag if error > 0 else -lag
+            profile.remaining += error - held
+            error = held
         self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         correction = error * self._gain >> 18
         limit = self._correction
@@ -241,8 +258,8 @@ class Motion:
         """In a pointing mode and near the target for long enough."""
         return self.mode in POINTING and self.near_ticks >= _SETTLE_TICKS
 
-    def distance_steps(self, t_ns: int, velocity: int) -> int:
+    def distance_steps(self, now_ns: int, velocity: int) -> int:
         """Target minus position, steps; 0 outside the pointing modes."""
         if self.mode not in POINTING:
             return 0
-        return (self.profile.target - self.measured(t_ns, velocity)) // UNITS_PER_STEP
+        return (self.profile.target - self.measured(now_ns, velocity)) // UNITS_PER_STEP

@@ -71,7 +71,7 @@ class FineOutput:
         command = board.effort_command
         if command is None:
             effort_q16 = board.pi.effort_q16
-            if self.compensator.on and board.motion.fresh(end_ns):
+            if self.compensator.on and board.motion.fresh(board.clock_ns(end_ns)):
                 effort_q16 += self.compensator.effort_q16(board.motion.position, velocity, setpoint_q16)
                 limit = pwm.steps << 16
                 effort_q16 = max(-limit, min(limit, effort_q16))
@@ -80,7 +80,11 @@ class FineOutput:
         if not self.spread:
             effort_q16 = (effort_q16 + _HALF) >> 16 << 16
         size = abs(effort_q16)
-        lag = board.lag_q16(size, velocity) if self.spread else board.lag(size >> 16, velocity) << 16
+        if self.spread:
+            lag = board.counter.share_q16(size, velocity)
+        else:
+            board.counter.follow(size >> 16, velocity)
+            lag = board.counter.register << 16
         bias = self.bias_q8 << 8 if board.powered() else 0
         if effort_q16 >= 0:
             pwm.write_spread(end_ns, size + bias, lag + bias)

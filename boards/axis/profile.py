@@ -1,14 +1,21 @@
 """The speed profile of a move: the reference that the position loop follows, in integers.
 
 Positions in Q18 counts, because one step of the absolute encoder is then exactly 55125 units
-(112 896 000 counts / 2^29 steps x 2^18); speeds in Q18 counts per tick. A dsPIC keeps these in 64 bits.
+(112 896 000 counts / 2^29 steps x 2^18); speeds in Q18 counts per tick. All are 64-bit integers (`long long`
+of the dsPIC30F's compiler), and so is every product: the square root is taken only where the speed it gives
+is below the top speed, so its radicand stays below (top + a)^2, 2^62, however far the target is.
 The target may itself move (tracking): the profile is the distance still to go, relative to it.
 """
 
 from math import isqrt
 
+from boards.core.widths import INT64_TOP, saturate
+
 UNITS_PER_STEP = 55_125
 UNIT_SHIFT = 18
+_SPEED_TOP = isqrt(INT64_TOP)
+"""Q18 counts per tick, 11585 counts: fastest relative speed whose square fits. Twice the fastest rate is
+less."""
 
 
 class Profile:
@@ -32,7 +39,7 @@ class Profile:
     def take_over(self, position: int, velocity: int) -> None:
         """Start from a measured position and the velocity in force; the target is where braking to `rate`
         ends."""
-        relative = velocity - self.rate
+        relative = saturate(velocity - self.rate, _SPEED_TOP)
         stop = relative * abs(relative) // (2 * self.acceleration)
         self.speed = relative
         self.remaining = stop
@@ -54,9 +61,10 @@ class Profile:
         if distance or speed:
             gap = distance if distance >= 0 else -distance
             a = self.acceleration
-            wanted = isqrt((a * a >> 2) + 2 * a * gap) - (a >> 1)
-            if wanted > self.top:
-                wanted = self.top
+            top = self.top
+            wanted = top
+            if gap <= top * (top + a) // (2 * a):
+                wanted = isqrt((a * a >> 2) + 2 * a * gap) - (a >> 1)
             if wanted > gap:
                 wanted = gap
             if distance < 0:

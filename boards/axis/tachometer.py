@@ -17,7 +17,7 @@ _UNIT = _TACH_NS << _RATE_SHIFT
 
 
 class RemoteTachometer:
-    """Keeps the last TACH frame of one motor."""
+    """Keeps the last TACH frame of one motor. Times are those of the board's own clock."""
 
     __slots__ = ("_age_ns", "_count", "_last", "_latch_ns", "_rate_q8")
 
@@ -28,15 +28,21 @@ class RemoteTachometer:
         self._rate_q8 = 0
         self._last: int | None = None
 
-    def take(self, t_ns: int, data: bytes) -> None:
+    def forget(self) -> None:
+        """After power-up: nothing is known."""
+        self._latch_ns = -_MISSING_NS
+        self._last = None
+        self._rate_q8 = 0
+
+    def take(self, now_ns: int, data: bytes) -> None:
         """A TACH frame has come in."""
         _, _, self._count, delta = tach_fields(data)
-        self._latch_ns = t_ns - self._age_ns
+        self._latch_ns = now_ns - self._age_ns
         self._rate_q8 += ((delta << _RATE_SHIFT) - self._rate_q8) >> 2
 
-    def sample(self, t_ns: int) -> int:
+    def sample(self, now_ns: int) -> int:
         """Counts since the last sample, 10 ms ago; 0 while there is nothing to go by."""
-        age = t_ns - self._latch_ns
+        age = now_ns - self._latch_ns
         if age > _MISSING_NS:
             self._last = None
             return 0

@@ -10,7 +10,10 @@ corrects by far more than this, so a stuck absolute encoder shows as well as a s
 
 
 class EncoderWatch:
-    """Compares the sum of the incremental counts with the absolute position."""
+    """Compares the sum of the incremental counts since the last look with the absolute position's change.
+
+    counts: 32 bit; 50 ticks of 16 bits are less.
+    """
 
     __slots__ = ("_before", "counts")
 
@@ -21,10 +24,10 @@ class EncoderWatch:
     def forget(self) -> None:
         """The next look starts afresh: there was no position for a while."""
         self._before = None
+        self.counts = 0
 
     def disagree(self, position_q18: int) -> bool:
         """Look at an absolute position, Q18 counts; True when the encoders have parted since the last."""
-        difference = position_q18 - (self.counts << UNIT_SHIFT)
-        before = self._before
-        self._before = difference
-        return before is not None and abs(difference - before) > _LIMIT
+        before, counts = self._before, self.counts
+        self._before, self.counts = position_q18, 0
+        return before is not None and abs(position_q18 - before - (counts << UNIT_SHIFT)) > _LIMIT

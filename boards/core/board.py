@@ -38,9 +38,13 @@ class Board:
     """A microcontroller board on the bus.
 
     Subclasses give it `reset()` (state after power-up) and `start(t_ns)` (arm the timers), fill `mail`
-    with what to do with measurement frames (identifier -> call(t_ns, data)) and call `heartbeat(t_ns)`
+    with what to do with measurement frames (identifier -> call(now_ns, data)) and call `heartbeat(t_ns)`
     once a second. A mailed frame is eight bytes long and begins with the device type its identifier ends
     in; any other is dropped and counted as `foreign`.
+
+    Times called t_ns are true: when pins are read and outputs take effect. What firmware decides by is the
+    board's own clock, `clock_ns(t_ns)`, called now_ns: the timer's interrupts counted, and the timer read in
+    between.
     """
 
     __slots__ = (
@@ -53,6 +57,7 @@ class Board:
         "cpu",
         "device_type",
         "dropped",
+        "epoch_ns",
         "foreign",
         "inbox",
         "mail",
@@ -63,7 +68,6 @@ class Board:
         "port",
         "queue",
         "send",
-        "started_ns",
     )
 
     def __init__(
@@ -96,7 +100,8 @@ class Board:
         self.clipped = 0
         self._foreign_ns = self._clipped_ns = _LONG_AGO
         self.on = False
-        self.started_ns = 0
+        self.epoch_ns = 0
+        """True time less the board's own; kept by whoever has the timer."""
 
     def common_commands(self) -> dict[int, Handler]:
         """The commands every board knows."""
@@ -105,6 +110,13 @@ class Board:
     def set_parameters(self, rows: Iterable[Parameter]) -> None:
         """Give the board its parameter table."""
         self.parameters = ParameterTable(rows)
+
+    def clock_ns(self, t_ns: int) -> int:
+        """The board's own clock at true time `t_ns`, ns since it began to run.
+
+        Within a period the timer is taken to run true: 50 ppm of 5 ms are a quarter of a nanosecond.
+        """
+        return t_ns - self.epoch_ns
 
     # --- power ------------------------------------------------------------------------------------
     def power_on(self, t_ns: int) -> None:
@@ -125,7 +137,8 @@ class Board:
     def _boot(self, t_ns: int) -> None:
         self.on = True
         self.port.online = True
-        self.started_ns = t_ns
+        self.epoch_ns = t_ns
+        self._foreign_ns = self._clipped_ns = _LONG_AGO
         self.inbox.clear()
         self.reset()
         self.start(t_ns)
@@ -147,28 +160,28 @@ class Board:
         if call is None or extended:  # an extended identifier is nobody's here
             return
         if len(data) == FRAME_BYTES and data[0] == identifier & 0x7F and not remote:
-            call(t_ns, data)
+            call(t_ns - self.epoch_ns, data)
         elif identifier != self._command:
             self.refuse(t_ns)
         elif not remote:
-            call(t_ns, data)  # a command that is wrong is answered, not dropped
+            call(t_ns - self.epoch_ns, data)  # a command that is wrong is answered, not dropped
 
     def refuse(self, t_ns: int) -> None:
         """Count a frame that is no frame of the peer it claims to come from."""
         self.foreign += 1
-        self._foreign_ns = t_ns
+        self._foreign_ns = self.clock_ns(t_ns)
 
     def clip(self) -> None:
         """Count a value that did not fit its field."""
         self.clipped += 1
-        self._clipped_ns = self.queue.now_ns
+        self._clipped_ns = self.clock_ns(self.queue.now_ns)
 
-    def _take_command(self, t_ns: int, data: bytes) -> None:
+    def _take_command(self, _now_ns: int, data: bytes) -> None:
         if len(self.inbox) >= _INBOX:
             self.dropped += 1
             return
         self.inbox.append(data)
-        self.cpu.lines[CAN_LINE].request(t_ns)
+        self.cpu.lines[CAN_LINE].request(self.queue.now_ns)
 
     def _serve(self, t_ns: int) -> None:
         if not self.inbox or not self.on:
@@ -186,7 +199,7 @@ class Board:
 
     def heartbeat(self, t_ns: int) -> None:
         """Send the HEARTBEAT frame, ready at `t_ns`."""
-        uptime_s = (t_ns - self.started_ns) // 1_000_000_000
+        uptime_s = self.clock_ns(t_ns) // 1_000_000_000
         data = pack_heartbeat(self.device_type, self.state(), uptime_s, self.cpu.overruns, self.port.tec)
         self.transmit(HEARTBEAT_BASE + self.device_type, data, t_ns)
 
@@ -204,7 +217,7 @@ class Board:
             bits |= Health.OVERRUN
         if self.dropped:
             bits |= Health.DROPPED
-        now_ns = self.queue.now_ns
+        now_ns = self.clock_ns(self.queue.now_ns)
         if now_ns - self._foreign_ns < WARNING_NS:
             bits |= Health.FOREIGN
         if now_ns - self._clipped_ns < WARNING_NS:

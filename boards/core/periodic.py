@@ -42,7 +42,9 @@ class PeriodicBoard(Board):
         """Arm the timer."""
         self.ticks = 0
         self.timer.restart(t_ns)
-        self.queue.at(self.timer.next_ns(), self._routine)
+        first = self.timer.next_ns()
+        self.epoch_ns = first - self.period_ns
+        self.queue.at(first, self._routine)
 
     def enter(self, t_ns: int) -> int:
         """Account for the routine that starts at `t_ns` and arm the next one; returns its end, 0 when the
@@ -60,7 +62,8 @@ class PeriodicBoard(Board):
         if start < end:
             start, lost = timer.late(start, end)
             cpu.top.overruns += lost
-        self.ticks += 1
+        self.ticks = ticks = self.ticks + 1
+        self.epoch_ns = t_ns - ticks * self.period_ns
         queue = self.queue
         queue.push((start, queue.ticket(), self._routine))  # never in the past: `late` sees to that
         return end

@@ -2,6 +2,7 @@
 
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PeriodicBoard
 from boards.core.commands import i8, i16
+from boards.core.widths import wrap
 from boards.focus.config import FocusConfig
 from boards.focus.interrupts import FCY_HZ, TABLE
 from boards.focus.pins import FocusPins
@@ -90,11 +91,15 @@ class FocusBoard(PeriodicBoard):
         if not end:
             return
         poscnt = self.qei.poscnt(t_ns)
-        self.encoder += difference(poscnt, self.poscnt)
+        self.encoder = wrap(self.encoder + difference(poscnt, self.poscnt), 32)
         self.poscnt = poscnt
         self.lvdt = self.adc.read(t_ns)
         stepping = self.stepping
-        if self.driver.energised and not stepping.moving and t_ns - self._last_move_ns > _REST_NS:
+        if (
+            self.driver.energised
+            and not stepping.moving
+            and self.clock_ns(t_ns) - self._last_move_ns > _REST_NS
+        ):
             self.driver.rest(end)
         if not self.samples:
             self.stamp_ns = t_ns
@@ -159,16 +164,17 @@ class FocusBoard(PeriodicBoard):
                 reference.give_up()
             return
         self.driver.step(t_ns, direction)
-        self._last_move_ns = t_ns
-        self._arm(t_ns + interval_ns)
+        self._last_move_ns = self.clock_ns(t_ns)
+        crystal = self.oscillator
+        self._arm(crystal.true_ns(crystal.local_ns(t_ns) + interval_ns))
 
     def _set_origin(self, t_ns: int, position: int) -> None:
         """The motor stands at `position`, beyond doubt."""
         self.stepping.rebase(position)
         poscnt = self.qei.poscnt(t_ns)
-        self.encoder += difference(poscnt, self.poscnt)
+        self.encoder = wrap(self.encoder + difference(poscnt, self.poscnt), 32)
         self.poscnt = poscnt
-        self._encoder_zero = self.encoder - self._expected(position)
+        self._encoder_zero = wrap(self.encoder - self._expected(position), 32)
         self.referenced = True
 
     def _expected(self, position: int) -> int:
@@ -225,7 +231,9 @@ class FocusBoard(PeriodicBoard):
     def health(self) -> Health:
         """Adds lost steps and a failed search for the index to the common bits."""
         bits = super().health()
-        settled = not self.stepping.moving and self.queue.now_ns - self._last_move_ns > _REST_NS
+        settled = (
+            not self.stepping.moving and self.clock_ns(self.queue.now_ns) - self._last_move_ns > _REST_NS
+        )
         wrong = abs(self._counts() - self._expected(self.stepping.position))
         lost = wrong > self._expected(_LOST)
         if self.reference.failed or (self.referenced and settled and lost):

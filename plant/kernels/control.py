@@ -1,8 +1,8 @@
 """The axis board's velocity loop around one axis, in one compiled loop.
 
 The arithmetic is the firmware's: gains in Q12, errors and effort in Q16, effort limited where it accumulates,
-counter torque as a rounded percentage, current read before the new duty. A test compares it with the
-emulator.
+a counter torque that stays until it is a whole step off and then takes the effort along, current read before
+the new duty. A test compares it with the emulator.
 """
 
 from math import floor
@@ -71,12 +71,19 @@ def truth_row(w: Floats, row: Floats) -> None:
 
 
 @inner
-def apply_effort(w: Floats, effort: int, s: Floats) -> None:
+def counter_steps(size: int, split: int, register: int) -> int:
+    """Return the lagging motor's duty register for an effort of `size` steps, `split` percent."""
+    share = size * split
+    if -100 < share - register * 100 < 100:
+        return register
+    return (share + 50) // 100
+
+
+@inner
+def apply_effort(w: Floats, effort: int, counter: int, s: Floats) -> None:
     """Write both duty registers; they count after the latency of interrupt and PWM period."""
     steps = int(s[STEPS])
-    size = abs(effort)
-    counter = (size * int(s[SPLIT]) + 50) // 100
-    lead = size / steps
+    lead = abs(effort) / steps
     lag = counter / steps
     rest = 1.0 - s[LATENCY] / w[at.GRID]
     for m in range(2):
@@ -99,6 +106,9 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
     kp = int(s[KP])
     ki = int(s[KI])
     held = 0  # Q16 PWM steps
+    counter = 0
+    last_output = 0
+    split = int(s[SPLIT])
     last_error = 0
     last_count = floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY]))
     last_a = floor(reading(w, at.OUT_TACH_A, s[LATE_TACH]))
@@ -119,6 +129,14 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             held = max(-limit, min(limit, held))
             last_error = 0
         output = (held + HALF) >> 16
+        moved = counter_steps(abs(output), split, counter) - counter
+        counter += moved
+        if wanted == wanted and moved != 0 and abs(output - last_output) <= 1:
+            # an effort that creeps takes the counter register's step with it, so the torque has no bump
+            held += (moved if output >= 0 else -moved) << 16
+            held = max(-limit, min(limit, held))
+            output = (held + HALF) >> 16
+        last_output = output
         if tick % 2 == 0:
             row = log[tick // 2]
             row[T] = w[at.STEP] * w[at.GRID]
@@ -137,5 +155,5 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             last_b = now_b
             row[AUX] = floor(reading(w, at.OUT_AUXILIARY, s[LATE_POSITION]))
             truth_row(w, truth[tick // 2])
-        apply_effort(w, output, s)
+        apply_effort(w, output, counter, s)
         advance_axis(w, tick_steps)

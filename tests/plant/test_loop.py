@@ -20,7 +20,7 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
     kp, ki = round(c.kp.si * 4096), round(c.ki.si * 4096)
     limit = 3000 << 16
     wanted = round(setpoint_arcsec_s / COUNT_ARCSEC / 200 * 65536)
-    effort = last_error = 0
+    effort = last_error = counter = last_steps = 0
     got: dict[str, list[int]] = {"effort": [], "velocity": [], "position": [], "adc_a": [], "tach_a": []}
     last = plant.ra.incremental(0)
     last_tach = plant.ra.tachometer(0, 0)
@@ -32,6 +32,13 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
         effort = max(-limit, min(limit, effort + ((kp * (error - last_error) + ki * error) >> 12)))
         last_error = error
         steps = (effort + 32768) >> 16
+        share = abs(steps) * 10 / 100
+        if abs(share - counter) >= 1:  # the lagging motor's register is a whole step off: it moves
+            moved, counter = int(share + 0.5) - counter, int(share + 0.5)
+            if abs(steps - last_steps) <= 1:  # and an effort that only creeps takes its step along
+                effort = max(-limit, min(limit, effort + (moved << 16) * (1 if steps >= 0 else -1)))
+                steps = (effort + 32768) >> 16
+        last_steps = steps
         if tick % 2 == 0:
             tach = plant.ra.tachometer(t, 0)
             got["effort"].append(steps)
@@ -40,8 +47,7 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
             got["adc_a"].append(min(1023, int(plant.ra.current(t, 0) * 0.8 / 5 * 1024)))
             got["tach_a"].append(tach - last_tach)
             last_tach = tach
-        lag = (abs(steps) * 10 + 50) // 100
-        pair = (steps, lag) if steps >= 0 else (lag, -steps)
+        pair = (steps, counter) if steps >= 0 else (counter, -steps)
         plant.ra.drive(t + round(LATENCY_S * 1e9), pair[0] / 3000, pair[1] / 3000)
     return got
 

@@ -187,7 +187,7 @@ def test_settings_reach_the_boards() -> None:
     network = Night(config=config).network
     board = network.boards["AXIS_RA"]
     assert isinstance(board, AxisBoard)
-    assert board.split == 20
+    assert board.counter.split == 20
     assert (board.motion.low, board.motion.high) == (100, 200)
     assert board.oscillator.local_ns(0) == 250_000_000
     assert network.wire.bitrate == 500_000

@@ -29,6 +29,15 @@ def test_B9_power_is_refused_while_the_position_is_unknown() -> None:
     assert lab.command(Opcode.POWER, 1).result == Result.NOT_ALLOWED
 
 
+def test_B9_after_a_supply_failure_the_old_position_is_forgotten(lab: Lab) -> None:
+    lab.axis.power_off(lab.queue.now_ns)
+    lab.position.power_off(lab.queue.now_ns)
+    lab.axis.power_on(lab.queue.now_ns)
+    lab.run(0.4)
+    assert lab.command(Opcode.PING).value & Health.STALE
+    assert lab.command(Opcode.POWER, 1).result == Result.NOT_ALLOWED
+
+
 def test_H2_health_check_is_clean(lab: Lab) -> None:
     assert lab.command(Opcode.PING).value == 0
 

@@ -1,3 +1,5 @@
+import pytest
+
 from boards.core import PeriodicBoard, Source
 from bus.can import Frame, Wire
 from bus.protocol import Opcode, Result, pack_command, unpack_heartbeat, unpack_reply
@@ -77,3 +79,23 @@ def test_a_board_without_supply_is_silent_and_boots_afresh() -> None:
     beats = [unpack_heartbeat(f.data) for f in frames if f.identifier == 0x735]
     assert [beat.uptime for beat in beats] == [0, 1]
     assert len(board.ends) == 240
+
+
+@pytest.mark.parametrize("ppm", [-9000.0, 0.0, 9000.0])
+def test_B9_a_board_knows_the_time_from_its_own_timer_only(ppm: float) -> None:
+    queue = EventQueue()
+    table = (Source("tick", 2, 10, 100), Source("can", 1, 10, 1000, level=True))
+    crystal = Oscillator(ppm, 123_456_789)
+    board = Idle("idle", DEVICE, queue, Wire(queue), crystal, 1_000_000, table, 5 * MS)
+    heard: list[int] = []
+    board.mail[0x123] = lambda now_ns, _data: heard.append(now_ns)
+    board.begin()
+    queue.run_until(12 * MS)
+    for _ in range(2):
+        board._receive(queue.now_ns, Frame(0x123, bytes([0x23, *7 * [0]])))
+        queue.run_until(queue.now_ns + 10_000 * MS)
+    # ten true seconds are more or less than that by the board's crystal; within a period the timer runs true
+    assert heard[1] - heard[0] == pytest.approx(
+        10_000 * MS * (1 + ppm * 1e-6), abs=5 * MS * abs(ppm) * 1e-6 + 2
+    )
+    assert board.clock_ns(queue.now_ns) // 1_000_000_000 == (20 if ppm >= 0 else 19)

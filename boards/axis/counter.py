@@ -1,0 +1,41 @@
+"""Duty register of the lagging motor: a share of the effort, in whole PWM steps (paper, section 3.3).
+
+Rounded anew at every tick, the register would move with the effort itself: at 10 % every tenth step of the
+effort would raise both duties and change no torque, and a loop that rests there has a dead band. So the
+register stays until it is a whole step off. When it moves while the loop's effort creeps by single steps, the
+effort takes the same step with it: the torque goes on without a bump. ASSUMPTION: the paper gives the share
+and not its rounding.
+"""
+
+_PERCENT = 100
+
+
+class CounterTorque:
+    """split: share of the effort, percent. register: PWM steps. fade: speed, counts/5 ms, at which the share
+    has fallen to nothing; 0: never."""
+
+    __slots__ = ("fade", "register", "split")
+
+    def __init__(self, split: int, fade: int) -> None:
+        self.split = split
+        self.fade = fade
+        self.register = 0
+
+    def follow(self, effort: int, velocity: int) -> int:
+        """Move the register for an effort (PWM steps); returns by how much, with the effort's sign."""
+        size = effort if effort >= 0 else -effort
+        share = size * self.split
+        fade = self.fade
+        if fade:
+            share = share * max(0, fade - abs(velocity)) // fade
+        register = self.register
+        if -_PERCENT < share - register * _PERCENT < _PERCENT:
+            return 0
+        self.register = now = (share + _PERCENT // 2) // _PERCENT
+        return now - register if effort >= 0 else register - now
+
+    def share_q16(self, effort_q16: int, velocity: int) -> int:
+        """The same share without whole steps, of a size in Q16: more effort is never less torque."""
+        share = effort_q16 * self.split // _PERCENT
+        fade = self.fade
+        return share * max(0, fade - abs(velocity)) // fade if fade else share

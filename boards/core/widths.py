@@ -1,0 +1,21 @@
+"""Integers as wide as registers: Python's never overflow, a controller's do.
+
+C on the dsPIC30F and the PIC18 has 16, 32 and 64 bit; 64-bit products and quotients are library calls.
+Whatever a board accumulates has one of these widths. It either fits for every parameter and input that is
+accepted (the tests compute with integers that complain), or it saturates (the firmware compares) or wraps
+(counters).
+"""
+
+INT32_TOP = (1 << 31) - 1
+INT64_TOP = (1 << 63) - 1
+
+
+def saturate(value: int, top: int) -> int:
+    """`value` within -top..top; symmetric, so that a sign can always be turned."""
+    return top if value > top else -top if value < -top else value
+
+
+def wrap(value: int, bits: int) -> int:
+    """The lowest `bits` of `value` as a signed number: what an addition leaves in a register."""
+    half = 1 << (bits - 1)
+    return ((value + half) & ((1 << bits) - 1)) - half

@@ -1,0 +1,186 @@
+"""Every accumulator of the axis board at the extremes of what it accepts: nothing needs more than 64 bits."""
+
+from math import isqrt
+
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from boards.axis.commands import RATE_LIMIT
+from boards.axis.config import STEPS_PER_TURN, AxisConfig, rate_q16
+from boards.axis.counter import CounterTorque
+from boards.axis.limits import SoftLimits
+from boards.axis.motion import Motion
+from boards.axis.pi import IncrementalPi
+from boards.axis.profile import UNITS_PER_STEP, Profile
+from boards.axis.tachometer import RemoteTachometer
+from boards.axis.watch import EncoderWatch
+from bus.protocol import AxisMode
+from bus.protocol.tach import pack_tach
+from tests.boards.checked import Checked, checked
+
+INT16 = (-(1 << 15), (1 << 15) - 1)
+ACCELERATION = (1, rate_q16(7200.0) // 20)
+GAIN = 1 << 20
+INT32 = (1 << 31) - 1
+
+
+def extremes(low: int, high: int) -> st.SearchStrategy[int]:
+    """Mostly the ends of a range, and what lies between."""
+    return st.one_of(st.sampled_from((low, low + 1, high - 1, high)), st.integers(low, high))
+
+
+positions = extremes(0, STEPS_PER_TURN - 1)
+rates = extremes(-RATE_LIMIT, RATE_LIMIT)
+velocities = extremes(*INT16)
+accelerations = extremes(*ACCELERATION)
+ages = st.one_of(st.integers(0, 1 << 26), st.just(1 << 62))  # ns since the last position, also "never again"
+
+
+@given(
+    extremes(0, GAIN),
+    extremes(0, GAIN),
+    st.integers(2, 65536),
+    st.lists(st.tuples(rates, velocities), max_size=6),
+)
+@example(GAIN, GAIN, 65536, [(RATE_LIMIT, INT16[0]), (-RATE_LIMIT, INT16[1])])
+def test_B1_pi_products_and_effort(kp: int, ki: int, steps: int, ticks: list[tuple[int, int]]) -> None:
+    pi = IncrementalPi(kp, ki, steps)
+    checked(pi, "kp_q12", "ki_q12", "effort_q16", "_error", "_limit")
+    for setpoint, velocity in ticks:
+        effort = pi.step(Checked(setpoint), Checked(velocity))
+        assert abs(effort) <= steps
+        assert abs(pi._error) <= INT32
+        assert abs(pi.effort_q16) <= INT32
+    pi.start(Checked(steps), Checked(RATE_LIMIT), Checked(INT16[0]))
+    assert abs(pi._error) <= INT32
+    assert pi.shift(1) in (0, 1)
+    assert abs(pi.effort_q16) <= INT32
+
+
+def make(acceleration: int, top: int) -> Profile:
+    profile = Profile(Checked(acceleration << 2))
+    checked(profile, "target", "rate", "remaining", "speed")
+    profile.top = Checked(top << 2)
+    return profile
+
+
+@settings(deadline=None)
+@given(positions, positions, rates, rates, accelerations, extremes(0, RATE_LIMIT))
+@example(0, STEPS_PER_TURN - 1, 0, 0, ACCELERATION[1], RATE_LIMIT)
+@example(0, STEPS_PER_TURN - 1, RATE_LIMIT, -RATE_LIMIT, 1, RATE_LIMIT)
+@example(
+    0, STEPS_PER_TURN // 4, 0, 0, rate_q16(36.0), rate_q16(7200.0)
+)  # 90 degrees at the default acceleration
+def test_B1_a_profile_over_any_distance_at_any_acceleration(
+    start: int, goal: int, velocity: int, rate: int, acceleration: int, top: int
+) -> None:
+    profile = make(acceleration, top)
+    profile.rate = Checked(rate << 2)
+    profile.take_over(Checked(start * UNITS_PER_STEP), Checked(velocity << 2))
+    profile.aim(Checked(goal * UNITS_PER_STEP))
+    for _ in range(50):
+        profile.step()
+    # and nearer to the target, where the square root is taken
+    profile.remaining, profile.speed = Checked(profile.remaining % (1 << 34)), Checked(min(top, 1 << 28))
+    for _ in range(50):
+        profile.step()
+
+
+@given(st.integers(0, 1 << 45), accelerations, extremes(0, RATE_LIMIT))
+def test_B1_the_speed_is_that_of_the_braking_law_in_unbounded_integers(gap: int, a: int, top: int) -> None:
+    """v (v + a) <= 2 a d: the same figure as where nothing overflows (integers without a bound)."""
+    profile = make(a, top)
+    profile.remaining = Checked(gap)
+    profile.speed = Checked(min(top << 2, gap))
+    a, top = a << 2, top << 2
+    wanted = min(isqrt(a * a // 4 + 2 * a * gap) - a // 2, top, gap)
+    speed = int(profile.speed)
+    profile.step()
+    assert profile.speed == min(max(wanted, speed - a), speed + a)
+
+
+@given(velocities, rates, accelerations)
+@example(INT16[0], RATE_LIMIT, 1)
+def test_B1_taking_over_from_anything_the_encoder_can_say(
+    velocity: int, rate: int, acceleration: int
+) -> None:
+    """In open loop the set point follows the counts, 16 bits of them."""
+    profile = make(acceleration, RATE_LIMIT)
+    profile.rate = Checked(rate << 2)
+    profile.take_over(Checked((STEPS_PER_TURN - 1) * UNITS_PER_STEP), Checked(velocity << 18))
+
+
+def motion(position: int) -> Motion:
+    made = Motion(AxisConfig(), IncrementalPi(GAIN, GAIN, 3000))
+    made.position = Checked(position)
+    made.latch_ns = Checked(0)
+    return made
+
+
+@given(positions, velocities, ages)
+def test_B1_a_position_is_carried_on_over_any_age(position: int, velocity: int, age: int) -> None:
+    found = motion(position).measured(Checked(age), Checked(velocity))
+    # a tenth of a second, 20 ticks, at the 16 bits that one tick can count
+    assert abs(found - position * UNITS_PER_STEP) <= (20 * (1 << 15) << 18) * (1 + 1e-5)
+
+
+@given(positions, positions, velocities, rates, st.integers(0, 60_000_000))
+def test_B1_the_position_loop(position: int, target: int, velocity: int, rate: int, age: int) -> None:
+    axis = motion(position)
+    axis.move(Checked(age), Checked(velocity), Checked(target), RATE_LIMIT)
+    axis.track(Checked(age), Checked(velocity), Checked(rate))
+    checked(axis.profile, "target", "remaining", "speed", "top", "rate", "acceleration")
+    for _ in range(5):
+        setpoint = axis.setpoint(Checked(age), Checked(velocity))
+        assert abs(setpoint) <= INT32
+    axis.nudge(Checked(INT32))
+    axis.nudge(Checked(-INT32))
+
+
+@given(velocities, positions, accelerations, positions, positions)
+@example(INT16[0], 0, 1, 0, STEPS_PER_TURN - 1)
+def test_B3_braking_distances_of_the_soft_limits(
+    velocity: int, position: int, acceleration: int, low: int, high: int
+) -> None:
+    axis = motion(position)
+    axis.mode = AxisMode.RATE
+    axis.set_acceleration(Checked(acceleration))
+    axis.low, axis.high = Checked(low), Checked(high)
+    axis.classes[0] = Checked(RATE_LIMIT)
+    guard = SoftLimits(axis)
+    guard.hit(Checked(velocity))
+
+
+@given(st.lists(velocities, min_size=50, max_size=50), positions, positions)
+def test_B2_the_encoder_watch_counts_in_32_bits(counts: list[int], before: int, after: int) -> None:
+    watch = EncoderWatch()
+    watch.disagree(Checked(before * UNITS_PER_STEP))
+    for count in counts:
+        watch.counts = Checked(watch.counts + count)
+    assert abs(watch.counts) <= INT32
+    watch.disagree(Checked(after * UNITS_PER_STEP))
+    assert watch.counts == 0
+
+
+@given(st.lists(st.tuples(extremes(-INT32, INT32), velocities, st.integers(0, 25_000_000)), max_size=8))
+def test_B4_a_motors_counts_on_their_way(frames: list[tuple[int, int, int]]) -> None:
+    tach = RemoteTachometer(120_000)
+    checked(tach, "_rate_q8", "_age_ns")
+    for number, (count, delta, age) in enumerate(frames):
+        now = Checked(number * 10_000_000)
+        tach.take(now, pack_tach(0x31, 0, count, delta))
+        assert abs(tach.sample(now + age)) <= 1 << 31
+
+
+@given(
+    extremes(10, 25),
+    st.lists(extremes(-65536, 65536), min_size=1, max_size=20),
+    st.sampled_from((0, 1, 4000)),
+)
+def test_B2_the_counter_register_stays_within_a_step_of_its_share(
+    split: int, efforts: list[int], fade: int
+) -> None:
+    counter = CounterTorque(Checked(split), fade)
+    for effort in efforts:
+        counter.follow(Checked(effort), 0)
+        assert abs(counter.register * 100 - abs(effort) * split) < 100

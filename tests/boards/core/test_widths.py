@@ -1,0 +1,26 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boards.core.widths import INT32_TOP, saturate, wrap
+from tests.boards.checked import Checked
+
+
+@given(st.integers(), st.integers(2, 64))
+def test_wrapping_is_what_an_addition_leaves_in_the_register(value: int, bits: int) -> None:
+    wrapped = wrap(value, bits)
+    assert -(1 << bits - 1) <= wrapped < 1 << bits - 1
+    assert (wrapped - value) % (1 << bits) == 0
+
+
+@given(st.integers())
+def test_saturation_stops_at_both_ends(value: int) -> None:
+    assert saturate(value, INT32_TOP) == min(max(value, -INT32_TOP), INT32_TOP)
+
+
+def test_checked_integers_see_an_overflow() -> None:
+    with pytest.raises(OverflowError, match="needs 65 bits"):
+        Checked(1 << 62) * 2
+    with pytest.raises(OverflowError):
+        3 * (Checked(1 << 62) - 1) + 7
+    assert Checked(1 << 62) + ((1 << 62) - 1) == (1 << 63) - 1
