@@ -85,6 +85,33 @@ def paper(
 
 
 @cli.command()
+@click.option("--out", type=click.Path(path_type=Path), default=Path("out/objective"), show_default=True)
+@click.option("--plant", default="low_preload_motor_units", show_default=True, help="Low preload.")
+@click.option("--plant-high", default="high_preload_motor_units", show_default=True, help="High preload.")
+@click.option("--compensation", type=click.Path(path_type=Path), help="What schmidt calibrate wrote.")
+@click.option("--starts", type=click.IntRange(1, 64), default=8, show_default=True, help="Start angles.")
+@click.option("--seeds", type=click.IntRange(1, 16), default=3, show_default=True)
+@click.option("--shift", type=float, default=0.0, show_default=True, help="Degrees, of all start angles.")
+@click.option("--seconds", type=click.FloatRange(min=1), default=600.0, show_default=True)
+@click.option("--only", help="Only rows whose name contains this.")
+def objective(
+    out: Path,
+    plant: str,
+    plant_high: str,
+    compensation: Path | None,
+    starts: int,
+    seeds: int,
+    shift: float,
+    seconds: float,
+    only: str | None,
+) -> None:
+    """Hold 15 arcsec/s from many starts; print how far the true rate errs (exit 1: a row misses 1 arcsec/s)."""
+    from scenarios.objective.command import objective as command
+
+    sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only))
+
+
+@cli.command()
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--can", multiple=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0; repeatable."

@@ -1,0 +1,54 @@
+"""What the table has rows for: plants with more in them than the declared one, and firmwares."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant.model import with_effects
+from plant.parts import EffectModel, PlantModel
+
+EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
+"""At the catalogue's default size (`schmidt effects NAME`)."""
+STARTS = 8
+FIRST_DEG, LAST_DEG = 85.0, 265.0
+"""Of the absolute encoder: 95 deg before the middle of the travel to 85 deg after it."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row: which plant, what is added to it, which firmware, with the compensation table or not."""
+
+    name: str
+    effects: tuple[str, ...] = ()
+    firmware: str = "fine"
+    compensated: bool = False
+    high: bool = False
+
+    def plant(self, low: PlantModel, high: PlantModel) -> PlantModel:
+        """The plant with the effects added to those it has."""
+        model = high if self.high else low
+        added = tuple(EffectModel(name) for name in self.effects)
+        return with_effects(model, "ra", model.axes.ra.effects + added)
+
+
+def cases(compensation: bool) -> tuple[Case, ...]:
+    """Rows of the table; with a compensation file, those of the fine firmware once more with it."""
+    rows = [Case("the paper's firmware", firmware="paper"), Case("spread duty, bias, lock, blend")]
+    if compensation:
+        rows.append(Case("the same, compensated", compensated=True))
+    for effect in EFFECTS:
+        rows.append(Case(f"with {effect}", (effect,)))
+    rows.append(Case("with all four", EFFECTS))
+    rows.append(Case("with all four, the paper's firmware", EFFECTS, firmware="paper"))
+    rows.append(Case("high preload, the paper's firmware", firmware="paper", high=True))
+    rows.append(Case("high preload, spread duty, bias, lock, blend", high=True))
+    return tuple(rows)
+
+
+def starts(shift_deg: float, count: int = STARTS) -> list[float]:
+    """Start angles, deg of the absolute encoder, evenly over the travel; `shift_deg` moves all of them.
+
+    Neighbours are 22.9 deg apart, no multiple of a gear's order, so each has its own phases.
+    """
+    spacing = (LAST_DEG - FIRST_DEG) / (count - 0.13)
+    return [FIRST_DEG + (k * spacing + shift_deg) % (LAST_DEG - FIRST_DEG) for k in range(count)]
