@@ -105,7 +105,7 @@ def objective(
     seconds: float,
     only: str | None,
 ) -> None:
-    """Hold 15 arcsec/s from many starts; print how far the true rate errs (exit 1: a row misses 1 arcsec/s)."""
+    """Hold 15 arcsec/s from many starts; print by how much the true rate errs (exit 1: a row is missed)."""
     from scenarios.objective.command import objective as command
 
     sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only))

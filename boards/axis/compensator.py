@@ -13,9 +13,11 @@ _TABLE_BITS = 10
 _SIZE = 1 << _TABLE_BITS
 _MASK = _SIZE - 1
 _SHIFT = 32 - _TABLE_BITS
-_HALF = 1 << (_SHIFT - 1)
-_COS = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE)]
-_SIN = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE)]
+_PART_BITS = 12
+"""Between two values of the table: slow waves would move in jumps of a tenth of a step otherwise."""
+_PART_MASK = (1 << _PART_BITS) - 1
+_COS = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
+_SIN = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
 _LEAD_Q16 = round(1.5 * (1 << 29) / 112_896_000 * 65536)
 """Steps per count, one and a half ticks: the mean age of a position frame (up to one tick, both boards run on
 their own crystals) and half the tick in which the effort will be in force. ASSUMPTION."""
@@ -78,8 +80,13 @@ class Compensator:
         here = position + (velocity * _LEAD_Q16 >> 16)
         total = 0
         for order, a, b in self._lines:
-            place = ((here * order >> 13) + _HALF >> _SHIFT) & _MASK
-            total += a * _COS[place] + b * _SIN[place]
+            phase = here * order >> 13
+            place = phase >> _SHIFT & _MASK
+            part = phase >> _SHIFT - _PART_BITS & _PART_MASK
+            cosine, sine = _COS[place], _SIN[place]
+            cosine += (_COS[place + 1] - cosine) * part >> _PART_BITS
+            sine += (_SIN[place + 1] - sine) * part >> _PART_BITS
+            total += a * cosine + b * sine
         return (total >> 7) + self._friction(setpoint_q16)
 
     def _friction(self, setpoint_q16: int) -> int:

@@ -29,7 +29,7 @@ _ANSWER_S = 0.02
 
 
 class Held(NamedTuple):
-    """True rate less the asked one, arcsec/s, and true angle less a line of that rate, arcsec; every 10 ms."""
+    """True rate less the asked one, arcsec/s; true angle less a line of that rate, arcsec; every 10 ms."""
 
     t_s: Floats
     rate: Floats
