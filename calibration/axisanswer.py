@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration import compensation
 from calibration.answers import calibrated, error_row, gate_rows, refusals, too_short
 from calibration.axis import analyse
 from calibration.axisresult import AxisResult
@@ -24,7 +25,7 @@ from calibration.readers.run import Run
 from calibration.replay.answer import correct_and_replay
 from calibration.report.replayplot import replay_picture
 from calibration.statistics.regression import gls
-from plant.model import with_effects
+from plant.model import load, with_effects
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters
 LEAST_PRESENT = (
@@ -77,6 +78,7 @@ def axis_answer(
     _before_within_tolerance(v, result, effects)
     v.controls = _controls(result, effects)
     again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
+    compensation.write(out / "compensation.yaml", load(out / "plant.yaml"), axis)
     v.closed_loop = again.rows
     short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]

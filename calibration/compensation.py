@@ -1,8 +1,8 @@
 """compensation.yaml: what a host may load into an axis board, so that its loop need not wait for the error.
 
-Waves of the torque over the position, as effort against them, and the level at which friction turns. All of
-it from a plant file, for slow motion in the direction of tracking (+); the drive's windup and the currents are
-those of that motion.
+Waves of the torque over the position, as effort against them, and the level at which friction turns. All
+of it from a plant file, for slow motion in the direction of tracking (+), with that motion's windup and
+currents.
 """
 
 from __future__ import annotations

@@ -5,9 +5,14 @@ from __future__ import annotations
 import signal
 import sys
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
+
+if TYPE_CHECKING:
+    from plant.model import PlantModel
+    from scenarios.model import Scenario
+    from scenarios.run import Result
 
 UNUSABLE = 2
 INTERRUPTED = 130
@@ -36,6 +41,12 @@ def cli() -> None:
 @click.option(
     "--log-rate", type=click.FloatRange(0.01, 20), help="Lines per second of the status and sensor logs."
 )
+@click.option("--firmware", type=click.Choice(["paper", "fine"]), help="What the axis boards run.")
+@click.option(
+    "--compensation",
+    type=click.Path(path_type=Path),
+    help="Load this table, and run without it and with it wrong as well.",
+)
 def run(
     scenario: Path,
     out: Path | None,
@@ -43,14 +54,22 @@ def run(
     plant: str | None,
     speed: float | None,
     log_rate: float | None,
+    firmware: str | None,
+    compensation: Path | None,
 ) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
     from scenarios import run as runner
 
     folder = out if out is not None else Path("out") / scenario.stem
-    loaded, model = runner.prepare(scenario, seed, plant, speed, 1.0 / log_rate if log_rate else None)
-    with runner.bar(loaded, sys.stderr.isatty()) as progress:
-        result = runner.run(loaded, model, folder, progress)
+    if compensation is not None:
+        firmware = firmware or "fine"  # a table in fractions of a step wants a duty in fractions of a step
+    period_s = 1.0 / log_rate if log_rate else None
+    loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware)
+    if compensation is not None:
+        result = _compared(loaded, model, folder, compensation)
+    else:
+        with runner.bar(loaded, sys.stderr.isatty()) as progress:
+            result = runner.run(loaded, model, folder, progress)
     for verdict in result.verdicts:
         sign, limit = ("≤" if verdict.upper else "≥"), f"{verdict.limit:g}"
         value = "no value" if verdict.value is None else f"{verdict.value:.4g}"
@@ -67,6 +86,20 @@ def run(
     if result.interrupted:
         _fail(f"interrupted, logs up to t={summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
     sys.exit(0 if result.passed else 1)
+
+
+def _compared(loaded: Scenario, model: PlantModel, folder: Path, file: Path) -> Result:
+    from scenarios import compared
+    from scenarios import compensation as tables
+    from scenarios import run as runner
+
+    table = tables.load(file)
+    result, gains = compared.run(
+        loaded, model, folder, table, lambda each: runner.bar(each, sys.stderr.isatty())
+    )
+    for text in compared.lines(gains):
+        click.echo(text)
+    return result
 
 
 @cli.command()

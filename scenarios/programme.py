@@ -14,6 +14,7 @@ from host.procedures.pointing import CLASSES, Pointing
 from host.sky.catalogue import Star
 from host.sky.track import StarTrack
 from host.sky.visibility import Unreachable, check_reachable
+from scenarios import configure
 from scenarios.model import Scenario, Step
 from scenarios.targets import target_of
 
@@ -185,6 +186,10 @@ class Programme:
                 return self.pointing.park()
             case "wait":
                 return client.wait(given["for"])
+            case "firmware":
+                return configure.firmware(client, given["use"])
+            case "compensation":
+                return configure.compensate(client, given["table"])
             case "set_parameter":
                 device = _device(client, given["node"])
                 return client.ask(device, Opcode.SET_PARAMETER, given["parameter"], given["value"])

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.logs.files import LogError
+from scenarios.configure import read_tables, with_firmware
 from scenarios.document import ScenarioError
 from scenarios.load import load
 from scenarios.model import Scenario
@@ -37,6 +38,7 @@ class Result:
     summary: dict[str, Any]
     verdicts: list[Verdict]
     folder: Path
+    outcome: Outcome
     interrupted: bool = False
 
     @property
@@ -51,6 +53,7 @@ def prepare(
     plant: str | None = None,
     speed: float | None = None,
     status_period_s: float | None = None,
+    firmware: str | None = None,
 ) -> tuple[Scenario, PlantModel]:
     """Load a scenario, apply the command line's changes, check all that can be checked without running."""
     from scenarios.plants import plant_model
@@ -63,6 +66,9 @@ def prepare(
     if plant is not None:
         scenario = dataclasses.replace(scenario, plant={**scenario.plant, "file": plant})
     check_targets(scenario)
+    scenario = read_tables(scenario)
+    if firmware is not None:
+        scenario = with_firmware(scenario, firmware)
     return scenario, plant_model(scenario.plant, file.parent)
 
 
@@ -155,7 +161,7 @@ def _conclude(
     summary = _summary(session, outcome, verdicts)
     _write_json(recorder.folder / "summary.json", summary)
     write(outcome, verdicts, summary)
-    return Result(summary, verdicts, recorder.folder, interrupted)
+    return Result(summary, verdicts, recorder.folder, outcome, interrupted)
 
 
 def _summary(session: Session, outcome: Outcome, verdicts: list[Verdict]) -> dict[str, Any]:

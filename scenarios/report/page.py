@@ -20,11 +20,22 @@ if TYPE_CHECKING:
 _LIBRARIES = ("numpy", "numba", "pyerfa", "python-can", "cantools", "pyarrow", "matplotlib")
 
 
-def write(outcome: Outcome, verdicts: list[Verdict], summary: dict[str, Any]) -> None:
-    """Draw the figures and write the page into the outcome's folder."""
+def write(
+    outcome: Outcome,
+    verdicts: list[Verdict],
+    summary: dict[str, Any],
+    compared: tuple[list[dict[str, Any]], Figure] | None = None,
+) -> None:
+    """Draw the figures and write the page into the outcome's folder.
+
+    compared: rows and figure of the same scenario without compensation (scenarios/compared.py).
+    """
     import jinja2
 
     pictures = []
+    if compared is not None:
+        data = _save(compared[1], outcome.folder / "compensation.png")
+        pictures.append({"title": "Compensation", "data": data})
     for name, (title, draw) in FIGURES.items():
         figure = draw(outcome)
         if figure is not None:
@@ -40,6 +51,7 @@ def write(outcome: Outcome, verdicts: list[Verdict], summary: dict[str, Any]) ->
         steps=_timeline(outcome),
         summary=summary,
         pictures=pictures,
+        compared=compared[0] if compared is not None else [],
         versions=_versions(),
         start=outcome.scenario.clock.iso(0.0),
         files=sorted(path.name for path in outcome.folder.iterdir() if path.is_file()),

@@ -110,7 +110,7 @@ def test_B1_a_line_of_the_table_is_a_wave_over_the_position(
     phase = 2 * math.pi * (compensator.orders_q16[3] / 65536 * position / 2**29 % 1.0)
     wanted = cosine * math.cos(phase) + sine * math.sin(phase)
     size = abs(cosine) + abs(sine)
-    # a chord of the table of 1024 is off by (2 pi / 1024)^2 / 8 = 5e-6, its values and the amplitudes by half a
+    # a chord of the table is off by (2 pi / 1024)^2 / 8 = 5e-6, its values and the amplitudes by half a
     # unit: 1/65534 and 1/512 step each
     assert abs(got - wanted) <= 6e-5 * size + 2 * 0.00196 + 1e-4
 
