@@ -1,0 +1,78 @@
+"""The list of cases of a seed."""
+
+from tests.blind.drives.case import Order
+from tests.blind.drives.effects import OUTSIDE, WHERE
+from tests.blind.drives.families import FAMILIES
+from tests.blind.drives.sensors import NOISES
+
+SPOILS = ("", "spikes", "gaps")
+SECONDS = (30.0, 60.0, 5.0, 30.0)
+
+
+def nothing(repeats: int = 3) -> list[Order]:
+    """Drives in which nothing is hidden: every family, noise and kind of bad rows; some short, some with two
+    sensors."""
+    out = []
+    for kind in FAMILIES:
+        for noise in NOISES:
+            for k in range(repeats):
+                spoil = SPOILS[k % 3]
+                key = f"drive-nothing-{kind}-{noise}-{k}"
+                two = kind in ("servo", "belt") and k % 3 == 0
+                out.append(
+                    Order(
+                        key, "nothing", kind, (), 0.0, noise, "" if two else spoil, SECONDS[len(out) % 4], two
+                    )
+                )
+    return out
+
+
+def single(ratios: tuple[float, ...] = (2.0, 5.0), repeats: int = 1) -> list[Order]:
+    """Every name in every family it is drawn for."""
+    out = []
+    for draw, kinds in WHERE.items():
+        for kind in kinds:
+            for ratio in ratios:
+                for k in range(repeats):
+                    key = f"drive-single-{draw.__name__}-{kind}-{ratio:g}-{k}"
+                    noise = NOISES[len(out) % 2]
+                    out.append(Order(key, "single", kind, (draw.__name__,), ratio, noise, "", 40.0))
+    return out
+
+
+def outside(ratios: tuple[float, ...] = (2.0, 5.0)) -> list[Order]:
+    """What the catalogue does not have."""
+    return [
+        Order(
+            f"drive-outside-{draw.__name__}-{kind}-{ratio:g}",
+            "outside",
+            kind,
+            (draw.__name__,),
+            ratio,
+            seconds=40.0,
+        )
+        for draw, kinds in OUTSIDE.items()
+        for kind in kinds
+        for ratio in ratios
+    ]
+
+
+def everything() -> list[Order]:
+    """The scored set."""
+    return nothing(6) + single(repeats=2) + outside()
+
+
+def develop() -> list[Order]:
+    """A smaller set to develop on."""
+    return nothing(3) + single() + outside()
+
+
+def quick() -> list[Order]:
+    """A few for continuous integration."""
+    names = ("gravity_imbalance", "channel_delay", "play")
+    return nothing(1)[::3] + [
+        o for o in single((5.0,)) if o.names[0] in names and o.kind in ("servo", "ball_screw")
+    ]
+
+
+SETS = {"everything": everything, "develop": develop, "quick": quick}

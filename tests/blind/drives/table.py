@@ -1,0 +1,60 @@
+"""The figures of the other drives, and a line per hidden effect."""
+
+from typing import Any
+
+from tests.blind.table import share, text_of
+
+Row = dict[str, Any]
+
+
+def markdown(rows: list[Row], seed: int) -> str:
+    """The table as Markdown."""
+    nothing, single, outside = ([r for r in rows if r["cell"] == c] for c in ("nothing", "single", "outside"))
+    figures = [
+        (
+            "nothing hidden, an effect named",
+            "≤ 3 %",
+            share(nothing, lambda r: bool(r["wrong"]) or not r["answered"]),
+        ),
+        (
+            "nothing hidden, `unknown` said",
+            "",
+            share(nothing, lambda r: any("unknown" in s for s in r["said"])),
+        ),
+        ("one effect, right name or class", "≥ 90 %", share(single, lambda r: r["right"])),
+        ("one effect, a wrong name among those said", "", share(single, lambda r: bool(r["wrong"]))),
+        ("one effect, `cannot tell` or nothing", "", share(single, lambda r: not r["said"])),
+        ("outside, `unknown` in the right domain", "≥ 95 %", share(outside, lambda r: r["right"])),
+        (
+            "a wrong name with probability > 0.9, all cases",
+            "≤ 1 %",
+            share(rows, lambda r: bool(r["sure_and_wrong"])),
+        ),
+        (
+            "held-out data made worse",
+            "0",
+            share([r for r in rows if r["said"]], lambda r: bool(r.get("worse"))),
+        ),
+        ("cases without an answer", "0", share(rows, lambda r: not r["answered"])),
+    ]
+    out = ["| figure | must | measured (95 % interval) |", "|---|---|---|"]
+    out += [f"| {name} | {must} | {text_of(measured)} |" for name, must, measured in figures]
+    seconds = sorted(r["seconds"] for r in rows)
+    out += [
+        "",
+        f"Seed {seed}, {len(rows)} cases; {seconds[len(seconds) // 2]:.1f} s a case (median),"
+        f" {seconds[-1]:.1f} s at most.",
+        "",
+    ]
+    out += ["| hidden | right | said otherwise |", "|---|---|---|"]
+    for name in sorted({r["truth"] for r in rows}):
+        mine = [r for r in rows if r["truth"] == name]
+        other = [
+            f"{r['family']}: {r['said'][0][0] if r['said'] else r['verdict'] or 'no answer'}"
+            for r in mine
+            if not r["right"]
+        ]
+        out.append(
+            f"| {name or 'nothing'} | {sum(r['right'] for r in mine)}/{len(mine)} | {', '.join(other)} |"
+        )
+    return "\n".join(out) + "\n"

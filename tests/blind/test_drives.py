@@ -1,0 +1,74 @@
+"""Sealed logs of other drives: deterministic, hashed, sized as asked, physics that holds."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.blind.drives import cells, slots
+from tests.blind.drives.case import Order, build, seal
+from tests.blind.drives.effects import OUTSIDE, WHERE
+from tests.blind.drives.families import FAMILIES
+from tests.blind.drives.score import score
+
+
+def test_same_seed_same_bytes_and_the_seal_is_the_hash_of_the_truth(tmp_path: Path) -> None:
+    order = Order("x", "single", "servo", ("gravity_imbalance",), 5.0, "heavy", "spikes", 5.0)
+    for name in ("one", "two"):
+        seal(order, 1001, tmp_path / name / "logs", tmp_path / name / "truth")
+    files = sorted(p.relative_to(tmp_path / "one") for p in (tmp_path / "one").rglob("*") if p.is_file())
+    assert [f.name for f in files] == ["SEAL", "rig.yaml", "run1.csv", "run2.csv", "run3.csv", "x.json"]
+    for file in files:
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+    truth = (tmp_path / "one" / "truth" / "x.json").read_bytes()
+    assert (tmp_path / "one" / "logs" / "x" / "SEAL").read_text().strip() == hashlib.sha256(truth).hexdigest()
+    told = (tmp_path / "one" / "logs" / "x" / "rig.yaml").read_text() + files[0].name
+    assert "gravity" not in told
+
+
+def test_every_name_is_drawn_in_its_families_and_keys_are_unique() -> None:
+    orders = cells.everything()
+    assert len({o.key for o in orders}) == len(orders)
+    for table in (WHERE, OUTSIDE):
+        for draw, kinds in table.items():
+            assert set(kinds) <= set(FAMILIES)
+            assert {o.kind for o in orders if o.names == (draw.__name__,)} == set(kinds)
+
+
+@pytest.mark.parametrize("kind", FAMILIES)
+def test_a_pure_drive_keeps_newtons_law(kind: str) -> None:
+    """Force less mass times acceleration is friction: between the Coulomb level and the viscous line."""
+    made, _, _, _ = build(Order("pure", "nothing", kind, seconds=5.0), 1002)
+    rows, p = made.rows[0], made.plant
+    moving = np.abs(rows[:, slots.V]) > 20 * p["VS"]
+    if not moving.any():
+        moving = np.abs(rows[:, slots.V]) > 5 * p["VS"]
+    effort, v, a = rows[:, slots.EFFORT], rows[:, slots.V], rows[:, slots.A]
+    left = p["GAIN"] * effort - p["MASS"] * a
+    expected = p["COUL"] * np.sign(v) + p["VISC"] * v
+    error = np.median(np.abs(left - expected)[moving]) / p["COUL"]
+    assert error < 0.1
+    assert np.std(made.references[0] - rows[:, slots.X]) < 0.05 * np.std(made.references[0])
+
+
+@pytest.mark.parametrize(("name", "kind"), [("gravity_imbalance", "servo"), ("brake_drag", "belt")])
+def test_the_hidden_force_has_the_ratio_asked_for(name: str, kind: str) -> None:
+    _, hidden, size, _ = build(Order("sized", "single", kind, (name,), 3.0, seconds=20.0), 1003)
+    assert hidden is not None and size == pytest.approx(3.0, rel=0.12)
+
+
+def test_scores_count_a_wrong_name_and_how_sure_it_was() -> None:
+    truth = {
+        "key": "k", "cell": "single", "family": "servo", "kind": "gaussian", "spoil": "",
+        "effects": [{"name": "play", "class": ["play"], "channel": "K", "domain": ["reversal"], "ratio": 2.0,
+                     "in_catalogue": True}],
+    }  # fmt: skip
+    told = {"failure": None, "seconds": 1.0}
+    report = {"verdict": "found", "error": {}, "effects": [{"name": "presliding", "probability": 0.95}]}
+    row = score(told, report, truth)
+    assert (row["right"], row["wrong"], row["sure_and_wrong"]) == (False, 1, 1)
+    report["effects"] = [{"name": "play", "probability": 0.6, "equivalent": []}]
+    row = score(told, json.loads(json.dumps(report)), truth)
+    assert (row["right"], row["wrong"], row["sure_and_wrong"]) == (True, 0, 0)
