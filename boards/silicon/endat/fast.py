@@ -7,12 +7,11 @@ the CRC sits on top as the number its five bits spell.
 
 from collections.abc import Callable
 
+from boards.silicon.endat.crc import crc5
+
 POSITION_BITS = 29
 CLOCK_HZ = 1_000_000
 """ASSUMPTION: within the 2 MHz that need no delay compensation."""
-_POLYNOMIAL = 0x0B
-"""x^5 + x^3 + x + 1, without its top bit."""
-_INVERT = 0x1F
 _DATA_BITS = POSITION_BITS + 2
 _POSITION_MASK = (1 << POSITION_BITS) - 1
 _HEALTHY_FLAGS = 0b10
@@ -25,18 +24,6 @@ CALCULATION_NS = 5_000
 """t_cal, position calculation: <= 5 us assumed, the catalogue value was not found (hardware.md 1.3)."""
 RECOVERY_NS = 20_000
 """t_m, 10..30 us (hardware.md 3.1)."""
-
-
-def crc5(bits: int, count: int) -> int:
-    """CRC of the `count` lowest bits of `bits`, taken lowest first. The published vectors hold it to
-    account."""
-    crc = _INVERT
-    for k in range(count):
-        top = (crc >> 4) ^ (bits >> k & 1)
-        crc = (crc << 1) & _INVERT
-        if top:
-            crc ^= _POLYNOMIAL
-    return crc ^ _INVERT
 
 
 def _share(low: int, count: int) -> list[int]:
