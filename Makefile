@@ -1,4 +1,5 @@
 # make run    the main scenario            make test    everything CI checks
+# make compiled  the emulator as a library (make run does it)    make both  the fast tests on it    make wheels
 # make bench  speed figures (JSON in out/) make paper   the paper's experiments
 # make blind  the blind tests (about an hour, resumable)    make fit  repeat the parameter search
 PYTHON ?= python3
@@ -7,12 +8,24 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 WORKERS ?= $(shell $(PYTHON) -c "import os; print(min(4, os.cpu_count() or 1))")
 
-.PHONY: run test fast slow guest lint paper bench blind fit clean
+.PHONY: run compiled wheels both test fast slow guest lint paper bench blind fit clean
 
-run: $(READY)
+run: $(READY) compiled
 	$(BIN)/schmidt run scenarios/observing-night.yaml --out out/observing-night
 
+# The same source as a library, where there is a C compiler; says in one line where there is none.
+compiled: $(READY)
+	@$(BIN)/python -m scenarios.native
+
+# dist/: the wheel of this platform (manylinux where auditwheel can tell) and the pure one
+wheels: $(READY)
+	$(BIN)/python -m scenarios.native.wheels
+
 test: lint fast slow
+
+# The fast suite on the compiled library (it runs plain otherwise, which is what a debugger sees).
+both: compiled
+	SCHMIDT_PURE=0 $(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not guest"
 
 fast: $(READY)
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not guest"
@@ -45,7 +58,7 @@ fit: $(READY)
 	$(BIN)/python -m scenarios.paper.search --out out/fit
 
 clean:
-	rm -rf $(VENV) out build *.egg-info
+	rm -rf $(VENV) out build dist scenarios/native/library *.egg-info
 
 $(READY): pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit('schmidt needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Try: make PYTHON=python3.11') if sys.version_info < (3, 11) else None"

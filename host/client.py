@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from bus.protocol import (
     Device,
@@ -29,15 +29,15 @@ from bus.protocol import (
 from host.link import HidLink
 from host.logs.journal import Logs
 
-TICK_NS = 50_000_000
+TICK_NS: Final = 50_000_000
 """20 Hz, ASSUMPTION: the paper's consoles refresh at 4 Hz, its threads poll faster."""
-REPLY_TIMEOUT_NS = 200_000_000
+REPLY_TIMEOUT_NS: Final = 200_000_000
 """A board answers within milliseconds; 200 ms is four ticks. ASSUMPTION."""
-TRIES = 3
-SILENCE_NS = 3_500_000_000
+TRIES: Final = 3
+SILENCE_NS: Final = 3_500_000_000
 """Three heartbeats missed."""
 
-WATCH_NS = 500_000_000
+WATCH_NS: Final = 500_000_000
 """How often heartbeats are looked at; they come once a second."""
 
 Procedure = Generator[None, None, Any]
@@ -211,5 +211,5 @@ class Client:
                 self.logs.status(t_ns, device.name, f"state {state[0]}, overruns {state[1]}, tec {data[7]}")
 
 
-_KNOWN = {int(device) for device in Device}
-_RESULTS = {int(result) for result in Result}
+_KNOWN: Final = {int(device) for device in Device}
+_RESULTS: Final = {int(result) for result in Result}

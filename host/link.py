@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from struct import Struct
+from typing import Final
 
 from bus.protocol import HEARTBEAT_KIND, SUMMARY_KIND
 from bus.protocol.report import REPORT_BYTES, SLOTS, pack_report
 
-_NOT_MEASUREMENT = 0x80
+_NOT_MEASUREMENT: Final = 0x80
 _slots = Struct("8s" * SLOTS).unpack
 
 Subscriber = Callable[[int, bytes], None]

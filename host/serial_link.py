@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from bus.protocol import Device
 from bus.protocol.serial import PACKET_NS, Packet, PacketDecoder
 from host.logs.files import LogError
 from host.logs.journal import Logs
 
-SILENCE_NS = 4 * PACKET_NS
+SILENCE_NS: Final = 4 * PACKET_NS
 """A port is silent when four packets have not come. ASSUMPTION."""
 
 

@@ -18,8 +18,8 @@ class AxisPort:
 
     incremental: counts of the roller encoder since start, unbounded. absolute: position of the on-shaft
     absolute encoder, 29 bit. auxiliary: position of the geared one, 17 bit. tachometer_a, tachometer_b:
-    counts of the motors' encoders since start, unbounded. All (t_ns) -> int; a stuck sensor is another
-    callable put here.
+    counts of the motors' encoders since start, unbounded. All (t_ns) -> int. current: of a motor at the PWM's
+    falling edge, A, (t_ns, motor) -> float. A stuck sensor is another callable put in the place of one.
     """
 
     def __init__(
@@ -39,6 +39,7 @@ class AxisPort:
         self._current = (out + at.OUT_CURRENT_A, out + at.OUT_CURRENT_B)
         self._duty = self._base + at.DUTY
         self._mean = self._base + at.MEAN_DUTY
+        self.current: Callable[[int, int], float] = self._current_now
 
     def drive(self, t_ns: int, duty_a: float, duty_b: float) -> None:
         """Set the duty cycles, 0..1 each, from `t_ns` on; within a grid step they count for the rest of
@@ -85,7 +86,7 @@ class AxisPort:
         """Return the counts of a motor's encoder since start, unbounded."""
         return (self.tachometer_b if motor else self.tachometer_a)(t_ns)
 
-    def current(self, t_ns: int, motor: int) -> float:
+    def _current_now(self, t_ns: int, motor: int) -> float:
         """Return a motor's current at the PWM's falling edge, A, as the sense chain sees it."""
         plant = self._plant
         if t_ns >= plant.next_ns:

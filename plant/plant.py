@@ -36,7 +36,7 @@ class Plant:
     def __init__(self, model: PlantModel, seed: int, start_steps: Mapping[str, float] | None = None):
         start = dict(start_steps or {})
         for word in start:
-            if word not in (*AXES, "focus"):
+            if word != "focus" and word not in AXES:
                 raise ValueError(f"plant: start_steps: '{word}' is not known; expected ra, dec, focus")
         angles = {name: start.get(name, 0.0) * TURN / 2 ** _bits(model, name) for name in AXES}
         self.model = model

@@ -2,15 +2,16 @@
 them."""
 
 from dataclasses import dataclass, field
+from typing import Final
 
-COUNTS_PER_TURN = 112_896_000
+COUNTS_PER_TURN: Final = 112_896_000
 """Incremental encoder: 4.608e6 counts x 735/30 (paper, sections 2.2 and 3.2; hardware.md 2.1)."""
-STEPS_PER_TURN = 1 << 29
+STEPS_PER_TURN: Final = 1 << 29
 """Absolute encoder RCN 829 (paper, section 3.2)."""
-TICK_NS = 5_000_000
+TICK_NS: Final = 5_000_000
 """Sampling time of the controller (paper, section 3.3)."""
-_ARCSEC_PER_TURN = 1_296_000
-_TICKS_PER_S = 200
+_ARCSEC_PER_TURN: Final = 1_296_000
+_TICKS_PER_S: Final = 200
 
 
 def rate_q16(arcsec_per_s: float) -> int:

@@ -1,5 +1,7 @@
 """Firmware of the axis board: the 5 ms interrupt, telemetry every 10 ms, packets every 250 ms."""
 
+from typing import Final
+
 from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import TICK_NS, AxisConfig
 from boards.axis.counter import CounterTorque
@@ -34,11 +36,11 @@ from bus.protocol import (
 from bus.protocol.serial import NO_SETPOINT, SAMPLES, STAMP_UNIT_NS, pack_packet
 from bus.time import EventQueue, Oscillator
 
-_EFFORT_SCALE = 3000
+_EFFORT_SCALE: Final = 3000
 """Effort on the wire and in the logs is in 1/3000 of the supply, whatever the PWM's own resolution."""
-_TARGET_TICKS = 50
-_HEARTBEAT_TICKS = 200
-_frame = tuple.__new__
+_TARGET_TICKS: Final = 50
+_HEARTBEAT_TICKS: Final = 200
+_frame: Final = tuple.__new__
 _POWERED, _MOVING, _LIMIT, _FAULT = map(
     int, (MotionFlag.POWERED, MotionFlag.MOVING, MotionFlag.SOFT_LIMIT, MotionFlag.FAULT)
 )

@@ -1,14 +1,16 @@
 """Soft limits: stop in time, and only what leads further out."""
 
+from typing import Final
+
 from boards.axis.motion import POINTING, Motion
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP
 from boards.core.widths import INT64_TOP
 from bus.protocol import AxisMode
 
-_REACTION_TICKS = 30
+_REACTION_TICKS: Final = 30
 """Time in which the velocity loop begins to follow the braking set point, 150 ms. ASSUMPTION: its settling
 time."""
-_COUNTS_TOP = INT64_TOP >> (UNIT_SHIFT - 16)
+_COUNTS_TOP: Final = INT64_TOP >> (UNIT_SHIFT - 16)
 """Q16 counts whose Q18 still fits 64 bits; only the slightest acceleration with the greatest speed gets
 there."""
 

@@ -1,6 +1,7 @@
 """Modes of the axis and where the set point of the velocity loop comes from in each."""
 
 from collections.abc import Callable
+from typing import Final
 
 from boards.axis.config import TICK_NS, AxisConfig
 from boards.axis.hold import Blend, RateLock
@@ -8,21 +9,21 @@ from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
 
-_RATE_TO_UNIT = 2
+_RATE_TO_UNIT: Final = 2
 """Q16 rate to Q18 unit, as a shift."""
-_TICKS_PER_S = 1_000_000_000 // TICK_NS
-_NS_TO_UNIT = round((1 << UNIT_SHIFT) / TICK_NS * (1 << 20))
+_TICKS_PER_S: Final = 1_000_000_000 // TICK_NS
+_NS_TO_UNIT: Final = round((1 << UNIT_SHIFT) / TICK_NS * (1 << 20))
 """counts per tick x ns, Q20 -> Q18 counts."""
-_POSITION_MASK = 0x1FFFFFFF
-STALE_NS = 50_000_000
+_POSITION_MASK: Final = 0x1FFFFFFF
+STALE_NS: Final = 50_000_000
 """Ten missed position frames: the position is gone. ASSUMPTION."""
-_OLDEST_NS = 2 * STALE_NS
+_OLDEST_NS: Final = 2 * STALE_NS
 """A reading is carried on no further than this."""
-_SETTLE_TICKS = 100
+_SETTLE_TICKS: Final = 100
 """The axis is settled when it has been near its target for this long, 0.5 s. ASSUMPTION."""
 _BAD_POSITION = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 """Position flags that make a reading worthless: alarm, CRC error."""
-POINTING = (AxisMode.MOVE, AxisMode.TRACK)
+POINTING: Final = (AxisMode.MOVE, AxisMode.TRACK)
 """Modes with the position loop closed. A finished move without tracking rate stays in MOVE and holds its
 target."""
 

@@ -9,11 +9,13 @@ Widths: errors, their differences and the effort are 32 bit and saturate; gain t
 2^20 x 2^31, twice).
 """
 
+from typing import Final
+
 from boards.core.widths import INT32_TOP, saturate
 
-GAIN_SHIFT = 12
-RATE_SHIFT = 16
-_HALF = 1 << (RATE_SHIFT - 1)
+GAIN_SHIFT: Final = 12
+RATE_SHIFT: Final = 16
+_HALF: Final = 1 << (RATE_SHIFT - 1)
 
 
 class IncrementalPi:

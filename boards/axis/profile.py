@@ -8,12 +8,13 @@ The target may itself move (tracking): the profile is the distance still to go, 
 """
 
 from math import isqrt
+from typing import Final
 
 from boards.core.widths import INT64_TOP, saturate
 
-UNITS_PER_STEP = 55_125
-UNIT_SHIFT = 18
-_SPEED_TOP = isqrt(INT64_TOP)
+UNITS_PER_STEP: Final = 55_125
+UNIT_SHIFT: Final = 18
+_SPEED_TOP: Final = isqrt(INT64_TOP)
 """Q18 counts per tick, 11585 counts: fastest relative speed whose square fits. Twice the fastest rate is
 less."""
 

@@ -5,15 +5,17 @@ to the moment of the sample, and the sample is the difference of two such counts
 rate finer than the whole counts of one frame, so the differences go through a low-pass of four frames.
 """
 
+from typing import Final
+
 from bus.protocol.tach import tach_fields
 
-_TACH_NS = 10_000_000
-_ROUTINE_NS = 40_000
+_TACH_NS: Final = 10_000_000
+_ROUTINE_NS: Final = 40_000
 """From the reading of the counter to the frame in the buffer of the motor board (its interrupt table)."""
-_MISSING_NS = 25_000_000
+_MISSING_NS: Final = 25_000_000
 """Older data than two frames are not carried on."""
-_RATE_SHIFT = 8
-_UNIT = _TACH_NS << _RATE_SHIFT
+_RATE_SHIFT: Final = 8
+_UNIT: Final = _TACH_NS << _RATE_SHIFT
 
 
 class RemoteTachometer:

@@ -1,8 +1,10 @@
 """Do both encoders see the same motion? A stuck or lost one would let the loop run away."""
 
+from typing import Final
+
 from boards.axis.profile import UNIT_SHIFT
 
-_LIMIT = round(40.0 / 1_296_000 * 112_896_000) << UNIT_SHIFT
+_LIMIT: Final = round(40.0 / 1_296_000 * 112_896_000) << UNIT_SHIFT
 """Difference that may build up between two looks, 250 ms apart: 40 arcsec, in Q18 counts. ASSUMPTION.
 
 The age of a position is known to 0.1 ms, 0.7 arcsec at slew. A position loop whose encoder is stuck

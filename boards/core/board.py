@@ -2,6 +2,9 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+from mypy_extensions import mypyc_attr
 
 from boards.core.commands import Handler, answer, i32, u8
 from boards.core.interrupts import InterruptController, Source
@@ -22,18 +25,19 @@ from bus.protocol import (
 )
 from bus.time import EventQueue, Oscillator
 
-CAN_LINE = "can"
+CAN_LINE: Final = "can"
 """Name of the CAN interrupt in every board's table."""
-BOOT_NS = 300_000_000
+BOOT_NS: Final = 300_000_000
 """Power-up timer and self test, ASSUMPTION. Longer than any board's slowest timer."""
-WARNING_NS = 10_000_000_000
+WARNING_NS: Final = 10_000_000_000
 """How long the health bits FOREIGN and RANGE stand after the last cause. ASSUMPTION: long enough to be asked
 for, and one bad frame does not keep a telescope from being powered for the rest of the night."""
-_LONG_AGO = -WARNING_NS
-_INBOX = 8
+_LONG_AGO: Final = -WARNING_NS
+_INBOX: Final = 8
 """Commands the firmware keeps until it serves them, ASSUMPTION (the chip itself holds two)."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Board:
     """A microcontroller board on the bus.
 

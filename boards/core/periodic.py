@@ -3,6 +3,8 @@ network."""
 
 from collections.abc import Callable
 
+from mypy_extensions import mypyc_attr
+
 from boards.core.board import Board
 from boards.core.interrupts import Source
 from boards.core.timer import Timer
@@ -10,6 +12,7 @@ from bus.can import Wire
 from bus.time import EventQueue, Oscillator
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class PeriodicBoard(Board):
     """Subclasses write `routine(t_ns)`, whose first statement is `end = self.enter(t_ns)` followed by a
     return when 0."""

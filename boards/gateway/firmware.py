@@ -1,6 +1,7 @@
 """Firmware of the gateway: a ring of frames towards the PC, a queue of commands towards the bus."""
 
 from collections import deque
+from typing import Final
 
 from boards.core import PeriodicBoard, answer
 from boards.gateway.interrupts import FCY_HZ, TABLE
@@ -18,19 +19,19 @@ from bus.protocol import (
 from bus.protocol.report import SLOTS, ReportError, pack_report, slot, unpack_commands
 from bus.time import EventQueue, Oscillator
 
-TICK_NS = 1_000_000_000
-HOLD_NS = 4_000_000
+TICK_NS: Final = 1_000_000_000
+HOLD_NS: Final = 4_000_000
 """A frame waits no longer than this for its report to fill. ASSUMPTION: four USB frames."""
-RING_SLOTS = 64
+RING_SLOTS: Final = 64
 """512 bytes of the PIC's 2 KB. ASSUMPTION."""
-_REPORTS = 16
+_REPORTS: Final = 16
 """Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
-_COMMANDS = 64
+_COMMANDS: Final = 64
 """Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
-_BASE_MASK = 0x700
-_END = MEASUREMENT_BASE + 0x80
+_BASE_MASK: Final = 0x700
+_END: Final = MEASUREMENT_BASE + 0x80
 """Beyond the last measurement: a device type has seven bits."""
-_NEVER = 1 << 62
+_NEVER: Final = 1 << 61
 
 
 class GatewayBoard(PeriodicBoard):

@@ -1,5 +1,7 @@
 """Firmware of the motor velocity board: one TACH frame every 10 ms."""
 
+from typing import Final
+
 from boards.core import PeriodicBoard
 from boards.motor_velocity.interrupts import FCY_HZ, TABLE
 from boards.motor_velocity.pins import MotorVelocityPins
@@ -8,9 +10,9 @@ from bus.can import Frame, Wire
 from bus.protocol import MEASUREMENT_BASE
 from bus.time import EventQueue, Oscillator
 
-TICK_NS = 10_000_000
-_HEARTBEAT_TICKS = 100
-_frame = tuple.__new__
+TICK_NS: Final = 10_000_000
+_HEARTBEAT_TICKS: Final = 100
+_frame: Final = tuple.__new__
 
 
 class MotorVelocityBoard(PeriodicBoard):

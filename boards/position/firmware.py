@@ -1,5 +1,7 @@
 """Firmware of the position board: an EnDat poll and a POSITION frame every 5 ms."""
 
+from typing import Final
+
 from boards.core import Parameter, PeriodicBoard
 from boards.position.interrupts import FCY_HZ, TABLE
 from boards.position.pins import PositionPins
@@ -17,15 +19,15 @@ from bus.protocol import (
 from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
 from bus.time import EventQueue, Oscillator
 
-TICK_NS = 5_000_000
-_SUMMARY_TICKS = 50
-_HEARTBEAT_TICKS = 200
-_LAST_STEP = (1 << POSITION_BITS) - 1
+TICK_NS: Final = 5_000_000
+_SUMMARY_TICKS: Final = 50
+_HEARTBEAT_TICKS: Final = 200
+_LAST_STEP: Final = (1 << POSITION_BITS) - 1
 _BAD = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 _ALARM, _CRC_ERROR, _LOW, _HIGH = map(
     int, (PositionFlag.ALARM, PositionFlag.CRC_ERROR, PositionFlag.LIMIT_LOW, PositionFlag.LIMIT_HIGH)
 )
-_frame = tuple.__new__
+_frame: Final = tuple.__new__
 
 
 class PositionBoard(PeriodicBoard):

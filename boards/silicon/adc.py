@@ -1,14 +1,15 @@
 """10-bit analogue to digital converter, 5 V reference, and the current sense in front of it."""
 
 from collections.abc import Callable
+from typing import Final
 
-REFERENCE_V = 5.0
-FULL_SCALE = 1023
-_COUNTS_PER_V = 1024 / REFERENCE_V
+REFERENCE_V: Final = 5.0
+FULL_SCALE: Final = 1023
+_COUNTS_PER_V: Final = 1024 / REFERENCE_V
 
-SHUNT_OHM = 0.1
+SHUNT_OHM: Final = 0.1
 """Paper, section 3.2."""
-SENSE_GAIN = 8.0
+SENSE_GAIN: Final = 8.0
 """Op-amp between shunt and converter, ASSUMPTION (hardware.md 2.3): 6 A reads 4.8 V, 6.1 mA per count."""
 
 

@@ -6,11 +6,12 @@ later and replaces this file.
 """
 
 from collections.abc import Callable, Sequence
+from typing import Final
 
 from bus.can import Frame, Port
 
-FULL_MASK = 0x7FF
-_FILTERS = (2, 4)
+FULL_MASK: Final = 0x7FF
+_FILTERS: Final = (2, 4)
 """Filters that go with each mask."""
 
 

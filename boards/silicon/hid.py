@@ -2,9 +2,10 @@
 millisecond."""
 
 from collections.abc import Callable
+from typing import Final
 
-REPORT_BYTES = 64
-FRAME_NS = 1_000_000
+REPORT_BYTES: Final = 64
+FRAME_NS: Final = 1_000_000
 """USB start of frame, bInterval = 1 (USB 2.0: full-speed interrupt endpoints, hardware.md 3.5)."""
 
 

@@ -9,14 +9,15 @@ registers every period (spread.py).
 """
 
 from collections.abc import Callable
+from typing import Final
 
 from boards.silicon.spread import ONE, Spreader
 
-FCY_HZ = 30_000_000
+FCY_HZ: Final = 30_000_000
 """dsPIC30F at its fastest. ASSUMPTION: the paper does not say."""
-PWM_HZ = 20_000
+PWM_HZ: Final = 20_000
 """ASSUMPTION (hardware.md 2.4): above hearing, and 3000 steps at 30 MIPS."""
-_PTPER_LIMIT = 0x7FFF
+_PTPER_LIMIT: Final = 0x7FFF
 
 
 def steps_for(fcy_hz: int, pwm_hz: int) -> int:

@@ -5,8 +5,9 @@ dsPIC30F3011 with QEIM = 111 and MAXCNT = 0xFFFF, PIC18F4431 with MAXCNT = 0xFFF
 """
 
 from collections.abc import Callable
+from typing import Final
 
-_MASK = 0xFFFF
+_MASK: Final = 0xFFFF
 
 
 class Qei:

@@ -2,15 +2,16 @@
 
 from collections import deque
 from collections.abc import Callable
+from typing import Final
 
 from bus.time import EventQueue
 
-BAUD = 115_200
+BAUD: Final = 115_200
 """ASSUMPTION: the paper gives no rate. 25 samples of some 20 bytes every 250 ms need 20 kbaud; 19200
 would be the minimum for the bare five columns (hardware.md 2.1)."""
-BITS_PER_BYTE = 10
+BITS_PER_BYTE: Final = 10
 """Start, eight data, stop."""
-_BUFFERS = 2
+_BUFFERS: Final = 2
 """Packets the firmware keeps: one leaving, one waiting."""
 
 Sink = Callable[[int, bytes], None]

@@ -1,15 +1,17 @@
 """A frame bit by bit, as ISO 11898-1 writes it: slow and plain, the reference for the tables in
 `length.py`."""
 
+from typing import Final
+
 from bus.can.frame import Frame, check
 
-CRC15_POLYNOMIAL = 0x4599
+CRC15_POLYNOMIAL: Final = 0x4599
 """x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1 without its top bit (CAN 2.0, 1991)."""
-STUFF_RUN = 5
+STUFF_RUN: Final = 5
 """After this many equal bits the transmitter inserts the opposite one."""
-TAIL_BITS = 1 + 1 + 1 + 7 + 3
+TAIL_BITS: Final = 1 + 1 + 1 + 7 + 3
 """CRC delimiter, ACK slot, ACK delimiter, end of frame, intermission: never stuffed."""
-INTERMISSION_BITS = 3
+INTERMISSION_BITS: Final = 3
 
 
 def crc15(bits: list[int]) -> int:

@@ -9,6 +9,7 @@ bits 4..6. Built once with numpy, 0.9 MB in all. `bits.py` is the reference it i
 from array import array
 from collections.abc import Callable
 from struct import Struct
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,8 @@ from numpy.typing import NDArray
 from bus.can.bits import CRC15_POLYNOMIAL, TAIL_BITS, crc15, header_bits, number_bits
 from bus.can.frame import Frame, check
 
-_STATES = 9
-_START = 0
+_STATES: Final = 9
+_START: Final = 0
 """State 0 is never reached by a bit: state = 1 + 4 * last + (run - 1), run 1..4, gives 1..8; 0 is
 "nothing yet"."""
 _words: Callable[[bytes], tuple[int, int, int, int]] = Struct(">4H").unpack
@@ -58,8 +59,8 @@ def _shares() -> "list[array[int]]":
     return shares[::-1]
 
 
-_STUFF_WORD = _machine(16).tobytes()
-_STUFF_CRC = _machine(15).tobytes()
+_STUFF_WORD: Final = _machine(16).tobytes()
+_STUFF_CRC: Final = _machine(15).tobytes()
 _CRC0, _CRC1, _CRC2, _CRC3 = _shares()
 """Rows follow one another: entry of state s and value v at s << 16 | v, or s << 15 | v for the CRC."""
 

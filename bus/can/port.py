@@ -1,7 +1,7 @@
 """One node's connection to a wire: what its CAN controller drives."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple, Protocol
 
 from bus.can.frame import Frame, arbitration_key
 from bus.can.length import frame_bits, plain_bits
@@ -10,7 +10,7 @@ from bus.can.sampling import BitTiming
 if TYPE_CHECKING:
     from bus.can.wire import Wire
 
-TX_BUFFERS = 3
+TX_BUFFERS: Final = 3
 """Transmit buffers of a controller (MCP2515, DS20001801 section 3)."""
 
 State = Literal["active", "passive", "bus_off"]

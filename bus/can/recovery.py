@@ -1,6 +1,6 @@
 """Bus-off recovery: a node returns after 128 runs of eleven recessive bits (ISO 11898-1)."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from bus.can.confinement import RECOVERY_RUN_BITS, RECOVERY_RUNS
 from bus.can.port import Port
@@ -8,7 +8,7 @@ from bus.can.port import Port
 if TYPE_CHECKING:
     from bus.can.wire import Wire
 
-_NEVER = 1 << 62
+_NEVER: Final = 1 << 61
 
 
 class Recovery:

@@ -6,7 +6,7 @@ Kept apart from the wire so that a healthy bus pays one flag test per frame.
 
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from bus.can import confinement
 from bus.can.bits import INTERMISSION_BITS, wire_bits
@@ -31,7 +31,7 @@ from bus.can.strangers import Strangers
 if TYPE_CHECKING:
     from bus.can.wire import Wire
 
-_NEVER = 1 << 62
+_NEVER: Final = 1 << 61
 _RECESSIVE_TAIL_BITS = 1 + 7
 """ACK delimiter and EOF: already recessive when a frame ends."""
 _OVERLOAD_BITS = OVERLOAD_FLAG_BITS + 1 + OVERLOAD_DELIMITER_BITS

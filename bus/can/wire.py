@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
+from typing import Final
 
 from bus.can.bits import INTERMISSION_BITS
 from bus.can.disturbance import Flip
@@ -12,9 +13,9 @@ from bus.time import EventQueue
 
 Tap = Callable[[int, Frame, str], None]
 Disturb = Callable[[int, Frame, str], Flip | None]
-_NEVER = 1 << 62
-_NS_PER_S = 1_000_000_000
-MAX_BITRATE = 1_000_000
+_NEVER: Final = 1 << 61  # seventy years; the largest power that compiled code keeps in a register
+_NS_PER_S: Final = 1_000_000_000
+MAX_BITRATE: Final = 1_000_000
 """bit/s; CAN 2.0."""
 
 

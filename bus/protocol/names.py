@@ -2,20 +2,21 @@
 schmidt.dbc."""
 
 from enum import IntEnum, IntFlag
+from typing import Final
 
-COMMAND_BASE = 0x080
+COMMAND_BASE: Final = 0x080
 """Identifier of a device's COMMAND is this plus its device type; likewise below."""
-REPLY_BASE = 0x100
-MEASUREMENT_BASE = 0x200
+REPLY_BASE: Final = 0x100
+MEASUREMENT_BASE: Final = 0x200
 """MOTION, POSITION, TACH and FOCUS: the frames of the 64-byte HID report."""
-SUMMARY_BASE = 0x300
+SUMMARY_BASE: Final = 0x300
 """TARGET and SUMMARY, 250 ms."""
-HEARTBEAT_BASE = 0x700
-SUMMARY_KIND = 0xF3
+HEARTBEAT_BASE: Final = 0x700
+SUMMARY_KIND: Final = 0xF3
 """Byte 1 of TARGET and SUMMARY."""
-HEARTBEAT_KIND = 0xF7
+HEARTBEAT_KIND: Final = 0xF7
 """Byte 1 of HEARTBEAT."""
-FRAME_BYTES = 8
+FRAME_BYTES: Final = 8
 """Length of every documented frame."""
 
 
@@ -151,5 +152,5 @@ class AxisParameter(IntEnum):
     absolute encoder alone."""
 
 
-HARMONICS = 8
+HARMONICS: Final = 8
 """Lines of the compensation table."""

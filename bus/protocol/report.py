@@ -7,6 +7,7 @@ whose byte 0 is 0 is empty.
 """
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from bus.can.frame import Frame
 from bus.protocol.names import (
@@ -20,10 +21,10 @@ from bus.protocol.names import (
     SUMMARY_KIND,
 )
 
-REPORT_BYTES = 64
-SLOTS = REPORT_BYTES // FRAME_BYTES
-_NOT_MEASUREMENT = 0x80
-_KINDS = {SUMMARY_KIND: SUMMARY_BASE, HEARTBEAT_KIND: HEARTBEAT_BASE}
+REPORT_BYTES: Final = 64
+SLOTS: Final = REPORT_BYTES // FRAME_BYTES
+_NOT_MEASUREMENT: Final = 0x80
+_KINDS: Final = {SUMMARY_KIND: SUMMARY_BASE, HEARTBEAT_KIND: HEARTBEAT_BASE}
 
 
 class ReportError(ValueError):

@@ -12,19 +12,19 @@ from binascii import crc_hqx
 from collections.abc import Sequence
 from itertools import starmap
 from struct import Struct, error
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.names import Device
 from bus.protocol.saturate import Clip, fitted, nobody
 
-SYNC = b"\xaa\x55"
-STAMP_UNIT_NS = 100_000
-SAMPLE_NS = 10_000_000
-PACKET_NS = 250_000_000
-SAMPLES = 25
-NO_SETPOINT = -(1 << 31)
+SYNC: Final = b"\xaa\x55"
+STAMP_UNIT_NS: Final = 100_000
+SAMPLE_NS: Final = 10_000_000
+PACKET_NS: Final = 250_000_000
+SAMPLES: Final = 25
+NO_SETPOINT: Final = -(1 << 31)
 """Set point of an axis in open loop: there is none."""
-_CRC_START = 0xFFFF
+_CRC_START: Final = 0xFFFF
 _head = Struct("<BBI")
 _crc = Struct("<H")
 
@@ -63,9 +63,9 @@ class FocusSample(NamedTuple):
 
 
 Sample = AxisSample | PositionSample | FocusSample
-_AXIS = (Struct("<hIhHHhhIi"), AxisSample)
-_POSITION = (Struct("<I"), PositionSample)
-_LAYOUTS: dict[int, tuple[Struct, type[Sample]]] = {
+_AXIS: Final = (Struct("<hIhHHhhIi"), AxisSample)
+_POSITION: Final = (Struct("<I"), PositionSample)
+_LAYOUTS: Final[dict[int, tuple[Struct, type[Sample]]]] = {
     Device.AXIS_RA: _AXIS,
     Device.AXIS_DEC: _AXIS,
     Device.POSITION_RA: _POSITION,

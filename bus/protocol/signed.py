@@ -1,4 +1,6 @@
 """Sign bits of the odd-sized signals: `(value ^ SIGN) - SIGN` extends the sign."""
 
-SIGN_13 = 1 << 12
-SIGN_15 = 1 << 14
+from typing import Final
+
+SIGN_13: Final = 1 << 12
+SIGN_15: Final = 1 << 14

@@ -1,14 +1,16 @@
 """A board's crystal: local time against true time, in integer arithmetic."""
 
+from typing import Final
+
 # Fixed point of the rate error: 2**-50 of a second per second, 1e-9 ppm. Ten hours then resolve to < 1 ns.
-_SHIFT = 50
-_ONE = 1 << _SHIFT
+_SHIFT: Final = 50
+_ONE: Final = 1 << _SHIFT
 # The ageing term is 1000x smaller still, so it has its own, finer scale.
-_DRIFT_SHIFT = 100
-_NS_PER_HOUR = 3_600_000_000_000
+_DRIFT_SHIFT: Final = 100
+_NS_PER_HOUR: Final = 3_600_000_000_000
 # Beyond this it is a broken board, not a crystal (ceramic resonators reach 5000 ppm).
-_LIMIT_PPM = 10_000.0
-_LIMIT_DRIFT_PPM_PER_HOUR = 10.0
+_LIMIT_PPM: Final = 10_000.0
+_LIMIT_DRIFT_PPM_PER_HOUR: Final = 10.0
 
 
 class OscillatorError(ValueError):

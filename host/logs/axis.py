@@ -4,19 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import cast
+from typing import Final, cast
 
 from bus.protocol.serial import NO_SETPOINT, SAMPLE_NS, STAMP_UNIT_NS, AxisSample, Packet
 from host.logs.files import LineFile
 from host.rates import COUNT_ARCSEC, LOOP_S
 
-COLUMNS = ("t", "setpoint", "effort", "position", "velocity", "adc_a", "adc_b", "tach_a", "tach_b", "aux")
-REQUIRED = ("axis", "session", "loop", "start_utc")
-OPTIONAL = ("preload", "counter_torque", "supply_V", "temperature_C", "note")
-_SETPOINT_ARCSEC_S = COUNT_ARCSEC / LOOP_S / 65536
-_STAMP_S = STAMP_UNIT_NS * 1e-9
-_SAMPLE_S = SAMPLE_NS * 1e-9
-_WRAP = 1 << 32
+COLUMNS: Final = (
+    "t",
+    "setpoint",
+    "effort",
+    "position",
+    "velocity",
+    "adc_a",
+    "adc_b",
+    "tach_a",
+    "tach_b",
+    "aux",
+)
+REQUIRED: Final = ("axis", "session", "loop", "start_utc")
+OPTIONAL: Final = ("preload", "counter_torque", "supply_V", "temperature_C", "note")
+KEYS: Final = REQUIRED + OPTIONAL
+_SETPOINT_ARCSEC_S: Final = COUNT_ARCSEC / LOOP_S / 65536
+_STAMP_S: Final = STAMP_UNIT_NS * 1e-9
+_SAMPLE_S: Final = SAMPLE_NS * 1e-9
+_LINE: Final = "%.6f,%.6f" + 8 * ",%d" + "\n"
+_OPEN_LINE: Final = "%.6f," + 8 * ",%d" + "\n"
+_WRAP: Final = 1 << 32
 
 Row = tuple[float, AxisSample]
 """Board time in seconds and its sample."""
@@ -29,7 +43,7 @@ class AxisLog:
 
     def __init__(self, path: Path, header: dict[str, str], distort: Distortion | None = None) -> None:
         missing = [key for key in REQUIRED if key not in header]
-        unknown = [key for key in header if key not in (*REQUIRED, *OPTIONAL)]
+        unknown = [key for key in header if key not in KEYS]
         if missing or unknown:
             raise ValueError(f"axis log header: missing {missing}, unknown {unknown}")
         self.rows = 0
@@ -38,7 +52,7 @@ class AxisLog:
         self._turns = 0
         self._last_stamp = -1
         lines = ["# format: axis-log 1", f"# axis: {header['axis']}", "# sample_period_s: 0.010"]
-        lines += [f"# {key}: {header[key]}" for key in (*REQUIRED[1:], *OPTIONAL) if key in header]
+        lines += [f"# {key}: {header[key]}" for key in KEYS[1:] if key in header]
         self.file.write("\n".join([*lines, ",".join(COLUMNS), ""]))
 
     def packet(self, _t_ns: int, packet: Packet) -> None:
@@ -59,9 +73,10 @@ class AxisLog:
 def _lines(rows: list[Row]) -> str:
     """The rows of a packet as text. In one piece: there are two hundred rows a second."""
     lines = []
-    for t, (effort, position, velocity, adc_a, adc_b, tach_a, tach_b, aux, setpoint) in rows:
-        wanted = "" if setpoint == NO_SETPOINT else f"{setpoint * _SETPOINT_ARCSEC_S:.6f}"
-        lines.append(
-            f"{t:.6f},{wanted},{effort},{position},{velocity},{adc_a},{adc_b},{tach_a},{tach_b},{aux}\n"
-        )
+    for t, sample in rows:
+        setpoint = sample[8]
+        if setpoint == NO_SETPOINT:
+            lines.append(_OPEN_LINE % (t, *sample[:8]))
+        else:
+            lines.append(_LINE % (t, setpoint * _SETPOINT_ARCSEC_S, *sample[:8]))
     return "".join(lines)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
+from typing import Final
 
-_BUFFER_BYTES = 1 << 16
+_BUFFER_BYTES: Final = 1 << 16
 
 
 class LogError(ValueError):

@@ -6,23 +6,24 @@ the CRC sits on top as the number its five bits spell.
 """
 
 from collections.abc import Callable
+from typing import Final
 
 from boards.silicon.endat.crc import crc5
 
-POSITION_BITS = 29
-CLOCK_HZ = 1_000_000
+POSITION_BITS: Final = 29
+CLOCK_HZ: Final = 1_000_000
 """ASSUMPTION: within the 2 MHz that need no delay compensation."""
-_DATA_BITS = POSITION_BITS + 2
-_POSITION_MASK = (1 << POSITION_BITS) - 1
-_HEALTHY_FLAGS = 0b10
+_DATA_BITS: Final = POSITION_BITS + 2
+_POSITION_MASK: Final = (1 << POSITION_BITS) - 1
+_HEALTHY_FLAGS: Final = 0b10
 """F1 = 0 in bit 0, F2 = 1 in bit 1."""
-_ALARM_FLAGS = 0b01
+_ALARM_FLAGS: Final = 0b01
 
-COMMAND_CLOCKS = 2 + 6 + 2
+COMMAND_CLOCKS: Final = 2 + 6 + 2
 """Two clocks, six mode bits, two clocks turn-round before the encoder may answer."""
-CALCULATION_NS = 5_000
+CALCULATION_NS: Final = 5_000
 """t_cal, position calculation: <= 5 us assumed, the catalogue value was not found (hardware.md 1.3)."""
-RECOVERY_NS = 20_000
+RECOVERY_NS: Final = 20_000
 """t_m, 10..30 us (hardware.md 3.1)."""
 
 
@@ -37,9 +38,9 @@ def _share(low: int, count: int) -> list[int]:
     return table
 
 
-_LOW = [entry ^ crc5(0, _DATA_BITS) for entry in _share(0, 11)]
-_MIDDLE = _share(11, 10)
-_HIGH = _share(21, 10)
+_LOW: Final = [entry ^ crc5(0, _DATA_BITS) for entry in _share(0, 11)]
+_MIDDLE: Final = _share(11, 10)
+_HIGH: Final = _share(21, 10)
 
 
 def position_crc(data: int) -> int:

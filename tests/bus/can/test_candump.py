@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bus.can import Frame
-from bus.can.candump import CandumpWriter, line
+from bus.can.candump import CandumpWriter, block, line
 from tests.bus.can.test_bits import frames
 from tests.bus.can.test_wire import network
 
@@ -61,3 +61,18 @@ def test_it_taps_a_wire(tmp_path: Path) -> None:
     # 0x211 with two bytes: 63 bits and its stuff bits, delivered three bits before the end of intermission.
     assert path.read_text().endswith(" can0 211#1122\n")
     assert path.read_text().startswith("(1.00006")
+
+
+plain = st.builds(Frame, st.integers(0, 0x7FF), st.binary(min_size=8, max_size=8))
+
+
+@given(
+    st.lists(st.tuples(st.integers(10**9, 10**15), plain), min_size=1, max_size=20),
+    st.sampled_from(["can0", "vcan12"]),
+)
+def test_lines_filled_in_by_column_are_the_lines(log: list[tuple[int, Frame]], channel: str) -> None:
+    """Times of the same number of digits go the quick way, a mixture the plain one."""
+    digits = len(str(log[0][0]))
+    for rows in (log, [row for row in log if len(str(row[0])) == digits]):
+        text = "".join(line(t_ns, frame, channel) + "\n" for t_ns, frame in rows)
+        assert block([t_ns for t_ns, _ in rows], [frame for _, frame in rows], channel) == text.encode()

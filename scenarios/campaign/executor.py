@@ -1,0 +1,158 @@
+"""The one door for work of many runs: a `concurrent.futures.Executor`, here or on a Dask cluster.
+
+    for done in each(task, {"name": input, ...}.items(), jobs=2):
+        done.key, done.value or done.error
+
+A task is a function of a module and its input something that can be pickled; the same input gives the same
+result, so a run that is lost with its worker is simply made again.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+Input = TypeVar("Input")
+Output = TypeVar("Output")
+AHEAD = 3
+"""Tasks handed out per worker: enough that none waits, few enough that a hundred thousand planned runs need
+no memory here."""
+TRIES = 5
+"""A task whose worker has died this often is taken to be the reason."""
+
+
+@dataclass(frozen=True)
+class Done(Generic[Output]):
+    """A finished task: its value, or the error as one line."""
+
+    key: str
+    value: Output | None
+    error: str = ""
+
+
+def each(
+    task: Callable[[Input], Output],
+    inputs: Iterable[tuple[str, Input]],
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+) -> Iterator[Done[Output]]:
+    """Run `task` on every (key, input) and give the results as they come.
+
+    jobs: processes here (None: one per core; 1 still means a process of its own). scheduler: address of a
+    Dask scheduler instead, such as tcp://host:8786. Inputs are drawn as workers become free. An exception of
+    the task is an error of that key; a worker that dies costs its task another try. Leaving the loop early
+    cancels what has not begun and ends the workers.
+    """
+    make, width = _cluster(scheduler) if scheduler else _local(jobs)
+    waiting = iter(inputs)
+    lost: list[tuple[str, Input, int]] = []
+    more = True
+    while more or lost:
+        running: dict[Future[Output], tuple[str, Input, int]] = {}
+        broken = False
+        with make() as executor:
+            while not broken:
+                while len(running) < AHEAD * width and (more or lost):
+                    item = lost.pop() if lost else next(((key, given, 1) for key, given in waiting), None)
+                    if item is None:
+                        more = False
+                        continue
+                    try:
+                        running[executor.submit(task, item[1])] = item
+                    except RuntimeError:  # the pool is broken, and says so to whoever comes next
+                        lost.append(item)
+                        broken = True
+                        break
+                if not running:
+                    break
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    key, given, tried = running.pop(future)
+                    try:
+                        yield Done(key, future.result())
+                    except Exception as error:
+                        if not _lost(error):
+                            yield Done(key, None, _line(error))
+                        elif tried >= TRIES:
+                            yield Done(key, None, f"the worker died {tried} times: {_line(error)}")
+                        else:
+                            lost.append((key, given, tried + 1))
+                            broken = broken or isinstance(error, BrokenExecutor)
+        lost += [(key, given, tried + 1) for key, given, tried in running.values()]
+
+
+def _lost(error: BaseException) -> bool:
+    """Whether the worker is to blame, not the task. (Dask is not there to be asked for its class.)"""
+    return isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker"
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+Maker = Callable[[], AbstractContextManager[Executor]]
+
+
+def _local(jobs: int | None) -> tuple[Maker, int]:
+    """A process pool. Workers start afresh, without inherited threads and locks, and leave Ctrl-C to this
+    process."""
+    width = jobs or os.cpu_count() or 1
+
+    @contextmanager
+    def make() -> Iterator[Executor]:
+        before = set(multiprocessing.active_children())
+        pool = ProcessPoolExecutor(width, multiprocessing.get_context("spawn"), _worker)
+        try:
+            yield pool
+        except BaseException:  # leaving early: what runs is lost, and made again by whoever goes on
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - before:
+                process.terminate()
+            raise
+        pool.shutdown()
+
+    return make, width
+
+
+def _worker() -> None:
+    """In a new worker: Ctrl-C is the parent's, and one thread of BLAS leaves the cores to the others."""
+    from threadpoolctl import threadpool_limits
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threadpool_limits(1)
+
+
+def _cluster(address: str) -> tuple[Maker, int]:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError(
+            f"--scheduler {address}: Dask is not installed; pip install 'schmidt[cluster]'"
+        ) from None
+    client: Any = Client(address, timeout=20)  # type: ignore[no-untyped-call]
+    client.wait_for_workers(1)
+    width = max(1, sum(client.nthreads().values()))
+
+    @contextmanager
+    def make() -> Iterator[Executor]:
+        executor = client.get_executor(pure=False, retries=TRIES)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(wait=False)
+
+    return make, width

@@ -1,0 +1,24 @@
+"""`python -m scenarios.native`: build the compiled library, or say in one line why not."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from scenarios.native.build import BuildError, build
+
+
+def main() -> int:
+    """Build; with `--strict` a failure is exit 1."""
+    start = time.perf_counter()
+    try:
+        if build(say=lambda line: print(f"schmidt: {line}")):
+            print(f"schmidt: compiled in {time.perf_counter() - start:.0f} s")
+    except BuildError as error:
+        print(f"schmidt: not compiled, running plain Python: {error}")
+        return 1 if "--strict" in sys.argv else 0
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

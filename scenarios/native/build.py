@@ -1,0 +1,108 @@
+"""Builds the compiled library; what cannot be compiled stays plain and is said in one line each."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from scenarios.native import stamp
+from scenarios.native.derived import derived_from
+from scenarios.native.modules import ROOT, module_name, selected
+
+_REFUSED = re.compile(r"^(\w+/[\w/]+\.py):\d+: (?:error: |AssertionError: )?(.*)")
+_ROUNDS = 5
+"""A round costs some twenty seconds; when five have not been enough, something else is wrong."""
+Say = Callable[[str], None]
+
+
+class BuildError(ValueError):
+    """The library cannot be built here; the message says why."""
+
+
+def build(library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT) -> bool:
+    """Build the library unless it fits already; returns whether there was anything to do.
+
+    Raises BuildError, and leaves a library that was there before alone.
+    """
+    found = stamp.read(library)
+    if found is not None and stamp.difference(found, root) is None:
+        return False
+    for need, hint in (("mypyc", "pip install mypy"), ("setuptools", "pip install setuptools")):
+        if importlib.util.find_spec(need) is None:
+            raise BuildError(f"{need} is not installed ({hint})")
+    if not _compiler():
+        raise BuildError("there is no C compiler")
+    with tempfile.TemporaryDirectory(prefix="schmidt-native-") as folder:
+        before = stamp.make(root)  # a file that changes while it is compiled makes the library stale
+        made = _compile(Path(folder), say, root)
+        text = json.dumps(before | {"modules": _modules(made)}, indent=1)
+        (made / stamp.STAMP).write_text(text + "\n", encoding="utf-8")
+        _check(made, root)
+        fresh = library.with_name(library.name + ".new")
+        shutil.rmtree(fresh, ignore_errors=True)
+        shutil.copytree(made, fresh)
+        shutil.rmtree(library, ignore_errors=True)
+        fresh.rename(library)
+    return True
+
+
+def _compiler() -> bool:
+    command = os.environ.get("CC") or str(sysconfig.get_config_var("CC") or "cc")
+    return shutil.which(command.split()[0]) is not None
+
+
+def _compile(folder: Path, say: Say, root: Path) -> Path:
+    """Compile what can be; returns the folder that holds it."""
+    files = selected(root)
+    refused = derived_from(root, files)
+    for _ in range(_ROUNDS):
+        for file, why in sorted(refused.items()):
+            say(f"{file} stays plain: {why}")
+        files = [file for file in files if file not in refused]
+        command = ["-m", "scenarios.native.compile", str(folder), *files]
+        done = _python(command, root, pure="1")
+        if not done.returncode:
+            return folder / "library"
+        output = done.stdout + done.stderr
+        refused = {match[1]: match[2] for match in map(_REFUSED.match, output.splitlines()) if match}
+        refused = {file: why for file, why in refused.items() if file in files}
+        if not refused:
+            tail = " ".join(output.split()[-40:])
+            raise BuildError(f"the compiler failed: {tail}")
+    raise BuildError(f"mypyc refused files {_ROUNDS} times over")
+
+
+def _python(arguments: list[str], root: Path, pure: str) -> subprocess.CompletedProcess[str]:
+    """Another Python on the sources under `root`; an isolated build's own packages stay on its path."""
+    path = os.pathsep.join([str(root), *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = {**os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": path}
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=False)
+
+
+def _modules(made: Path) -> dict[str, str]:
+    """Module names and their files in the library; the shared part goes under its own name."""
+    files = sorted(path.relative_to(made).as_posix() for path in made.rglob(f"*{stamp.suffix()}"))
+    return {module_name(file.removesuffix(stamp.suffix())): file for file in files}
+
+
+def _check(made: Path, root: Path) -> None:
+    """Hold a short run on the library against one without it, where that can be done: same digest or no
+    library."""
+    if importlib.util.find_spec("numba") is None:
+        return  # an isolated build has nothing but the compiler
+    plain = _python(["-m", "scenarios.probe"], root, pure="1")
+    native = _python(["-m", "scenarios.probe", str(made)], root, pure="")
+    if native.returncode:
+        raise BuildError(f"it cannot be used: {(native.stderr.strip().splitlines() or ['?'])[-1]}")
+    if plain.stdout != native.stdout:
+        raise BuildError("its digest is not that of plain Python; please report it")

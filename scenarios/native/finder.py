@@ -1,0 +1,62 @@
+"""Finds the compiled modules, all of them or none: compiled code relies on its own kind."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+from scenarios.native.stamp import LIBRARY, difference, read
+
+PURE = "SCHMIDT_PURE"
+
+
+class Finder:
+    """Entry of `sys.meta_path`. files: module name to its compiled file."""
+
+    def __init__(self, files: dict[str, Path]) -> None:
+        self.files = files
+
+    def find_spec(
+        self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The compiled module of this name, if there is one."""
+        file = self.files.get(name)
+        if file is None:
+            return None
+        return spec_from_file_location(name, file, loader=ExtensionFileLoader(name, str(file)))
+
+
+def compiled() -> bool:
+    """Whether this process runs compiled."""
+    return any(isinstance(finder, Finder) for finder in sys.meta_path)
+
+
+def use(library: Path = LIBRARY) -> None:
+    """Let imports from now on find the library, when there is one and it fits; otherwise one line at most.
+
+    Raises ImportError when SCHMIDT_PURE=0 insists on it.
+    """
+    wish = os.environ.get(PURE, "")
+    if compiled() or wish not in ("", "0"):
+        return
+    stamp = read(library)
+    files = {} if stamp is None else _files(stamp, library)
+    late = not files.keys().isdisjoint(sys.modules)
+    reason = "is not there" if stamp is None else difference(stamp)
+    if wish == "0" and (reason or late):
+        reason = reason or "comes too late: import scenarios before the other rooms"
+        raise ImportError(f"the compiled library {reason}; `make compiled` builds it, {PURE}=1 does without")
+    if stamp is not None and reason:
+        print(f"schmidt: the compiled library {reason}; running plain (`make compiled`)", file=sys.stderr)
+    elif files and not late:
+        sys.meta_path.insert(0, Finder(files))
+
+
+def _files(stamp: dict[str, object], library: Path) -> dict[str, Path]:
+    modules = stamp.get("modules")
+    return {name: library / file for name, file in modules.items()} if isinstance(modules, dict) else {}

@@ -1,0 +1,37 @@
+"""Which modules are compiled: the one list."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+"""Where the rooms lie: the checkout, or site-packages."""
+FOLDERS = ("bus/time", "bus/can", "bus/protocol", "boards")
+"""Everything in these, and below."""
+FILES = (
+    "host/client.py",
+    "host/link.py",
+    "host/logs/axis.py",
+    "host/serial_link.py",
+    "plant/axis.py",
+    "plant/plant.py",
+)
+"""And these: what is called for every tick and frame."""
+_PLACE = "__file__"
+"""A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
+
+
+def selected(root: Path = ROOT) -> list[str]:
+    """Paths of the modules to compile, relative to `root`, in order."""
+    found = {path for folder in FOLDERS for path in (root / folder).rglob("*.py")}
+    found |= {root / file for file in FILES}
+    return sorted(
+        path.relative_to(root).as_posix()
+        for path in found
+        if path.is_file() and path.name != "__init__.py" and _PLACE not in path.read_text(encoding="utf-8")
+    )
+
+
+def module_name(path: str) -> str:
+    """`bus/can/wire.py` as `bus.can.wire`."""
+    return path.removesuffix(".py").replace("/", ".")

@@ -1,0 +1,68 @@
+"""The door for many runs: results, errors, dead workers, and leaving early."""
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from scenarios.campaign.executor import each
+
+
+def double(number: int) -> int:
+    if number < 0:
+        raise ValueError("no negative\nnumbers")
+    return 2 * number
+
+
+def die_once(given: tuple[str, int]) -> int:
+    """Kills its own process the first time it sees a number that divides by five."""
+    folder, number = given
+    mark = Path(folder) / str(number)
+    if number % 5 == 0 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def die(_: int) -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return 0
+
+
+def test_every_key_gets_its_own_answer_or_its_own_error() -> None:
+    found = {done.key: done for done in each(double, ((str(n), n) for n in (3, -1, 0)), jobs=1)}
+    assert {key: done.value for key, done in found.items()} == {"3": 6, "-1": None, "0": 0}
+    assert found["-1"].error == "ValueError: no negative numbers"
+    assert not found["3"].error
+
+
+@pytest.mark.slow
+def test_a_dead_worker_costs_nothing_but_another_try(tmp_path: Path) -> None:
+    inputs = [(str(n), (str(tmp_path), n)) for n in range(12)]
+    found = {done.key: (done.value, done.error) for done in each(die_once, inputs, jobs=2)}
+    assert found == {str(n): (n, "") for n in range(12)}
+
+
+@pytest.mark.slow
+def test_a_task_that_always_kills_its_worker_is_given_up() -> None:
+    (done,) = each(die, [("deadly", 0)], jobs=1)
+    assert done.value is None
+    assert "died" in done.error
+
+
+def test_inputs_are_drawn_as_they_are_needed() -> None:
+    drawn = []
+
+    def endless() -> Iterator[tuple[str, int]]:
+        number = 0
+        while True:
+            drawn.append(number)
+            yield str(number), number
+            number += 1
+
+    results = each(double, endless(), jobs=1)
+    assert next(results).value == 0
+    results.close()  # type: ignore[attr-defined]
+    assert len(drawn) < 20
