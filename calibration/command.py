@@ -67,6 +67,11 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
     for k, path in enumerate(logs):
         if path.resolve() in [p.resolve() for p in logs[:k]]:
             raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
+        if path.exists() and not path.is_file():  # a pipe may never begin, a device never end
+            raise CalibrationInputError(
+                path,
+                "cannot be read (Is a directory)" if path.is_dir() else "cannot be read (no regular file)",
+            )
         if path.suffix.lower() == ".mat":
             text = ""
         else:

@@ -30,6 +30,7 @@ from plant.parts import (
     Supply,
 )
 from plant.reading import ModelError, Reader, nearest
+from plant.yamltext import TextError, check_yaml, read_text
 
 __all__ = [
     "Axes",
@@ -76,9 +77,9 @@ def load(source: str | Path = DEFAULT) -> PlantModel:
     if str(source) in own and not path.exists():
         path = own[str(source)]
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "is not UTF-8 text"
+        text = read_text(path)
+    except (FileNotFoundError, TextError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
         hint = "" if path.suffix else "; " + nearest(str(source), list(own))
         raise ModelError(f"{source}: cannot read the plant file: {reason}{hint}") from None
     return loads(text, str(source))
@@ -88,12 +89,13 @@ def loads(text: str, name: str = "plant file") -> PlantModel:
     """Return the model in a YAML text; `name` is what errors call it."""
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
+        check_yaml(text)
         node = yaml.compose(text, Loader=loader)
+    except TextError as error:
+        raise ModelError(f"{name}, line {error.line}: {error.what}") from None
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ModelError(f"{name}, line {line}: not YAML: {error.problem}") from None
-    except yaml.YAMLError as error:
-        raise ModelError(f"{name}: not YAML: {str(error).splitlines()[0]}") from None
     reader = Reader(name)
     if node is None:
         raise ModelError(f"{name}: is empty")

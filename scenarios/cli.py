@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
@@ -16,10 +16,25 @@ if TYPE_CHECKING:
 
 UNUSABLE = 2
 INTERRUPTED = 130
-SPEED = click.FloatRange(0.01, 1000)
+_LINE = 600
+"""Longer messages quote somebody's megabyte."""
+
+
+class Number(click.FloatRange):
+    """A range that nan is not in: it passes every comparison of click's."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, or click's own error."""
+        number = super().convert(value, param, ctx)
+        if number != number:
+            self.fail(f"{value} is no number", param, ctx)
+        return number
+
+
+SPEED = Number(0.01, 1000)
 """`bus.pacer` has the same bounds; not imported here, so that the command starts at once."""
 SEED = click.IntRange(0, 2**63 - 1)
-SECONDS = click.FloatRange(min=0, min_open=True, max=1e7)
+SECONDS = Number(min=0, min_open=True, max=1e7)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -31,16 +46,14 @@ def cli() -> None:
 @cli.command()
 @click.argument("scenario", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<scenario>).")
-@click.option("--seed", type=click.IntRange(min=0), help="Another seed than the scenario's.")
+@click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Another plant file, or the name of one that comes with schmidt.")
 @click.option(
     "--speed",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SPEED,
     help="Times real time (default: as fast as it goes).",
 )
-@click.option(
-    "--log-rate", type=click.FloatRange(0.01, 20), help="Lines per second of the status and sensor logs."
-)
+@click.option("--log-rate", type=Number(0.01, 20), help="Lines per second of the status and sensor logs.")
 @click.option("--firmware", type=click.Choice(["paper", "fine"]), help="What the axis boards run.")
 @click.option(
     "--compensation",
@@ -233,12 +246,10 @@ def calibrate(
     help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
 )
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
-@click.option(
-    "--speed", type=click.FloatRange(min=0, min_open=True), default=1.0, help="Speed it is served at."
-)
+@click.option("--speed", type=SPEED, default=1.0, help="Speed it is served at.")
 @click.option(
     "--tolerance",
-    type=click.FloatRange(min=0, max=1, min_open=True),
+    type=Number(min=0, max=1, min_open=True),
     default=0.02,
     show_default=True,
     help="Of the mean period of a message, relative.",
@@ -290,7 +301,9 @@ def effects(name: str | None) -> None:
 
 
 def _fail(text: str, status: int) -> NoReturn:
-    click.echo(f"schmidt: {text}", err=True)
+    if len(text) > _LINE:
+        text = text[: _LINE // 2] + " … " + text[-_LINE // 2 :]
+    click.echo(f"schmidt: {text}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)
     sys.exit(status)
 
 
@@ -313,5 +326,9 @@ def main() -> None:
         _fail(" ".join(str(error).split()), UNUSABLE)
     except ImportError as error:
         _fail(f"this command needs a part that is not installed: {error}", UNUSABLE)
+    except MemoryError:
+        _fail("there is not enough memory for this", UNUSABLE)
+    except RecursionError:
+        _fail("the input is nested too deeply", UNUSABLE)
     except Exception as error:
         _fail(f"internal error, please report it: {type(error).__name__}: {' '.join(str(error).split())}", 70)

@@ -8,6 +8,8 @@ from typing import Any
 
 import yaml
 
+from plant.yamltext import TextError, check_yaml, read_text
+
 Path_ = tuple[str | int, ...]
 
 
@@ -33,28 +35,33 @@ class Document:
 def read(file: Path) -> Document:
     """Parse a YAML file; raise `ScenarioError` for a missing file, broken YAML, or a key given twice."""
     try:
-        text = file.read_text(encoding="utf-8")
+        text = read_text(file)
     except FileNotFoundError:
         raise ScenarioError(f"{file}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ScenarioError(f"{file}: cannot be read: {_reason(error)}") from None
+    except TextError as error:
+        raise ScenarioError(_place(file, error)) from None
     return parse(text, file)
 
 
 def parse(text: str, file: Path) -> Document:
     """Parse YAML text that came from `file`."""
+    try:
+        check_yaml(text)
+    except TextError as error:
+        raise ScenarioError(_place(file, error)) from None
     loader = yaml.SafeLoader(text)
     try:
         node = loader.get_single_node()
         if node is None:
             raise ScenarioError(f"{file}:1: the file is empty")
         lines: dict[Path_, int] = {}
-        _walk(node, (), lines, file, depth=0)
+        _walk(node, (), lines, file)
         data = loader.construct_document(node)
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ScenarioError(f"{file}:{line}: not YAML: {error.problem}") from None
-    except (yaml.YAMLError, ValueError) as error:
+    except (yaml.YAMLError, ValueError, ArithmeticError, AttributeError, TypeError, LookupError) as error:
+        # yaml's constructors take what they find: a !!timestamp that is none has no groups
         if isinstance(error, ScenarioError):
             raise
         raise ScenarioError(f"{file}:1: not YAML: {_reason(error)}") from None
@@ -63,11 +70,11 @@ def parse(text: str, file: Path) -> Document:
     return Document(file, data, lines)
 
 
-def _walk(node: yaml.Node, path: Path_, lines: dict[Path_, int], file: Path, depth: int) -> None:
-    if depth > 50:
-        raise ScenarioError(
-            f"{file}:{node.start_mark.line + 1}: nested too deeply (an alias that holds itself?)"
-        )
+def _place(file: Path, error: TextError) -> str:
+    return f"{file}: {error.what}" if error.line is None else f"{file}:{error.line}: {error.what}"
+
+
+def _walk(node: yaml.Node, path: Path_, lines: dict[Path_, int], file: Path) -> None:
     lines.setdefault(path, node.start_mark.line + 1)
     if isinstance(node, yaml.MappingNode):
         seen: set[str] = set()
@@ -79,10 +86,10 @@ def _walk(node: yaml.Node, path: Path_, lines: dict[Path_, int], file: Path, dep
                 raise ScenarioError(f"{file}:{line}: field {key.value!r} is given twice")
             seen.add(key.value)
             lines[(*path, key.value)] = line
-            _walk(value, (*path, key.value), lines, file, depth + 1)
+            _walk(value, (*path, key.value), lines, file)
     elif isinstance(node, yaml.SequenceNode):
         for index, value in enumerate(node.value):
-            _walk(value, (*path, index), lines, file, depth + 1)
+            _walk(value, (*path, index), lines, file)
 
 
 def _reason(error: Exception) -> str:

@@ -16,9 +16,11 @@ from host.sky.site import NAINITAL, Site, standard_pressure_hpa
 from scenarios import model
 from scenarios.document import Document, ScenarioError, read
 from scenarios.units import parse
-from scenarios.validate import check, nearest, schema
+from scenarios.validate import check, check_finite, nearest, schema
 
 DEFAULT_PLANT = "low-preload"
+_YEARS = (1960, 2100)
+"""UTC begins in 1960 (ERFA's table of leap seconds); beyond 2100 the sun's place is nobody's plan."""
 _STEP_FIELDS = {"name", "at", "after", "delay", "when", "timeout"}
 
 
@@ -30,12 +32,13 @@ def load(file: Path) -> model.Scenario:
 def convert(document: Document) -> model.Scenario:
     """Check and convert a parsed document."""
     check(document)
+    check_finite(document)
     data: dict[str, Any] = in_base_units(document.data, schema())
     steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
     _check_names(document, steps)
     plant = data.get("plant", DEFAULT_PLANT)
     speed = data.get("speed", "max")
-    logs = data.get("logs", {})
+    logs = _logs(document, data.get("logs", {}))
     site = _site(document, data.get("site", {}))
     scenario = model.Scenario(
         file=document.file,
@@ -95,6 +98,19 @@ def _step(document: Document, index: int, data: dict[str, Any]) -> model.Step:
     )
 
 
+_PERIODS = {"status": (0.05, 100.0), "traces": (0.001, 10.0)}
+"""Shortest and longest period of the logs, s: the boards answer in milliseconds, the plant in 0.5 ms."""
+
+
+def _logs(document: Document, logs: dict[str, float]) -> dict[str, float]:
+    for name, period_s in logs.items():
+        low, high = _PERIODS[name]
+        if not low <= period_s <= high:
+            where = document.where(("logs", name))
+            raise ScenarioError(f"{where}: logs.{name}: {period_s:g} s is not within {low:g}..{high:g} s")
+    return logs
+
+
 def _target_name(target: Any) -> str:
     return target if isinstance(target, str) else str(target.get("name") or f"{target['ra']} {target['dec']}")
 
@@ -151,7 +167,12 @@ def _check_windows(document: Document, scenario: model.Scenario) -> None:
 def _clock(document: Document, text: str) -> Clock:
     where = document.where(("start_utc",))
     try:
-        return Clock(dt.datetime.fromisoformat(text.replace(" ", "T", 1)))
+        start = dt.datetime.fromisoformat(text.replace(" ", "T", 1))
+        if not _YEARS[0] <= start.year <= _YEARS[1]:
+            raise ScenarioError(f"{where}: start_utc: the year must lie within {_YEARS[0]}..{_YEARS[1]}")
+        return Clock(start)
+    except ScenarioError:
+        raise
     except ValueError as error:
         reason = (
             str(error) if "time zone" in str(error) else f"{text!r} is not a time like 2026-02-10T14:00:00Z"
@@ -172,7 +193,7 @@ def _site(document: Document, data: dict[str, Any]) -> Site:
             pressure_hpa=data.get("pressure", standard_pressure_hpa(height, temperature)),
             humidity=data.get("humidity", NAINITAL.humidity),
         )
-    except ValueError as error:
+    except (ValueError, ArithmeticError) as error:
         raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
 
 

@@ -24,9 +24,11 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
                 model = plants.with_effects(model, axis, (*getattr(model.axes, axis).effects, *extra))
         for path, value in given.get("overrides", {}).items():
             model = plants.with_value(model, path, float(value), "scenario override")
+        if given.get("overrides"):
+            model = plants.loads(plants.dumps(model), "with its overrides")  # the bounds hold for them, too
     except ScenarioError:
         raise
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, ArithmeticError) as error:
         raise ScenarioError(f"plant: {' '.join(str(error).split())}") from None
     return model
 

@@ -14,11 +14,18 @@ _GOTO_S = 60.0
 """What a goto is taken to last when the time of later steps is estimated."""
 
 
+_PROPER_MOTION = 20_000.0
+"""mas/yr; Barnard's star, the fastest known, moves by 10 390 (SIMBAD)."""
+
+
 def target_of(given: Any, where: str) -> Star:
     """The star of a `target` field: a name of the catalogue, or coordinates."""
     try:
         if isinstance(given, str):
             return star(given)
+        for key in ("pm_ra", "pm_dec"):
+            if not abs(float(given.get(key, 0.0))) <= _PROPER_MOTION:
+                raise ValueError(f"{key}: no star moves by more than {_PROPER_MOTION:g} mas/yr")
         return Star(
             name=str(given.get("name") or f"{given['ra']} {given['dec']}"),
             right_ascension_rad=parse_right_ascension(given["ra"]),

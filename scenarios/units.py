@@ -59,6 +59,20 @@ UNITS: dict[str, Unit] = {
     "Mbit/s": Unit("bitrate", 1e6),
 }
 
+LIMITS = {
+    "time": 1e7,
+    "angle": 1e10,
+    "rate": 1e10,
+    "fraction": 1e6,
+    "focus": 1e6,
+    "pressure": 1e4,
+    "temperature": 1e3,
+    "length": 1e4,
+    "bitrate": 1e12,
+}
+"""Largest magnitude of every quantity, in its base unit: far beyond anything at a telescope (four
+months, 7700 turns, 10 km), near enough that no sum of them overflows and nobody waits for it. ASSUMPTION."""
+
 _FORM = re.compile(r"^\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?)\s*(\S.*?)?\s*$")
 
 
@@ -82,12 +96,17 @@ def parse(text: object, quantity: str) -> float:
     word = match.group(2)
     if word is None:
         if quantity in ("fraction", "focus"):
+            if abs(number) > LIMITS[quantity]:
+                raise UnitError(f"{text!r} is too large; at most {LIMITS[quantity]:g}")
             return number
         raise UnitError(f"{text!r} has no unit; write it like {example(quantity)}")
     unit = UNITS.get(word)
     if unit is None or unit.quantity != quantity:
         raise UnitError(f"{text!r}: unit {word!r} does not fit; use one of {', '.join(units_of(quantity))}")
-    return number * unit.factor
+    value = number * unit.factor
+    if abs(value) > LIMITS[quantity]:
+        raise UnitError(f"{text!r} is too large; at most {LIMITS[quantity]:g} {BASE[quantity]}")
+    return value
 
 
 def units_of(quantity: str) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import math
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -52,6 +53,20 @@ def check(document: Document) -> None:
         message = problems[0][2]
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         raise ScenarioError(message + more)
+
+
+def check_finite(document: Document) -> None:
+    """Raise `ScenarioError` for a number that is none: `.inf` and `.nan` pass every bound of a schema."""
+    waiting: list[tuple[Path_, Any]] = [((), document.data)]
+    while waiting:
+        path, value = waiting.pop()
+        if isinstance(value, float) and not math.isfinite(value):
+            field = ".".join(str(part) for part in path)
+            raise ScenarioError(f"{document.where(path)}: {field}: {value} is no number to work with")
+        if isinstance(value, Mapping):
+            waiting += [((*path, str(key)), each) for key, each in value.items()]
+        elif isinstance(value, list):
+            waiting += [((*path, index), each) for index, each in enumerate(value)]
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

@@ -70,7 +70,8 @@ class Level:
             m.period_s / m.width,
             np.array([f.ratio, f.stribeck_speed, f.stiffness]),
             self.exponent,
-            np.ascontiguousarray(change / self.steady),
+            # where the friction is nil, as in a log whose effort never changes, there is no level to change
+            np.divide(change, self.steady, out=np.zeros_like(change), where=self.steady != 0.0),
         )
         return m.at(one) * f.coulomb
 

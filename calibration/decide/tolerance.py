@@ -84,7 +84,9 @@ class Seen:
 
 
 def seen_speeds(rate: Array, d: Declared) -> Seen:
-    """From the speeds (rad/s) of the rows that are fitted."""
+    """From the speeds (rad/s) of the rows that are fitted; nothing is seen where there are none."""
+    if not len(rate):
+        return Seen(False, False, False)
     w = np.abs(rate)
     dip = (w / d.stribeck_speed) ** d.stribeck_exponent
     quick = dip > QUICK

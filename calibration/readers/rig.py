@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import CalibrationInputError
+from plant.yamltext import TextError, check_yaml, read_text
 
 
 @dataclass(frozen=True)
@@ -62,9 +63,12 @@ def load_rig(path: Path) -> Rig:
     from jsonschema import Draft202012Validator
 
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
+        check_yaml(text)
     except OSError as error:
         raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+    except TextError as error:
+        raise CalibrationInputError(path, error.what, error.line) from None
     try:
         data = yaml.safe_load(text)
     except yaml.MarkedYAMLError as error:

@@ -82,7 +82,7 @@ def score(
     parts = np.add.reduceat(q * noise[:, None], edges, axis=0)
     signs = rng.choice([-1.0, 1.0], size=(draws, len(edges)))
     null = signs @ parts
-    floor = float(np.mean(noise**2)) or 1.0
+    floor = (float(np.mean(noise**2)) if len(noise) else 0.0) or 1.0  # no row may be usable at all
     value, gain = np.zeros(len(widths)), np.zeros(len(widths))
     nulls = np.zeros((draws, len(widths)))
     at = 0

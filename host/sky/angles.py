@@ -8,7 +8,9 @@ import re
 ARCSEC_PER_RAD = 180.0 * 3600.0 / math.pi
 
 _SEXAGESIMAL = re.compile(
-    r"^\s*([+\-−]?)\s*(\d+)\s*[:hd°\s]\s*(\d+)\s*[:m′'\s]\s*(\d+(?:\.\d*)?)\s*[s″\"]?\s*$", re.IGNORECASE
+    r"^\s*([+\-−]?)\s*(\d{1,3})\s*[:hd°\s]\s*(\d{1,2})\s*[:m′'\s]\s*(\d{1,2}(?:\.\d{0,15})?)"
+    r"\s*[s″\"]?\s*$",
+    re.IGNORECASE,
 )
 
 

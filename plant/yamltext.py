@@ -1,0 +1,103 @@
+"""Text files from outside, and YAML in them, before anything is built from it.
+
+An alias stands for a whole tree, so a few lines can name more values than a machine holds; brackets can be
+nested deeper than the parser's stack. Both are seen in the event stream, which costs neither.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+MAX_BYTES = 4_000_000
+"""The largest file of the project has 30 kB."""
+MAX_DEPTH = 50
+MAX_VALUES = 100_000
+
+
+class TextError(ValueError):
+    """A file or a text that cannot be used; `what` says why, without the file's name."""
+
+    def __init__(self, what: str, line: int | None = None) -> None:
+        self.what = what
+        self.line = line
+        super().__init__(what if line is None else f"line {line}: {what}")
+
+
+def read_text(path: Path, limit: int = MAX_BYTES) -> str:
+    """The text of a regular file of at most `limit` bytes; raises TextError, FileNotFoundError.
+
+    A pipe or a device is refused: it may never end, or never begin.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            raise TextError("cannot be read: it is no regular file")
+        with path.open("rb") as file:
+            data = file.read(limit + 1)
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise TextError(f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        if isinstance(error, TextError):
+            raise
+        raise TextError(f"has an impossible name: {error}") from None
+    if len(data) > limit:
+        raise TextError(f"is longer than {limit} bytes")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise TextError("cannot be read: it is not UTF-8 text", line) from None
+
+
+def check_yaml(text: str) -> None:
+    """Raise TextError for YAML that is broken, nested too deeply, or names too many values by aliases."""
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        _check_events(yaml.parse(text, Loader=loader))
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        raise TextError(f"is not YAML: {error.problem}", line) from None
+    except (yaml.YAMLError, OverflowError, ValueError, RecursionError) as error:
+        if isinstance(error, TextError):
+            raise
+        raise TextError(f"is not YAML: {str(error).splitlines()[0]}", 1) from None
+
+
+def _check_events(events: object) -> None:
+    sizes: dict[str, int] = {}
+    """Values an anchor stands for."""
+    open_: list[tuple[str | None, int]] = []
+    """Of every collection that is open: its anchor, and how many values there were before it."""
+    count = 0
+    for event in events:  # type: ignore[attr-defined]
+        line = event.start_mark.line + 1
+        if isinstance(event, yaml.AliasEvent):
+            # an alias of a collection that is still open holds itself
+            if any(anchor == event.anchor for anchor, _ in open_):
+                raise TextError(f"the alias {event.anchor!r} holds itself", line)
+            count += sizes.get(event.anchor, 1)
+        elif isinstance(event, yaml.ScalarEvent):
+            count += 1
+            _check_scalar(event.value, line)
+            if event.anchor:
+                sizes[event.anchor] = 1
+        elif isinstance(event, yaml.CollectionStartEvent):
+            open_.append((event.anchor, count))
+            count += 1
+            if len(open_) > MAX_DEPTH:
+                raise TextError("nested too deeply", line)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = open_.pop()
+            if anchor:
+                sizes[anchor] = count - before
+        if count > MAX_VALUES:
+            raise TextError(f"names more than {MAX_VALUES} values (aliases of aliases?)", line)
+
+
+def _check_scalar(value: str, line: int) -> None:
+    for character in value:
+        if (character < " " and character not in "\t\n\r") or "\ud800" <= character <= "\udfff":
+            raise TextError(f"{character!a} is no character of a text", line)

@@ -1,0 +1,97 @@
+"""Nothing that a file holds ends in a hang, a traceback, or more than one line."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from scenarios.run import prepare
+from scenarios.served import wire
+from tests.scenarios.broken import BASE, REFUSED
+
+SECONDS = 5.0
+
+
+@pytest.mark.timeout(30)
+@pytest.mark.parametrize(("name", "text"), REFUSED, ids=[name for name, _ in REFUSED])
+def test_a_broken_scenario_is_refused_at_once(tmp_path: Path, name: str, text: str) -> None:
+    file = tmp_path / "x.yaml"
+    file.write_bytes(text.encode())
+    start = time.perf_counter()
+    with pytest.raises((ValueError, OSError)) as caught:
+        wire(*prepare(file))
+    assert time.perf_counter() - start < SECONDS
+    assert str(caught.value).strip(), "says nothing"
+
+
+def test_the_base_of_them_all_is_good(tmp_path: Path) -> None:
+    file = tmp_path / "x.yaml"
+    file.write_text(BASE)
+    wire(*prepare(file))
+
+
+@pytest.mark.timeout(30)
+def test_a_pipe_and_a_device_are_not_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    for file in (tmp_path / "pipe.yaml", Path("/dev/zero"), tmp_path):
+        with pytest.raises(ValueError, match="no regular file"):
+            prepare(file)
+    (tmp_path / "big.yaml").write_bytes(b"a" * 5_000_000)
+    with pytest.raises(ValueError, match="longer than"):
+        prepare(tmp_path / "big.yaml")
+
+
+COMMANDS = (
+    ("run", "nowhere.yaml", "--speed", "nan"),
+    ("run", "nowhere.yaml", "--speed", "inf"),
+    ("run", "nowhere.yaml", "--speed", "1e12"),
+    ("run", "nowhere.yaml", "--log-rate", "nan"),
+    ("run", "nowhere\n.yaml"),
+    ("run", "n" * 5000),
+    ("serve", "--can", "virtual:x", "--speed", "inf"),
+    ("serve", "--can", "virtual:x", "--speed", "1e12"),
+    ("serve", "--can", "virtual:x", "--speed", "1e-12"),
+    ("serve", "--can", "virtual:x", "--duration", "nan"),
+    ("serve", "--can", "virtual:x", "--duration", "inf"),
+    ("serve", "--can", "udp_multicast:239.74.163.2,port=70000"),
+    ("serve", "--can", "udp_multicast:nonsense"),
+    ("serve", "--can", "socketcan:" + "x" * 300),
+    ("serve", "--serial", "tcp:65533"),
+    ("serve", "--serial", "tcp:99999999999999999999"),
+    ("serve", "--serial", "tcp:256.1.1.1:7000"),
+    ("serve", "--serial", "pty:/proc/nowhere"),
+    ("serve", "--serial", "usb:1"),
+    ("serve", "--hid", "unix:" + "y" * 300),
+    ("serve", "--hid", "unix:/"),
+    ("serve", "--hid", "nonsense"),
+    ("serve", "--control", "70000"),
+    ("serve", "--control", "-1"),
+    ("serve",),
+    ("control", "status", "--at", "70000"),
+    ("control", "status", "--at", "1"),
+    ("replay", "nowhere"),
+    ("conformance", "--tolerance", "nan"),
+)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("words", COMMANDS, ids=lambda words: " ".join(words)[:60].replace("\n", " "))
+def test_a_broken_command_line_is_one_line_and_status_2(words: tuple[str, ...], tmp_path: Path) -> None:
+    command = [sys.executable, "-c", "from scenarios.cli import main; main()", *words]
+    root = Path(__file__).parents[2]
+    result = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        timeout=50,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(root)},
+    )
+    assert result.returncode == 2, result.stderr
+    assert result.stderr.startswith("schmidt: ")
+    assert result.stderr.count("\n") == 1
+    assert len(result.stderr) < 1000
