@@ -34,7 +34,7 @@ class Client:
 
     def send(self, data: bytes) -> None:
         """Hand it over; what does not fit now is lost to this client, as on a port that is not read."""
-        if not data or self.gone:
+        if not data:
             return
         try:
             self.lost += len(data) - self._connection.send(data)

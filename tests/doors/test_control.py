@@ -1,0 +1,107 @@
+"""The control plane: commands, tokens, and clients that break the rules."""
+
+import json
+import socket
+
+import pytest
+
+from scenarios.doors.address import AddressError, address, is_local
+from scenarios.doors.control import ControlDoor
+from tests.doors.conftest import Bench
+from tests.doors.test_serial import free_ports
+
+
+class Caller:
+    """One client; every line gets its answer."""
+
+    def __init__(self, bench: Bench, port: int) -> None:
+        self.bench = bench
+        self.socket = socket.create_connection(("127.0.0.1", port))
+        self.socket.setblocking(False)
+
+    def send(self, data: bytes) -> str:
+        self.socket.sendall(data)
+        self.bench.run(3)
+        try:
+            return self.socket.recv(65536).decode()
+        except BlockingIOError:
+            return ""
+
+    def __call__(self, line: str) -> str:
+        return self.send(line.encode() + b"\n").rstrip("\n")
+
+
+@pytest.fixture
+def door(bench: Bench) -> ControlDoor:
+    door = ControlDoor(str(free_ports(1)), None, bench.served)
+    bench.open(door)
+    return door
+
+
+def test_speed_pause_status_power_and_stop(bench: Bench, door: ControlDoor) -> None:
+    ask = Caller(bench, door.port)
+    assert ask("speed 5") == "ok speed 5"
+    assert bench.served.pacer.speed == 5.0
+    assert ask("pause") == "ok paused" and bench.served.pacer.paused
+    assert ask("resume") == "ok running" and not bench.served.pacer.paused
+    status = json.loads(ask("status").removeprefix("ok "))
+    assert status["speed"] == 5.0
+    assert status["boards"]["FOCUS"] is True
+    assert ask("power FOCUS off") == "ok FOCUS off"
+    assert not bench.served.network.boards["FOCUS"].on
+    assert ask("power FOCUS on") == "ok FOCUS on"
+    bench.run(400)
+    assert bench.served.network.boards["FOCUS"].on
+    assert not bench.served.ending
+    assert ask("stop") == "ok ending" and bench.served.ending
+    ask.socket.close()
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["speed", "speed x", "speed nan", "speed inf", "speed 1e12", "speed 0", "speed 1 2", "power",
+     "power X on", "power FOCUS sideways", "nonsense", "", "\0", "token", "\u2028"],
+)  # fmt: skip
+def test_what_is_no_command_is_one_line_of_error(bench: Bench, door: ControlDoor, line: str) -> None:
+    ask = Caller(bench, door.port)
+    answer = ask(line)
+    assert answer.startswith("error: ")
+    assert "\n" not in answer
+    assert bench.served.pacer.speed == 1.0
+    ask.socket.close()
+
+
+def test_a_stranger_needs_the_token(bench: Bench, door: ControlDoor, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.doors.control.is_local", lambda _host: False)
+    door.token = "word"
+    stranger = Caller(bench, door.port)
+    assert stranger("stop") == "error: this needs a token: token WORD"
+    assert not bench.served.ending
+    assert stranger("token word") == "ok"
+    assert stranger("speed 2") == "ok speed 2"
+    thief = Caller(bench, door.port)
+    assert thief("token guess") == "error: wrong token"
+    assert door.refused == 2
+    bench.run(3)
+    assert thief.socket.recv(10) == b"", "and is hung up on"
+    for each in (stranger, thief):
+        each.socket.close()
+
+
+def test_a_line_without_end_is_hung_up_on(bench: Bench, door: ControlDoor) -> None:
+    ask = Caller(bench, door.port)
+    assert "short line" in ask.send(b"x" * 3000)
+    ask.socket.close()
+
+
+@pytest.mark.parametrize("text", ["", "0", "65536", "-1", "x", "1:2:x", "9" * 30, "host\0:1", ":", "²"])
+def test_addresses_that_are_none(text: str) -> None:
+    with pytest.raises(AddressError):
+        address(text, "--control")
+
+
+def test_addresses() -> None:
+    assert address("7411", "x") == ("127.0.0.1", 7411)
+    assert address("0.0.0.0:7411", "x") == ("0.0.0.0", 7411)
+    assert address("[::1]:7411", "x") == ("::1", 7411)
+    assert is_local("127.0.0.1") and is_local("::1") and not is_local("192.168.0.1")
