@@ -36,7 +36,7 @@ def test_bytes_come_at_the_pace_of_the_line(bench: Bench) -> None:
     ends: list[tuple[int, bytes]] = []
     uart.sink = lambda t_ns, packet: ends.append((t_ns, packet))
     most, stream = 0, b""
-    for _ in range(3000):
+    for _ in range(4500):
         bench.slice(MS // 10)
         data = feed.until(bench.served.now_ns)
         most = max(most, len(data))
@@ -121,7 +121,8 @@ def test_tcp_serves_several_readers_and_survives_one_that_goes(bench: Bench) -> 
         TcpDoor(str(base), bench.served).open()
 
 
-def test_pysersials_own_rfc2217_client_sets_a_rate_and_reads(bench: Bench) -> None:
+@pytest.mark.filterwarnings("ignore:set:DeprecationWarning")  # pyserial's own client
+def test_pyserials_own_rfc2217_client_sets_a_rate_and_reads(bench: Bench) -> None:
     base = free_ports(5)
     door = Rfc2217Door(str(base), bench.served)
     bench.open(door)
