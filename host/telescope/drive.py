@@ -94,6 +94,14 @@ class Drive:
             raise Refused(Reason.STATE, "the axes are moving")
         return self.begin("power on", self.power(check), Activity.POWERING)
 
+    def wake(self) -> None:
+        """Track, after powering up where that is needed; ends being parked."""
+        if self.parked:
+            self.tracking = True
+            self.begin("wake up", self.power(), Activity.POWERING)
+        else:
+            self.track(True)
+
     def power_off(self) -> Job[None]:
         """Stop, then both axes off."""
         self.tracking = False

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
+from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
@@ -74,12 +75,14 @@ class Telescope:
     def tick(self, t_ns: int) -> None:
         """One tick of the host: what came in, what goes on, what goes out, and a new snapshot."""
         self.client.now_ns = t_ns
-        self._let_in()
+        answers = self._let_in()
         self.drive.tick()
         self.focuser.tick()
         self.side.tick()
         self.client.tick(t_ns)
         self.snapshot = self._look()
+        for answer in answers:  # whoever gets one and then looks, sees what it has done
+            answer()
 
     def close(self) -> None:
         """No more ticks: whoever waits is told so."""
@@ -92,15 +95,17 @@ class Telescope:
             if future.set_running_or_notify_cancel():
                 future.set_exception(Refused(Reason.SILENT, "the telescope is shut down"))
 
-    def _let_in(self) -> None:
+    def _let_in(self) -> list[Callable[[], None]]:
+        answers: list[Callable[[], None]] = []
         for _ in range(self._inbox.qsize()):
             act, future = self._inbox.get()
             if not future.set_running_or_notify_cancel():
                 continue  # whoever asked has gone
             try:
-                future.set_result(act(self))
+                answers.append(partial(future.set_result, act(self)))
             except Exception as error:  # belongs to the caller; a door's mistake must not stop the telescope
-                future.set_exception(error)
+                answers.append(partial(future.set_exception, error))
+        return answers
 
     def _ask(self, device: Device, opcode: Opcode) -> Any:
         yield from self.client.ask(device, opcode)

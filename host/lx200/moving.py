@@ -1,0 +1,170 @@
+"""The commands that move: slew, stop, keys, pulses, tracking, park, sync, focus."""
+
+from __future__ import annotations
+
+from bus.protocol import SpeedClass
+from host.lx200.handbox import FREQUENCIES
+from host.lx200.session import Handler, Session
+from host.sky.apparent import star_of_apparent
+from host.sky.catalogue import Star
+from host.telescope import DriveRate, Reason, Refused, Telescope
+
+_KEYS = {"R" + letter: speed for letter, speed in zip(
+    "SMCG", (SpeedClass.SLEW, SpeedClass.SET, SpeedClass.GUIDE, SpeedClass.FINE), strict=True)}  # fmt: skip
+"""Slew, find, centre, guide: from the fastest key to the slowest."""
+_MATCHED = "Coordinates     matched.        #"
+
+
+async def slew(session: Session, _: str) -> str:
+    """`:MS#`: `0`, or `1<text>#` below the horizon, `2<text>#` for whatever else is in the way; one piece."""
+    try:
+        star = _target(session)
+        await session.desk.do(lambda t: t.drive.goto(star, wake=True))
+    except Refused as refusal:
+        number = "1" if refusal.reason is Reason.BELOW_HORIZON else "2"
+        session.say(str(refusal))
+        return number + _plain(str(refusal)) + "#"
+    except ValueError as error:
+        return f"2{error}#"
+    return "0"
+
+
+async def sync(session: Session, _: str) -> str:
+    """`:CM#`: the telescope points at the target."""
+    try:
+        star = _target(session)
+        await session.desk.do(lambda t: t.drive.sync(star))
+    except ValueError as error:
+        session.say(f"sync: {error}")
+        return _plain(f"not matched: {error}") + "#"
+    return _MATCHED
+
+
+def _target(session: Session) -> Star:
+    clock, t_s = session.telescope.observatory.clock, session.now.t_s
+    return star_of_apparent(session.target(), clock, t_s, "LX200 target")
+
+
+def _plain(text: str) -> str:
+    """Nothing that ends an answer or is no ASCII."""
+    for mark, word in (("°", "d"), ("′", "m"), ("″", "s"), ("−", "-"), ("#", "")):
+        text = text.replace(mark, word)
+    return text.encode("ascii", "replace").decode("ascii")
+
+
+async def stop(session: Session, _: str) -> str:
+    """`:Q#`: whatever moves over the sky; tracking goes on."""
+    await session.act(lambda t: t.drive.abort())
+    return ""
+
+
+async def precision(session: Session, _: str) -> str:
+    """`:U#` toggles between seconds and tenths of a minute."""
+    session.precise = not session.precise
+    return ""
+
+
+async def pulse(session: Session, argument: str) -> str:
+    """`:Mgn2000#`, ms."""
+    direction, milliseconds = argument[:1], argument[1:]
+    if milliseconds.isascii() and milliseconds.isdigit():
+        await session.act(lambda t: t.paddle.pulse(direction, int(milliseconds) / 1000))
+    return ""
+
+
+async def park(session: Session, _: str) -> str:
+    """`:hP#`."""
+    await session.act(lambda t: t.drive.park())
+    return ""
+
+
+async def wake(session: Session, _: str) -> str:
+    """`:AP#` and `:hW#`: track, after powering up where that is needed."""
+    await session.act(lambda t: t.drive.wake())
+    return ""
+
+
+async def land(session: Session, _: str) -> str:
+    """`:AL#`: stop following the sky."""
+    await session.act(lambda t: t.drive.track(False))
+    return ""
+
+
+async def focus_stop(session: Session, _: str) -> str:
+    """`:FQ#`."""
+    await session.act(lambda t: t.focuser.halt())
+    return ""
+
+
+async def nothing(_session: Session, _: str) -> str:
+    """Understood, without an answer and without effect here."""
+    return ""
+
+
+def _key(direction: str) -> Handler:
+    async def press(session: Session, _: str) -> str:
+        await session.act(lambda t: t.paddle.press(direction, session.speed, wake=True))
+        return ""
+
+    return press
+
+
+def _release(axis: str) -> Handler:
+    async def release(session: Session, _: str) -> str:
+        await session.act(lambda t: t.paddle.release(axis))
+        return ""
+
+    return release
+
+
+def _speed(speed: SpeedClass) -> Handler:
+    async def choose(session: Session, _: str) -> str:
+        session.speed = speed
+        return ""
+
+    return choose
+
+
+def _rate(rate: DriveRate) -> Handler:
+    async def choose(session: Session, _: str) -> str:
+        session.box.frequency_hz = FREQUENCIES[rate]
+        await session.act(lambda t: t.drive.set_rates(rate, (0.0, 0.0)))
+        return ""
+
+    return choose
+
+
+def _focus(outward: bool) -> Handler:
+    async def run(session: Session, _: str) -> str:
+        slow = session.focus_slow
+
+        def start(telescope: Telescope) -> object:
+            return telescope.focuser.run(outward, slow)
+
+        await session.act(start)
+        return ""
+
+    return run
+
+
+def _focus_speed(slow: bool) -> Handler:
+    async def choose(session: Session, _: str) -> str:
+        session.focus_slow = slow
+        return ""
+
+    return choose
+
+
+MOVING: dict[str, Handler] = {
+    "MS": slew, "CM": sync, "Q": stop, "U": precision, "hP": park, "hW": wake,
+    "AP": wake, "AL": land, "AA": nothing, "TM": nothing,
+    **{f"M{letter}": _key(letter) for letter in "nsew"},
+    "Qn": _release("dec"), "Qs": _release("dec"), "Qe": _release("ra"), "Qw": _release("ra"),
+    **{letters: _speed(speed) for letters, speed in _KEYS.items()},
+    "TQ": _rate(DriveRate.SIDEREAL), "TS": _rate(DriveRate.SOLAR), "TL": _rate(DriveRate.LUNAR),
+    "F+": _focus(outward=False), "F-": _focus(outward=True), "FQ": focus_stop,
+    "FS": _focus_speed(slow=True), "FF": _focus_speed(slow=False),
+}  # fmt: skip
+"""Commands without argument to handlers."""
+TAKING: dict[str, Handler] = {"Mg": pulse, "W": nothing, "L": nothing}
+"""Letters before an argument to handlers."""

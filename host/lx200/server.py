@@ -1,0 +1,97 @@
+"""LX200 over TCP and over a pseudo-terminal: bytes to sessions, answers back in one piece."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import fcntl
+import os
+import termios
+import tty
+from pathlib import Path
+
+from host.lx200.handbox import Handbox
+from host.lx200.moving import MOVING, TAKING
+from host.lx200.reading import READING
+from host.lx200.session import Session
+from host.lx200.setting import SETTING
+from host.telescope import AsyncDesk, Telescope
+
+PLAIN = READING | MOVING
+WITH_ARGUMENT = SETTING | TAKING
+_CLIENTS = 32
+"""More at once are turned away."""
+_BYTES = 4096
+
+
+class Lx200:
+    """The LX200 door of one telescope; `serve_tcp` and `serve_pty` may be called as often as wanted."""
+
+    def __init__(self, telescope: Telescope) -> None:
+        self._desk = AsyncDesk(telescope)
+        self._box = Handbox(telescope.observatory.clock, telescope.observatory.name)
+        self._clients = 0
+
+    def session(self, name: str) -> Session:
+        """For one client."""
+        return Session(self._desk, self._box, PLAIN, WITH_ARGUMENT, name)
+
+    async def serve_tcp(self, host: str, port: int) -> asyncio.Server:
+        """Listen; port 0 takes a free one. Raises OSError when it is taken."""
+        return await asyncio.start_server(self._client, host, port)
+
+    async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self._clients += 1
+        session = self.session(str(writer.get_extra_info("peername")))
+        try:
+            while self._clients <= _CLIENTS and (data := await reader.read(_BYTES)):
+                answer = await session.feed(data)
+                if answer:
+                    writer.write(answer)
+                    await writer.drain()
+        except (ConnectionError, asyncio.CancelledError):
+            pass  # the client has gone, or the door is closed
+        finally:
+            self._clients -= 1
+            writer.close()
+
+    async def serve_pty(self, name: Path) -> None:
+        """A pseudo-terminal with a stable name, until cancelled. Raises OSError when the name is taken."""
+        master, slave = os.openpty()
+        try:
+            tty.setraw(slave)
+            os.set_blocking(master, False)
+            if name.is_symlink():
+                name.unlink()
+            name.symlink_to(os.ttyname(slave))
+            await self._pty(master, slave, self.session(str(name)))
+        finally:
+            with contextlib.suppress(OSError):
+                name.unlink()
+            os.close(slave)
+            os.close(master)
+
+    async def _pty(self, master: int, slave: int, session: Session) -> None:
+        while True:
+            await _readable(master)
+            # INDI takes the port for itself; since this end stays open, nobody would ever free it again
+            fcntl.ioctl(slave, termios.TIOCNXCL)
+            with contextlib.suppress(BlockingIOError):
+                answer = await session.feed(os.read(master, _BYTES))
+                if answer:
+                    os.write(master, answer)  # a client that does not read loses answers, nobody waits
+
+
+async def _readable(descriptor: int) -> None:
+    loop = asyncio.get_running_loop()
+    ready: asyncio.Future[None] = loop.create_future()
+
+    def wake() -> None:
+        if not ready.done():
+            ready.set_result(None)
+
+    loop.add_reader(descriptor, wake)
+    try:
+        await ready
+    finally:
+        loop.remove_reader(descriptor)

@@ -1,0 +1,96 @@
+"""One LX200 client: its target, its key speed and its precision. Commands in, answers out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine, Mapping
+from typing import Any
+
+from bus.protocol import SpeedClass
+from host.lx200.handbox import Handbox
+from host.lx200.parser import ACK, Parser
+from host.sky.apparent import Place
+from host.telescope import AsyncDesk, Refused, Snapshot, Telescope
+
+Handler = Callable[["Session", str], Coroutine[Any, Any, str]]
+
+
+class Session:
+    """What belongs to one client, so that two at once do not get into each other's way.
+
+    plain: handlers of commands that are these letters and nothing else. taking: handlers by the letters
+    before an argument. unknown: commands nobody knows, so far.
+    """
+
+    def __init__(
+        self,
+        desk: AsyncDesk,
+        box: Handbox,
+        plain: Mapping[str, Handler],
+        taking: Mapping[str, Handler],
+        name: str,
+    ) -> None:
+        self.desk = desk
+        self.box = box
+        self.name = name
+        self.precise = True
+        self.speed = SpeedClass.SLEW
+        self.focus_slow = False
+        self.target_ra_rad: float | None = None
+        self.target_dec_rad: float | None = None
+        self.unknown = 0
+        self._plain = plain
+        self._taking = taking
+        self._parser = Parser()
+
+    async def feed(self, data: bytes) -> bytes:
+        """Answers to what became complete with these bytes, in one piece; empty where there is none."""
+        answers = [await self.answer(command) for command in self._parser.feed(data)]
+        return "".join(answers).encode("latin-1", "replace")
+
+    async def answer(self, command: str) -> str:
+        """Carry out one command."""
+        if command == ACK:
+            return "P"
+        if command in self._plain:
+            return await self._plain[command](self, "")
+        for length in (2, 1):
+            if command[:length] in self._taking:
+                return await self._taking[command[:length]](self, command[length:])
+        self.unknown += 1
+        return ""
+
+    # --- what handlers use ---
+    @property
+    def now(self) -> Snapshot:
+        """The telescope at the last tick."""
+        return self.desk.now
+
+    @property
+    def telescope(self) -> Telescope:
+        """For what may be read from any thread."""
+        return self.desk.telescope
+
+    def place(self) -> Place | None:
+        """Apparent place of date that the telescope points at; None before the first readings."""
+        now = self.now
+        if now.ra.steps is None or now.dec.steps is None:
+            return None
+        return self.telescope.observatory.apparent(now.ra.steps, now.dec.steps, now.ra.latched_s)
+
+    def target(self) -> Place:
+        """What `:Sr` and `:Sd` have set; raises ValueError before both were."""
+        if self.target_ra_rad is None or self.target_dec_rad is None:
+            raise ValueError("no target has been set")
+        return Place(self.target_ra_rad, self.target_dec_rad)
+
+    async def act(self, act: Callable[[Telescope], object]) -> None:
+        """A command that has no answer: a refusal goes into the log instead."""
+        try:
+            await self.desk.do(act)
+        except Refused as refusal:
+            self.say(str(refusal))
+
+    def say(self, text: str) -> None:
+        """A line in the error log."""
+        now_ns = round(self.now.t_s * 1e9)
+        self.telescope.call(lambda t: t.journal.error(now_ns, f"LX200 {self.name}", text))

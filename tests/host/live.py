@@ -1,0 +1,32 @@
+"""A telescope on the emulated boards in a process of its own pace: a thread ticks, doors are open."""
+
+import threading
+from pathlib import Path
+from time import sleep
+
+from host.outside import Outside
+from tests.host.telescope.conftest import Rig
+
+
+class Live(Rig):
+    """The rig, run by a thread at `speed` times real time at most (faster machines wait)."""
+
+    def __init__(self, logs: Path | None = None, speed: float = 20.0) -> None:
+        super().__init__(logs)
+        self.outside = Outside()
+        self._speed = speed
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        slice_s = 0.02
+        while not self._end.is_set():
+            self.advance(slice_s * self._speed)
+            sleep(slice_s)
+
+    def close(self) -> None:
+        self.outside.close()
+        self._end.set()
+        self._thread.join()
+        self.hosted.close()
