@@ -171,6 +171,11 @@ def objective(
 @click.option(
     "--hid", multiple=True, metavar="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket."
 )
+@click.option(
+    "--lx200", multiple=True, metavar="[HOST:]PORT|pty:NAME", help="For Stellarium and INDI; repeatable."
+)
+@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--logs", type=click.Path(path_type=Path), help="Folder of the host's four logs.")
 @click.option("--control", metavar="[HOST:]PORT", help="Speed, pause, status, stop (see schmidt control).")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
 @click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
@@ -183,6 +188,9 @@ def serve(
     can: tuple[str, ...],
     serial: tuple[str, ...],
     hid: tuple[str, ...],
+    lx200: tuple[str, ...],
+    alpaca: str | None,
+    logs: Path | None,
     control: str | None,
     token: str | None,
     speed: float,
@@ -195,7 +203,7 @@ def serve(
     from scenarios.doors.options import DoorOptions
     from scenarios.serve import serve as command
 
-    options = DoorOptions(can=can, serial=serial, hid=hid, control=control, token=token)
+    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs)
     sys.exit(command(scenario, options, speed, seed, plant, duration, record))
 
 

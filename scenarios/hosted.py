@@ -1,7 +1,9 @@
-"""The host's telescope client on an emulated network: it ticks on the network's own queue."""
+"""The host's telescope client for a scenario: link, logs, telescope, ticked by whoever owns the time."""
 
 from __future__ import annotations
 
+import datetime as dt
+from collections.abc import Callable
 from pathlib import Path
 
 from bus.protocol import Device
@@ -11,40 +13,52 @@ from host.logs.ascii import AsciiLogs
 from host.logs.journal import Journal
 from host.logs.rotation import rotating
 from host.logs.sensors import readings
+from host.sky.observed import Clock
 from host.telescope import Observatory, Telescope
 from scenarios.model import Scenario
-from scenarios.network import Network
+from scenarios.served import UNDATED
 
 
 class Hosted:
-    """A telescope client at the gateway's USB end of `network`.
+    """send: takes (t_ns, report), 64-byte OUT reports. boards: names of the boards that should live.
+    logs: folder of the four ASCII logs, or None.
 
-    Its commands leave as HID reports at ticks of simulated time, so whoever records what enters the network
-    records all of it. logs: folder of the four ASCII logs, or None.
+    A scenario without a date (the lab network) gets today's sky.
     """
 
-    def __init__(self, network: Network, scenario: Scenario, logs: Path | None = None) -> None:
-        self.files = None if logs is None else AsciiLogs(logs, scenario.clock.iso, rotating)
+    def __init__(
+        self,
+        scenario: Scenario,
+        send: Callable[[int, bytes], None],
+        boards: list[str],
+        logs: Path | None = None,
+    ) -> None:
+        today = dt.datetime.now(dt.UTC).replace(microsecond=0)
+        self.clock = Clock(today) if scenario.clock is UNDATED else scenario.clock
+        if logs is not None:
+            logs.mkdir(parents=True, exist_ok=True)
+        self.files = None if logs is None else AsciiLogs(logs, self.clock.iso, rotating)
         self.journal = Journal(self.files)
-        self.observatory = Observatory(scenario.site, scenario.clock, scenario.mount, scenario.horizon_rad)
-        link = HidLink(network.hid.write)
-        network.hid.to_host = link.receive
-        devices = tuple(device for device in Device if device.name in network.boards)
-        self.telescope = Telescope(Client(link, self.journal, devices), self.observatory, self.journal)
-        self._queue = network.queue
+        self.observatory = Observatory(scenario.site, self.clock, scenario.mount, scenario.horizon_rad)
+        self.link = HidLink(send)
+        devices = tuple(device for device in Device if device.name in boards)
+        self.telescope = Telescope(Client(self.link, self.journal, devices), self.observatory, self.journal)
         self._log_ns = round(scenario.status_period_s * 1e9)
         self._next_log_ns = 0
-        self._queue.at(self._queue.now_ns + TICK_NS, self._tick)
+        self._next_ns = 0
+
+    def poll(self, t_ns: int) -> None:
+        """Tick, when one is due."""
+        if t_ns < self._next_ns:
+            return
+        self._next_ns = max(self._next_ns + TICK_NS, t_ns + 1)
+        self.telescope.tick(t_ns)
+        if self.files is not None and t_ns >= self._next_log_ns:
+            self._next_log_ns = t_ns + self._log_ns
+            self.journal.sensors(t_ns, readings(self.telescope.client, self.observatory.mount))
 
     def close(self) -> None:
         """Bring the logs to disk; whoever still waits for the telescope is told that it is gone."""
         self.telescope.close()
         if self.files is not None:
             self.files.close()
-
-    def _tick(self, t_ns: int) -> None:
-        self.telescope.tick(t_ns)
-        if self.files is not None and t_ns >= self._next_log_ns:
-            self._next_log_ns = t_ns + self._log_ns
-            self.journal.sensors(t_ns, readings(self.telescope.client, self.observatory.mount))
-        self._queue.at(t_ns + TICK_NS, self._tick)

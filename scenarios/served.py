@@ -13,8 +13,8 @@ from scenarios.network import Network, build, config_from
 if TYPE_CHECKING:
     from plant.model import PlantModel
 
-_UNUSED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
-"""Nothing here looks at the sky, so the date is of no account."""
+UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
+"""The lab network has no date: boards do not look at the sky, and a host takes today's."""
 
 
 def chosen(
@@ -30,7 +30,7 @@ def chosen(
 
     if scenario_file is not None:
         return prepare(scenario_file, seed, plant)
-    scenario = Scenario(Path("lab"), "lab", "", _UNUSED, (), seed=1 if seed is None else seed)
+    scenario = Scenario(Path("lab"), "lab", "", UNDATED, (), seed=1 if seed is None else seed)
     return scenario, plant_model({"file": plant or DEFAULT_PLANT}, Path())
 
 

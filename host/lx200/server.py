@@ -25,12 +25,15 @@ _BYTES = 4096
 
 
 class Lx200:
-    """The LX200 door of one telescope; `serve_tcp` and `serve_pty` may be called as often as wanted."""
+    """The LX200 door of one telescope; `serve_tcp` and `serve_pty` may be called as often as wanted.
+
+    clients: how many are connected over TCP.
+    """
 
     def __init__(self, telescope: Telescope) -> None:
         self._desk = AsyncDesk(telescope)
         self._box = Handbox(telescope.observatory.clock, telescope.observatory.name)
-        self._clients = 0
+        self.clients = 0
 
     def session(self, name: str) -> Session:
         """For one client."""
@@ -41,10 +44,10 @@ class Lx200:
         return await asyncio.start_server(self._client, host, port)
 
     async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._clients += 1
+        self.clients += 1
         session = self.session(str(writer.get_extra_info("peername")))
         try:
-            while self._clients <= _CLIENTS and (data := await reader.read(_BYTES)):
+            while self.clients <= _CLIENTS and (data := await reader.read(_BYTES)):
                 answer = await session.feed(data)
                 if answer:
                     writer.write(answer)
@@ -52,7 +55,7 @@ class Lx200:
         except (ConnectionError, asyncio.CancelledError):
             pass  # the client has gone, or the door is closed
         finally:
-            self._clients -= 1
+            self.clients -= 1
             writer.close()
 
     async def serve_pty(self, name: Path) -> None:
@@ -61,12 +64,12 @@ class Lx200:
         try:
             tty.setraw(slave)
             os.set_blocking(master, False)
-            if name.is_symlink():
-                name.unlink()
+            if name.is_symlink() and not name.exists():
+                name.unlink()  # of a server that is no more
             name.symlink_to(os.ttyname(slave))
             await self._pty(master, slave, self.session(str(name)))
         finally:
-            with contextlib.suppress(OSError):
+            if name.is_symlink() and os.readlink(name) == os.ttyname(slave):
                 name.unlink()
             os.close(slave)
             os.close(master)

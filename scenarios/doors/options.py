@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from scenarios.doors.door import Door
 from scenarios.doors.served import Served
@@ -18,13 +19,17 @@ class OptionError(ValueError):
 
 @dataclass(frozen=True)
 class DoorOptions:
-    """As written after `--can`, `--serial`, `--hid`, `--control` (None: not asked for)."""
+    """As written after `--can`, `--serial`, `--hid`, `--control`, `--lx200`, `--alpaca` (None: not asked
+    for); logs: folder of the host's logs."""
 
     can: tuple[str, ...] = ()
     serial: tuple[str, ...] = ()
     hid: tuple[str, ...] = ()
     control: str | None = None
     token: str | None = None
+    lx200: tuple[str, ...] = ()
+    alpaca: str | None = None
+    logs: Path | None = None
 
     def check(self) -> None:
         """Raise OptionError unless there is a door at all."""
@@ -32,12 +37,13 @@ class DoorOptions:
             value == default for value, default in zip(_values(self), _values(DoorOptions()), strict=True)
         ):
             raise OptionError(
-                "serve needs a door: --can, --serial, --hid or --control (see schmidt serve -h)"
+                "serve needs a door: --can, --serial, --hid, --lx200, --alpaca or --control "
+                "(see schmidt serve -h)"
             )
 
 
 def _values(options: DoorOptions) -> list[object]:
-    return list(vars(replace(options, token=None)).values())
+    return list(vars(replace(options, token=None, logs=None)).values())
 
 
 def make_doors(options: DoorOptions, served: Served) -> list[Door]:
@@ -53,7 +59,20 @@ def make_doors(options: DoorOptions, served: Served) -> list[Door]:
         from scenarios.doors.control import ControlDoor
 
         doors.append(ControlDoor(options.control, options.token, served))
+    if options.lx200 or options.alpaca is not None:
+        doors += _astronomy(options, served)
     return doors
+
+
+def _astronomy(options: DoorOptions, served: Served) -> list[Door]:
+    """The host first: what follows lives on it."""
+    from host.lx200.server import Lx200
+    from scenarios.doors.host import HostDoor
+    from scenarios.doors.lx200 import Lx200Door
+
+    host = HostDoor(served, options.logs)
+    lx200 = Lx200(host.hosted.telescope)
+    return [host, *(Lx200Door(spec, host, lx200) for spec in options.lx200)]
 
 
 def _serial(spec: str, served: Served) -> Door:

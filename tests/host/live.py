@@ -1,19 +1,19 @@
 """A telescope on the emulated boards in a process of its own pace: a thread ticks, doors are open."""
 
+import datetime as dt
 import threading
 from pathlib import Path
 from time import sleep
 
-from host.outside import Outside
-from tests.host.telescope.conftest import Rig
+from tests.host.telescope.conftest import START, Rig
 
 
 class Live(Rig):
     """The rig, run by a thread at `speed` times real time at most (faster machines wait)."""
 
-    def __init__(self, logs: Path | None = None, speed: float = 20.0) -> None:
-        super().__init__(logs)
-        self.outside = Outside()
+    def __init__(self, logs: Path | None = None, speed: float = 20.0, start: dt.datetime = START) -> None:
+        super().__init__(logs, start)
+        self.outside = self.host.outside
         self._speed = speed
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -26,7 +26,6 @@ class Live(Rig):
             sleep(slice_s)
 
     def close(self) -> None:
-        self.outside.close()
         self._end.set()
         self._thread.join()
-        self.hosted.close()
+        self.host.close()

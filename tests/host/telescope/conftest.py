@@ -12,13 +12,11 @@ from host.sky.apparent import Place, sidereal_time_rad, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.observed import Clock
 from host.telescope import Job, Telescope
-from plant.plant import Plant
-from scenarios.hosted import Hosted
+from scenarios.doors import Served
+from scenarios.doors.host import HostDoor
 from scenarios.load import DEFAULT_PLANT
 from scenarios.model import Scenario
-from scenarios.network import build, config_from
 from scenarios.plants import plant_model
-from scenarios.session import soft_limits, start_steps
 
 T = TypeVar("T")
 START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
@@ -28,16 +26,22 @@ START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
 class Rig:
     """Boards, plant and telescope client on one queue."""
 
-    def __init__(self, logs: Path | None = None) -> None:
-        self.scenario = Scenario(Path("rig"), "rig", "", Clock(START), ())
-        self.plant = Plant(plant_model({"file": DEFAULT_PLANT}, Path()), 1, start_steps(self.scenario))
-        self.network = build(config_from({}, soft_limits(self.scenario)), self.plant, 1)
-        self.hosted = Hosted(self.network, self.scenario, logs)
+    def __init__(self, logs: Path | None = None, start: dt.datetime = START) -> None:
+        self.scenario = Scenario(Path("rig"), "rig", "", Clock(start), ())
+        self.served = Served(self.scenario, plant_model({"file": DEFAULT_PLANT}, Path()))
+        self.network = self.served.network
+        self.host = HostDoor(self.served, logs)
+        self.hosted = self.host.hosted
         self.telescope: Telescope = self.hosted.telescope
+        self.host.open()
         self.advance(2.0)
 
     def advance(self, seconds: float) -> None:
-        self.network.run_until(self.network.queue.now_ns + round(seconds * 1e9))
+        """What serve does, in slices of 10 ms."""
+        end_ns = self.served.now_ns + round(seconds * 1e9)
+        while self.served.now_ns < end_ns:
+            self.host.poll(self.served.now_ns)
+            self.served.run_until(min(self.served.now_ns + 10_000_000, end_ns))
 
     def do(self, act: Callable[[Telescope], T]) -> T:
         """What a door does: the next tick carries it out."""
@@ -65,4 +69,4 @@ class Rig:
 def rig(tmp_path: Path) -> Iterator[Rig]:
     made = Rig(tmp_path)
     yield made
-    made.hosted.close()
+    made.host.close()

@@ -23,7 +23,7 @@ def pointing(rig: Rig) -> tuple[float, float]:
 
 def true_hour_angle_rad(rig: Rig) -> float:
     """From the plant, not from the encoder."""
-    return float(rig.plant.ra.truth(rig.network.queue.now_ns)[0])
+    return float(rig.network.plant.ra.truth(rig.network.queue.now_ns)[0])
 
 
 def test_H2_power_up_slew_track_park(rig: Rig) -> None:
@@ -218,7 +218,7 @@ def test_H3_focus_moves_steps_holds_and_frees(rig: Rig) -> None:
 
 def test_logs_and_journal_say_the_same(rig: Rig, tmp_path: Path) -> None:
     rig.run(lambda t: t.drive.power_on())
-    rig.hosted.close()
+    rig.host.close()
     lines = (tmp_path / "commands.log").read_text().splitlines()
     kept = [entry for entry in rig.hosted.journal.since(0) if entry.kind == "command"]
     assert len(lines) - 1 == len(kept) and any("POWER 1" in line for line in lines)
