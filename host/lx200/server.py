@@ -9,6 +9,7 @@ import os
 import termios
 import tty
 from pathlib import Path
+from time import monotonic
 
 from host.lx200.handbox import Handbox
 from host.lx200.moving import MOVING, TAKING
@@ -22,6 +23,9 @@ WITH_ARGUMENT = SETTING | TAKING
 _CLIENTS = 32
 """More at once are turned away."""
 _BYTES = 4096
+_QUIET_S = 1.0
+"""After a silence this long, answers that were not read are nobody's any more. ASSUMPTION: clients wait at
+once for what they ask."""
 
 
 class Lx200:
@@ -75,8 +79,13 @@ class Lx200:
             os.close(master)
 
     async def _pty(self, master: int, slave: int, session: Session) -> None:
+        heard_s = 0.0
         while True:
             await _readable(master)
+            before_s, heard_s = heard_s, monotonic()
+            if heard_s - before_s > _QUIET_S:
+                # a port that is closed forgets what nobody has read; this end cannot see that it was
+                termios.tcflush(slave, termios.TCIFLUSH)
             # INDI takes the port for itself; since this end stays open, nobody would ever free it again
             fcntl.ioctl(slave, termios.TIOCNXCL)
             with contextlib.suppress(BlockingIOError):

@@ -139,7 +139,7 @@ class Drive:
             return
         self.tracking = on
         if self.activity in (Activity.IDLE, Activity.TRACKING):
-            self.begin("track" if on else "stop", self.settle(), Activity.STOPPING)
+            self.begin("track" if on else "stop", self._ready() if on else self.settle(), Activity.STOPPING)
 
     def set_rates(
         self, rate: DriveRate | None = None, drift_arcsec_s: tuple[float, float] | None = None
@@ -297,6 +297,10 @@ class Drive:
         if not self.powered:
             yield from power.power_on(self.client, check)
         self.parked = False
+
+    def _ready(self) -> Procedure:
+        yield from self.power()
+        yield from self.settle()
 
     def _power_off(self) -> Procedure:
         yield from self.settle()

@@ -72,7 +72,12 @@ def _astronomy(options: DoorOptions, served: Served) -> list[Door]:
 
     host = HostDoor(served, options.logs)
     lx200 = Lx200(host.hosted.telescope)
-    return [host, *(Lx200Door(spec, host, lx200) for spec in options.lx200)]
+    doors: list[Door] = [host, *(Lx200Door(spec, host, lx200) for spec in options.lx200)]
+    if options.alpaca is not None:
+        from scenarios.doors.alpaca import AlpacaDoor
+
+        doors.append(AlpacaDoor(options.alpaca, host))
+    return doors
 
 
 def _serial(spec: str, served: Served) -> Door:

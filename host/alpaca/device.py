@@ -1,0 +1,167 @@
+"""What all Alpaca devices have: connection, names, actions, state; and how members are found."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from host.alpaca.errors import (
+    ACTION_NOT_IMPLEMENTED,
+    DRIVER,
+    NOT_CONNECTED,
+    AlpacaError,
+    not_implemented,
+    of_refusal,
+)
+from host.alpaca.parameters import Parameters
+from host.telescope import AsyncDesk, Job, Refused, Snapshot, Telescope
+
+T = TypeVar("T")
+Get = Callable[[Any, Parameters], Any]
+Put = Callable[[Any, Parameters], Coroutine[Any, Any, Any]]
+Act = Callable[[Telescope], object]
+
+
+@dataclass(frozen=True)
+class Member:
+    """A property or a method by its ASCOM name. always: answered without a connection, too."""
+
+    name: str
+    get: Get | None = None
+    put: Put | None = None
+    always: bool = False
+
+
+class Device:
+    """One device. kind: the word in the URL. actions: name to what it does."""
+
+    kind: str
+    interface_version: int
+    description: str
+    members: Mapping[str, Member]
+    actions: Mapping[str, Act]
+    unique_id: str
+
+    def __init__(self, desk: AsyncDesk) -> None:
+        self.desk = desk
+        self.connected = False
+
+    @property
+    def now(self) -> Snapshot:
+        """The telescope at the last tick."""
+        return self.desk.now
+
+    async def do(self, act: Callable[[Telescope], T]) -> T:
+        """Have a command carried out, or raise `AlpacaError`."""
+        try:
+            return await self.desk.do(act)
+        except Refused as refusal:
+            raise of_refusal(refusal) from None
+
+    async def run(self, act: Callable[[Telescope], Job[T]]) -> T:
+        """The same, until it has ended."""
+        try:
+            return await self.desk.run(act)
+        except Refused as refusal:
+            raise of_refusal(refusal) from None
+
+    def state(self) -> dict[str, object]:
+        """DeviceState without its time stamp."""
+        raise NotImplementedError
+
+    async def call(self, member: Member, put: bool, given: Parameters) -> object:
+        """Carry out one request; returns its Value."""
+        if not (self.connected or member.always):
+            raise AlpacaError(NOT_CONNECTED, f"{self.kind} is not connected")
+        if not put:
+            assert member.get is not None
+            return member.get(self, given)
+        assert member.put is not None
+        return await member.put(self, given)
+
+    async def act(self, given: Parameters) -> str:
+        """Action: one of SupportedActions."""
+        name = given.text("Action")
+        given.text("Parameters")
+        found = {known.lower(): act for known, act in self.actions.items()}.get(name.lower())
+        if found is None:
+            raise AlpacaError(
+                ACTION_NOT_IMPLEMENTED, f"no action {name!r}; there are {', '.join(self.actions)}"
+            )
+        await self.do(found)
+        return "ok"
+
+
+async def _set_connected(device: Device, given: Parameters) -> None:
+    device.connected = given.truth("Connected")
+
+
+async def _connect(device: Device, _: Parameters) -> None:
+    device.connected = True
+
+
+async def _disconnect(device: Device, _: Parameters) -> None:
+    device.connected = False
+
+
+async def _command(_device: Device, given: Parameters) -> None:
+    given.text("Command")
+    given.truth("Raw")
+    not_implemented("sending raw commands")
+
+
+def _device_state(device: Device, _: Parameters) -> list[dict[str, object]]:
+    stamp = device.desk.telescope.observatory.clock.iso(device.now.t_s)
+    return [{"Name": name, "Value": value} for name, value in device.state().items()] + [
+        {"Name": "TimeStamp", "Value": stamp}
+    ]
+
+
+COMMON = (
+    Member("Connected", lambda device, _: device.connected, _set_connected, always=True),
+    Member("Connecting", lambda _device, _: False, always=True),
+    Member("Connect", put=_connect, always=True),
+    Member("Disconnect", put=_disconnect, always=True),
+    Member("Description", lambda device, _: device.description, always=True),
+    Member("DriverInfo", lambda _device, _: "schmidt, the Schmidt telescope's host program", always=True),
+    Member("DriverVersion", lambda _device, _: importlib.metadata.version("schmidt"), always=True),
+    Member("InterfaceVersion", lambda device, _: device.interface_version, always=True),
+    Member("Name", lambda device, _: f"Schmidt {device.kind}", always=True),
+    Member("SupportedActions", lambda device, _: list(device.actions), always=True),
+    Member("DeviceState", _device_state),
+    Member("Action", put=lambda device, given: device.act(given)),
+    Member("CommandBlind", put=_command),
+    Member("CommandBool", put=_command),
+    Member("CommandString", put=_command),
+)
+
+
+def table(*members: Member) -> dict[str, Member]:
+    """Members of a device by the word in the URL."""
+    return {member.name.lower(): member for member in (*COMMON, *members)}
+
+
+def fixed(value: object) -> Get:
+    """A property that never changes."""
+    return lambda _device, _: value
+
+
+def missing(name: str) -> Get:
+    """A property this telescope does not have."""
+    return lambda _device, _: not_implemented(name)
+
+
+def missing_put(name: str) -> Put:
+    """A method, or a property that cannot be set."""
+
+    async def refuse(_device: Device, _: Parameters) -> None:
+        not_implemented(name)
+
+    return refuse
+
+
+def unknown() -> AlpacaError:
+    """Nothing has been received yet."""
+    return AlpacaError(DRIVER, "the boards have sent nothing yet")

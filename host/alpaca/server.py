@@ -1,0 +1,139 @@
+"""Alpaca over HTTP: requests to members, answers as Alpaca's JSON; management and the devices' list."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import itertools
+import socket
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route
+
+from host.alpaca.device import Device
+from host.alpaca.errors import AlpacaError, Malformed
+from host.alpaca.focuser import FocuserDevice
+from host.alpaca.parameters import Parameters
+from host.alpaca.telescope import TelescopeDevice
+from host.telescope import AsyncDesk, Telescope
+
+_BODY_BYTES = 1 << 16
+
+
+class Alpaca:
+    """Telescope 0 and focuser 0."""
+
+    def __init__(self, telescope: Telescope) -> None:
+        desk = AsyncDesk(telescope)
+        devices: tuple[Device, ...] = (TelescopeDevice(desk), FocuserDevice(desk))
+        self.devices = {device.kind: device for device in devices}
+        self.requests = 0
+        self._numbers = itertools.count(1)
+        self.app = Starlette(
+            routes=[
+                Route("/api/v1/{kind}/{number}/{member}", self._device, methods=["GET", "PUT"]),
+                Route("/management/apiversions", self._versions),
+                Route("/management/v1/description", self._description),
+                Route("/management/v1/configureddevices", self._configured),
+                Route("/setup", self._setup),
+                Route("/setup/v1/{kind}/{number}/setup", self._setup),
+            ]
+        )
+
+    async def serve(self, listener: socket.socket) -> None:
+        """Answer on a listening socket until cancelled."""
+        # uvicorn writes head and body apart; without this, Nagle and delayed acknowledges make that 40 ms
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        config = uvicorn.Config(
+            self.app, log_config=None, access_log=False, lifespan="off", timeout_graceful_shutdown=0
+        )
+        server = uvicorn.Server(config)
+        try:
+            await server.serve(sockets=[listener])
+        finally:
+            listener.close()
+
+    async def _device(self, request: Request) -> Response:
+        """One property or method."""
+        self.requests += 1
+        where, put = request.path_params, request.method == "PUT"
+        device = self.devices.get(where["kind"])
+        if device is None or where["number"] != "0":
+            return PlainTextResponse(f"no {where['kind'][:40]} {where['number'][:10]}", 400)
+        member = device.members.get(where["member"])
+        if member is None or (member.put if put else member.get) is None:
+            return PlainTextResponse(f"no {request.method} of {where['member'][:40]}", 400)
+        try:
+            given = Parameters(await _body(request) if put else request.url.query, exact=put)
+            given.identifier("ClientID")
+            transaction = given.identifier("ClientTransactionID")
+        except Malformed as error:
+            return PlainTextResponse(str(error), 400)
+        value: object = None
+        number, message = 0, ""
+        try:
+            value = await device.call(member, put, given)
+        except Malformed as error:
+            return PlainTextResponse(str(error), 400)
+        except AlpacaError as error:
+            number, message = error.number, str(error)
+        return self._answer(transaction, value, number, message)
+
+    def _answer(self, transaction: int, value: object, number: int = 0, message: str = "") -> Response:
+        body: dict[str, object] = {} if value is None else {"Value": value}
+        body |= {
+            "ClientTransactionID": transaction,
+            "ServerTransactionID": next(self._numbers) % (1 << 32),
+            "ErrorNumber": number,
+            "ErrorMessage": message,
+        }
+        return JSONResponse(body)
+
+    def _manage(self, request: Request, value: object) -> Response:
+        try:
+            return self._answer(
+                Parameters(request.url.query, exact=False).identifier("ClientTransactionID"), value
+            )
+        except Malformed as error:
+            return PlainTextResponse(str(error), 400)
+
+    async def _versions(self, request: Request) -> Response:
+        return self._manage(request, [1])
+
+    async def _description(self, request: Request) -> Response:
+        value = {
+            "ServerName": "schmidt",
+            "Manufacturer": "schmidt",
+            "ManufacturerVersion": importlib.metadata.version("schmidt"),
+            "Location": "Nainital, 29°22′ N 79°27′ E",
+        }
+        return self._manage(request, value)
+
+    async def _configured(self, request: Request) -> Response:
+        value = [
+            {
+                "DeviceName": f"Schmidt {device.kind}",
+                "DeviceType": device.kind.capitalize(),
+                "DeviceNumber": 0,
+                "UniqueID": device.unique_id,
+            }
+            for device in self.devices.values()
+        ]
+        return self._manage(request, value)
+
+    async def _setup(self, _request: Request) -> Response:
+        return Response("<!doctype html><title>schmidt</title><p>Nothing to set up.", media_type="text/html")
+
+
+async def _body(request: Request) -> str:
+    body = b""
+    async for chunk in request.stream():
+        body += chunk
+        if len(body) > _BODY_BYTES:
+            raise Malformed(f"more than {_BODY_BYTES} bytes of parameters")
+    try:
+        return body.decode()
+    except UnicodeDecodeError:
+        raise Malformed("parameters are no UTF-8") from None

@@ -1,0 +1,171 @@
+"""The methods of ITelescopeV4 that move the telescope, or say where it points."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from host.alpaca.device import Member, missing_put
+from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_NOT_SET, AlpacaError, within
+from host.alpaca.parameters import Parameters
+from host.sky.apparent import Place, star_of_apparent
+from host.sky.catalogue import Star
+from host.telescope.paddle import FASTEST_ARCSEC_S
+
+if TYPE_CHECKING:
+    from host.alpaca.telescope import TelescopeDevice
+
+FASTEST_DEG_S = FASTEST_ARCSEC_S / 3600
+_AXES = ("ra", "dec")
+_DIRECTIONS = "nsew"
+"""By ASCOM's GuideDirections."""
+_LONGEST_PULSE_MS = 60_000
+
+
+def right_ascension_h(value: float) -> float:
+    """0 to 24 hours, 24 itself excluded."""
+    if not 0 <= value < 24:
+        raise AlpacaError(INVALID_VALUE, f"right ascension {value:g} h is outside 0 to 24 h")
+    return value
+
+
+def _star(device: TelescopeDevice, ra_h: float, dec_deg: float) -> Star:
+    place = Place(
+        right_ascension_h(ra_h) * math.pi / 12, math.radians(within("Declination", dec_deg, -90, 90))
+    )
+    about = device.desk.telescope.observatory
+    return star_of_apparent(place, about.clock, device.now.t_s, "Alpaca target")
+
+
+def _coordinates(device: TelescopeDevice, given: Parameters) -> Star:
+    ra_h, dec_deg = given.number("RightAscension"), given.number("Declination")
+    star = _star(device, ra_h, dec_deg)
+    device.target_ra_h, device.target_dec_deg = ra_h, dec_deg
+    return star
+
+
+def _target(device: TelescopeDevice, _: Parameters) -> Star:
+    if device.target_ra_h is None or device.target_dec_deg is None:
+        raise AlpacaError(VALUE_NOT_SET, "TargetRightAscension and TargetDeclination have not been set")
+    return _star(device, device.target_ra_h, device.target_dec_deg)
+
+
+def _must_track(device: TelescopeDevice, on: bool) -> None:
+    """Slews to the sky need tracking, slews to the ground need it off, none happens while parked."""
+    if device.now.parked:
+        raise AlpacaError(PARKED, "the telescope is parked")
+    if device.now.tracking is not on:
+        raise AlpacaError(INVALID_OPERATION, f"tracking has to be {'on' if on else 'off'} for this")
+
+
+async def _slew_coordinates(device: TelescopeDevice, given: Parameters) -> None:
+    star = _coordinates(device, given)
+    _must_track(device, True)
+    await device.do(lambda t: t.drive.goto(star))
+
+
+async def _slew_coordinates_wait(device: TelescopeDevice, given: Parameters) -> None:
+    star = _coordinates(device, given)
+    _must_track(device, True)
+    await device.run(lambda t: t.drive.goto(star))
+
+
+async def _slew_target(device: TelescopeDevice, given: Parameters) -> None:
+    star = _target(device, given)
+    _must_track(device, True)
+    await device.do(lambda t: t.drive.goto(star))
+
+
+async def _slew_target_wait(device: TelescopeDevice, given: Parameters) -> None:
+    star = _target(device, given)
+    _must_track(device, True)
+    await device.run(lambda t: t.drive.goto(star))
+
+
+def _ground(given: Parameters) -> tuple[float, float]:
+    azimuth = within("Azimuth", given.number("Azimuth"), 0, 360)
+    altitude = within("Altitude", given.number("Altitude"), -90, 90)
+    return math.radians(azimuth), math.radians(altitude)
+
+
+async def _slew_ground(device: TelescopeDevice, given: Parameters) -> None:
+    azimuth, altitude = _ground(given)
+    _must_track(device, False)
+    await device.do(lambda t: t.drive.goto_altaz(azimuth, altitude))
+
+
+async def _slew_ground_wait(device: TelescopeDevice, given: Parameters) -> None:
+    azimuth, altitude = _ground(given)
+    _must_track(device, False)
+    await device.run(lambda t: t.drive.goto_altaz(azimuth, altitude))
+
+
+async def _sync_coordinates(device: TelescopeDevice, given: Parameters) -> None:
+    star = _coordinates(device, given)
+    _must_track(device, True)
+    await device.do(lambda t: t.drive.sync(star))
+
+
+async def _sync_target(device: TelescopeDevice, given: Parameters) -> None:
+    star = _target(device, given)
+    _must_track(device, True)
+    await device.do(lambda t: t.drive.sync(star))
+
+
+async def _abort(device: TelescopeDevice, _: Parameters) -> None:
+    if device.now.parked:
+        raise AlpacaError(PARKED, "the telescope is parked")
+    await device.do(lambda t: t.drive.abort())
+
+
+async def _park(device: TelescopeDevice, _: Parameters) -> None:
+    await device.do(lambda t: t.drive.park())
+
+
+async def _unpark(device: TelescopeDevice, _: Parameters) -> None:
+    if device.now.parked:
+        await device.run(lambda t: t.drive.power_on())
+
+
+async def _set_park(device: TelescopeDevice, _: Parameters) -> None:
+    await device.do(lambda t: t.drive.set_park())
+
+
+async def _move_axis(device: TelescopeDevice, given: Parameters) -> None:
+    """Axis 0: hour angle, positive west; axis 1: declination. Rates in °/s; 0 lets go."""
+    axis = int(within("Axis", given.integer("Axis"), 0, 1))
+    rate = within("Rate", given.number("Rate"), -FASTEST_DEG_S, FASTEST_DEG_S)
+    if device.now.parked:
+        raise AlpacaError(PARKED, "the telescope is parked")
+    if rate:
+        await device.do(lambda t: t.paddle.move(_AXES[axis], rate * 3600))
+    else:
+        await device.do(lambda t: t.paddle.release(_AXES[axis]))
+
+
+async def _pulse(device: TelescopeDevice, given: Parameters) -> None:
+    direction = int(within("Direction", given.integer("Direction"), 0, 3))
+    milliseconds = within("Duration", given.integer("Duration"), 0, _LONGEST_PULSE_MS)
+    if device.now.parked:
+        raise AlpacaError(PARKED, "the telescope is parked")
+    await device.do(lambda t: t.paddle.pulse(_DIRECTIONS[direction], milliseconds / 1000))
+
+
+MEMBERS = (
+    Member("AbortSlew", put=_abort),
+    Member("FindHome", put=missing_put("FindHome")),
+    Member("MoveAxis", put=_move_axis),
+    Member("Park", put=_park),
+    Member("PulseGuide", put=_pulse),
+    Member("SetPark", put=_set_park),
+    Member("SlewToAltAz", put=_slew_ground_wait),
+    Member("SlewToAltAzAsync", put=_slew_ground),
+    Member("SlewToCoordinates", put=_slew_coordinates_wait),
+    Member("SlewToCoordinatesAsync", put=_slew_coordinates),
+    Member("SlewToTarget", put=_slew_target_wait),
+    Member("SlewToTargetAsync", put=_slew_target),
+    Member("SyncToAltAz", put=missing_put("SyncToAltAz")),
+    Member("SyncToCoordinates", put=_sync_coordinates),
+    Member("SyncToTarget", put=_sync_target),
+    Member("Unpark", put=_unpark),
+)

@@ -1,0 +1,33 @@
+"""A served telescope with its Alpaca door, at 30 times real time."""
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from host.alpaca import discovery
+from host.alpaca.server import Alpaca
+from scenarios.doors.address import listen
+from tests.host.live import Live
+
+DISCOVERY_PORT = 32227
+
+
+class AlpacaLive(Live):
+    def __init__(self, logs: Path) -> None:
+        super().__init__(logs, speed=30.0)
+        self.alpaca = Alpaca(self.telescope)
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = int(probe.getsockname()[1])
+        self.outside.keep(self.alpaca.serve(listen("127.0.0.1", self.port)))
+        self.outside.keep(discovery.serve(self.port, local_only=True))
+        self.address = f"127.0.0.1:{self.port}"
+
+
+@pytest.fixture(scope="module")
+def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[AlpacaLive]:
+    made = AlpacaLive(tmp_path_factory.mktemp("alpaca"))
+    yield made
+    made.close()
