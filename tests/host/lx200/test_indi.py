@@ -159,6 +159,8 @@ def test_connect_slew_read_back_abort_park(indi: Indi, door: tuple[int, Path, Pa
     assert abs(stopped - dec + 35.0) > 0.01  # it never arrived
 
     if indi.device == "LX200 Classic":  # parks by coordinates, in whole degrees of altitude and azimuth
+        indi.set("n", "GEOGRAPHIC_COORD", ("LAT", 29.3667), ("LONG", 79.45), ("ELEV", 1950))
+        indi.until("GEOGRAPHIC_COORD._STATE", "Ok")
         indi.set("n", "TELESCOPE_PARK_POSITION", ("PARK_AZ", 180), ("PARK_ALT", 70))
     if indi.device != "LX200 Basic":  # which cannot park
         indi.set("s", "TELESCOPE_PARK", ("PARK", "On"))
