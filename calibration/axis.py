@@ -30,7 +30,7 @@ from calibration.channels.motion import Motion, motion_of
 from calibration.channels.torque import WIDTH, Transmission
 from calibration.decide.broadband import pick_up, unexplained_volts
 from calibration.decide.delays import delay_findings
-from calibration.decide.finding import Finding, Parameter
+from calibration.decide.finding import Finding, middle
 from calibration.decide.holdout import choose_held_out
 from calibration.decide.select import fitted, select
 from calibration.decide.sizes import largest_amplitude
@@ -46,6 +46,7 @@ FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
 )
 SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
+PULSES = 8.0  # a quarter of the regular spikes: 32 of them
 LEAST_COMMAND = (
     0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
 )
@@ -172,19 +173,19 @@ def _command(result: AxisResult, rng: np.random.Generator) -> None:
     result.selections["U"] = s
     if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
         result.collect(s)
-    size, period, score = pulses(p, s.after.residual)
-    if score > 8:
+    found = pulses(p, s.after.residual)
+    if found is not None and found.score > PULSES:
         result.findings.append(
             Finding(
                 "unknown",
                 "S",
                 "command",
-                evidence=score,
-                share=0.1,
-                note=f"pulses on the command, every {period:.2f} s",
+                evidence=found.evidence,
+                share=found.share,
+                note=f"pulses on the command, every {found.period:.2f} s",
                 parameters={
-                    "size": Parameter(size, "1/3000", 0.5 * size, 1.5 * size),
-                    "period": Parameter(period, "s", 0.98 * period, 1.02 * period),
+                    "size": middle(found.sizes, "1/3000"),
+                    "period": middle(found.gaps, "s"),
                 },
             )
         )

@@ -158,6 +158,5 @@ def from_cold(f: Finding, ratio: float) -> Finding:
     if f.name != "winding_heating" or "thermal_resistance" not in f.parameters:
         return f
     p = f.parameters["thermal_resistance"]
-    k = ratio**2
-    told = replace(p, value=p.value * k, low=p.low * k, high=p.high * k)
+    told = p.times(ratio**2)
     return replace(f, parameters={**f.parameters, "thermal_resistance": told})

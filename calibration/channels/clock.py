@@ -8,6 +8,7 @@ import numpy as np
 from calibration.channels.frame import Frame
 from calibration.decide.finding import Finding, Parameter
 from calibration.readers.run import Array, Run
+from calibration.statistics.tails import share_log10, variance_log10
 from calibration.statistics.whitening import Mask
 
 JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own latency is a few microseconds
@@ -17,6 +18,7 @@ LOST = 0.003  # fraction of rows missing that is worth a word
 DRIVEN = 0.05  # of the effort's range, that a column at its end must hold against
 PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
+WHOLE = 1.0  # -log10 p of one jump that is a power of two within a tenth (a fold) or a twentieth either way
 PACKET = 25  # rows per RS232 packet, log-format.md
 
 
@@ -45,8 +47,8 @@ def _jitter(frame: Frame) -> Finding | None:
         "S",
         "clock",
         parameters={"sigma": Parameter(sigma, "s", sigma - half, sigma + half)},
-        evidence=50.0,
-        share=1.0,
+        evidence=variance_log10((sigma / JITTER_S) ** 2, n),
+        share=1.0 - (JITTER_S / sigma) ** 2,
     )
 
 
@@ -64,15 +66,15 @@ def _loss(frame: Frame) -> Finding | None:
         return None
     whole = np.mean([g % PACKET == 0 for g in gaps]) if gaps else 0.0
     value = max(fraction, repeats / max(rows, 1))
-    events = max(value * (rows + lost) / PACKET, 1.0)
-    half = 1.96 * np.sqrt(value * (1 - value) / max((rows + lost) / PACKET, 1.0))
+    packets = (rows + lost) / PACKET
+    half = 1.96 * np.sqrt(value * (1 - value) / max(packets, 1.0))
     gone = f"{lost} rows missing in {len(gaps)} gaps ({100 * whole:.0f} % of whole packets)"
     note = f"{gone}, {repeats} rows repeated"
     return Finding(
         "sample_loss",
         "S",
         "clock",
-        evidence=10.0 * events,
+        evidence=share_log10(value * packets, packets, LOST),
         share=1.0,
         note=note,
         parameters={"fraction": Parameter(value, "1", max(value - half, 0.0), value + half)},
@@ -142,7 +144,7 @@ def repair_wraps(run: Run) -> Finding | None:
                 "log_wrap",
                 "S",
                 "clock",
-                evidence=50.0,
+                evidence=float(big.sum()) * WHOLE,
                 share=1.0,
                 note=f"{run.name}: position wraps at 2^{power} counts, {int(big.sum())} times",
             )
@@ -162,9 +164,9 @@ def _other_wraps(run: Run) -> Finding | None:
         size = _folds(x, 10 if name.startswith("adc") else 17)
         if size:
             _unfold(run, name, size)
-            found = f"folds at {size} counts"
+            found, sure = f"folds at {size} counts", WHOLE * _steps(x, size)
         else:
-            found = _stops(x, name, run.raw["effort"][np.isfinite(raw)])
+            found, sure = _stops(x, name, run.raw["effort"][np.isfinite(raw)])
             if found:
                 run.columns[RENAMED.get(name, name)] = (
                     np.where(
@@ -177,7 +179,7 @@ def _other_wraps(run: Run) -> Finding | None:
                 )
         if found:
             return Finding(
-                "log_wrap", "S", "clock", evidence=50.0, share=1.0, note=f"{run.name}: {name} {found}"
+                "log_wrap", "S", "clock", evidence=sure, share=1.0, note=f"{run.name}: {name} {found}"
             )
     return None
 
@@ -196,6 +198,11 @@ def _unfold(run: Run, name: str, size: int) -> None:
     run.columns[column] = si + np.round((expected - si) / (size * scale)) * size * scale
 
 
+def _steps(x: Array, size: float) -> float:
+    """How often x steps by `size` within a tenth."""
+    return float(np.sum(np.abs(np.abs(np.diff(x)) - size) < 0.1 * size))
+
+
 def _folds(x: Array, length: int) -> int:
     step = np.abs(np.diff(x))
     typical = float(np.quantile(step, 0.99)) + 1
@@ -207,10 +214,11 @@ def _folds(x: Array, length: int) -> int:
     return 0
 
 
-def _stops(x: Array, name: str, effort: Array) -> str:
-    """A column that piles up at one end: noise would spread it over the neighbouring counts."""
+def _stops(x: Array, name: str, effort: Array) -> tuple[str, float]:
+    """A column that piles up at one end: noise would spread it over the neighbouring counts. What it does,
+    and -log10 p that the end and its neighbour were equally likely."""
     if name.startswith("tach"):
-        return ""  # a count or two at constant speed pile up by themselves
+        return "", 0.0  # a count or two at constant speed pile up by themselves
     for end, inward in ((x.max(), -1.0), (x.min(), 1.0)):
         if end == 0 or (name.startswith("adc") and (end >= 1023 or inward > 0)):
             continue  # a motor that pulls one way only has a lowest current
@@ -221,5 +229,5 @@ def _stops(x: Array, name: str, effort: Array) -> str:
             continue  # a steady effort makes a steady current
         piled, next_to = int(np.sum(x == end)), int(np.sum(x == end + inward))
         if piled >= PILE and piled > 3 * next_to + 20:
-            return f"stops at {int(end)} counts"
-    return ""
+            return f"stops at {int(end)} counts", share_log10(piled, piled + next_to, 0.5)
+    return "", 0.0

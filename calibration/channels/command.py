@@ -10,6 +10,7 @@ E, E', E'' the errors of the logged tick, the one before and the one before that
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from calibration.channels.frame import Frame, fill
 from calibration.channels.problem import Problem
 from calibration.channels.torque import transients
 from calibration.readers.run import Array
+from calibration.statistics.tails import share_log10
 from calibration.statistics.whitening import Mask
 
 ARCSEC_PER_RAD = 206264.806
@@ -177,22 +179,41 @@ def _line(t: Array, run: NDArray[np.int64], dt: float) -> Callable[[Array], Arra
     return shape
 
 
-def pulses(problem: Problem, e: Array) -> tuple[float, float, float]:
-    """(size, period s, -log10 p-like score) of pulses that come back at a fixed period in the summed
-    residual."""
+@dataclass(frozen=True)
+class Pulses:
+    """Pulses that come back: sizes (1/3000) and gaps (s, in whole periods) as found; `score` decides,
+    `evidence` is -log10 p of gaps within a twentieth of the period by chance, `share` of the mean square they
+    hold."""
+
+    sizes: Array
+    period: float
+    gaps: Array
+    score: float
+    evidence: float
+    share: float
+
+
+def pulses(problem: Problem, e: Array) -> Pulses | None:
+    """Pulses at a fixed period in the residual of the command; None without any."""
     rows = problem.train
     x = np.where(rows, e, 0.0)
     sigma = 1.4826 * float(np.median(np.abs(x[rows]))) or 1.0
     spikes = np.where(np.abs(x) > 5.0 * sigma, np.sign(x), 0.0)
     count = int(np.abs(spikes).sum())
     if count < 12:
-        return 0.0, 0.0, 0.0
-    size = float(np.median(np.abs(x[spikes != 0])))
+        return None
+    sizes = np.abs(x[spikes != 0])
     times = problem.t[spikes > 0]
     gaps = np.diff(times)
     gaps = gaps[gaps > 5 * problem.period_s]
     if len(gaps) < 6:
-        return size, 0.0, 0.0
+        return None
     period = float(np.median(gaps))
-    regular = float(np.mean(np.abs(gaps / period - np.round(gaps / period)) < 0.05))
-    return size, period, count * regular / 4 if regular > REGULAR else 0.0
+    turns = np.round(gaps / period)
+    kept = (np.abs(gaps / period - turns) < 0.05) & (turns > 0)
+    regular = float(np.mean(kept))
+    if regular <= REGULAR:
+        return None
+    share = float(np.sum(sizes**2) / np.sum(x[rows] ** 2))
+    chance = share_log10(float(kept.sum()), len(gaps), 0.1)
+    return Pulses(sizes, period, gaps[kept] / turns[kept], count * regular / 4, chance, share)

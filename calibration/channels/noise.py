@@ -68,7 +68,7 @@ def column_noise(frame: Frame) -> Noise:
 
 
 def _least(found: float, quantum: float) -> float:
-    return max(found, quantum * ROUNDING) if np.isfinite(found) else quantum * ROUNDING
+    return float(max(found, quantum * ROUNDING) if np.isfinite(found) else quantum * ROUNDING)
 
 
 def _current_noise(frame: Frame, key: str) -> float:

@@ -72,13 +72,13 @@ def _loops(made: Made, f: Finding, facts: Facts) -> None:
     """Stops over the axis angle; the motors' counter-torque is minus the torque on the axis."""
     if "loop" in f.parameters:
         p = f.parameters["loop"]
-        found = [(value(f, "travel"), p.value, p.high - p.value)]
+        found = [(value(f, "travel"), p.value, p.half)]
     else:
         found = [
             (
                 radius,
                 f.parameters[f"loop_{k}"].value,
-                f.parameters[f"loop_{k}"].high - f.parameters[f"loop_{k}"].value,
+                f.parameters[f"loop_{k}"].half,
             )
             for k, radius in enumerate(LOOPS)
             if f"loop_{k}" in f.parameters
@@ -99,7 +99,7 @@ def _waves(f: Finding, x: np.ndarray) -> np.ndarray:
 
 def _spread(f: Finding) -> float:
     """95 % half-width of a sum of lines: its harmonics' in quadrature."""
-    halves = [p.high - p.value for name, p in f.parameters.items() if name.startswith("amplitude")]
+    halves = [p.half for name, p in f.parameters.items() if name.startswith("amplitude")]
     return float(np.hypot.reduce(halves)) if halves else 0.0
 
 

@@ -9,11 +9,14 @@ from calibration.channels.frame import Frame, fill
 from calibration.channels.problem import Problem
 from calibration.decide.accept import FEWEST_BLOCKS
 from calibration.decide.finding import Finding, Parameter
+from calibration.decide.finding import middle as middle_of
 from calibration.decide.sizes import quiet_noise
 from calibration.readers.run import Array
+from calibration.statistics.tails import rms_interval, variance_log10
 from calibration.statistics.whitening import autocovariance
 
 MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
+EVEN = 0.17  # that quotient in white noise, see WIND
 WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
 PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
 SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
@@ -52,7 +55,7 @@ def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | Non
     white = quiet_noise(e, problem)
     if rows.sum() < FEWEST_BLOCKS * problem.block or problem.test.sum() < 100 or white <= 0:
         return None
-    size = float(np.sqrt(np.mean(e[rows] ** 2)))
+    size, low, high = rms_interval(e[rows], problem.block)
     contrasts = [_contrast(e[k] ** 2, turns[k]) for k in (rows, problem.test)]
     if size < VOLTS * white or min(contrasts) < SECTOR:
         return None
@@ -60,10 +63,10 @@ def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | Non
         "unknown",
         "E",
         "motor_angle",
-        evidence=40.0 * size / white,
+        evidence=variance_log10((size / white) ** 2, rows.sum() / problem.block),
         share=1 - (white / size) ** 2,
         note=f"volts {size / white:.1f} times the quiet noise, in a sector of the motor's turn",
-        parameters={"rms": Parameter(size, "V", 0.8 * size, 1.2 * size)},
+        parameters={"rms": Parameter(size, "V", low, high)},
     )
 
 
@@ -91,16 +94,17 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     if sigma < STEPS * problem.step:
         return None  # two converters' rounding that a steady motion does not average out
     tails = kurtosis(e[problem.train])
+    evidence = variance_log10((ratio / EVEN) ** 2, problem.train.sum() * problem.period_s / MEAN_S)
     if tails > BURSTS:
         return Finding(
             "unknown",
             "T",
             "time",
-            evidence=40.0 * ratio,
+            evidence=evidence,
             share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
             note=f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3) that no angle, speed or "
             "reversal explains",
-            parameters={"rms": Parameter(sigma, "N m", 0.8 * sigma, 1.2 * sigma)},
+            parameters={"rms": Parameter(*_with_unit(e[problem.train], problem.block))},
         )
     turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
     half = 1.96 * sigma / np.sqrt(2 * turns)
@@ -108,13 +112,18 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
         "wind_torque",
         "T",
         "time",
-        evidence=40.0 * ratio,
+        evidence=evidence,
         share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
         parameters={
             "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
-            "corner": Parameter(float(corner), "Hz", float(corner) * 0.6, float(corner) * 1.6),
+            "corner": Parameter(float(corner), "Hz"),  # half of the variance is gone: no error known
         },
     )
+
+
+def _with_unit(e: Array, block: int) -> tuple[float, str, float, float]:
+    size, low, high = rms_interval(e, block)
+    return size, "N m", low, high
 
 
 def pick_up(frame: Frame) -> Finding | None:
@@ -122,7 +131,7 @@ def pick_up(frame: Frame) -> Finding | None:
     if frame.get("current_a") is None:
         return None
     dt = frame.period_s
-    same: list[tuple[float, float, float]] = []
+    same: list[Line] = []
     for name in ("current_a", "current_b"):
         found = _lines(frame, name)
         strong = [b for b in found if b[1] > PEAK and b[2] > COUNTS * frame.scale["adc_A_per_count"]]
@@ -135,21 +144,27 @@ def pick_up(frame: Frame) -> Finding | None:
     if not same:
         return None
     middle = float(np.median([b[0] for b in same]))
-    size = float(np.median([b[2] for b in same]))
+    size = middle_of(np.array([b[2] for b in same]), "A")
+    # a bin of a periodogram over its median is exponential with mean 1/ln 2; so many bins were looked at
+    chances = [(b[1] * np.log(2) - np.log(b[4])) / np.log(10) for b in same]
     return Finding(
         "unknown",
         "E",
         "time",
         frequency=middle,
-        evidence=30.0,
-        share=0.3,
+        evidence=float(sum(chances)),
+        share=float(np.median([b[3] for b in same])),
         note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
-        parameters={"amplitude": Parameter(size, "A", 0.8 * size, 1.2 * size)},
+        parameters={"amplitude": size},
     )
 
 
-def _lines(frame: Frame, name: str) -> list[tuple[float, float, float]]:
-    """(Hz, power over the median, amplitude in A) of the strongest fast line of a current in every run."""
+#: Hz, power over the median, amplitude in A, its share of the fast current's variance, bins looked at
+Line = tuple[float, float, float, float, int]
+
+
+def _lines(frame: Frame, name: str) -> list[Line]:
+    """The strongest fast line of a current in every run."""
     out = []
     dt = frame.period_s
     x, ok = fill(frame.columns[name], frame.run)
@@ -166,5 +181,8 @@ def _lines(frame: Frame, name: str) -> list[tuple[float, float, float]]:
         power[hertz < 15.0] = 0.0
         j = int(np.argmax(power))
         level = float(np.median(power[hertz > 15.0])) or 1e-30
-        out.append((float(hertz[j]), float(power[j] / level), 2 * float(np.sqrt(power[j])) / used))
+        amplitude = 2 * float(np.sqrt(power[j])) / used
+        share = amplitude**2 / 2 / max(float(np.sum(part**2)) / used, 1e-300)
+        bins = int(np.sum(hertz > 15.0))
+        out.append((float(hertz[j]), float(power[j] / level), amplitude, min(share, 1.0), bins))
     return out

@@ -91,12 +91,13 @@ def delay_findings(selections: dict[str, Selection], declared: Declared) -> list
     if name is None:
         return []
     error = lags[key][1]
+    z = value / max(error / student_reach(60), 1e-12)
     return [
         Finding(
             "channel_delay",
             "S",
             "clock",
-            evidence=50.0,
+            evidence=z * z / 2 / np.log(10),
             share=1.0,
             note=f"the {name} column is late",
             parameters={"delay": Parameter(value, "s", value - error, value + error)},

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calibration.decide.finding import Finding, Parameter
+from calibration.decide.finding import Finding
 from calibration.readers.drive import STAGES
 
 #: a finding of the key's name (in that channel) explains away findings of these names
@@ -94,7 +94,7 @@ def _resolve_motor(findings: list[Finding]) -> list[Finding]:
         if twist and f.name == "motor_cogging":
             ratio = STAGES["motor"]  # cogging is told at the motor, a gear's torque at the axis
             p = f.parameters["amplitude"]
-            told = Parameter(p.value * ratio, "N m", p.low * ratio, p.high * ratio)
+            told = replace(p.times(ratio), unit="N m")
             f = replace(f, name=TWIST, equivalent=[], parameters={"amplitude": told})
         out.append(f)
     return out

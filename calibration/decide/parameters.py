@@ -54,10 +54,9 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
 
 
 def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Parameter]:
-    """Intervals of refined parameters from a joint fit with their slopes; grid parameters are given as they
-    are."""
+    """Intervals of refined parameters from a joint fit with their slopes; grid parameters have none."""
     problem, candidate = selection.problem, selection.chosen[index].candidate
-    out = {name: Parameter(value, unit, value, value) for name, (value, unit) in candidate.fixed.items()}
+    out = {name: Parameter(value, unit) for name, (value, unit) in candidate.fixed.items()}
     if not candidate.steps:
         return out
     at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
@@ -82,7 +81,7 @@ def pairs_by_section(columns: Array) -> list[list[int]]:
     out: list[list[int]] = []
     for k in range(0, columns.shape[1] - 1, 2):
         here = np.flatnonzero(np.any(columns[:, k : k + 2] != 0, axis=1))
-        ends = here[[0, -1]] if len(here) else np.zeros(2)
+        ends = here[[0, -1]].astype(float) if len(here) else np.zeros(2)
         for j, other in enumerate(rows):
             if ends[0] <= other[1] and other[0] <= ends[1]:
                 out[j].append(k)
