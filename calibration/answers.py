@@ -11,7 +11,7 @@ import numpy as np
 from calibration.decide.controls import controls
 from calibration.decide.finding import Parameter
 from calibration.decide.parameters import interval
-from calibration.decide.select import Selection
+from calibration.decide.select import CLOSEST, Selection
 from calibration.decide.verdict import Verdict, judge
 from calibration.readers.rig import Rig
 from calibration.readers.run import Array, Run
@@ -28,6 +28,14 @@ def error_row(s: Selection, floor: float | None) -> dict[str, Any]:
 def errors(name: str, s: Selection, floor: float | None = None) -> dict[str, dict[str, Any]]:
     """The error table of one channel; empty when there are no held-out rows to measure it on."""
     return {name: error_row(s, floor)} if np.isfinite(s.held.before) else {}
+
+
+def lacking(s: Selection, channel: str) -> list[str]:
+    """What a channel would need before "nothing" could be said of it, and which candidate was close; empty
+    when it has enough."""
+    short = too_short(s, channel)
+    close = [f"{r.what} was {r.why.split(', but')[0]}" for r in s.refused if r.why.startswith(CLOSEST)]
+    return [", ".join([*short, *close])] if short else []
 
 
 def too_short(s: Selection, channel: str) -> list[str]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
 
+from calibration.axisapply import before_of, corrected_runs, judged, to_apply
 from calibration.axisresult import AxisResult
 from calibration.axistorque import torque_channel
-from calibration.candidates import axis_torque
+from calibration.candidates import amplifier, axis_torque
 from calibration.candidates import electrical as electrical_candidates
 from calibration.candidates import kinematic as kinematic_candidates
 from calibration.candidates.context import Context
@@ -23,6 +25,7 @@ from calibration.channels.electrical import (
 )
 from calibration.channels.frame import Frame, build_frame, fill
 from calibration.channels.kinematic import (
+    Kinematic,
     kinematic_problem,
     roller_problem,
 )
@@ -32,6 +35,7 @@ from calibration.decide.broadband import pick_up, unexplained_volts
 from calibration.decide.delays import delay_findings
 from calibration.decide.finding import Finding, middle
 from calibration.decide.holdout import choose_held_out
+from calibration.decide.merge import merge
 from calibration.decide.select import fitted, select
 from calibration.decide.sizes import largest_amplitude
 from calibration.decide.tolerance import compliance_change
@@ -59,15 +63,42 @@ def analyse(
     tell: Callable[[str], None] = lambda s: None,
     plant: Path | None = None,
 ) -> AxisResult:
-    """Run every channel the logs have."""
-    rng = np.random.default_rng(seed)
+    """Run every channel the logs have; a fault of a column that is found is undone, and all is run again."""
     wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
+    result = _look(runs, hold_out, seed, tell, plant)
+    result.findings = [*wraps[:1], *result.findings]
+    fault = to_apply(merge(deepcopy(result.findings)))
+    if fault is None:
+        return result
+    tell(f"once more without the {fault.name.replace('_', ' ')}")
+    before = before_of(result, fault)
+    again = _look(corrected_runs(result, fault), hold_out, seed, tell, plant)
+    refusal = judged(before, again, fault)
+    if refusal is not None:
+        result.findings = [f for f in result.findings if f.name != fault.name]
+        result.refused.append((fault.channel, refusal.what, refusal.why))
+        return result
+    again.before = before
+    if fault.name == "play":  # the motors see the crossings that the corrected encoder leaves out
+        again.selections["K"] = result.selections["K"]
+    fault.share = max(1 - (again.selections[k].held.before / b) ** 2 for k, b in before.items() if b > 0)
+    stamps = [f for f in result.findings if f.domain == "clock" and f.name != fault.name]
+    rest = [f for f in again.findings if f.name != fault.name and f.domain != "clock"]
+    again.findings = [fault, *stamps, *rest]
+    return again
+
+
+def _look(
+    runs: list[Run], hold_out: list[str], seed: int, tell: Callable[[str], None], plant: Path | None
+) -> AxisResult:
+    """Every channel of repaired logs."""
+    rng = np.random.default_rng(seed)
     frame = build_frame(runs)
     held, held_names = choose_held_out(frame, hold_out)
     m = motion_of(frame, WIDTH)
     numbers = declared_numbers(runs, plant)
     result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
-    result.findings += wraps[:1] + clock_findings(frame)
+    result.findings += clock_findings(frame)
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
     per_ampere, left = _electrical(result, clock, rng)
@@ -114,10 +145,13 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
     left = electrical_candidates.weakened([], clock)
     if e is not None and e.problem.train.sum() > 200:
         turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
+        p = e.problem
+        null = gls(p.y, p.base, p.train, p.ar_order, p.block)
         s = select(
-            e.problem,
+            p,
             electrical_candidates.electrical_effects(e, clock[m.pick])
-            + electrical_candidates.brush_effects(e, {"a": turns, "b": turns}),
+            + electrical_candidates.brush_effects(e, {"a": turns, "b": turns})
+            + amplifier.disturbances(e, m, frame, null.residual),
             rng,
         )
         result.selections["E"] = s
@@ -130,6 +164,7 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
         result.collect(s)
         cold = float(s.after.beta[0])
         result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
+        result.findings = [electrical_candidates.followed(f) for f in result.findings]
     return per_ampere, left
 
 
@@ -141,9 +176,9 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
     if result.kinematic is not None:
         p = result.kinematic.problem
         stacked = _stack(context)
-        s = select(
-            p, kinematic_candidates.motor_encoder_effects(stacked, m.period_s, result.kinematic.motor), rng
-        )
+        candidates = kinematic_candidates.motor_encoder_effects(stacked, m.period_s, result.kinematic.motor)
+        candidates += kinematic_candidates.play(stacked, place_by_motors(result.kinematic, m))
+        s = select(p, candidates, rng)
         result.selections["K"] = s
         result.collect(s)
         found, stiffness = compliance_change(s, numbers)
@@ -160,6 +195,14 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
         )
         result.selections["S"] = s
         result.collect(s)
+
+
+def place_by_motors(k: Kinematic, m: Motion) -> Array:
+    """Where the axis is (n_analysis,) arcsec by its motors, less the wind-up that the base takes up."""
+    p = k.problem
+    fit = gls(p.y, p.base, p.train, p.ar_order, p.block)
+    off = (p.y - p.base[:, 0] * fit.beta[0]).reshape(2, -1).mean(axis=0)
+    return np.asarray(m.theta[m.pick] / ARCSEC + off)
 
 
 def _command(result: AxisResult, rng: np.random.Generator) -> None:
@@ -215,7 +258,8 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
             if s.chosen:
                 result.selections["S1"] = s
                 result.collect(s)
-    line = pick_up(frame)
+    driven = any(f.name == "command_disturbance" for f in result.findings)  # its harmonics are no pick-up
+    line = pick_up(frame) if not driven else None
     if line is not None:
         result.findings.append(line)
 

@@ -12,15 +12,18 @@ import numpy as np
 from calibration import compensation
 from calibration.answers import calibrated, error_row, gate_rows, refusals, too_short
 from calibration.axis import analyse
+from calibration.axislacks import absent_columns, lacks
 from calibration.axisresult import AxisResult
 from calibration.corrected.making import Facts
 from calibration.decide.controls import controls
 from calibration.decide.finding import Finding
 from calibration.decide.merge import merge
+from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.select import Selection
 from calibration.decide.verdict import Verdict, judge
+from calibration.decide.withdraw import withdraw
 from calibration.plantfile import declared_model, write_plant
-from calibration.readers.drive import STAGES
+from calibration.readers.drive import ARCSEC, STAGES
 from calibration.readers.run import Run
 from calibration.replay.answer import correct_and_replay
 from calibration.report.replayplot import replay_picture
@@ -52,14 +55,18 @@ def axis_answer(
     title = f"{axis.upper()} axis, {preload} preload"
     reason = too_little(runs)
     if reason:
-        v = Verdict("nothing", [], reasons=[reason], not_identifiable=["everything: " + reason])
+        v = Verdict("cannot tell", [], reasons=[reason], not_identifiable=["everything: " + reason])
+        v.separating = "a log of 80 s and more that moves, at two speeds in both directions, without gaps"
         model, keep = declared_model(runs[0].header, plant)
         bare = model if keep else with_effects(model, axis, ())
-        write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("nothing"), [])
+        write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("cannot tell"), [])
         return v, [], title
     result = analyse(runs, hold_out, tell=tell, plant=plant)
-    effects = merge(result.findings)
-    verdict, separating = judge(effects)
+    named = merge(result.findings)
+    tried = _controls(result, named)
+    effects, withdrawn = withdraw(named, tried)
+    doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]
+    verdict, separating = judge(effects, [*lacks(result), *doubts])
     v = Verdict(
         verdict,
         effects,
@@ -67,7 +74,8 @@ def axis_answer(
         separating=separating,
         not_identifiable=not_identifiable(result),
         thresholds=gate_rows(result.selections),
-        refused=refusals(result.selections),
+        refused=[*withdrawn, *result.refused, *refusals(result.selections)],
+        controls=tried,
     )
     v.calibrated = dict(result.calibrated)
     if "E" in result.selections:
@@ -75,17 +83,39 @@ def axis_answer(
     for key, s in result.selections.items():
         if key in SENSORS and np.isfinite(s.held.before):
             v.error[SENSORS[key]] = error_row(s, result.floors.get(key))
+            v.error[SENSORS[key]]["before"] = result.before.get(key, s.held.before)
     _before_within_tolerance(v, result, effects)
-    v.controls = _controls(result, effects)
     again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
     compensation.write(out / "compensation.yaml", load(out / "plant.yaml"), axis)
     v.closed_loop = again.rows
     short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
+    v.reasons += [*absent_columns(result), *still_missing(result, v)]
     pictures = _plots(result, effects) if plots else []
     if plots and again.log is not None:
         pictures.append(replay_picture(again))
     return v, pictures, title
+
+
+def still_missing(result: AxisResult, v: Verdict) -> list[str]:
+    """One sentence per channel that is still above twice its floor, and where that lives."""
+    m = result.motion
+    n = len(m.pick)
+    turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
+    domains = {
+        "axis angle": turn,
+        "speed and direction": np.sign(rate) * np.log1p(np.abs(rate)),
+        "time": result.frame.t[m.pick],
+        "motor angle": (turn * STAGES["motor"]) % 1.0,
+    }
+    rows = {row: key for key, row in SENSORS.items()}
+    out = []
+    for row, ratio in above_floor(v.error).items():
+        s = result.selections[rows[row]]
+        long = {k: np.resize(x, len(s.problem.y)) for k, x in domains.items()}
+        where = lives_in(s, long) if len(s.problem.y) % n == 0 else "not looked for"
+        out.append(f"something is still missing in {row}: {ratio:.1f} floors are left, {where}")
+    return out
 
 
 def too_little(runs: list[Run]) -> str:

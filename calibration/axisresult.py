@@ -31,6 +31,8 @@ class AxisResult:
     findings: list[Finding] = field(default_factory=list)
     held_out: list[str] = field(default_factory=list)
     calibrated: dict[str, Parameter] = field(default_factory=dict)
+    before: dict[str, float] = field(default_factory=dict)  # per channel, where an effect was undone
+    refused: list[tuple[str, str, str]] = field(default_factory=list)  # channel, what, why
     floors: dict[str, float] = field(default_factory=dict)  # per channel, what the sensors leave
 
     def collect(self, s: Selection) -> None:

@@ -13,6 +13,7 @@ from calibration.channels.recursions import lowpass
 from calibration.decide.finding import Finding
 from calibration.readers.run import Array
 
+FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 
@@ -22,6 +23,22 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     t = np.concatenate([clock, clock])
     out = [
         Candidate("pwm_deadband", "command", e.supply[:, None], (("u0", "1"),), sign=1),
+        Candidate(
+            "pwm_deadband",
+            "command",
+            (e.supply * share_of_effort(e))[:, None],
+            (("u0", "1"),),
+            sign=1,
+            fixed={"before_split": (1.0, "0 behind, 1 before the split between the motors")},
+        ),
+        Candidate(
+            "unknown",
+            "current",
+            (k * share_of_effort(e) * e.lagging * leading_speed(e))[:, None],
+            (("following", "1"),),
+            sign=1,
+            most=FOLLOWS,
+        ),
         Candidate("diode_braking", "velocity", (-k * e.dragged)[:, None], (("fraction", "1"),), sign=1),
         Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("resistance", "ohm"),), sign=1),
         Candidate(
@@ -94,6 +111,22 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     return out
 
 
+def share_of_effort(e: Electrical) -> Array:
+    """A motor's duty over the leading motor's (2 n,): 1 where it leads, the counter torque's share where it
+    lags."""
+    n = len(e.duty) // 2
+    lead = np.maximum(np.maximum(e.duty[:n], e.duty[n:]), 1e-9)
+    return np.asarray(e.duty / np.concatenate([lead, lead]))
+
+
+def leading_speed(e: Electrical) -> Array:
+    """rad/s (2 n,) of the motor that leads, in the way it pulls: a lagging motor whose current follows the
+    leading one's lacks that one's back-EMF, times its share."""
+    n = len(e.duty) // 2
+    lead = np.where(e.lagging[:n] > 0, e.pulling[n:], e.pulling[:n])
+    return np.concatenate([lead, lead])
+
+
 def brush_effects(e: Electrical, angle: dict[str, Array]) -> list[Candidate]:
     """`unknown` over the angle of either motor, as a resistance and as a voltage: six harmonics of the
     motor turn.
@@ -150,6 +183,13 @@ def _heat(e: Electrical, clock: Array, tau: float) -> Array:
     """Low-passed i^2 of each motor, cold at the log's start."""
     n = len(clock)
     return np.concatenate([lowpass(e.current[:n] ** 2, clock, tau), lowpass(e.current[n:] ** 2, clock, tau)])
+
+
+def followed(f: Finding) -> Finding:
+    """A current that follows the other motor's, said in words: the catalogue has no name for it."""
+    if "following" not in f.parameters:
+        return f
+    return replace(f, note="the lagging motor's current follows the leading one's, not its own duty")
 
 
 def from_cold(f: Finding, ratio: float) -> Finding:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
+from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.motion import Motion, rate_response
 from calibration.readers.drive import STAGES
@@ -65,6 +67,46 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
         )
     )
     return out
+
+
+PLAY_TRAVELS = (0.6, 1.2, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0)  # arcsec, gaps that are tried
+
+
+def play(c: Context, moved: Array) -> list[Candidate]:
+    """A gap in the coupling of the absolute encoder: its reading stands while the axis crosses the gap.
+
+    `moved` (n,) arcsec: where the axis is by its motors, without their wind-up; the stacked K problem has
+    each motor's rows after the other's, `c` its stacked columns.
+    """
+    run = np.asarray(c.run)[: len(moved)]
+    reach = float(np.ptp(moved))
+
+    def shape(p: Array) -> Array:
+        gap = max(float(p[0]), 0.1)
+        one = lag_in_gap(moved, run, gap) / gap
+        return np.concatenate([-one, -one])[:, None]
+
+    return [
+        Candidate(
+            "play",
+            "reversal",
+            shape(np.array([gap])),
+            (("gap", "arcsec"),),
+            sign=1,
+            stage="axis",
+            fixed={"travel": (gap, "arcsec")},
+            shape=shape,
+            steps=(0.1 * gap,),
+        )
+        for gap in PLAY_TRAVELS
+        if gap < 0.5 * reach
+    ]
+
+
+def lag_in_gap(moved: Array, run: NDArray[np.int64], gap: float) -> Array:
+    """Reading less place, same unit as `gap`, of a sensor behind a coupling with a gap; the middle of the gap
+    at the start of a run."""
+    return -stop_operator(moved, run, 0.5 * gap)
 
 
 def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:

@@ -33,6 +33,7 @@ class Kinematic:
     motor: Array
     engaged: Mask  # (n_analysis,) both motors on their tooth faces
     disengaged_driven: float  # fraction of driven rows in which a motor is off its face
+    per_ampere: float  # N m at the axis
 
 
 def kinematic_problem(
@@ -113,7 +114,7 @@ def kinematic_problem(
     driven = np.abs(m.at(effort)) > 0.01
     fraction = float(np.mean(apart[driven])) if driven.any() else 0.0
     motor = np.concatenate([np.zeros(n), np.ones(n)])
-    return Kinematic(problem, torque, motor, ~wide, fraction)
+    return Kinematic(problem, torque, motor, ~wide, fraction, per_ampere)
 
 
 def standing(spin: Array, run: NDArray[Any], rows: int) -> Mask:

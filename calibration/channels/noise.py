@@ -23,6 +23,7 @@ BLOCK = 100  # rows: the median over blocks of a second leaves out transients an
 LEAST_BLOCKS = 3
 BOX = np.convolve(np.ones(3), np.ones(3)) / 9.0  # `Motion.at` on the analysis grid of three rows
 OWN_COUNT = 0.5  # counts per row: a tachometer that is slower keeps its rounding error from row to row
+QUIET_PART = 0.4377  # mean square of the smaller four fifths of normal values, of all: (0.8 - 2 q f(q)) / 0.8
 CONDUCTING = 2.0  # counts: a smaller current is cut off at zero
 
 
@@ -85,8 +86,13 @@ def _current_noise(frame: Frame, key: str) -> float:
         if rows.sum() > BLOCK:
             d[rows] -= x[rows] @ solve(x[rows], d[rows])
     parts = [b[np.isfinite(b)] for b in np.split(np.where(ok, d, np.nan), range(BLOCK, len(d), BLOCK))]
-    squares = [float(np.mean(b**2)) for b in parts if len(b) > BLOCK // 2]
+    squares = [_quiet(b**2) for b in parts if len(b) > BLOCK // 2]
     return float(np.sqrt(np.median(squares) / 6.0)) if len(squares) >= LEAST_BLOCKS else float("nan")
+
+
+def _quiet(squares: Array) -> float:
+    """Mean square of normal values by their smaller four fifths: what disturbs some rows does not count."""
+    return float(np.mean(np.sort(squares)[: round(0.8 * len(squares))])) / QUIET_PART
 
 
 def torque_floor(n: Noise, drive: Transmission, inertia: float, period_s: float) -> float | None:

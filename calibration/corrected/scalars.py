@@ -55,7 +55,9 @@ def preload(f: Finding, facts: Facts) -> Made:
 def brake(f: Finding, facts: Facts) -> Made:
     """brake_drag: a drag that goes away is one that was there from the start, of friction that was less."""
     made = Made()
-    torque, onset = value(f, "torque"), value(f, "onset")
+    torque, onset = value(f, "torque"), value(f, "onset", value(f, "onset_in_run"))
+    if "onset_in_run" in f.parameters:
+        made.remarks.append("brake_drag: it comes in every run, the plant has it from its own start on")
     if torque >= 0.0:
         made.add(f.name, facts, {"torque": torque, "start": onset, "duration": 1e6})
     else:

@@ -10,6 +10,7 @@ import numpy as np
 from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import predict_residual
 from calibration.decide.select import Selection, design
+from calibration.decide.thresholds import FLIPPED_BY_LUCK
 from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
 from calibration.statistics.regression import under
@@ -30,6 +31,7 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
     out = []
     for k, chosen in enumerate(selection.chosen):
         c = chosen.candidate
+        place = {"name": c.name, "stage": c.stage, "harmonic": c.harmonic}
         tests: list[tuple[str, Candidate]] = [
             ("time reversed", replace(c, columns=c.columns[::-1].copy(), shape=None))
         ]
@@ -43,6 +45,7 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
                             "what": f"one tooth {word} on {c.stage}",
                             "accepted": False,
                             "note": "this travel cannot tell one tooth from the next",
+                            **place,
                         }
                     )
                     continue
@@ -54,15 +57,16 @@ def controls(selection: Selection, angle_turns: Array | None, span_turns: float)
                     )
                 )
         for what, wrong in tests:
-            row = {"what": f"{what} ({c.say()})", "accepted": _better(selection, k, wrong)}
+            row = {"what": f"{what} ({c.say()})", "accepted": _better(selection, k, wrong), **place}
             if what == "time reversed" and _alike(c.columns, wrong.columns):
                 row = {
                     "what": row["what"],
                     "accepted": False,
                     "note": "no test here: this motion reads the same backwards",
+                    **place,
                 }
             out.append(row)
-        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(selection, k)})
+        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(selection, k), **place})
     return out
 
 
@@ -96,7 +100,7 @@ def _flipped(selection: Selection, k: int) -> bool:
     beta[at : at + width] *= -1
     rows = p.test
     e1, e0 = predict_residual(p, x, beta, rows), predict_residual(p, x, without, rows)
-    return bool(np.mean(e1**2) < np.mean(e0**2))
+    return bool(np.mean(e1**2) < (1 - FLIPPED_BY_LUCK) * np.mean(e0**2))
 
 
 __all__ = ["STAGES", "controls"]

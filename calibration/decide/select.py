@@ -18,6 +18,8 @@ from calibration.statistics.regression import Fit, gls, under
 from calibration.statistics.surrogate import Scores
 
 MOST = 5  # effects per channel
+ROWS_PER_COLUMN = 8  # before a fit on a short log is tried at all
+CLOSEST = "the closest candidate"
 
 
 @dataclass(frozen=True)
@@ -100,13 +102,12 @@ def select(
     left = list(candidates)
     blocks = problem.train.sum() / problem.block
     if left and blocks < FEWEST_BLOCKS:
-        refused.append(
-            Refusal(
-                "every candidate",
-                f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
-                f" an interval needs {FEWEST_BLOCKS}",
-            )
+        need = FEWEST_BLOCKS * problem.block * problem.period_s
+        why = (
+            f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
+            f" an interval needs {FEWEST_BLOCKS} ({need:.0f} s)"
         )
+        refused += [Refusal("every candidate", why), *_closest(problem, left)]
         left = []
     while len(picks) < most and left:
         base = design(problem, [p.candidate for p in picks])
@@ -158,6 +159,19 @@ def select(
         ((), phases(problem, [p.candidate for p in picks])),
     )
     return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
+
+
+def _closest(problem: Problem, candidates: list[Candidate]) -> list[Refusal]:
+    """The candidate that would have been looked at first, had the rows been enough."""
+    room = problem.base.shape[1] + max(c.width for c in candidates)
+    if problem.train.sum() < ROWS_PER_COLUMN * room:
+        return []
+    now = look(problem, problem.base, candidates).contenders[:1]
+    return [
+        Refusal(c.candidate.say(), f"{CLOSEST} (-log10 p = {c.evidence:.1f}), but too few rows to name it")
+        for c in now
+        if c.bayes > 0
+    ]
 
 
 def _fit(problem: Problem, picks: list[Contender]) -> Fit:

@@ -1,7 +1,8 @@
-"""The verdict: found, ambiguous, unknown or nothing; how sure; and what the log could not tell."""
+"""The verdict: found, ambiguous, unknown, nothing or cannot tell; how sure; what the log could not tell."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -34,10 +35,11 @@ class Verdict:
     closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
-def judge(effects: list[Finding]) -> tuple[str, str | None]:
-    """Verdict and separating experiment for ranked effects."""
+def judge(effects: list[Finding], lacks: Sequence[str] = ()) -> tuple[str, str | None]:
+    """Verdict and separating experiment for ranked effects; `lacks` says what the log would need before
+    "nothing" could be said of it."""
     if not effects:
-        return "nothing", None
+        return ("cannot tell", "; ".join(lacks)) if lacks else ("nothing", None)
     names = [n for e in effects if e.equivalent for n in (e.name, *e.equivalent)]
     if any(e.name != "unknown" for e in effects):
         verdict = "ambiguous" if effects[0].equivalent else "found"

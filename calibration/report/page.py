@@ -20,6 +20,10 @@ def summary(data: dict[str, Any]) -> str:
     effects = data["effects"]
     if data["verdict"] == "nothing":
         return "Nothing is missing from the declared model that this log could show."
+    if data["verdict"] == "cannot tell":
+        return "This log cannot tell whether something is missing. It lacks: " + (
+            f"{data['separating_experiment']}."
+        )
     if not effects:
         return ""
     top = effects[0]

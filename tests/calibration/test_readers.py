@@ -94,7 +94,7 @@ def test_a_log_too_short_gets_an_answer_with_its_reason(tmp_path: Path, rows: in
             calibrate([path], None, [], tmp_path / "out")
         return
     assert calibrate([path], None, [], tmp_path / "out", plots=False) == 0
-    assert '"nothing"' in (tmp_path / "out" / "report.json").read_text()
+    assert '"cannot tell"' in (tmp_path / "out" / "report.json").read_text()
     assert "too few" in (tmp_path / "out" / "report.html").read_text()
 
 

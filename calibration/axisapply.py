@@ -1,0 +1,139 @@
+"""A named effect of a column is applied: the late column is shifted, a coupling's gap is taken out, and the
+whole analysis is made once more on the corrected logs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from calibration.axisresult import AxisResult
+from calibration.candidates.kinematic import lag_in_gap
+from calibration.channels.frame import fill
+from calibration.decide.delays import ELECTRICAL_S, WINDOW_DELAY_S
+from calibration.decide.finding import Finding
+from calibration.decide.heldout import predict_residual
+from calibration.decide.select import Refusal, Selection
+from calibration.readers.drive import ARCSEC
+from calibration.readers.run import Array, Run
+from calibration.statistics.regression import gls
+
+#: columns of a log by what a finding calls them
+LATE = {
+    "position": ("position",),
+    "tachometers": ("motor_a", "motor_b"),
+    "velocity": ("velocity",),
+    "current": ("current_a", "current_b"),
+    "current or effort": ("current_a", "current_b"),
+}
+#: label of the nuisance of a channel that takes up a delay, and what it is in a sound log, s
+NOMINAL = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
+FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than
+RISES = 1.05  # of another channel's, that it may leave at most
+AT_END = 0.9  # of half a gap: there the coupling has crossed it
+CROSSED_ROWS = 10  # left out either side of a crossing: the wind-up that is taken off is good to a per cent
+APPLIED = ("channel_delay", "play")
+
+
+def to_apply(findings: Sequence[Finding]) -> Finding | None:
+    """The first finding that is a fault of a column and can be undone."""
+    return next((f for f in findings if f.name in APPLIED), None)
+
+
+def corrected_runs(result: AxisResult, f: Finding) -> list[Run]:
+    """The logs without the fault that `f` names; the given ones are left alone."""
+    if f.name == "play":
+        return _without_gap(result, f.parameters["gap"].value)
+    word = re.match(r"the (.+) column is late", f.note)
+    names = LATE.get(word.group(1) if word else "", ())
+    delay = f.parameters["delay"].value
+    out = []
+    for run in result.frame.runs:
+        moved = {n: _earlier(run.columns["t"], run.columns[n], delay) for n in names if n in run.columns}
+        out.append(replace(run, columns={**run.columns, **moved}))
+    return out
+
+
+def _earlier(t: Array, x: Array, delay: float) -> Array:
+    """x(t + delay): cubic between rows, nothing beyond the log's ends."""
+    from scipy.interpolate import CubicSpline
+
+    good = np.isfinite(x)
+    if good.sum() < 4:
+        return x
+    at = t + delay
+    y = CubicSpline(t[good], x[good])(at)
+    return np.where(good & (at >= t[good][0]) & (at <= t[good][-1]), y, np.nan)
+
+
+def _without_gap(result: AxisResult, gap: float) -> list[Run]:
+    """Positions less half the gap (arcsec) on the side where the motors say that the coupling lies; while
+    it crosses the gap the encoder does not see the axis, and the rows are left out."""
+    frame = result.frame
+    place = axis_by_motors(result)
+    assert place is not None
+    error = lag_in_gap(place, frame.run, gap)
+    crossing = binary_dilation(np.abs(error) < AT_END * gap / 2, iterations=CROSSED_ROWS)
+    error = np.where(crossing, np.nan, np.sign(error) * gap / 2) * ARCSEC
+    out = []
+    for k, run in enumerate(frame.runs):
+        here = np.flatnonzero(frame.run == k)
+        rows = here[np.isfinite(frame.clock[here])]
+        out.append(replace(run, columns={**run.columns, "position": run.columns["position"] - error[rows]}))
+    return out
+
+
+def axis_by_motors(result: AxisResult) -> Array | None:
+    """Angle of the axis (n,) arcsec by both motors' encoders less their trains' wind-up, an offset per run;
+    None without them."""
+    frame, k = result.frame, result.kinematic
+    if k is None or "K" not in result.selections:
+        return None
+    compliance = float(result.selections["K"].after.beta[0])  # arcsec / arcsec per N m, see the K base
+    ratio = frame.scale["gear_ratio"]
+    both = []
+    for key, sign in (("a", 1.0), ("b", -1.0)):
+        spin = fill(frame.columns[f"motor_{key}"], frame.run)[0]
+        current = fill(frame.columns[f"current_{key}"], frame.run)[0]
+        turned = np.cumsum(spin) * frame.period_s / ratio
+        both.append((turned - compliance * sign * k.per_ampere * current) / ARCSEC)
+    return np.asarray(np.mean(both, axis=0))
+
+
+def without_nuisance(s: Selection, key: str) -> float:
+    """Held-out rms of a channel's declared model when its delay is held at a sound log's: what the log leaves
+    before a late column is shifted."""
+    p = s.problem
+    at = [label for label, _ in p.base_labels].index(NOMINAL[key])
+    value = float(s.before.beta[at])
+    sound = {"S": (-WINDOW_DELAY_S,) * 2, "E": ELECTRICAL_S}.get(key, (0.0, 0.0))
+    held = float(np.clip(value, *sound))
+    free = [k for k in range(p.base.shape[1]) if k != at]
+    y = p.y - p.base[:, at] * held
+    fit = gls(y, p.base[:, free], p.train, p.ar_order, p.block)
+    part = replace(p, y=y, base=p.base[:, free])
+    return float(np.sqrt(np.mean(predict_residual(part, part.base, fit.beta, p.test) ** 2)))
+
+
+def before_of(result: AxisResult, f: Finding) -> dict[str, float]:
+    """Per channel, the held-out error of the declared model on the logs as they are."""
+    out = {}
+    for key, s in result.selections.items():
+        if np.isfinite(s.held.before):
+            late = f.name == "channel_delay" and key in NOMINAL
+            out[key] = without_nuisance(s, key) if late else s.held.before
+    return out
+
+
+def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal | None:
+    """None when the held-out error falls once the effect is applied; else why it was not the effect."""
+    after = {k: s.held.before for k, s in again.selections.items() if k in before and k in "TEKS"}
+    falls = [k for k, a in after.items() if a < FALLS * before[k]]
+    rises = [k for k, a in after.items() if a > RISES * before[k]]
+    if falls and not rises:
+        return None
+    said = ", ".join(f"{k} {before[k]:.3g} to {a:.3g}" for k, a in after.items())
+    return Refusal(f.name, f"applied, the held-out error does not fall: {said}")

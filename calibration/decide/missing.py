@@ -1,0 +1,41 @@
+"""What is still above the floor when the answer is given: how much, and which domain it lives in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from calibration.decide.select import Selection
+from calibration.decide.thresholds import STILL_MISSING
+from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
+
+BINS = 24  # of a domain, each with as many rows as the next
+LEAST_SHARE = 0.1  # of the mean square, explained on rows the means are not made of, before a domain is named
+
+
+def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
+    """after / floor of every channel in which it is beyond STILL_MISSING; a floor not known says nothing."""
+    found = {k: e["after"] / e["floor"] for k, e in error.items() if e["floor"]}
+    return {k: r for k, r in found.items() if r > STILL_MISSING}
+
+
+def lives_in(s: Selection, domains: dict[str, Array]) -> str:
+    """The domain whose bin means on training rows take most off the held-out residual, in words."""
+    e, p = s.after.residual, s.problem
+    shares = {name: _share(e, x, p.train, p.test) for name, x in domains.items()}
+    name = max(shares, key=lambda k: shares[k], default="")
+    if not name or shares[name] < LEAST_SHARE:
+        return "in none of " + ", ".join(domains)
+    return f"over {name} ({100 * shares[name]:.0f} % of its mean square)"
+
+
+def _share(e: Array, x: Array, train: Mask, test: Mask) -> float:
+    if train.sum() < 10 * BINS or test.sum() < 10 * BINS or np.ptp(x[train]) == 0:
+        return 0.0
+    edges = np.unique(np.quantile(x[train], np.linspace(0, 1, BINS + 1)[1:-1]))
+    place = np.searchsorted(edges, x)
+    count = np.maximum(np.bincount(place[train], minlength=len(edges) + 1), 1)
+    means = np.bincount(place[train], e[train], len(edges) + 1) / count
+    return float(1 - np.mean((e - means[place])[test] ** 2) / max(float(np.mean(e[test] ** 2)), 1e-300))
