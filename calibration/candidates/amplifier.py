@@ -13,9 +13,11 @@ from calibration.channels.electrical import Electrical
 from calibration.channels.frame import Frame, fill
 from calibration.channels.motion import Motion
 from calibration.readers.run import Array
+from calibration.statistics.regression import solve
 
 SLOWEST_HZ = 0.05
 FINE = 16  # frequencies per resolution cell of the longest run
+PHASES = 17  # tried in each of three searches, each within a step of the one before
 LINES = 3  # strongest lines that are tried
 STEP_CELLS = 0.05  # of a resolution cell, for the refinement of a frequency
 FULL = 3000.0  # effort counts at full supply, log-format.md
@@ -80,6 +82,26 @@ def spectrum(added: Array, run: NDArray[np.int64], period_s: float) -> tuple[Arr
     return np.asarray(hertz, dtype=np.float64), score
 
 
+def _phase(x: Array, y: Array, square: bool) -> float:
+    """Phase of sin(x + phase), or of its sign, that explains most of y beside a constant on uneven rows."""
+    fit = solve(np.column_stack([np.ones(len(x)), np.cos(x), np.sin(x)]), y)
+    best = float(np.arctan2(fit[1], fit[2]))
+    if not square:
+        return best
+    y = y - np.mean(y)
+
+    def taken(phase: float) -> float:
+        wave = np.sign(np.sin(x + phase))
+        wave = wave - np.mean(wave)
+        return float(wave @ y) * abs(float(wave @ y)) / max(float(wave @ wave), 1e-300)
+
+    reach = np.pi / 2
+    for _ in range(3):  # the fundamental of uneven rows can be off by a good part of a quarter
+        best = max(best + reach * np.linspace(-1, 1, PHASES), key=taken)
+        reach *= 2.0 / PHASES
+    return best
+
+
 def _wave(m: Motion, frame: Frame, added: Array, volts: Array, square: bool) -> Callable[[Array], Array]:
     """Volts (2 n_analysis, 1) per effort count of a wave at p[0] Hz, in every run with the phase that its own
     rows show."""
@@ -91,8 +113,9 @@ def _wave(m: Motion, frame: Frame, added: Array, volts: Array, square: bool) -> 
         phase = np.zeros(len(frame.t))
         for k in np.unique(run):
             here = run == k
-            c, s = (float(np.sum((added * g(x))[here])) for g in (np.cos, np.sin))
-            phase[frame.run == k] = np.arctan2(c, s)
+            rows = here & (added != 0)
+            if rows.any():
+                phase[frame.run == k] = _phase(x[rows], added[rows], square)
         wave = np.sin(2 * np.pi * float(p[0]) * frame.t + phase)
         one = m.at(np.sign(wave) if square else wave)
         return np.asarray(volts * np.concatenate([one, one]))[:, None]
