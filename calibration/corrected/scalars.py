@@ -28,6 +28,8 @@ def plain(f: Finding, facts: Facts) -> Made:
     made = Made()
     table = PLAIN[f.name]
     made.add(f.name, facts, {k: value(f, name) * factor for k, (name, factor) in table.items()})
+    if value(f, "before_split"):
+        made.remarks.append(f"{f.name}: found before the split between the motors, the plant has it behind")
     return made
 
 
@@ -187,7 +189,7 @@ def disturbance(f: Finding, facts: Facts) -> Made:
         "amplitude": value(f, "amplitude") / 3000.0,
         "frequency": value(f, "frequency", f.frequency or 0.0),
         "phase": value(f, "phase") + np.pi / 2,
-        "shape": 0.0,
+        "shape": value(f, "shape"),
     }
     made.add(f.name, facts, values)
     made.remarks.append(
