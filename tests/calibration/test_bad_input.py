@@ -149,7 +149,7 @@ def test_a_log_cut_short_never_gets_a_wrong_name(tmp_path: Path, kind: str, seco
     path.write_text("\n".join(lines[: 11 + 100 * seconds]) + "\n")
     assert calibrate([path], None, [], tmp_path / "out", plots=False) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
-    # a steady sine of 20 s and more holds enough blocks; whatever is shorter cannot tell, and says what it lacks
+    # whatever is too short cannot tell, and says what it lacks
     assert report["effects"] == [] and report["verdict"] in ("nothing", "cannot tell")
     if seconds <= 20:
         assert report["verdict"] == "cannot tell"
