@@ -208,6 +208,35 @@ def serve(
 
 
 @cli.command()
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--usb", required=True, metavar="/dev/hidrawN|unix:PATH|can:SPEC", help="Where the gateway is.")
+@click.option(
+    "--serial", multiple=True, metavar="BOARD=PORT", help="RS232 of a board, such as AXIS_RA=/dev/ttyS0."
+)
+@click.option(
+    "--lx200", multiple=True, metavar="[HOST:]PORT|pty:NAME", help="For Stellarium and INDI; repeatable."
+)
+@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")
+@click.option("--duration", type=SECONDS, help="End after this many seconds.")
+def host(
+    scenario: Path | None,
+    usb: str,
+    serial: tuple[str, ...],
+    lx200: tuple[str, ...],
+    alpaca: str | None,
+    logs: Path | None,
+    duration: float | None,
+) -> None:
+    """The host program by itself, on the boards' cables; SCENARIO gives site, mount and date."""
+    from scenarios.doors.options import DoorOptions
+    from scenarios.host import command
+
+    options = DoorOptions(lx200=lx200, alpaca=alpaca, logs=logs)
+    sys.exit(command(scenario, usb, serial, options, duration))
+
+
+@cli.command()
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: FOLDER-replayed).")
 def replay(folder: Path, out: Path | None) -> None:

@@ -6,13 +6,13 @@ from host.alpaca import discovery
 from host.alpaca.server import Alpaca
 from host.outside import Service
 from scenarios.doors.address import address, is_local, listen
-from scenarios.doors.host import HostDoor
+from scenarios.doors.host import Host
 
 
 class AlpacaDoor:
     """One HTTP port. Without discovery (port 32227 taken) it serves all the same, and says so."""
 
-    def __init__(self, spec: str, host: HostDoor) -> None:
+    def __init__(self, spec: str, host: Host) -> None:
         self.name = f"--alpaca {spec}"
         self.alpaca = Alpaca(host.hosted.telescope)
         self._address = address(spec, "--alpaca")

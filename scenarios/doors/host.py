@@ -3,11 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Protocol
 
 from host.outside import Outside
 from scenarios.doors.served import Served
 from scenarios.doors.usb import UsbPlug
 from scenarios.hosted import Hosted
+
+
+class Host(Protocol):
+    """What doors for other programs need: `HostDoor`, or the host program by itself."""
+
+    @property
+    def hosted(self) -> Hosted:
+        """The telescope client."""
+
+    @property
+    def outside(self) -> Outside:
+        """Where servers run."""
 
 
 class HostDoor:

@@ -8,13 +8,13 @@ from host.lx200.server import Lx200
 from host.outside import Service
 from scenarios.doors.address import address
 from scenarios.doors.door import DoorError
-from scenarios.doors.host import HostDoor
+from scenarios.doors.host import Host
 
 
 class Lx200Door:
     """One port or one pseudo-terminal."""
 
-    def __init__(self, spec: str, host: HostDoor, lx200: Lx200) -> None:
+    def __init__(self, spec: str, host: Host, lx200: Lx200) -> None:
         self.name = f"--lx200 {spec}"
         self._host = host
         self._lx200 = lx200

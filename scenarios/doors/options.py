@@ -8,9 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from scenarios.doors.door import Door
 from scenarios.doors.served import Served
+
+if TYPE_CHECKING:
+    from scenarios.doors.host import Host
 
 
 class OptionError(ValueError):
@@ -66,16 +70,21 @@ def make_doors(options: DoorOptions, served: Served) -> list[Door]:
 
 def _astronomy(options: DoorOptions, served: Served) -> list[Door]:
     """The host first: what follows lives on it."""
-    from host.lx200.server import Lx200
     from scenarios.doors.host import HostDoor
-    from scenarios.doors.lx200 import Lx200Door
 
     host = HostDoor(served, options.logs)
-    lx200 = Lx200(host.hosted.telescope)
-    doors: list[Door] = [host, *(Lx200Door(spec, host, lx200) for spec in options.lx200)]
-    if options.alpaca is not None:
-        from scenarios.doors.alpaca import AlpacaDoor
+    return [host, *astronomy(options, host)]
 
+
+def astronomy(options: DoorOptions, host: Host) -> list[Door]:
+    """Doors for astronomers' programs, on a host."""
+    from host.lx200.server import Lx200
+    from scenarios.doors.alpaca import AlpacaDoor
+    from scenarios.doors.lx200 import Lx200Door
+
+    lx200 = Lx200(host.hosted.telescope)
+    doors: list[Door] = [Lx200Door(spec, host, lx200) for spec in options.lx200]
+    if options.alpaca is not None:
         doors.append(AlpacaDoor(options.alpaca, host))
     return doors
 

@@ -136,6 +136,7 @@ def package(name: str) -> str:
         "yaml": "pyyaml",
         "can": "python-can",
         "erfa": "pyerfa",
+        "alpaca": "alpyca",
         "serial": "pyserial",
         "mypy_extensions": "mypy-extensions",
         "mypyc": "mypy",
