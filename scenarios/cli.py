@@ -140,6 +140,7 @@ def paper(
 @click.option("--shift", type=float, default=0.0, show_default=True, help="Degrees, of all start angles.")
 @click.option("--seconds", type=click.FloatRange(min=1), default=600.0, show_default=True)
 @click.option("--only", help="Only rows whose name contains this.")
+@click.option("--steps", is_flag=True, help="The firmware's changes one after the other instead.")
 def objective(
     out: Path,
     plant: str,
@@ -150,11 +151,12 @@ def objective(
     shift: float,
     seconds: float,
     only: str | None,
+    steps: bool,
 ) -> None:
     """Hold 15 arcsec/s from many starts; print by how much the true rate errs (exit 1: a row is missed)."""
     from scenarios.objective.command import objective as command
 
-    sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only))
+    sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only, steps))
 
 
 @cli.command()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bus.protocol import AxisParameter
 from plant.model import with_effects
 from plant.parts import EffectModel, PlantModel
 
@@ -21,6 +22,8 @@ class Case:
     name: str
     effects: tuple[str, ...] = ()
     firmware: str = "fine"
+    without: tuple[int, ...] = ()
+    """Parameters of the firmware that are left out: the steps of a ladder."""
     compensated: bool = False
     high: bool = False
 
@@ -42,6 +45,26 @@ def cases(compensation: bool) -> tuple[Case, ...]:
     rows.append(Case("with all four, the paper's firmware", EFFECTS, firmware="paper"))
     rows.append(Case("high preload, the paper's firmware", firmware="paper", high=True))
     rows.append(Case("high preload, spread duty, bias, lock, blend", high=True))
+    return tuple(rows)
+
+
+RUNGS = (
+    ("spread duty", AxisParameter.DUTY_FRACTION),
+    ("locked rate", AxisParameter.RATE_LOCK),
+    ("blended position", AxisParameter.POSITION_BLEND),
+    ("bias", AxisParameter.COUNTER_BIAS_Q8),
+)
+"""In the order in which docs/one-arcsecond.md proposes them."""
+
+
+def ladder() -> tuple[Case, ...]:
+    """The firmware's changes one after the other, on the declared plant and with all four effects."""
+    rows = []
+    for added, effects in (("", ()), (", all four effects", EFFECTS)):
+        rows.append(Case("the paper's firmware" + added, effects, "paper"))
+        for place, (name, _) in enumerate(RUNGS, 1):
+            left = tuple(int(number) for _, number in RUNGS[place:])
+            rows.append(Case(f"+ {name}{added}", effects, without=left))
     return tuple(rows)
 
 

@@ -56,7 +56,8 @@ def measure(
     """One row per case and mode; `tell(text)` before each run."""
     for case in cases:
         model = case.plant(*plants)
-        parameters = [*FIRMWARES[case.firmware].items(), *(compensation if case.compensated else ())]
+        firmware = [row for row in FIRMWARES[case.firmware].items() if row[0] not in case.without]
+        parameters = [*firmware, *(compensation if case.compensated else ())]
         for mode in MODES:
             held: list[Held] = []
             for start in starts:
@@ -66,7 +67,7 @@ def measure(
             yield Row(
                 case.name, mode, [each.peak for each in held], [each.rms for each in held],
                 [each.wander for each in held], sum(each.lost for each in held),
-                case.firmware != "paper" and not case.high,
+                case.firmware != "paper" and not case.high and not case.without,
             )  # fmt: skip
 
 
