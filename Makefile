@@ -12,6 +12,7 @@ WORKERS ?= $(shell $(PYTHON) -c "import os; print(min(4, os.cpu_count() or 1))")
 
 run: $(READY) compiled
 	$(BIN)/schmidt run scenarios/observing-night.yaml --out out/observing-night
+	$(BIN)/schmidt run scenarios/observing-night.yaml --firmware fine --out out/observing-night-fine
 
 # The same source as a library, where there is a C compiler; says in one line where there is none.
 compiled: $(READY)
