@@ -1,0 +1,109 @@
+"""Runs the tests of every target on mutants: `python -m tests.mutation [--only PART] [--sample N] [--out FILE]`.
+
+Mutants run in forked children, so that numpy and pytest are imported once; a changed source takes its module's
+place at import. No file is written. Not in CI: some 1500 mutants take hours.
+"""
+
+import argparse
+import importlib.abc
+import importlib.machinery
+import importlib.util
+import os
+import random
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from types import CodeType, ModuleType
+
+import can
+import cantools
+import hypothesis
+import numpy as np
+import pytest
+
+from tests.mutation.operators import mutants
+from tests.mutation.targets import TARGETS
+
+TIMEOUT_S = 60
+WARM = (can, cantools, np)
+"""Imported once, before the children are forked."""
+
+
+class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+    """Gives one module other code than its file has."""
+
+    def __init__(self, name: str, code: CodeType) -> None:
+        self.name, self.code = name, code
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        return importlib.util.spec_from_loader(fullname, self) if fullname == self.name else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        exec(self.code, module.__dict__)
+
+
+def survives(path: str, source: str, tests: tuple[str, ...]) -> bool:
+    """Whether the tests pass although `path` holds `source`."""
+    child = os.fork()
+    if not child:
+        signal.alarm(TIMEOUT_S)
+        name = path.removesuffix(".py").replace("/", ".")
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 1)
+        os.dup2(null, 2)
+        code = 1
+        try:
+            sys.meta_path.insert(0, Substitute(name, compile(source, path, "exec")))
+            quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning", "--override-ini", "addopts="]
+            arguments = ["-x", "-q", "-p", "no:cacheprovider", "-m", "not slow and not guest", *quiet]
+            code = int(pytest.main([*arguments, *tests]))
+        finally:
+            os._exit(code)
+    return os.waitpid(child, 0)[1] == 0
+
+
+def main() -> None:
+    """Run, print survivors as they come, and the score."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", default="", help="targets whose path contains this")
+    parser.add_argument("--sample", type=int, default=0, help="at most so many mutants of each target")
+    parser.add_argument("--out", type=Path, help="file for the survivors")
+    options = parser.parse_args()
+    hypothesis.settings.register_profile(
+        "mutation", max_examples=30, deadline=None, database=None, derandomize=True
+    )
+    hypothesis.settings.load_profile("mutation")
+    lines: list[str] = []
+
+    def tell(text: str) -> None:
+        lines.append(text)
+        print(text, flush=True)
+        if options.out:
+            options.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    total = killed = 0
+    for path, tests in TARGETS.items():
+        if options.only not in path:
+            continue
+        source = Path(path).read_text(encoding="utf-8")
+        started = time.monotonic()
+        if not survives(path, source, tests):
+            raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
+        cases = list(mutants(source))
+        if options.sample and len(cases) > options.sample:
+            cases = random.Random(path).sample(cases, options.sample)
+        alive = [label for label, changed in cases if survives(path, changed, tests)]
+        total, killed = total + len(cases), killed + len(cases) - len(alive)
+        took = time.monotonic() - started
+        tell(f"{path}: {len(cases) - len(alive)} of {len(cases)} killed ({took:.0f} s)")
+        for label in alive:
+            tell(f"    {label}")
+    tell(f"in all {killed} of {total} killed: {100 * killed / max(total, 1):.1f} %")
+
+
+if __name__ == "__main__":
+    main()
