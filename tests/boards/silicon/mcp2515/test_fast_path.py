@@ -1,0 +1,77 @@
+"""The boards' fast CAN controller and the chip at register level put the same frames on the wire."""
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from boards.core import board as core
+from boards.silicon.can import CanController
+from boards.silicon.mcp2515.controller import Mcp2515Controller
+from bus.can import Frame, Port, Wire
+from bus.time import EventQueue
+from tests.boards.lab import RA, Lab
+
+Received = Callable[[int, Frame], None]
+READY_NS = 30_000
+"""End of the routine that sends."""
+GROUPS = ((0x7FF, [0x091]), (0x700, [0x100, 0x200]))
+
+
+def controller(port: Port, on_receive: Received) -> Mcp2515Controller:
+    return Mcp2515Controller(port._wire.queue, port, on_receive)
+
+
+sends = st.lists(
+    st.tuples(
+        st.integers(0, 1),  # who
+        st.sampled_from([0x091, 0x100, 0x123, 0x201, 0x2FF, 0x300, 0x7FE]),
+        st.binary(max_size=8),
+        # ns to the next one: at once, or more than a bit later (within its first bit the fast controller may
+        # still choose among its buffers, the chip has chosen)
+        st.one_of(st.just(0), st.integers(2_000, 400_000)),
+    ),
+    max_size=40,
+)
+
+
+@settings(max_examples=60)
+@given(sends)
+def test_random_traffic(traffic: list[tuple[int, int, bytes, int]]) -> None:
+    logs = []
+    for make in (CanController, controller):
+        queue = EventQueue()
+        wire = Wire(queue)
+        log: list[object] = []
+        wire.tap(lambda *what, log=log: log.append(what))  # type: ignore[misc]
+        nodes = [
+            make(wire.attach(name), lambda t, f, n=name, log=log: log.append((n, t, f)))  # type: ignore[misc]
+            for name in "ab"
+        ]
+        wire.attach("c")
+        for node in nodes:
+            node.accept(*GROUPS)
+        for who, identifier, data, gap in traffic:
+            log.append(nodes[who].send(Frame(identifier + who, data), queue.now_ns + READY_NS))
+            queue.run_until(queue.now_ns + gap)
+        queue.run_until(queue.now_ns + 10_000_000)
+        logs.append(log)
+    assert logs[0] == logs[1]
+
+
+def test_the_boards_do_not_notice(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = []
+    for make in (CanController, controller):
+        monkeypatch.setattr(core, "CanController", make)
+        lab = Lab()
+        log: list[tuple[int, Frame, str]] = []
+        lab.wire.tap(lambda *what, log=log: log.append(what))  # type: ignore[misc]
+        lab.run(0.3)
+        reply = lab.command(0x10, 1)
+        lab.command(0x12, 400_000)
+        lab.run(0.5)
+        told.append((log, reply, lab.plant.angle))
+        assert lab.axis.device_type == RA
+    assert len(told[0][0]) > 400
+    assert told[0] == told[1]
