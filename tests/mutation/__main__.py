@@ -1,7 +1,7 @@
-"""Runs the tests of every target on mutants: `python -m tests.mutation [--only PART] [--sample N] [--out FILE]`.
+"""Runs the tests of every target on mutants: `python -m tests.mutation [--only PART] [--sample N]`.
 
-Mutants run in forked children, so that numpy and pytest are imported once; a changed source takes its module's
-place at import. No file is written. Not in CI: some 1500 mutants take hours.
+Mutants run in forked children, so that numpy and pytest are imported once; a changed source takes its
+module's place at import. No file is written. Not in CI: some 1500 mutants take hours.
 """
 
 import argparse

@@ -188,7 +188,6 @@ class Mcp2515:
         self.times = decode(self.times.fosc_hz, memory[at.CNF1], memory[at.CNF2], memory[at.CNF3])
         if mode not in (Mode.NORMAL, Mode.LISTEN_ONLY):
             port.online = False
-            self._pump()
             return
         port.timing = self.times.wire_timing()
         port.listen_only = mode is Mode.LISTEN_ONLY
@@ -196,7 +195,6 @@ class Mcp2515:
         if port.listen_only:
             port.tec = port.rec = 0
         self._flags = self._error_flags()
-        self._pump()
 
     def activity(self, t_ns: int) -> None:
         """The bus has moved while the chip slept: it wakes into listen-only mode, if it may."""

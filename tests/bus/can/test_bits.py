@@ -85,3 +85,17 @@ def test_L1_the_key_orders_as_the_bits_do(one: Frame, other: Frame) -> None:
 def test_L1_what_can_cannot_carry_is_refused(frame: Frame) -> None:
     with pytest.raises(FrameError):
         frame_bits(frame)
+
+
+@pytest.mark.parametrize(
+    ("frame", "bits"),
+    [  # SOF, 11 bits, SRR, IDE, 18 bits, RTR, r1, r0, DLC, written out by hand (ISO 11898-1)
+        (Frame(0x12345678, bytes(3), True), "0 10010001101 1 1 000101011001111000 0 0 0 0011"),
+        (Frame(0x1FFFFFFF, b"", True, True), "0 11111111111 1 1 111111111111111111 1 0 0 0000"),
+        (Frame(0x00020001, b"", True), "0 00000000000 1 1 100000000000000001 0 0 0 0000"),
+        (Frame(0x123, bytes(8)), "0 00100100011 0 0 0 1000"),
+        (Frame(0x7FF, bytes(2), False, True), "0 11111111111 1 0 0 0010"),
+    ],
+)
+def test_headers_bit_by_bit(frame: Frame, bits: str) -> None:
+    assert header_bits(frame) == [int(bit) for bit in bits.replace(" ", "")]

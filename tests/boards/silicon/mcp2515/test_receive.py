@@ -215,3 +215,17 @@ def test_the_other_buffer_stays_as_it_is() -> None:
     bench.write(0x60, 0x60)
     bench.partner_sends(Frame(0x123, b"\x01"))
     assert bench.spi(0x03, 0x70, *[0] * 14)[2:] == [0x60, *[0] * 13]
+
+
+def test_the_filter_number_of_the_last_message_is_forgotten() -> None:
+    every_bit = standard(0x7FF)
+    bench = filtered({0: every_bit, 1: every_bit}, {2: standard(0x102), 5: standard(0x105)}, rxb1=0x00)
+    for identifier, number in ((0x105, 5), (0x102, 2), (0x105, 5)):
+        bench.partner_sends(Frame(identifier, b""))
+        assert bench.read(0x70) == number
+        bench.write(0x2C, 0)
+    both = filtered({0: every_bit}, {0: standard(0x100), 1: standard(0x101)}, rxb0=0x04)
+    for identifier, number in ((0x101, 1), (0x100, 0)):
+        both.partner_sends(Frame(identifier, b""))
+        assert both.read(0x60) == 0x06 | number
+        both.write(0x2C, 0)

@@ -320,3 +320,22 @@ def test_a_reset_in_the_middle_of_a_frame_cuts_it_off() -> None:
     assert bench.heard == []
     assert bench.wire.errors == {"stuff": 1}
     assert bench.queue.now_ns > MS
+
+
+def test_by_errata_only_a_request_counts_not_any_write() -> None:
+    bench = Bench(errata=True).start()
+    bench.load(1, 0x123)
+    bench.spi(0x82)
+    spi = bench.chip.spi
+    spi.select()
+    for byte in (0x02, 0x30, 0x01):
+        spi.exchange(byte)
+    bench.run()
+    spi.deselect()
+    bench.load(0, 0x124)
+    spi.select()
+    for byte in (0x02, 0x40, 0x00):
+        spi.exchange(byte)
+    bench.run()
+    spi.deselect()
+    assert [frame.identifier for frame in bench.heard] == [0x123]
