@@ -77,15 +77,14 @@ class FineOutput:
                 effort_q16 = max(-limit, min(limit, effort_q16))
         else:
             effort_q16 = command << 16
-        if not self.spread:
-            effort_q16 = (effort_q16 + _HALF) >> 16 << 16
-        size = abs(effort_q16)
+        size = effort_q16 if effort_q16 >= 0 else -effort_q16
         if self.spread:
             lag = board.counter.share_q16(size, velocity)
         else:
+            size = (size + _HALF) >> 16 << 16
             board.counter.follow(size >> 16, velocity)
             lag = board.counter.register << 16
-        bias = self.bias_q8 << 8 if board.powered() else 0
+        bias = self.bias_q8 << 8 if board.motion.mode else 0
         if effort_q16 >= 0:
             pwm.write_spread(end_ns, size + bias, lag + bias)
         else:
