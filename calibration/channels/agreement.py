@@ -1,0 +1,84 @@
+"""Two columns that say the same: how late one is against the other, and how well they agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.channels.view import View
+from calibration.readers.run import Array
+from calibration.statistics.regression import gls
+
+SIGNIFICANT = 4.0  # standard errors
+MATTERS = 0.2  # of the mean square of what the columns disagree by
+SMALLEST = 0.1  # sample periods: a shorter delay is within a reading's own window
+LONGEST = 20  # sample periods that are looked at
+FEWEST = 200  # rows
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """`channel` against the position: late by `delay_s` +- `error_s` (one standard error); rms of the
+    difference on held-out rows before and after the delay is taken out, and the sensors' own noise."""
+
+    channel: str
+    unit: str
+    delay_s: float
+    error_s: float
+    before: float
+    after: float
+    floor: float
+    late: bool
+
+
+def velocity_against_position(view: View, held: Array) -> Agreement | None:
+    """A measured velocity against the position's rate: scale and offset are free, then the delay."""
+    if "velocity" not in view.columns or view.ok.sum() < FEWEST:
+        return None
+    v, w = view.rate(view.x), view.columns["velocity"]
+    sigma = max(view.sigma, 2.0)
+    from calibration.channels.view import smooth
+
+    v, w = smooth(v, view.segment, sigma), smooth(w, view.segment, sigma)
+    a = view.rate(v)
+    rows = view.rows
+    ok = view.ok[rows]
+    train = ok & ~held
+    test = ok & held if (ok & held).sum() > FEWEST else train
+    if train.sum() < FEWEST or np.std(w[rows][train]) == 0:
+        return None
+    one = np.ones(len(rows))
+    block = max(int(len(rows) / 60), 20)
+    before = gls(w[rows], np.column_stack([v[rows], one]), train, 0, block)
+    delay, fit = 0.0, before
+    for _ in range(4):  # the slope is exact at the right delay only
+        moved = view.delayed(w, delay)
+        fit = gls(moved[rows], np.column_stack([v[rows], one, -a[rows]]), train, 0, block)
+        scale = float(fit.beta[0]) or 1.0
+        step = float(fit.beta[2]) / scale
+        delay = float(np.clip(delay + step, -LONGEST * view.period_s, LONGEST * view.period_s))
+    error = float(np.sqrt(max(fit.covariance[2, 2], 0.0))) / abs(scale)
+    last = gls(view.delayed(w, delay)[rows], np.column_stack([v[rows], one]), train, 0, block)
+    b, c = _rms(before.residual[test]), _rms(last.residual[test])
+    floor = _noise(last.residual, test)
+    late = (
+        abs(delay) > SIGNIFICANT * error
+        and abs(delay) > SMALLEST * view.period_s
+        and 1 - (c / b) ** 2 > MATTERS
+        and abs(scale) > 0.3
+    )
+    unit = view.rig.columns["velocity"].unit
+    return Agreement("velocity", unit, delay, error, b, c, floor, late)
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
+
+
+def _noise(e: Array, rows: Array) -> float:
+    """rms of what changes from row to row: fourth differences of white noise have 70 times its variance."""
+    x = np.where(rows, e, np.nan)
+    fourth = x[4:] - 4 * x[3:-1] + 6 * x[2:-2] - 4 * x[1:-3] + x[:-4]
+    fourth = fourth[np.isfinite(fourth)]
+    return float(np.sqrt(np.mean(fourth**2) / 70.0)) if len(fourth) > 20 else float("nan")

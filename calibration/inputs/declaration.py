@@ -1,0 +1,84 @@
+"""A drive as its rig file declares it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+#: what a response stands for: a balance of forces, or one sensor against another
+FORCES = ("effort", "force", "current", "acceleration")
+SENSORS = ("position2", "position")
+#: terms of the declared model of a force
+TERMS = ("inertia", "viscous", "coulomb", "offset", "drift", "stiffness", "gravity")
+
+
+@dataclass(frozen=True)
+class Column:
+    """Where a channel is in the file, its unit, and the factor to the rig's unit."""
+
+    column: str | int
+    unit: str
+    scale: float = 1.0
+    offset: float = 0.0  # rig units, added after the scale
+    wrap: float | None = None  # length of the counter, file units
+    delay_s: float = 0.0  # known lateness, taken out
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A rotating part: its period in position units; `period_s` for a drive at constant rate."""
+
+    name: str
+    period: float | None
+    period_s: float | None
+    harmonics: int
+    kind: str | None
+
+
+@dataclass(frozen=True)
+class Response:
+    """What a balance explains: `gain` times a column, in `unit`; over another column where `divide_by` is
+    given."""
+
+    channel: str
+    unit: str
+    gain: float = 1.0
+    divide_by: str | None = None
+
+    @property
+    def is_force(self) -> bool:
+        """True for a balance of forces, False for one sensor against another."""
+        return self.channel in FORCES
+
+
+@dataclass(frozen=True)
+class Controller:
+    """The law that makes the effort: gains by name (kp, ki, kd, kv), of the error reference - position."""
+
+    law: str
+    gains: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A rig file, checked. `constants` are known coefficients of the model's terms, by the term's name."""
+
+    name: str
+    path: Path
+    columns: dict[str, Column]
+    responses: tuple[Response, ...]
+    estimate: tuple[str, ...]
+    stages: tuple[Stage, ...]
+    constants: dict[str, float]
+    runs: dict[str, Any]
+    wall_time: dict[str, Any]
+    delimiter: str | None
+    names: tuple[str, ...]
+    hold_out: float
+    smooth_s: float | None
+    analyse_period_s: float | None
+    turn: float | None  # position units per turn
+    sample_period_s: float | None
+    controller: Controller | None
+    raw: dict[str, Any] = field(default_factory=dict)

@@ -1,0 +1,146 @@
+"""What is wrong with columns before any physics: counters that wrap, signed numbers written unsigned, spikes,
+samples that repeat, readings at the end of their range."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.inputs.declaration import Rig
+from calibration.inputs.record import Record, Repair
+from calibration.readers.run import Array
+
+WORDS = tuple(2.0**k for k in (8, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 22, 24, 32))
+CIRCLES = (1.0, 24.0, 360.0, 2 * np.pi, 86400.0, 1296000.0, 400.0, 1000.0)
+NEAR = 0.2  # of the counter's length, by which a wrap's jump may differ: what is moved in one row
+SPIKE = 12.0  # robust deviations from the neighbours' line
+MOST_SPIKES = 0.01  # of rows: more is no spike but the signal
+FROZEN = 5  # rows: a column that stands still for so long while it moves before and after
+MOVING = ("position", "position2", "velocity", "reference")
+SLOW = ("supply", "temperature", "normal")  # what leaps there may be real
+AT_END = 0.002  # of rows at one extreme value, in stretches: the reading is at its end
+
+
+def repair(record: Record, rig: Rig) -> None:
+    """Repair the record's columns in place; what was done is in `record.repairs`."""
+    for channel, where in rig.columns.items():
+        if channel == "time":
+            continue
+        x = record.columns[channel]
+        raw = (x - where.offset) / where.scale
+        if where.wrap is None:
+            raw, found = _undeclared_wrap(raw, channel)
+            if found is not None:
+                size = found.size * abs(where.scale)
+                record.repairs.append(Repair(found.kind, channel, found.rows, size, found.note))
+                x = raw * where.scale + where.offset
+        bad = _spikes(x, record.columns["t"], record.period_s)
+        if channel not in SLOW and bad.any():
+            size = float(np.nanmax(np.abs(x[bad] - np.nanmedian(x))))
+            rows = ", ".join(str(k + 1) for k in np.flatnonzero(bad)[:5])
+            note = f"rows {rows}{' …' if bad.sum() > 5 else ''} are far off their neighbours: left out"
+            record.repairs.append(Repair("spike", channel, int(bad.sum()), size, note))
+            x = np.where(bad, np.nan, x)
+        if channel in ("effort", "current", "force"):
+            _saturation(record, channel, x)
+        record.columns[channel] = x
+    _repeats(record, rig)
+
+
+def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
+    """Undo jumps by the whole length of a counter that nobody declared."""
+    good = np.flatnonzero(np.isfinite(raw))
+    x = raw[good]
+    if len(x) < 50:
+        return raw, None
+    span = float(x.max() - x.min())
+    step = np.diff(x)
+    usual = float(np.quantile(np.abs(step), 0.98))
+    jumps = np.abs(step) > max(0.5 * span, 8 * usual)
+    if span <= 0 or not jumps.any() or jumps.mean() > 0.2:
+        return raw, None
+    size = float(np.median(np.abs(step[jumps])))
+    integers = bool(np.allclose(x, np.round(x)))
+    lengths = [w for w in (WORDS if integers else CIRCLES) + ((360.0,) if integers else ()) if w >= span * 0.999]
+    length = min(lengths, key=lambda w: abs(w - size), default=0.0)
+    # a counter's jump is its length less what is moved in a row: never more than that and a little
+    if not length or abs(length - size) > NEAR * length or np.mean(np.abs(np.abs(step[jumps]) - length) < NEAR * length) < 0.9:
+        return raw, None
+    out = raw.copy()
+    out[good] = np.unwrap(x, period=length)
+    # there and back in a row or two is a spike, not a wrap
+    turns = np.round((out[good] - x) / length)
+    runs = np.diff(np.flatnonzero(np.concatenate([[True], np.diff(turns) != 0, [True]])))
+    if len(runs) > 2 and np.max(runs[1:-1]) <= 2 and runs[1:-1].sum() < 0.01 * len(x):
+        return raw, None
+    if np.abs(np.diff(out[good])).max() > 0.5 * span:
+        return raw, None
+    count = int(np.count_nonzero(np.diff(turns)))
+    kind, note = "wrap", f"a counter of {length:g} wraps: joined"
+    signed = integers and channel not in MOVING and np.ptp(turns) == 1
+    if signed:
+        high = x > length / 2
+        out[good] = np.where(high, x - length, x)
+        kind, note = "signed", f"signed numbers of {length:g} values written unsigned: {length - 1:g} is -1"
+    return out, Repair(kind, channel, count, length, note)
+
+
+def _spikes(x: Array, t: Array, period: float) -> np.ndarray:
+    """Rows far off the line through their neighbours, which agree with each other."""
+    n = len(x)
+    bad = np.zeros(n, dtype=bool)
+    if n < 50:
+        return bad
+    for width in (1, 2):  # single rows, then pairs
+        before, after = np.roll(x, width), np.roll(x, -width)
+        off = x - (before + after) / 2
+        off[:width], off[-width:] = 0.0, 0.0
+        wide_before, wide_after = np.roll(x, width + 1), np.roll(x, -width - 1)
+        calm = np.abs((before + after) / 2 - (wide_before + wide_after) / 2)
+        near = np.abs(after - before)
+        finite = np.isfinite(off)
+        if finite.sum() < 50:
+            return bad
+        noise = 1.4826 * float(np.nanmedian(np.abs(off)))
+        noise = max(noise, float(np.nanquantile(np.abs(off), 0.95)) / 2)
+        extreme = np.abs(off) > SPIKE * noise
+        alone = np.abs(off) > 4 * np.maximum(near, calm)
+        bad |= np.asarray(finite & extreme & alone & (noise > 0))
+    gap = np.zeros(n, dtype=bool)
+    gap[1:] = np.diff(t) > 2.5 * period
+    bad &= ~(gap | np.roll(gap, -1))
+    return bad if bad.sum() <= max(3, MOST_SPIKES * n) else np.zeros(n, dtype=bool)
+
+
+def _saturation(record: Record, channel: str, x: Array) -> None:
+    """Note an effort that stays at one extreme value: there it says nothing of the force."""
+    good = x[np.isfinite(x)]
+    if len(good) < 200 or np.ptp(good) == 0 or len(np.unique(good)) < 20:
+        return
+    for end in (good.max(), good.min()):
+        at = x == end
+        pairs = int(np.sum(at[1:] & at[:-1]))
+        if pairs > max(AT_END * len(good), 10) and abs(end) > 0.9 * np.abs(good).max():
+            note = f"{int(at.sum())} rows stay at {end:g}: the end of its range"
+            record.repairs.append(Repair("saturation", channel, int(at.sum()), float(end), note))
+
+
+def _repeats(record: Record, rig: Rig) -> None:
+    """Rows in which every moving column repeats the row before while the motion goes on: a frame was lost."""
+    present = [c for c in rig.columns if c in record.columns and c not in ("time", "temperature", "supply")]
+    if len(present) < 2 or record.rows < 200:
+        return
+    same = np.ones(record.rows - 1, dtype=bool)
+    for c in present:
+        same &= np.diff(record.columns[c]) == 0
+    x = record.columns["position"]
+    usual = float(np.nanmedian(np.abs(np.diff(x))))
+    if usual == 0 or not same.any():
+        return
+    quick = np.abs(np.nan_to_num(x[2:] - x[:-2])) > usual  # over two rows it moved
+    lost = np.concatenate([[False], same[:-1] & quick, [False]])
+    if not 3 <= lost.sum() <= 0.2 * record.rows:
+        return
+    for c in present:
+        record.columns[c] = np.where(lost, np.nan, record.columns[c])
+    note = f"{int(lost.sum())} rows repeat the row before while the drive moves: left out"
+    record.repairs.append(Repair("repeat", "all", int(lost.sum()), float(lost.sum()), note))

@@ -1,0 +1,45 @@
+"""What was repaired in columns, as findings: sensors and clocks come before any physics."""
+
+from __future__ import annotations
+
+from calibration.decide.finding import Finding, Parameter
+from calibration.inputs.record import Record
+
+#: kind of repair -> name of the catalogue
+CALLED = {"wrap": "log_wrap", "signed": "log_wrap", "spike": "sample_loss", "repeat": "sample_loss", "saturation": "log_wrap"}
+SAID = {"saturation"}  # told, but no fault of the log
+FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
+CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise
+
+
+def repairs_found(records: list[Record]) -> list[Finding]:
+    """One finding per kind and column, over all files."""
+    groups: dict[tuple[str, str], list[tuple[Record, int, float, str]]] = {}
+    for r in records:
+        for fix in r.repairs:
+            if fix.kind not in SAID:
+                groups.setdefault((fix.kind, fix.channel), []).append((r, fix.rows, fix.size, fix.note))
+    out = []
+    for (kind, channel), found in groups.items():
+        rows = sum(n for _, n, _, _ in found)
+        if rows < FEWEST.get(kind, 1):
+            continue
+        where = f"{channel} column" if channel != "all" else "all columns"
+        files = f" in {len(found)} of {len(records)} files" if len(records) > 1 else ""
+        count = Parameter(float(rows), "rows", float(rows), float(rows))
+        parameters = {"count": count}
+        if kind in ("wrap", "signed"):
+            size = found[0][2]
+            parameters["length"] = Parameter(size, "rig units", size, size)
+        out.append(
+            Finding(
+                CALLED[kind],
+                "S",
+                "clock",
+                evidence=CERTAIN,
+                share=0.0,
+                note=f"{where}{files}: {found[0][3]}",
+                parameters=parameters,
+            )
+        )
+    return out

@@ -1,0 +1,73 @@
+"""Something that is added to the command behind the logged effort: a line of its own frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.names.name import FORCE, Name
+from calibration.names.repeats import repeat_frequency
+from calibration.names.scene import Scene
+from calibration.names.sines import peaks
+from calibration.readers.run import Array
+
+TURNS = 6.0  # cycles within a file before a frequency is a frequency
+ODD = (1, 3, 5, 7, 9)  # of a square wave
+FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine
+
+
+def columns(s: Scene) -> list[Candidate]:
+    """Sines of a fixed frequency, alone and with a square wave's overtones; every file has its own phase.
+
+    Multiples of the frequency at which the motion repeats itself are left out: whatever follows the motion
+    has them.
+    """
+    v = s.view
+    files = s.problem.session
+    t = v.t[v.rows]
+    length = min(float(t[files == k].max()) for k in np.unique(files))
+    if length <= 0:
+        return []
+    f0 = repeat_frequency(v)
+    top = 0.5 / (v.period_s * max(v.step, 1))
+    avoid = np.arange(1, int(top / f0) + 1) * f0 if f0 else np.zeros(0)
+    out = []
+    few = len(np.unique(files)) <= FEW
+    for f in peaks(s, t, length, TURNS / length, 5, avoid):
+        for overtones in ((1,), ODD) if few and 3 * f < top else ((1,),):
+
+            def shape(p: Array, overtones: tuple[int, ...] = overtones) -> Array:
+                at = [k for k in overtones if k * p[0] < top]
+                return np.hstack([sine_columns(t * k * p[0], files) for k in at])
+
+            out.append(
+                Candidate(
+                    "command_disturbance",
+                    "time",
+                    shape(np.array([f])),
+                    (("amplitude", s.unit),),
+                    kind="line",
+                    frequency=f,
+                    fixed={"frequency": (f, "Hz")},
+                    shape=shape,
+                    steps=(0.1 / length,),
+                    searched=1,
+                    twins=() if len(overtones) > 1 else ("structural_mode",),
+                )
+            )
+    return out
+
+
+def lacks(s: Scene) -> str:
+    """An effort."""
+    return "" if s.view.response.channel in ("effort", "current", "force") else "a column of the effort"
+
+
+NAME = Name(
+    "command_disturbance",
+    (FORCE,),
+    columns,
+    ("structural_mode",),
+    "the same motion at another speed: a disturbance keeps its frequency and size; at rest it stays",
+    lacks,
+)

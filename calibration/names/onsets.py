@@ -1,0 +1,42 @@
+"""Friction that steps at one time: shared by the names that do."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.names.scene import Scene
+from calibration.readers.run import Array
+
+TRIALS = 24  # onsets that are tried
+
+
+def steps(s: Scene, name: str, weight: Array, label: tuple[str, str], sign: int) -> list[Candidate]:
+    """A step of `weight` (full rate) at one time of the clock that all files share; and at the same time of
+    every file."""
+    v = s.view
+    out = []
+    for clock, where in ((v.clock - v.clock.min(), "onset"), (v.t, "onset_in_each_run")):
+        if where == "onset_in_each_run" and len(np.unique(v.file)) < 2:
+            continue
+        span = float(clock.max())
+
+        def full(p: Array, clock: Array = clock) -> Array:
+            return np.asarray(weight * np.clip((clock - p[0]) / (2 * v.period_s * max(v.step, 1)), 0.0, 1.0))
+
+        shape = s.shaped(full)
+        for at in np.linspace(0.06, 0.94, TRIALS) * span:
+            out.append(
+                Candidate(
+                    name,
+                    "time",
+                    shape(np.array([at])),
+                    (label,),
+                    sign=sign,
+                    fixed={where: (float(at), "s")},
+                    shape=shape,
+                    steps=(span / TRIALS / 3,),
+                    searched=1,
+                )
+            )
+    return out

@@ -1,0 +1,103 @@
+"""A gap that a reversal must cross before the other side follows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.names.name import FORCE, SENSORS, Name
+from calibration.names.scene import Scene
+from calibration.readers.run import Array
+from plant.effects.signals import RATE, TIME
+
+PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)  # gaps that are tried, of the travel
+GROWS = 1.5  # from one gap to the next, between two sensors
+
+
+def gap_angle(s: Scene, gap: float) -> Array:
+    """Where the driven side is in the gap, -1 .. 1 at full rate: the effect's own formula, whose gap is in
+    arcsec at the axis."""
+    v = s.view
+    unit = np.pi / 648000.0  # rad per arcsec
+    step = np.diff(v.x, prepend=v.x[0])
+    step[np.concatenate([[True], np.diff(v.file) != 0])] = 0.0
+    rate = step / v.period_s / gap * unit  # in gaps of one arcsec per s
+    time = np.arange(len(v.t)) * v.period_s
+    e = s.formula("play", {TIME: time, RATE: rate}, {"gap": unit, "encoder": 2.0})
+    return np.asarray(e / (0.5 * unit))
+
+
+def columns(s: Scene) -> list[Candidate]:
+    """Between two sensors: the place in the gap. In a balance of forces: friction that is missing while the
+    gap is crossed."""
+    if not s.both:
+        return []
+    if not s.force:
+        return _between_sensors(s)
+    v = s.view
+    stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    out = []
+    for part in PARTS:
+        gap = part * stroke
+        if np.mean(np.abs(v.since) < gap) < 0.005:
+            continue
+
+        def full(p: Array) -> Array:
+            return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), 0.0)))
+
+        shape = s.shaped(full)
+        out.append(
+            Candidate(
+                "play",
+                "reversal",
+                shape(np.array([gap])),
+                (("missing_force", s.unit),),
+                sign=1,
+                fixed={"gap": (gap, s.angle_unit)},
+                shape=shape,
+                steps=(0.15 * gap,),
+                searched=1,
+            )
+        )
+    return out
+
+
+def _between_sensors(s: Scene) -> list[Candidate]:
+    reach = 0.2 * s.span
+    gap = max(float(np.median(np.abs(s.residual))) / 8, 1e-6 * s.span, 1e-12)
+    out = []
+    while gap < reach:
+
+        def full(p: Array) -> Array:
+            return gap_angle(s, max(float(p[0]), 1e-9 * s.span))
+
+        shape = s.shaped(full)
+        out.append(
+            Candidate(
+                "play",
+                "reversal",
+                shape(np.array([gap])),
+                (("half_step", s.unit),),
+                fixed={"gap": (gap, s.angle_unit)},
+                shape=shape,
+                steps=(0.15 * gap,),
+                searched=1,
+            )
+        )
+        gap *= GROWS
+    return out
+
+
+def lacks(s: Scene) -> str:
+    """Reversals."""
+    return "" if s.both else "reversals of the motion"
+
+
+NAME = Name(
+    "play",
+    (SENSORS, FORCE),
+    columns,
+    ("shaft_compliance", "presliding"),
+    "a slow reversal under load; lock the output and step the torque: play is a step, compliance a line",
+    lacks,
+)

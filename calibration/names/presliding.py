@@ -1,0 +1,64 @@
+"""Friction that builds up over a travel after every reversal."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.candidates.friction import stop_operator
+from calibration.names.name import FORCE, Name
+from calibration.names.scene import Scene
+from calibration.readers.run import Array
+
+RADII = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.14, 0.2, 0.28, 0.36)  # of the usual stroke
+FEWEST = 0.005  # of the rows within twice the radius
+
+
+def columns(s: Scene) -> list[Candidate]:
+    """One or two elastoplastic elements, less the sign of motion: the loop alone, sliding friction as it
+    is. A positive size only: the other sign would feed energy."""
+    if not s.both:
+        return []
+    v = s.view
+    stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    labels = (("loop_force", s.unit), ("second_loop_force", s.unit))
+
+    def element(radius: float) -> Array:
+        return stop_operator(v.x, v.file, radius) / radius - v.direction
+
+    def one(p: Array) -> Array:
+        return element(max(float(p[0]), 1e-6 * stroke))
+
+    def two(p: Array) -> Array:
+        return np.column_stack([one(p), one(p / 2)])
+
+    out = []
+    for part in RADII:
+        radius = part * stroke
+        if np.mean(np.abs(v.since) < 2 * radius) < FEWEST:
+            continue
+        fixed = {"breakaway_travel": (radius, s.angle_unit)}
+        for full, width in ((one, 1), (two, 2)):
+            shape = s.shaped(full)
+            out.append(
+                Candidate(
+                    "presliding",
+                    "reversal",
+                    shape(np.array([radius])),
+                    labels[:width],
+                    sign=1,
+                    fixed=fixed,
+                    shape=shape,
+                    steps=(0.1 * radius,),
+                    searched=1,
+                )
+            )
+    return out
+
+
+def lacks(s: Scene) -> str:
+    """Reversals."""
+    return "" if s.both else "reversals of the motion"
+
+
+NAME = Name("presliding", (FORCE,), columns, ("stribeck_change", "play"), "a sine smaller than break-away", lacks)

@@ -1,0 +1,134 @@
+"""Lines over position or time: columns for the names that are one, and the search for those nobody
+declared."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.names.scene import Scene
+from calibration.readers.run import Array
+
+ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
+PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
+FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
+STANDS_OUT = 12.0  # times the spectrum around it, in power
+HIGHEST = 4000  # cycles within the travel that are searched
+
+
+def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
+    """A sine pair per session at every harmonic of every stage of this kind that the log travels far enough
+    for; `default`: stages without a kind, too."""
+    out = []
+    x = s.view.x[s.view.rows]
+    for stage in s.view.rig.stages:
+        if stage.period is None or (stage.kind or (kind if default else "")) != kind:
+            continue
+        for h in range(1, stage.harmonics + 1):
+            rate = h / stage.period
+            if s.span * rate < ENOUGH and stage.harmonics < 3 or s.span * rate < 0.5 or not seen(s, rate):
+                continue
+            out.append(
+                Candidate(
+                    kind,
+                    "motor_angle" if kind in ("motor_cogging", "torque_ripple") else "axis_angle",
+                    sine_columns(x * rate, s.session),
+                    (("amplitude", s.unit),),
+                    kind="line",
+                    stage=stage.name,
+                    harmonic=h,
+                    order=rate * (s.view.turn or 1.0),
+                )
+            )
+    return out
+
+
+def seen(s: Scene, rate: float) -> bool:
+    """False when most rows move more than PER_ROW of the line's period per sample or within the filter."""
+    step = s.view.period_s * max(s.view.step, s.view.sigma)
+    return bool(np.mean(np.abs(s.view.speed[s.view.rows]) * rate * step < PER_ROW) > 0.3)
+
+
+def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
+    """Lines over position at no stage's period that stand out of the residual's spectrum."""
+    x = s.view.x[s.view.rows]
+    taken = [h / g.period for g in s.view.rig.stages if g.period for h in range(1, max(g.harmonics, 3) + 1)]
+    if s.span <= 0:
+        return []
+    out = []
+    for rate in peaks(s, x, s.span, FREE_TURNS / s.span, most):
+        if any(abs(rate - r) * s.span < 0.8 for r in taken) or not seen(s, rate):
+            continue
+        out.append(
+            Candidate(
+                name,
+                "axis_angle",
+                sine_columns(x * rate, s.session),
+                (("amplitude", s.unit),),
+                kind="line",
+                order=float(rate * (s.view.turn or 1.0)),
+                searched=1,
+            )
+        )
+    return out
+
+
+def peaks(s: Scene, z: Array, span: float, least: float, most: int, avoid: Array | None = None) -> list[float]:
+    """Frequencies over z (cycles per unit of z, `least` and up) where the residual's spectrum stands out,
+    summed over sessions; those of `avoid` left out."""
+    train = s.problem.train
+    top = HIGHEST / span
+    step = np.abs(np.diff(z[train]))
+    usual = float(np.median(step[step > 0])) if (step > 0).any() else 0.0
+    if usual > 0:
+        top = min(top, PER_ROW / usual)
+    if top <= 2 * least:
+        return []
+    power = np.zeros(0)
+    low = float(z[train].min())
+    cells = int(min(np.ceil(span * top * 8), 2**21))
+    size = 1 << int(np.ceil(np.log2(max(2 * cells, 16))))
+    width = span / cells
+    for k in np.unique(s.problem.session[train]):
+        rows = train & (s.problem.session == k)
+        cell = np.clip(((z[rows] - low) / width).astype(np.int64), 0, cells - 1)
+        binned = np.bincount(cell, s.residual[rows], minlength=cells)
+        one = np.abs(np.fft.rfft(binned, size)) ** 2 / max(int(rows.sum()), 1)
+        power = one if len(power) == 0 else power + one
+    f = np.arange(len(power)) / (size * width)
+    use = (f >= least) & (f <= top)
+    if avoid is not None:
+        use &= ~np.isin(np.arange(len(f)), np.flatnonzero(avoid_mask(f, avoid, 0.75 / span)))
+    ratio = power / np.maximum(_around(power, max(int(12 * size * width / span), 8)), 1e-300)
+    ratio[~use] = 0.0
+    found: list[float] = []
+    for k in np.argsort(-ratio)[: 60 * most]:
+        if ratio[k] < STANDS_OUT or len(found) >= most:
+            break
+        if 0 < k < len(ratio) - 1 and power[k] >= power[k - 1] and power[k] >= power[k + 1]:
+            if all(abs(f[k] - g) * span > 1.0 for g in found):
+                found.append(float(f[k]))
+    return found
+
+
+def avoid_mask(f: Array, avoid: Array, reach: float) -> Array:
+    """True where f is within `reach` of a member of `avoid` (ascending)."""
+    if len(avoid) == 0:
+        return np.zeros(len(f), dtype=bool)
+    near = np.clip(np.searchsorted(avoid, f), 1, len(avoid) - 1) if len(avoid) > 1 else np.zeros(len(f), int)
+    gap = np.abs(f - avoid[near])
+    if len(avoid) > 1:
+        gap = np.minimum(gap, np.abs(f - avoid[near - 1]))
+    return np.asarray(gap < reach)
+
+
+def _around(power: Array, half: int) -> Array:
+    """Median power around every bin."""
+    from scipy.ndimage import uniform_filter1d
+
+    # a median of blocks, widened: a running median over many bins is slow
+    count = len(power) // half + 1
+    padded = np.pad(power, (0, count * half - len(power)), mode="edge").reshape(count, half)
+    block = np.median(padded, axis=1)
+    level = uniform_filter1d(block, 3, mode="nearest")
+    return np.asarray(np.repeat(level, half)[: len(power)]) / np.log(2.0)
