@@ -14,6 +14,7 @@ from calibration.channels.problem import Problem
 from calibration.channels.view import View, view_of
 from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import finding_of
+from calibration.harmonics import findings_of
 from calibration.decide.select import Selection, design, select
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Response, Rig
@@ -121,22 +122,30 @@ def _balance(
 ) -> Balance:
     rng = np.random.default_rng(seed)
     problem = problem_of(view, records, hold_out)
-    bounds = _bound(problem)
     delay = None
     before = None
+    notes = []
+    if _acts_on_the_drive(view, problem):
+        view.response = replace(response, gain=-response.gain)
+        problem = problem_of(view, records, hold_out)
+        notes.append(
+            f"{response.channel}: points against the motion, so it is what acts on the drive, or the position"
+            " counts the other way; its sign is turned here, and so are the signs of what is found in it"
+        )
     if response.channel in ("effort", "current", "force") and view.dynamic:
         tell(f"{response.channel}: delay")
         scene = _scene(view, problem)
         delay = effort_delay(scene)
         if delay is not None:
             before = _held_rms(problem)
-            moved = problem_of(view, records, hold_out, delay.parameters["delay"].value)
-            _bound(moved)
-            problem = moved
+            problem = problem_of(view, records, hold_out, delay.parameters["delay"].value)
     floor, source = floor_of(view, problem)
     problem.floor = floor or 0.0
-    s, scene = _search(view, problem, rng, tell, delay is not None)
-    findings = [_name(finding_of(s, k), scene) for k in range(len(s.chosen))]
+    s, scene = _search(view, problem, rng, tell)
+    bounds = _bound(s)
+    if bounds:
+        s, scene = _search(view, problem, rng, tell)
+    findings = [_name(f, scene) for k in range(len(s.chosen)) for f in findings_of(s, k)]
     tell(f"{response.channel}: what no name explains")
     # only what the catalogue leaves may be called unknown: a smooth function can imitate most of its names
     more = select(
@@ -154,27 +163,43 @@ def _balance(
     lacks = [
         f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)
     ]
-    return Balance(view, problem, scene, together, s, findings, floor, source, delay, before, lacks, bounds)
+    return Balance(view, problem, scene, together, s, findings, floor, source, delay, before, lacks, [*notes, *bounds])
 
 
-def _bound(problem: Problem) -> list[str]:
-    """Masses and friction are not negative: a term that the fit wants so is left out, and said."""
-    out = []
-    labels = [n for n, _ in problem.base_labels]
+def _acts_on_the_drive(view: View, problem: Problem) -> bool:
+    """Whether masses and friction, taken together, come out negative: the sign convention is the other."""
+    if not view.response.is_force or view.response.channel == "acceleration":
+        return False
     rows = problem.train
-    while rows.any():
-        beta = np.linalg.lstsq(problem.base[rows], problem.y[rows], rcond=None)[0]
-        bad = [k for k, n in enumerate(labels) if n in ("inertia", "viscous", "coulomb") and beta[k] < 0 and problem.base[rows, k].any()]
-        if not bad:
-            break
-        k = min(bad, key=lambda j: beta[j] * float(np.std(problem.base[rows, j])))
-        out.append(f"{labels[k]}: the fit wants {beta[k]:.4g}, and a negative one feeds energy: kept at zero")
-        problem.base = problem.base.copy()
-        problem.base[:, k] = 0.0
+    weight = np.zeros((len(problem.y), 0))
+    if view.turn:  # a weight that nobody declared must not turn the sign
+        angle = view.x[view.rows] / view.turn * 2 * np.pi
+        weight = np.column_stack([np.cos(angle), np.sin(angle)])
+    x = np.hstack([problem.base, weight])
+    beta = np.linalg.lstsq(x[rows], problem.y[rows], rcond=1e-8)[0]
+    share = {
+        n: float(beta[k] * np.std(x[rows, k]))
+        for k, (n, _) in enumerate(problem.base_labels)
+        if n in ("inertia", "viscous", "coulomb")
+    }
+    return bool(share) and sum(share.values()) < 0 and max(share.values()) < -0.2 * min(share.values())
+
+
+def _bound(s: Selection) -> list[str]:
+    """Masses and friction are not negative: a term that the final fit wants so is taken out of the balance,
+    and said."""
+    problem, out = s.problem, []
+    for k, (name, _) in enumerate(problem.base_labels):
+        value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
+        if name in ("inertia", "viscous", "coulomb") and value < 0 and problem.base[:, k].any():
+            why = "" if value < -2 * error else ", within its error"
+            out.append(f"{name}: the fit gives {value:.4g}{why}; a negative one feeds energy: kept at zero")
+            problem.base = problem.base.copy()
+            problem.base[:, k] = 0.0
     return out
 
 
-def _scene(view: View, problem: Problem, chosen: list[object] | None = None) -> Scene:
+def _scene(view: View, problem: Problem) -> Scene:
     """The declared terms' coefficients, and what a flexible fit leaves."""
     rows = problem.train
     beta = np.linalg.lstsq(problem.base[rows], problem.y[rows], rcond=None)[0]
@@ -196,7 +221,7 @@ def _flatten(scene: Scene, extra: np.ndarray) -> None:
 
 
 def _search(
-    view: View, problem: Problem, rng: np.random.Generator, tell: Callable[[str], None], moved: bool
+    view: View, problem: Problem, rng: np.random.Generator, tell: Callable[[str], None]
 ) -> tuple[Selection, Scene]:
     """Select; look again for lines under what was found; select again from all."""
     kind = FORCE if view.response.is_force else SENSORS

@@ -59,6 +59,7 @@ def velocity_against_position(view: View, held: Array) -> Agreement | None:
         step = float(fit.beta[2]) / scale
         delay = float(np.clip(delay + step, -LONGEST * view.period_s, LONGEST * view.period_s))
     error = float(np.sqrt(max(fit.covariance[2, 2], 0.0))) / abs(scale)
+    error = max(error, _scatter(view, w, delay, a, v, train))
     last = gls(view.delayed(w, delay)[rows], np.column_stack([v[rows], one]), train, 0, block)
     b, c = _rms(before.residual[test]), _rms(last.residual[test])
     floor = _noise(last.residual, test)
@@ -70,6 +71,19 @@ def velocity_against_position(view: View, held: Array) -> Agreement | None:
     )
     unit = view.rig.columns["velocity"].unit
     return Agreement("velocity", unit, delay, error, b, c, floor, late)
+
+
+def _scatter(view: View, w: Array, delay: float, a: Array, v: Array, train: Array) -> float:
+    """Standard error of the delay from what single files say; 0 for fewer than three."""
+    files = view.file[view.rows]
+    moved = view.delayed(w, delay)[view.rows]
+    found = []
+    for k in np.unique(files):
+        rows = train & (files == k)
+        if rows.sum() > FEWEST:
+            x = np.column_stack([v[view.rows], np.ones(len(files)), -a[view.rows]])[rows]
+            found.append(float(np.linalg.lstsq(x, moved[rows], rcond=None)[0][2]))
+    return float(np.std(found, ddof=1) / np.sqrt(len(found))) if len(found) >= 3 else 0.0
 
 
 def _rms(x: Array) -> float:

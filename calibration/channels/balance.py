@@ -63,6 +63,8 @@ def _response(view: View, delay_s: float) -> tuple[Array, Mask]:
     else:
         y = view.delayed(view.columns[r.channel], delay_s)
     y = y * r.gain
+    if r.ratio:
+        y = y - r.ratio * view.x
     if r.divide_by:
         below = view.columns[r.divide_by]
         if r.divide_by == "supply":
@@ -76,7 +78,9 @@ def _response(view: View, delay_s: float) -> tuple[Array, Mask]:
 def default_terms(view: View) -> tuple[str, ...]:
     """The declared model where the rig file does not give one."""
     if not view.response.is_force:
-        return ("offset", "scale") if view.response.channel == "position2" else ("offset", "drift")
+        if view.response.channel == "position":
+            return ("offset", "drift")
+        return ("offset", "scale") if view.response.ratio is None else ("offset",)
     return ("viscous", "coulomb", "offset")
 
 

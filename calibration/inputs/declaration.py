@@ -45,6 +45,7 @@ class Response:
     unit: str
     gain: float = 1.0
     divide_by: str | None = None
+    ratio: float | None = None  # of a second sensor to the first; None: estimated
 
     @property
     def is_force(self) -> bool:

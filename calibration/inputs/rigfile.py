@@ -73,7 +73,8 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
     }
     given = data["response"] if isinstance(data["response"], list) else [data["response"]]
     responses = tuple(
-        Response(r["channel"], r["unit"], float(r.get("gain", 1.0)), r.get("divide_by")) for r in given
+        Response(r["channel"], r["unit"], float(r.get("gain", 1.0)), r.get("divide_by"), r.get("ratio"))
+        for r in given
     )
     _check(path, data, columns, responses)
     control = data.get("controller")
@@ -127,6 +128,8 @@ def _check(
     for r in responses:
         if r.channel not in columns and r.channel != "acceleration":
             refuse(f"response.channel: '{r.channel}' is not among the columns ({have})")
+        if r.ratio is not None and r.channel != "position2":
+            refuse("response.ratio: is for a second sensor (channel: position2)")
         if r.gain == 0:
             refuse("response.gain: 0 erases the response")
         if r.divide_by is not None and r.divide_by not in columns:

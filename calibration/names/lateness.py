@@ -3,12 +3,14 @@ other."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from calibration.decide.finding import Finding, Parameter
 from calibration.names import stribeck_change
 from calibration.names.scene import Scene
-from calibration.names.unknown import plain
+from calibration.names.unknown import any_friction_curve, plain
 from calibration.readers.run import Array
 from calibration.statistics.regression import block_covariance
 
@@ -16,33 +18,42 @@ SIGNIFICANT = 5.0  # standard errors
 MATTERS = 0.03  # of the mean square on held-out rows, beside the flexible fit
 SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output
 LONGEST = 25.0  # sample periods that are looked at
-ROUNDS = 4
+ROUNDS = 5
+PARTS = 5  # of the log, in each of which the delay must be seen
+ALIKE = 0.35  # of the delay: standard deviation over those parts
 
 
 def effort_delay(s: Scene) -> Finding | None:
-    """The delay of the response's column against the motion, positive when it tells of earlier times."""
+    """The delay of the response's column against the motion, positive when it tells of earlier times.
+
+    It is looked for beside loops, asymmetry and weight, and must beat friction over the speed; its size is
+    then taken beside a friction curve of any smooth shape, where that can be told from it.
+    """
     p, v = s.problem, s.view
     r = v.response
-    if p.train.sum() < 20 * p.base.shape[1]:
+    if p.train.sum() < 20 * p.base.shape[1] or r.divide_by:
         return None
     full = v.columns[r.channel] * r.gain
-    if r.divide_by:
-        return None
     known = p.y - s.at(full)  # what constants took off
+
+    def late(delay: float) -> Array:
+        return s.at(v.delayed(full, delay)) + known
+
+    delay, error = _converge(s, late)
     reach = LONGEST * v.period_s
-    delay, error = 0.0, np.inf
-    for _ in range(ROUNDS):
-        y = s.at(v.delayed(full, delay)) + known
-        step, error = _step(s, y)
-        delay = float(np.clip(delay + step, -reach, reach))
-        if abs(step) < 0.01 * v.period_s:
-            break
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
         return None
-    before, after = _left(s, p.y), _left(s, s.at(v.delayed(full, delay)) + known)
+    before, after = _left(s, p.y), _left(s, late(delay))
     share = 1 - (after / before) ** 2
     if share < MATTERS or any(_left(s, p.y, rival) < after for rival in _rivals(s)):
         return None
+    if not _everywhere(s, late(0.0), delay):
+        return None
+    curve = any_friction_curve(s)
+    finer, spread = _converge(s, late, curve)
+    if spread < abs(finer) / SIGNIFICANT and finer * delay > 0:
+        error = float(np.hypot(spread, (finer - delay) / 2))  # half of what the friction curve moves it by
+        delay = finer
     half = 1.96 * error
     word = "late" if delay > 0 else "early"
     return Finding(
@@ -56,22 +67,55 @@ def effort_delay(s: Scene) -> Finding | None:
     )
 
 
+def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = None) -> tuple[float, float]:
+    """The delay at which nothing of it is left, and its standard error."""
+    reach = LONGEST * s.view.period_s
+    delay, error = 0.0, np.inf
+    for _ in range(ROUNDS):
+        step, error = _step(s, late(delay), more)
+        delay = float(np.clip(delay + step, -reach, reach))
+        if abs(step) < 0.01 * s.view.period_s:
+            break
+    return delay, error
+
+
+def _everywhere(s: Scene, y: Array, delay: float) -> bool:
+    """A clock is late by the same time in every part of the log."""
+    p = s.problem
+    x = _columns(s)
+    rows = p.train
+    beta = np.linalg.lstsq(x[rows], y[rows], rcond=1e-8)[0]
+    rate = _rate(s, x @ beta)
+    q, _ = np.linalg.qr(x[rows])
+    e = y[rows] - x[rows] @ beta
+    d = -rate[rows]
+    d = d - q @ (q.T @ d)
+    parts = np.array_split(np.arange(len(e)), PARTS)
+    weight = np.array([float(d[k] @ d[k]) for k in parts])
+    found = np.array([float(d[k] @ e[k]) for k in parts]) / np.maximum(weight, 1e-300)
+    telling = weight > 0.1 * weight.mean()  # a part in which nothing moves says nothing
+    return bool(np.std(found[telling]) < ALIKE * abs(delay) and (found[telling] * delay > 0).all())
+
+
 def _columns(s: Scene, more: Array | None = None) -> Array:
     x = np.hstack([s.problem.base, plain(s), *([] if more is None else [more])])
     size = np.linalg.norm(x[s.problem.train], axis=0)
     return np.asarray(x[:, size > 0] / size[size > 0])
 
 
-def _step(s: Scene, y: Array) -> tuple[float, float]:
+def _rate(s: Scene, model: Array) -> Array:
+    rate = np.gradient(model) / s.problem.period_s
+    rate[1:][np.diff(s.problem.session) != 0] = 0.0
+    return np.asarray(rate)
+
+
+def _step(s: Scene, y: Array, more: Array | None = None) -> tuple[float, float]:
     """Delay that is left in y, and its standard error: the coefficient of the fitted force's rate."""
-    p, v = s.problem, s.view
-    x = _columns(s)
+    p = s.problem
+    x = _columns(s, more)
     rows = p.train
     beta = np.linalg.lstsq(x[rows], y[rows], rcond=1e-8)[0]
-    model = x @ beta
-    rate = np.gradient(model) / p.period_s
-    rate[1:][np.diff(p.session) != 0] = 0.0
-    full = np.column_stack([x, -rate])
+    full = np.column_stack([x, -_rate(s, x @ beta)])
     found = np.linalg.lstsq(full[rows], y[rows], rcond=1e-8)[0]
     e = y[rows] - full[rows] @ found
     cov = block_covariance(full[rows], e, p.block)

@@ -57,6 +57,7 @@ def columns(s: Scene) -> list[Candidate]:
                 shape=shape,
                 steps=(0.15 * gap,),
                 searched=1,
+                twins=("presliding",),
             )
         )
     return out

@@ -8,7 +8,7 @@ from calibration.candidates.candidate import Candidate, sine_columns
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 
-HARMONICS = 3  # of the travelled range, and 2 of every stage
+HARMONICS = 3  # of the travelled range, and up to 12 of every stage
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -21,7 +21,7 @@ def columns(s: Scene) -> list[Candidate]:
     places = [(h / period, "axis", h, False) for h in range(1, HARMONICS + 1)]
     for g in v.rig.stages:
         if g.period:
-            places += [(h / g.period, g.name, h, True) for h in (1, 2) if s.span * h / g.period > 1.5]
+            places += [(h / g.period, g.name, h, True) for h in range(1, min(g.harmonics, 12) + 1) if s.span * h / g.period > 1.5]
     out = []
     sessions = s.session
     for rate, stage, h, own in places:

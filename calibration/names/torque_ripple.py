@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from calibration.candidates.candidate import Candidate, sine_columns
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
@@ -14,20 +12,28 @@ from calibration.names.sines import stage_lines
 
 def columns(s: Scene) -> list[Candidate]:
     """Sines of a motor stage times the force that the motor makes."""
-    load = s.problem.y
-    if not np.isfinite(load).all() or s.view.response.channel == "acceleration":
+    if lacks(s):
         return []
+    load = s.problem.y - s.residual  # the declared part: the response itself would bring its noise along
     x = s.view.x[s.view.rows]
     stages = {g.name: g for g in s.view.rig.stages}
     out = []
     for c in [*stage_lines(s, "torque_ripple"), *stage_lines(s, "motor_cogging")]:
         stage = stages[str(c.stage)]
-        if not stage.period or (c.harmonic or 1) > 12:
+        if not stage.period or c.harmonic is None or c.harmonic > 12:
             continue
-        rate = (c.harmonic or 1) / stage.period
+        rate = c.harmonic / stage.period
         columns = sine_columns(x * rate, s.session, load)
         out.append(replace(c, name="torque_ripple", columns=columns, labels=(("ripple", "1"),)))
     return out
+
+
+def lacks(s: Scene) -> str:
+    """A force that is more than friction."""
+    more = {"inertia", "gravity_cos", "stiffness"} & set(s.declared)
+    if more and s.view.response.channel != "acceleration":
+        return ""
+    return "a force beside friction (mass or weight): else it is friction over position"
 
 
 NAME = Name(
@@ -36,4 +42,5 @@ NAME = Name(
     columns,
     ("motor_cogging",),
     "hold the speed and vary the torque: ripple grows, cogging stays",
+    lacks,
 )

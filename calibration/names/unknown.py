@@ -70,3 +70,11 @@ def plain(s: Scene) -> Array:
 
         parts.append(s.at(gravity(s)))
     return np.hstack(parts)
+
+
+def any_friction_curve(s: Scene) -> Array:
+    """Columns (n_fitted, 4): powers of the speed, even and odd, for a friction curve of any smooth shape."""
+    v = s.view
+    top = float(np.quantile(np.abs(v.speed[v.ok]), 0.98)) or 1.0
+    z = v.speed / top
+    return s.at(np.column_stack([z**k for k in (2, 3, 4, 5)]))
