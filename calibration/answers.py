@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from calibration.decide.controls import controls
 from calibration.decide.finding import Parameter
 from calibration.decide.parameters import interval
 from calibration.decide.select import CLOSEST, Selection
-from calibration.decide.verdict import Verdict, judge
-from calibration.readers.rig import Rig
+from calibration.decide.verdict import Verdict
 from calibration.readers.run import Array, Run
 
 Answer = tuple[Verdict, list[dict[str, str]], str]
@@ -74,109 +72,6 @@ def refusals(selections: dict[str, Selection]) -> list[tuple[str, str, str]]:
 
 
 GATE = "The largest score of all candidates, in this log and in copies of its residual that hold nothing"
-
-
-def bench(runs: list[Run], rig: Rig, hold_out: list[str], plots: bool) -> Answer:
-    """Answer for another drive's file with a rig file."""
-    from calibration.bench import analyse_bench
-    from calibration.report import plots as draw
-
-    found = analyse_bench(runs, rig, hold_out)
-    s, c = found.selection, found.context
-    verdict, separating = judge(found.findings)
-    turns = c.angle
-    v = Verdict(
-        verdict,
-        found.findings,
-        errors("torque", s, found.problem.floor),
-        found.held_out,
-        calibrated(s),
-        found.not_identifiable,
-        controls(s, None, float(np.ptp(turns))) + _stage_controls(found),
-        separating,
-        too_short(s, "") + ([] if np.any(c.direction) else ["the position does not move"]),
-        gate_rows({"T": s}),
-        refusals({"T": s}),
-    )
-    pictures = []
-    if plots:
-        for k in _worth_drawing(s):
-            chosen = s.chosen[k]
-            x, label = _domain(
-                chosen.candidate.domain,
-                c,
-                chosen.candidate.order if chosen.candidate.kind == "line" else None,
-            )
-            odd = c.direction if chosen.candidate.name == "position_friction" else None
-            pictures.append(
-                {
-                    "image": draw.domain_plot(s, x, label, _say(found, k), k, odd),
-                    "alt": "Fitted rows, the declared model and the other effects taken away",
-                }
-            )
-        pictures.append(
-            {
-                "image": draw.order_plot(
-                    s, turns, c.stages, "Amplitude over order", f"cycles per {_one(c.angle_unit)}"
-                ),
-                "alt": "Fitted rows; dotted: stages of the rig file, short marks: orders that were found",
-            }
-        )
-        pictures.append(
-            {
-                "image": draw.trace_plot(s, "Held-out residual before and after"),
-                "alt": "Rows nothing was fitted to",
-            }
-        )
-        pictures.append({"image": draw.gate_plot(s, "Is anything there at all?"), "alt": GATE})
-    return v, pictures, rig.name
-
-
-def _worth_drawing(s: Selection, most: int = 4) -> list[int]:
-    """One picture per name, the strongest first; an unnamed function is always drawn."""
-    names = [x.candidate.name for x in s.chosen]
-    first = [k for k, name in enumerate(names) if name not in names[:k]]
-    more = [k for k in range(len(names)) if k not in first]
-    return sorted([*first, *more[: max(most - len(first), 0)]])
-
-
-def _one(unit: str) -> str:
-    """Singular of a plural unit: cycles per motor turn."""
-    return unit.removesuffix("s") if unit.endswith("turns") else unit
-
-
-def _say(found: Any, k: int) -> str:
-    """Title of an effect's picture: the finding's name, not the candidate's."""
-    f = found.findings[k]
-    place = f" on {f.stage}" if f.stage else ""
-    harmonic = f", harmonic {f.harmonic}" if f.harmonic else ""
-    alike = f" (or {', '.join(f.equivalent[:2])}{' …' if len(f.equivalent) > 2 else ''})"
-    return f"{f.name}{place}{harmonic}{alike if f.equivalent else ''}"
-
-
-def _stage_controls(found: Any) -> list[dict[str, Any]]:
-    """Lines of the gear table at an order that is off by a resolution cell and a half."""
-    from dataclasses import replace
-
-    from calibration.candidates.candidate import sine_columns
-    from calibration.decide.controls import _better
-
-    out = []
-    s, c = found.selection, found.context
-    span = float(np.ptp(c.angle)) or 1.0
-    for k, chosen in enumerate(s.chosen[:6]):
-        x = chosen.candidate
-        if x.kind == "line" and x.order and x.name != "position_friction":
-            for shift in (1.5, -1.5):
-                order = x.order + shift / span
-                wrong = replace(x, columns=sine_columns(c.angle * order, c.session), shape=None)
-                out.append(
-                    {
-                        "what": f"order {order:.4g} in place of {x.order:.4g}",
-                        "accepted": _better(s, k, wrong),
-                    }
-                )
-    return out
 
 
 def _domain(name: str, c: Any, order: float | None) -> tuple[Array, str]:

@@ -8,11 +8,13 @@ from pathlib import Path
 
 from calibration.decide.verdict import Verdict, as_dict
 from calibration.errors import CalibrationInputError
+from calibration.inputs.declaration import Rig
+from calibration.inputs.record import Record
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.tables import read_table
 from calibration.readers.axis import is_axis_log, read_axis_log
 from calibration.readers.guide import is_guide_log, read_guide_log
-from calibration.readers.rig import Rig, load_rig
 from calibration.readers.run import Run
-from calibration.readers.table import read_table
 
 Plots = list[dict[str, str]]
 
@@ -97,7 +99,7 @@ def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
             runs += read_guide_log(path, text)
         elif rig is not None:
             kinds["rig"] = path
-            runs.append(read_table(path, rig))
+            runs += read_table(path, rig)
         else:
             raise CalibrationInputError(
                 path,
@@ -158,8 +160,15 @@ def answer(
         return guide_answer(runs, rig, hold_out, plots)
     if kind == "rig":
         assert rig is not None
-        tell("rig")
-        return answers.bench(runs, rig, hold_out, plots)
+        from calibration.drive import analyse
+        from calibration.driveanswer import drive_answer
+        from calibration.inputs.tables import set_starts
+
+        records = [r for r in runs if isinstance(r, Record)]
+        clock = set_starts(records, rig)
+        found = analyse(records, rig, hold_out, clock, tell)
+        tell("controls and pictures")
+        return drive_answer(found, plots)
     return answers.axis(runs, hold_out, out, plant, plots, tell, replay)
 
 

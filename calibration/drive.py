@@ -14,9 +14,9 @@ from calibration.channels.problem import Problem
 from calibration.channels.view import View, view_of
 from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import finding_of
-from calibration.harmonics import findings_of
 from calibration.decide.select import Selection, design, select
 from calibration.errors import CalibrationInputError
+from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.record import Record
 from calibration.names import NAMES
@@ -24,8 +24,9 @@ from calibration.names.lateness import effort_delay
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible, smooth_functions
+from calibration.prune import prune
 
-MOST = 10  # effects: a cogging motor shows several orders
+MOST = 14  # effects: a cogging motor shows several orders
 MARGIN = 0.02  # of the cross-validated mean square (effects.md, lesson 3)
 ROUNDS = 3  # of search: lines come out when larger things are gone
 MIN_ROWS = 200  # fewer rows than this say nothing about ten parameters
@@ -81,6 +82,12 @@ def analyse(
                 raise CalibrationInputError(
                     rig.path, f"{key}: {value:g} s is too long for a run of {r.duration_s:.4g} s"
                 )
+    still = [g.name for g in rig.stages if not g.period]
+    if still and all(r.channel != "position" for r in rig.responses):
+        raise CalibrationInputError(
+            rig.path,
+            f"stages.{still[0]}: period_s is for a drive at constant rate (response: position); give period",
+        )
     from calibration.names.columns import repairs_found
 
     balances = []
@@ -160,10 +167,10 @@ def _balance(
         findings.append(finding_of(more, 0))
         together = _together(s, more)
     kind = FORCE if response.is_force else SENSORS
-    lacks = [
-        f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)
-    ]
-    return Balance(view, problem, scene, together, s, findings, floor, source, delay, before, lacks, [*notes, *bounds])
+    lacks = [f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)]
+    return Balance(
+        view, problem, scene, together, s, findings, floor, source, delay, before, lacks, [*notes, *bounds]
+    )
 
 
 def _acts_on_the_drive(view: View, problem: Problem) -> bool:
@@ -255,7 +262,7 @@ def _search(
         if not any(x.candidate.name in lines for x in s.chosen) and k > 0:
             break
     assert s is not None
-    return s, scene
+    return prune(s), scene
 
 
 def _known(c: object, found: list[object], scene: Scene) -> bool:
@@ -272,7 +279,9 @@ def _known(c: object, found: list[object], scene: Scene) -> bool:
 def _held_rms(problem: Problem) -> float:
     rows, train = problem.test, problem.train
     beta = np.linalg.lstsq(problem.base[train], problem.y[train], rcond=None)[0]
-    return float(np.sqrt(np.mean((problem.y - problem.base @ beta)[rows] ** 2))) if rows.any() else float("nan")
+    return (
+        float(np.sqrt(np.mean((problem.y - problem.base @ beta)[rows] ** 2))) if rows.any() else float("nan")
+    )
 
 
 def _together(s: Selection, more: Selection) -> Selection:

@@ -15,7 +15,7 @@ from calibration.decide.heldout import cross_validate
 from calibration.decide.parameters import amplitude_interval, finding_of
 from calibration.decide.select import Refusal, Selection, select
 from calibration.guidemounts import SIDEREAL_DAY_S, Part, known_mount, parts
-from calibration.readers.rig import Rig
+from calibration.inputs.declaration import Rig
 from calibration.readers.run import Array, Run
 
 LEAST_IN_SESSION = 1.2  # turns in a section's training part for its own phase to mean anything

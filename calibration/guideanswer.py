@@ -14,7 +14,7 @@ from calibration.decide.select import Selection
 from calibration.decide.verdict import Verdict, judge
 from calibration.guide import GuideResult, analyse_guide, harmonics
 from calibration.guidemounts import SIDEREAL_DAY_S
-from calibration.readers.rig import Rig
+from calibration.inputs.declaration import Rig
 from calibration.readers.run import Run
 from calibration.report import plots as draw
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from calibration.readers.rig import Rig
+from calibration.inputs.declaration import Rig
 from calibration.readers.run import Run
 
 SIDEREAL_DAY_S = 86164.0905

@@ -10,11 +10,9 @@ from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import amplitude_interval, finding_of, interval
 from calibration.decide.select import Selection
 
-CLEAR = 3.0  # standard errors of an amplitude that is worth telling
-
 
 def findings_of(s: Selection, index: int) -> list[Finding]:
-    """The chosen effect as findings: one, or one per harmonic that stands clear of its error."""
+    """The chosen effect as findings: one, or one per harmonic (the evidence is that of all together)."""
     c = s.chosen[index].candidate
     whole = finding_of(s, index)
     sessions = _sessions(s, index)
@@ -33,8 +31,6 @@ def findings_of(s: Selection, index: int) -> list[Finding]:
             found.append((*amplitude_interval(beta, cov, blocks), beta, cov))
         value, low, high, beta, cov = found[0]
         spread = float(np.sqrt(max(np.trace(cov) / 2, 0.0)))
-        if value < CLEAR * spread:
-            continue
         phase = float(np.arctan2(-beta[1], beta[0]))
         around = interval(phase, min(spread / max(value, 1e-300), 2.0), blocks, 0.0)
         unit = c.labels[0][1]
@@ -52,4 +48,4 @@ def _sessions(s: Selection, index: int) -> int:
     if not rows.any():
         return 1
     used = int(np.count_nonzero(x[np.argmax(rows)]))
-    return max(round(x.shape[1] / max(used, 1)), 1)
+    return int(max(round(x.shape[1] / max(used, 1)), 1))

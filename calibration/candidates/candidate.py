@@ -35,7 +35,7 @@ class Candidate:
     frequency: float | None = None
     sign: int = 0  # +1: every coefficient must be positive; -1 negative; 0 free
     most: float = np.inf  # magnitude beyond which a coefficient means nothing
-    least: float = 0.0  # -log10 p below which this flexible a form is not believed
+    least: float = 0.0  # -log10 p below which this form is not believed; 0: as every other
     positive: tuple[int, ...] = ()  # coefficients that must be positive
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
     twins: tuple[str, ...] = ()

@@ -9,6 +9,7 @@ import numpy as np
 from calibration.channels.view import View
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
+from calibration.statistics.whitening import Mask
 
 SIGNIFICANT = 4.0  # standard errors
 MATTERS = 0.2  # of the mean square of what the columns disagree by
@@ -32,7 +33,7 @@ class Agreement:
     late: bool
 
 
-def velocity_against_position(view: View, held: Array) -> Agreement | None:
+def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     """A measured velocity against the position's rate: scale and offset are free, then the delay."""
     if "velocity" not in view.columns or view.ok.sum() < FEWEST:
         return None
@@ -73,7 +74,7 @@ def velocity_against_position(view: View, held: Array) -> Agreement | None:
     return Agreement("velocity", unit, delay, error, b, c, floor, late)
 
 
-def _scatter(view: View, w: Array, delay: float, a: Array, v: Array, train: Array) -> float:
+def _scatter(view: View, w: Array, delay: float, a: Array, v: Array, train: Mask) -> float:
     """Standard error of the delay from what single files say; 0 for fewer than three."""
     files = view.file[view.rows]
     moved = view.delayed(w, delay)[view.rows]
@@ -90,7 +91,7 @@ def _rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
 
 
-def _noise(e: Array, rows: Array) -> float:
+def _noise(e: Array, rows: Mask) -> float:
     """rms of what changes from row to row: fourth differences of white noise have 70 times its variance."""
     x = np.where(rows, e, np.nan)
     fourth = x[4:] - 4 * x[3:-1] + 6 * x[2:-2] - 4 * x[1:-3] + x[:-4]

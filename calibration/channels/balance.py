@@ -76,17 +76,17 @@ def _response(view: View, delay_s: float) -> tuple[Array, Mask]:
 
 
 def default_terms(view: View) -> tuple[str, ...]:
-    """The declared model where the rig file does not give one."""
-    if not view.response.is_force:
-        if view.response.channel == "position":
-            return ("offset", "drift")
-        return ("offset", "scale") if view.response.ratio is None else ("offset",)
-    return ("viscous", "coulomb", "offset")
+    """The declared model's terms: those of the rig file, and what every response of its kind needs."""
+    if view.response.is_force:
+        return view.rig.estimate or ("viscous", "coulomb", "offset")
+    drift = ("drift",) if "drift" in view.rig.estimate or view.response.channel == "position" else ()
+    scale = ("scale",) if view.response.channel == "position2" and view.response.ratio is None else ()
+    return ("offset", *scale, *drift)
 
 
 def _base(view: View) -> tuple[list[tuple[str, str]], Array]:
     unit, x = view.unit, view.angle_unit
-    names = view.rig.estimate if view.rig.estimate and view.response.is_force else default_terms(view)
+    names = default_terms(view)
     units = {
         "inertia": f"{unit} s2/{x}",
         "viscous": f"{unit} s/{x}",
@@ -119,7 +119,7 @@ def _term(view: View, name: str) -> Array:
         angle = view.x / (view.turn or 1.0) * 2 * pi
         return np.column_stack([np.cos(angle), np.sin(angle)])
     free = view.response.channel == "acceleration"  # what brakes is negative there
-    column = {
+    column: Array = {
         "inertia": lambda: view.columns.get("acceleration", view.second(view.x)),
         "viscous": lambda: view.rate(view.x) * (-1.0 if free else 1.0),
         "coulomb": lambda: view.direction * (-1.0 if free else 1.0),

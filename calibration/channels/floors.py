@@ -18,7 +18,7 @@ def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:
     """rms and how it was had: repeats of the same motion, repeats of the same place, or None."""
     e = _plain_residual(problem)
     lag = repeat_lag(view)
-    if lag and lag % max(view.step, 1) <= 1 or lag > 50 * max(view.step, 1):
+    if (lag and lag % max(view.step, 1) <= 1) or lag > 50 * max(view.step, 1):
         found = _by_lag(view, problem, e, round(lag / max(view.step, 1)))
         if found is not None:
             return found, f"repeats of the motion every {lag * view.period_s:.4g} s"

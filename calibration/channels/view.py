@@ -6,6 +6,7 @@ without bias: rates are plain differences of the position, smoothed afterwards l
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,6 +24,7 @@ REACH = 3.0  # standard deviations of the filter: nearer to an edge or a bad row
 SHORT = 3  # rows without a number that are bridged by a straight line
 STANDSTILL = 0.005  # of the usual top speed: slower is standing
 MOST_ROWS = 24_000  # that are fitted: more are averaged together
+SENSOR_ROWS = 4_000  # of one sensor against another, which has no accelerations to follow
 WINDOW = 5.0  # standard deviations of the filter in `smooth_s`
 NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave in it
 LEAST, MOST = 2.0, 40.0  # rows: standard deviation of the filter, where the rig file does not say it
@@ -115,7 +117,7 @@ def pieces(label: NDArray[np.int64]) -> list[tuple[int, int]]:
     """Begin and end of every stretch of equal labels."""
     edges = np.flatnonzero(np.diff(label)) + 1
     marks = [0, *edges.tolist(), len(label)]
-    return list(zip(marks[:-1], marks[1:], strict=True)) if len(label) else []
+    return list(itertools.pairwise(marks)) if len(label) else []
 
 
 def smooth(full: Array, segment: NDArray[np.int64], sigma: float) -> Array:
@@ -168,7 +170,7 @@ def view_of(records: list[Record], rig: Rig, response: Response) -> View:
 def _regular(record: Record, period: float) -> dict[str, Array]:
     """One record on a regular grid; rows in a gap, and near longer stretches without numbers, are not ok."""
     t = record.columns["t"]
-    grid = np.arange(int(np.floor((t[-1] - t[0]) / period)) + 1) * period
+    grid: Array = np.arange(int(np.floor((t[-1] - t[0]) / period)) + 1) * np.float64(period)
     out = {"t": grid}
     right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
     wide = t[right] - t[right - 1] > GAP * max(period, record.period_s)
@@ -243,7 +245,8 @@ def _choose_rows(view: View) -> None:
     """Rows that are fitted: one per filter width, and no more than can be fitted in time."""
     period = view.rig.analyse_period_s
     step = round(period / view.period_s) if period else round(view.sigma)
-    step = max(step, 1, int(np.ceil(len(view.t) / MOST_ROWS)) if not period else 1)
+    most = MOST_ROWS if view.response.is_force else SENSOR_ROWS
+    step = max(step, 1, int(np.ceil(len(view.t) / most)) if not period else 1)
     if view.sigma == 0 and step > 1 and not period:
         view.sigma = step / 2
     view.rows = np.concatenate([np.arange(a, b, step) for a, b in pieces(view.file)])

@@ -37,7 +37,7 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
     if not np.isfinite(inside.after):
         return "too few rows to test it on"
     least = max(HANDICAP, margin) if contender.candidate.name == "unknown" else margin
-    if contender.evidence < max(LEAST_EVIDENCE, contender.candidate.least):
+    if contender.evidence < (contender.candidate.least or LEAST_EVIDENCE):
         return f"too little evidence (-log10 p = {contender.evidence:.1f})"
     if inside.share < least:
         return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"

@@ -60,10 +60,16 @@ def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
         return raw, None
     size = float(np.median(np.abs(step[jumps])))
     integers = bool(np.allclose(x, np.round(x)))
-    lengths = [w for w in (WORDS if integers else CIRCLES) + ((360.0,) if integers else ()) if w >= span * 0.999]
+    lengths = [
+        w for w in (WORDS if integers else CIRCLES) + ((360.0,) if integers else ()) if w >= span * 0.999
+    ]
     length = min(lengths, key=lambda w: abs(w - size), default=0.0)
     # a counter's jump is its length less what is moved in a row: never more than that and a little
-    if not length or abs(length - size) > NEAR * length or np.mean(np.abs(np.abs(step[jumps]) - length) < NEAR * length) < 0.9:
+    if (
+        not length
+        or abs(length - size) > NEAR * length
+        or np.mean(np.abs(np.abs(step[jumps]) - length) < NEAR * length) < 0.9
+    ):
         return raw, None
     out = raw.copy()
     out[good] = np.unwrap(x, period=length)

@@ -144,9 +144,10 @@ def _check_model(
     data: dict[str, Any], columns: dict[str, Column], responses: tuple[Response, ...], refuse: Any
 ) -> None:
     force = any(r.is_force for r in responses)
-    for key in ("estimate", "constants"):
-        if key in data and not force:
-            refuse(f"{key}: says something about forces, but no response is one")
+    if not force:
+        forces = (set(data.get("estimate", ())) - {"offset", "drift"}) | set(data.get("constants", {}))
+        if forces:
+            refuse(f"{min(forces)}: is a term of forces, but no response is one")
     both = set(data.get("estimate", ())) & set(data.get("constants", {}))
     if both:
         refuse(f"constants.{min(both)}: is estimated too; a number is known or estimated")
@@ -158,12 +159,6 @@ def _check_model(
         for needed in ("reference", "effort"):
             if needed not in columns:
                 refuse(f"controller: needs a column '{needed}'")
-    for place, item in enumerate(data.get("stages", [])):
-        if "period_s" in item and "position" not in [r.channel for r in responses]:
-            refuse(
-                f"stages.{place}: period_s is for a drive at constant rate (response: position);"
-                " give period, in position units"
-            )
 
 
 def _check_runs(data: dict[str, Any], refuse: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from datetime import datetime
 from pathlib import Path
 
@@ -26,7 +27,10 @@ def read_table(path: Path, rig: Rig) -> list[Record]:
     else:
         found = [read_text(path, wanted, rig.names, rig.delimiter)]
     many = len(found) > 1
-    return [_record(path, rig, raw, f"{path.stem}{{{k}}}" if many else path.stem) for k, raw in enumerate(found, 1)]
+    return [
+        _record(path, rig, raw, f"{path.stem}{{{k}}}" if many else path.stem)
+        for k, raw in enumerate(found, 1)
+    ]
 
 
 def _record(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Record:
@@ -44,7 +48,9 @@ def _record(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Record:
             values, wraps[channel] = _unwrapped(values, where.wrap)
         columns["t" if channel == "time" else channel] = values * where.scale + where.offset
     if "time" not in rig.columns:
-        columns["t"] = np.arange(len(next(iter(columns.values())))) * float(rig.sample_period_s or 1.0)
+        columns["t"] = np.asarray(
+            np.arange(len(next(iter(columns.values())))) * (rig.sample_period_s or 1.0), dtype=np.float64
+        )
     clock = str(rig.columns["time"].column) if "time" in rig.columns else "time"
     first = _check_clock(path, columns["t"], clock)
     columns["t"] = columns["t"] - first
@@ -75,7 +81,9 @@ def _unwrapped(values: Array, length: float) -> tuple[Array, int]:
 def _check_clock(path: Path, t: Array, name: str) -> float:
     """The first time stamp of a clock that goes forward."""
     if not np.isfinite(t).all():
-        raise CalibrationInputError(path, f"is empty in data row {int(np.argmax(~np.isfinite(t))) + 1}", None, name)
+        raise CalibrationInputError(
+            path, f"is empty in data row {int(np.argmax(~np.isfinite(t))) + 1}", None, name
+        )
     if len(t) > 1 and not np.median(np.diff(t)) > 0:
         raise CalibrationInputError(path, "does not advance", None, name)
     if (np.diff(t) < 0).any():
@@ -94,7 +102,9 @@ def _start(path: Path, rig: Rig, first: float) -> float | None:
         try:
             return datetime.strptime(path.stem, form).timestamp()
         except ValueError:
-            raise CalibrationInputError(path, f"its name does not read as wall_time.format '{form}'") from None
+            raise CalibrationInputError(
+                path, f"its name does not read as wall_time.format '{form}'"
+            ) from None
     return None
 
 
@@ -104,7 +114,7 @@ def set_starts(records: list[Record], rig: Rig) -> str:
         firsts = [r.raw[str(rig.columns["time"].column)][0] for r in records] if "time" in rig.columns else []
         scale = rig.columns["time"].scale if firsts else 1.0
         spans = sorted((f * scale, f * scale + r.duration_s) for f, r in zip(firsts, records, strict=False))
-        if firsts and all(b[0] > a[1] for a, b in zip(spans, spans[1:], strict=False)):
+        if firsts and all(b[0] > a[1] for a, b in itertools.pairwise(spans)):
             for f, r in zip(firsts, records, strict=True):
                 r.start_s = float(f * scale)
     if all(r.start_s is not None for r in records):

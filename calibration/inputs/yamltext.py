@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from calibration.errors import CalibrationInputError
+from plant.yamltext import TextError, check_yaml, read_text
 
 
 class _Loader(yaml.SafeLoader):
@@ -28,7 +29,7 @@ _Loader.add_implicit_resolver(
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     seen: dict[Any, int] = {}
     for key, _ in node.value:
-        word = loader.construct_object(key)  # type: ignore[no-untyped-call]
+        word = loader.construct_object(key)
         if not isinstance(word, str | int | float):
             continue
         if word in seen:
@@ -45,11 +46,12 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 def load_yaml(path: Path) -> tuple[Any, str]:
     """The file's content and text; raises CalibrationInputError with the line of a mistake."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
+        check_yaml(text)
     except OSError as error:
         raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError:
-        raise CalibrationInputError(path, "is not UTF-8 text") from None
+    except TextError as error:
+        raise CalibrationInputError(path, error.what, error.line) from None
     try:
         return yaml.load(text, Loader=_Loader), text  # a SafeLoader: no objects but plain ones
     except yaml.MarkedYAMLError as error:

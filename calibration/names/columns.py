@@ -6,7 +6,13 @@ from calibration.decide.finding import Finding, Parameter
 from calibration.inputs.record import Record
 
 #: kind of repair -> name of the catalogue
-CALLED = {"wrap": "log_wrap", "signed": "log_wrap", "spike": "sample_loss", "repeat": "sample_loss", "saturation": "log_wrap"}
+CALLED = {
+    "wrap": "log_wrap",
+    "signed": "log_wrap",
+    "spike": "sample_loss",
+    "repeat": "sample_loss",
+    "saturation": "log_wrap",
+}
 SAID = {"saturation"}  # told, but no fault of the log
 FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
 CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise

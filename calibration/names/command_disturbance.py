@@ -30,7 +30,7 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     f0 = repeat_frequency(v)
     top = 0.5 / (v.period_s * max(v.step, 1))
-    avoid = np.arange(1, int(top / f0) + 1) * f0 if f0 else np.zeros(0)
+    avoid = np.asarray(np.arange(1, int(top / f0) + 1) * f0 if f0 else np.zeros(0), dtype=np.float64)
     out = []
     few = len(np.unique(files)) <= FEW
     for f in peaks(s, t, length, TURNS / length, 5, avoid):

@@ -13,6 +13,8 @@ from calibration.names.sines import stage_lines
 def columns(s: Scene) -> list[Candidate]:
     """Sines at the stages without another kind; without a stage of that length, at one turn of the
     position."""
+    if s.view.response.channel == "position":
+        return []
     out = stage_lines(s, "encoder_eccentricity", default=True)
     turn = s.view.turn
     x = s.view.x[s.view.rows]

@@ -11,6 +11,8 @@ from calibration.readers.run import Array
 from plant.effects.signals import RATE, TIME
 
 PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)  # gaps that are tried, of the travel
+# -log10 p between two sensors: a dozen gaps are tried, not a thousand orders (decide/accept.py); set on the geared servo's output encoder
+LEAST = 6.0
 GROWS = 1.5  # from one gap to the next, between two sensors
 
 
@@ -19,10 +21,10 @@ def gap_angle(s: Scene, gap: float) -> Array:
     arcsec at the axis."""
     v = s.view
     unit = np.pi / 648000.0  # rad per arcsec
-    step = np.diff(v.x, prepend=v.x[0])
+    step = np.asarray(np.diff(v.x, prepend=v.x[0]), dtype=np.float64)
     step[np.concatenate([[True], np.diff(v.file) != 0])] = 0.0
     rate = step / v.period_s / gap * unit  # in gaps of one arcsec per s
-    time = np.arange(len(v.t)) * v.period_s
+    time = np.asarray(np.arange(len(v.t)) * v.period_s, dtype=np.float64)
     e = s.formula("play", {TIME: time, RATE: rate}, {"gap": unit, "encoder": 2.0})
     return np.asarray(e / (0.5 * unit))
 
@@ -56,7 +58,7 @@ def columns(s: Scene) -> list[Candidate]:
                 fixed={"gap": (gap, s.angle_unit)},
                 shape=shape,
                 steps=(0.15 * gap,),
-                searched=1,
+                searched=4,  # a gap in the force's way is the rarer one of the two
                 twins=("presliding",),
             )
         )
@@ -70,7 +72,7 @@ def _between_sensors(s: Scene) -> list[Candidate]:
     while gap < reach:
 
         def full(p: Array) -> Array:
-            return gap_angle(s, max(float(p[0]), 1e-9 * s.span))
+            return gap_angle(s, max(float(p[0]), 1e-9 * s.span)) / 2
 
         shape = s.shaped(full)
         out.append(
@@ -78,8 +80,9 @@ def _between_sensors(s: Scene) -> list[Candidate]:
                 "play",
                 "reversal",
                 shape(np.array([gap])),
-                (("half_step", s.unit),),
-                fixed={"gap": (gap, s.angle_unit)},
+                (("gap", s.unit),),
+                least=LEAST,
+                fixed={"closing_travel": (gap, s.angle_unit)},
                 shape=shape,
                 steps=(0.15 * gap,),
                 searched=1,

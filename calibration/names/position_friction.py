@@ -21,7 +21,11 @@ def columns(s: Scene) -> list[Candidate]:
     places = [(h / period, "axis", h, False) for h in range(1, HARMONICS + 1)]
     for g in v.rig.stages:
         if g.period:
-            places += [(h / g.period, g.name, h, True) for h in range(1, min(g.harmonics, 12) + 1) if s.span * h / g.period > 1.5]
+            places += [
+                (h / g.period, g.name, h, True)
+                for h in range(1, min(g.harmonics, 12) + 1)
+                if s.span * h / g.period > 1.5
+            ]
     out = []
     sessions = s.session
     for rate, stage, h, own in places:

@@ -61,4 +61,6 @@ def lacks(s: Scene) -> str:
     return "" if s.both else "reversals of the motion"
 
 
-NAME = Name("presliding", (FORCE,), columns, ("stribeck_change", "play"), "a sine smaller than break-away", lacks)
+NAME = Name(
+    "presliding", (FORCE,), columns, ("stribeck_change", "play"), "a sine smaller than break-away", lacks
+)

@@ -6,7 +6,7 @@ import numpy as np
 
 from calibration.channels.view import View
 
-ALIKE = 0.97  # of the autocorrelation of the position, at the lag of a repetition
+ALIKE = 0.93  # of the autocorrelation of the position, at the lag of a repetition
 ROWS = 20_000  # that are correlated
 
 

@@ -73,7 +73,9 @@ class Scene:
             return np.ones(len(self.view.t))
         return c + v * np.abs(self.view.speed)
 
-    def formula(self, name: str, columns: dict[int, Array], parameters: dict[str, float], term: int = 0) -> Array:
+    def formula(
+        self, name: str, columns: dict[int, Array], parameters: dict[str, float], term: int = 0
+    ) -> Array:
         """The effect's own formula (plant/effects) over full-rate columns."""
         rows = signals(len(self.view.t), columns)
         return np.asarray(evaluate(name, rows, parameters, term=term))

@@ -12,7 +12,9 @@ def columns(s: Scene) -> list[Candidate]:
     for channel in ("force", "effort", "current"):
         if channel in s.view.columns:
             label = ("compliance", f"{s.unit}/{s.view.rig.columns[channel].unit}")
-            return [Candidate("shaft_compliance", "current", s.at(s.view.columns[channel])[:, None], (label,))]
+            return [
+                Candidate("shaft_compliance", "current", s.at(s.view.columns[channel])[:, None], (label,))
+            ]
     return []
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.inputs.declaration import Stage
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
@@ -24,12 +25,16 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
     for; `default`: stages without a kind, too."""
     out = []
     x = s.view.x[s.view.rows]
+    steady = s.view.response.channel == "position"  # at a constant rate, time stands for the angle
     for stage in s.view.rig.stages:
+        if steady and stage.period_s and (stage.kind or (kind if default else "")) == kind:
+            out += _in_time(s, kind, stage)
+            continue
         if stage.period is None or (stage.kind or (kind if default else "")) != kind:
             continue
         for h in range(1, stage.harmonics + 1):
             rate = h / stage.period
-            if s.span * rate < ENOUGH and stage.harmonics < 3 or s.span * rate < 0.5 or not seen(s, rate):
+            if (s.span * rate < ENOUGH and stage.harmonics < 3) or s.span * rate < 0.5 or not seen(s, rate):
                 continue
             out.append(
                 Candidate(
@@ -47,6 +52,29 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
         if 1 < len(mine) <= TOGETHER:  # several large harmonics hide each other when taken one by one
             whole = np.hstack([c.columns for c in mine])
             out.append(replace(mine[0], columns=whole, harmonic=None, searched=1))
+    return out
+
+
+def _in_time(s: Scene, kind: str, stage: Stage) -> list[Candidate]:
+    """Harmonics of a stage that turns once in `period_s` at the logged rate."""
+    t = s.view.t[s.view.rows]
+    out = []
+    for h in range(1, stage.harmonics + 1):
+        f = h / float(stage.period_s or 1.0)
+        if float(t.max()) * f < ENOUGH or f * s.view.period_s * max(s.view.step, s.view.sigma) > PER_ROW:
+            continue
+        out.append(
+            Candidate(
+                kind,
+                "axis_angle",
+                sine_columns(t * f, s.problem.session),
+                (("amplitude", s.unit),),
+                kind="line",
+                stage=stage.name,
+                harmonic=h,
+                frequency=f,
+            )
+        )
     return out
 
 
@@ -80,7 +108,9 @@ def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
     return out
 
 
-def peaks(s: Scene, z: Array, span: float, least: float, most: int, avoid: Array | None = None) -> list[float]:
+def peaks(
+    s: Scene, z: Array, span: float, least: float, most: int, avoid: Array | None = None
+) -> list[float]:
     """Frequencies over z (cycles per unit of z, `least` and up) where the residual's spectrum stands out,
     summed over sessions; those of `avoid` left out."""
     train = s.problem.train
@@ -112,9 +142,9 @@ def peaks(s: Scene, z: Array, span: float, least: float, most: int, avoid: Array
     for k in np.argsort(-ratio)[: 60 * most]:
         if ratio[k] < STANDS_OUT or len(found) >= most:
             break
-        if 0 < k < len(ratio) - 1 and power[k] >= power[k - 1] and power[k] >= power[k + 1]:
-            if all(abs(f[k] - g) * span > 1.0 for g in found):
-                found.append(float(f[k]))
+        top_of = 0 < k < len(ratio) - 1 and power[k] >= power[k - 1] and power[k] >= power[k + 1]
+        if top_of and all(abs(f[k] - g) * span > 1.0 for g in found):
+            found.append(float(f[k]))
     return found
 
 
@@ -138,4 +168,4 @@ def _around(power: Array, half: int) -> Array:
     padded = np.pad(power, (0, count * half - len(power)), mode="edge").reshape(count, half)
     block = np.median(padded, axis=1)
     level = uniform_filter1d(block, 3, mode="nearest")
-    return np.asarray(np.repeat(level, half)[: len(power)]) / np.log(2.0)
+    return np.asarray(np.repeat(level, half)[: len(power)] / np.log(2.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.candidates.candidate import Candidate
 from calibration.names.name import FORCE, Name
@@ -25,7 +26,9 @@ def columns(s: Scene) -> list[Candidate]:
     out = []
 
     def full(p: Array) -> Array:
-        return oscillator(a, v.file, v.period_s, max(float(p[0]), lowest / 2), float(np.clip(p[1], 0.002, 0.5)))
+        return oscillator(
+            a, v.file, v.period_s, max(float(p[0]), lowest / 2), float(np.clip(p[1], 0.002, 0.5))
+        )
 
     shape = s.shaped(full)
     for f in np.geomspace(lowest, max(BELOW * corner, 2 * lowest), COUNT):
@@ -46,7 +49,7 @@ def columns(s: Scene) -> list[Candidate]:
     return out
 
 
-def oscillator(a: Array, file: Array, dt: float, f: float, damping: float) -> Array:
+def oscillator(a: Array, file: NDArray[np.int64], dt: float, f: float, damping: float) -> Array:
     """Acceleration of a mass on a spring relative to its foot, whose acceleration is `a`; rest at the
     start."""
     from scipy.signal import cont2discrete, lfilter

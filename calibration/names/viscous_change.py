@@ -15,4 +15,6 @@ def columns(s: Scene) -> list[Candidate]:
     return [Candidate("viscous_change", "velocity", s.at(s.view.speed)[:, None], (label,))]
 
 
-NAME = Name("viscous_change", (FORCE,), columns, ("load_friction",), "two speeds that differ by a factor of ten")
+NAME = Name(
+    "viscous_change", (FORCE,), columns, ("load_friction",), "two speeds that differ by a factor of ten"
+)

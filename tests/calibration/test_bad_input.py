@@ -13,8 +13,8 @@ import pytest
 from calibration.command import calibrate, read_logs
 from calibration.decide.tolerance import INFLATION, inflation
 from calibration.errors import CalibrationInputError
-from calibration.readers.rig import load_rig
-from calibration.readers.table import read_table
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.tables import read_table
 from tests.calibration.logs import tiny_log, write_logs
 from tests.calibration.test_readers import RIG
 
@@ -128,7 +128,7 @@ def test_columns_of_a_table_may_be_given_by_their_place(tmp_path: Path) -> None:
         RIG.replace("column: t,", "column: 0,").replace("column: u,", "column: 2,")
     )
     (tmp_path / "d.csv").write_text("a,x,b\n0,1,5\n1,2,6\n")
-    run = read_table(tmp_path / "d.csv", load_rig(tmp_path / "rig.yaml"))
+    (run,) = read_table(tmp_path / "d.csv", load_rig(tmp_path / "rig.yaml"))
     assert run.columns["effort"].tolist() == [5, 6]
 
 

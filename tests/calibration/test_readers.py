@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from calibration.channels.clock import repair_wraps
 from calibration.command import calibrate, read_logs
 from calibration.errors import CalibrationInputError
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.tables import read_table
 from calibration.readers.axis import read_axis_log, unwrap
 from calibration.readers.guide import read_guide_log
-from calibration.readers.rig import load_rig
-from calibration.readers.table import read_table
 from tests.calibration.logs import tiny_log
 
 
@@ -216,7 +216,7 @@ def test_a_rig_file_maps_columns_and_resolves_teeth(tmp_path: Path) -> None:
     rig = load_rig(write(tmp_path / "rig.yaml", RIG))
     assert rig.stages[1].period == pytest.approx(3.0)
     table = write(tmp_path / "d.csv", "t,x,u\n0,9,1\n1,9.9,1\n2,0.5,1\n")
-    assert read_table(table, rig).columns["position"].tolist() == pytest.approx([9, 9.9, 10.5])
+    assert read_table(table, rig)[0].columns["position"].tolist() == pytest.approx([9, 9.9, 10.5])
     with pytest.raises(CalibrationInputError, match=r"d2.csv:3: column 'u': 'one'"):
         read_table(write(tmp_path / "d2.csv", "t,x,u\n0,9,1\n1,9.9,one\n"), rig)
     with pytest.raises(CalibrationInputError, match="no such column"):

@@ -1,0 +1,183 @@
+"""From what was found on a drive to a verdict with its error table, controls and pictures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
+from calibration.decide.finding import Finding
+from calibration.decide.verdict import Verdict, judge
+from calibration.drive import Balance, DriveResult
+from calibration.drivecontrols import drive_controls
+from calibration.names import NAMES
+
+STRONG = 6.0  # -log10 p of a refused candidate that is told as having been close
+ROW = {"T": "torque", "K": "position"}
+INFLATION = 30.0  # of a parameter's variance by its neighbours: over five times the error it would have alone
+
+
+def drive_answer(found: DriveResult, plots: bool) -> Answer:
+    """Verdict, pictures and title."""
+    effects = list(found.sensors)
+    controls: list[dict[str, Any]] = []
+    for b in found.balances:
+        if b.delay is not None:
+            effects.append(b.delay)
+        rows = drive_controls(b)
+        controls += rows
+        effects += _withdrawn(b, rows)
+    effects.sort(key=lambda f: (f.name == "unknown", f.share == 0.0, -f.share))
+    verdict, separating = judge(effects, [*_short(found), *_close(found)][:4])
+    separating = _separating(effects) or separating if effects else separating
+    lacking = [x for b in found.balances for x in b.lacks]
+    first = found.balances[0]
+    v = Verdict(
+        verdict,
+        effects,
+        _errors(found),
+        _held_names(first, found),
+        {k: p for b in found.balances for k, p in calibrated(b.named).items() if _is_declared(b, k)},
+        [x for b in found.balances for x in [*_missing(b), *b.bounds]],
+        controls,
+        separating,
+        [*_reasons(found), *(f"not looked for: {x}" for x in lacking)],
+        gate_rows({_channel(b): b.selection for b in found.balances}),
+        refusals({_channel(b): b.selection for b in found.balances}),
+    )
+    from calibration.report.drivepictures import pictures
+
+    return v, pictures(found, GATE) if plots else [], found.rig.name
+
+
+def _channel(b: Balance) -> str:
+    """Channel letter of a balance."""
+    return b.problem.channel
+
+
+def _withdrawn(b: Balance, rows: list[dict[str, Any]]) -> list[Finding]:
+    """Findings of a balance; one whose control was accepted keeps no name."""
+    out = []
+    for f in b.findings:
+        place = "" if f.stage is None else f" on {f.stage}"
+        said = f.name + place + (f", harmonic {f.harmonic}" if f.harmonic else "")
+        failed = [r for r in rows if r["accepted"] and r["what"].endswith(f"({said})")]
+        if failed and f.name != "unknown":
+            wrong = failed[0]["what"].split(" (")[0]
+            f.note = f"{wrong} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
+            f.name, f.stage, f.harmonic, f.equivalent = "unknown", None, None, []
+        out.append(f)
+    return out
+
+
+def _separating(effects: list[Finding]) -> str | None:
+    """The experiments of the names that a log cannot tell apart."""
+    names = [n for e in effects if e.equivalent for n in (e.name, *e.equivalent)]
+    texts = [f"{n}: {NAMES[n].experiment}" for n in dict.fromkeys(names) if n in NAMES]
+    return "; ".join(texts[:3]) or None
+
+
+def _close(found: DriveResult) -> list[str]:
+    """Candidates that had evidence and failed elsewhere."""
+    out = []
+    for b in found.balances:
+        for r in b.selection.refused:
+            if r.what != "every candidate" and not r.why.startswith(
+                ("gains less", "superfluous", "too little")
+            ):
+                name = r.what.split(" on ")[0].split(",")[0]
+                hint = NAMES[name].experiment if name in NAMES else "repeat the run"
+                out.append(f"{r.what} was close ({r.why}): {hint}")
+    return list(dict.fromkeys(out))
+
+
+def _short(found: DriveResult) -> list[str]:
+    return [r.why for b in found.balances for r in b.selection.refused if r.what == "every candidate"]
+
+
+def _errors(found: DriveResult) -> dict[str, dict[str, Any]]:
+    out: dict[str, dict[str, Any]] = {}
+    for b in found.balances:
+        held = b.selection.held
+        if np.isfinite(held.before):
+            before = b.before if b.before is not None else held.before
+            out[ROW[b.problem.channel]] = {
+                "unit": b.problem.unit,
+                "before": before,
+                "after": held.after,
+                "floor": b.floor,
+            }
+    a = found.agreement
+    if a is not None and a.late and np.isfinite(a.before):
+        out["velocity"] = {
+            "unit": a.unit,
+            "before": a.before,
+            "after": a.after,
+            "floor": a.floor if np.isfinite(a.floor) else None,
+        }
+    return out
+
+
+def _is_declared(b: Balance, name: str) -> bool:
+    """Leave out what the bounds took from the balance."""
+    labels = [n for n, _ in b.problem.base_labels]
+    return bool(b.problem.base[:, labels.index(name)].any())
+
+
+def _held_names(b: Balance, found: DriveResult) -> list[str]:
+    p, names = b.problem, []
+    for k in np.unique(p.run[p.held]):
+        rows = (p.run == k) & p.held
+        whole = rows.sum() == (p.run == k).sum()
+        file = found.records[int(p.session[rows][0])].name
+        begin = float(b.view.t[b.view.rows][rows].min())
+        names.append(file if whole else f"{file} run {int(k) + 1} from {begin:.4g} s")
+    return names
+
+
+def _missing(b: Balance) -> list[str]:
+    """Parameters whose columns this motion does not move apart; from the columns, not from the response."""
+    p = b.problem
+    named = [x for x in b.named.chosen if x.candidate.kind != "line"]
+    names = [label for label, _ in p.base_labels]
+    for x in named:
+        names += [f"{label} of {x.candidate.name}" for label, _ in x.candidate.labels]
+    columns = np.hstack([p.base, *[x.candidate.columns for x in named]])[p.train]
+    size = np.linalg.norm(columns, axis=0)
+    out = [
+        n
+        for n, v in zip(names, size, strict=False)
+        if v == 0 and not any(x.startswith(n + ":") for x in b.bounds)
+    ]
+    at = np.flatnonzero(size > 0)
+    z = columns[:, at] / size[at]
+    gram = z.T @ z
+    inverse = np.linalg.pinv(gram, hermitian=True)
+    likeness = np.abs(gram) - np.eye(len(at))
+    for k, v in enumerate(np.diag(inverse)):
+        if v > INFLATION and at[k] < len(names):
+            out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
+    return out
+
+
+def _reasons(found: DriveResult) -> list[str]:
+    out = []
+    if len(found.records) > 1:
+        out.append(f"the files' starts are taken from {found.clock}")
+    for r in found.records:
+        gaps = r.gaps()
+        if gaps:
+            lost = sum(b - a for a, b in gaps)
+            out.append(f"{r.name}: {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, {lost:.3g} s without rows")
+        out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
+    for b in found.balances:
+        out.append(f"floor of {b.view.response.channel}: {b.floor_from}")
+        out += _short(found)
+        if not np.any(np.abs(b.view.direction) > 0.5):
+            out.append("the position does not move")
+        held = b.selection.held
+        if b.floor and np.isfinite(held.after) and held.after > 2 * b.floor:
+            much = held.after / b.floor
+            out.append(f"{much:.1f} floors remain in {b.view.response.channel}: something is still missing")
+    return out

@@ -1,0 +1,64 @@
+"""What every accepted effect is worth at the end: one whose absence the held-out rows do not notice goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
+from calibration.decide.heldout import compare
+from calibration.decide.select import Refusal, Selection, design, phases
+from calibration.readers.run import Array
+from calibration.statistics.regression import Fit, gls
+
+WORTH = 0.01  # of the final held-out mean square, that leaving an effect out must add
+
+
+def prune(s: Selection) -> Selection:
+    """Leave effects out, the least worth first, while the held-out error hardly rises."""
+    p = s.problem
+    if p.test.sum() < 20:
+        return s
+    while len(s.chosen) > 1:
+        now = _held(s, [x.candidate for x in s.chosen])
+        cost = []
+        for k in range(len(s.chosen)):
+            cost.append(_held(s, [x.candidate for j, x in enumerate(s.chosen) if j != k]) / now - 1.0)
+        k = int(np.argmin(cost))
+        if cost[k] >= WORTH:
+            break
+        s = _without(s, k, f"adds {100 * max(cost[k], 0.0):.1f} % only to what is left when it is left out")
+    return s
+
+
+def _fit(s: Selection, chosen: list[Candidate]) -> tuple[Array, Fit]:
+    p = s.problem
+    x = design(p, chosen)
+    return x, gls(p.y, x, p.train, p.ar_order, p.block)
+
+
+def _held(s: Selection, chosen: list[Candidate]) -> float:
+    """Mean square on the held-out rows."""
+    x, fit = _fit(s, chosen)
+    after = compare(s.problem, x, fit.beta, x, fit.beta, fit.whitener, (phases(s.problem, chosen),) * 2).after
+    return after**2
+
+
+def _without(s: Selection, k: int, why: str) -> Selection:
+    gone = s.chosen[k].candidate
+    keep = [j for j in range(len(s.chosen)) if j != k]
+    chosen = [s.chosen[j] for j in keep]
+    candidates = [x.candidate for x in chosen]
+    x, fit = _fit(s, candidates)
+    p = s.problem
+    held = compare(p, p.base, s.before.beta, x, fit.beta, fit.whitener, ((), phases(p, candidates)))
+    return replace(
+        s,
+        chosen=chosen,
+        classes=[s.classes[j] for j in keep],
+        steps=[s.steps[j] for j in keep],
+        after=fit,
+        held=held,
+        refused=[*s.refused, Refusal(gone.say(), why)],
+    )
