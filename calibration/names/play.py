@@ -11,7 +11,8 @@ from calibration.readers.run import Array
 from plant.effects.signals import RATE, TIME
 
 PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)  # gaps that are tried, of the travel
-# -log10 p between two sensors: a dozen gaps are tried, not a thousand orders (decide/accept.py); set on the geared servo's output encoder
+# -log10 p between two sensors: a dozen gaps are tried, not a thousand orders (decide/accept.py);
+# set on the geared servo's output encoder
 LEAST = 6.0
 GROWS = 1.5  # from one gap to the next, between two sensors
 
