@@ -26,7 +26,7 @@ def missing() -> str | None:
 
 
 @pytest.mark.skipif(missing() is not None, reason=missing() or "")
-def test_L1_conformance_over_socketcan_in_a_guest_kernel() -> None:
+def test_L1_other_programs_and_conformance_over_vcan_and_uhid_in_a_guest_kernel() -> None:
     # One cache for both machines, for a processor both have: compiling inside would take minutes.
     shared = {"NUMBA_CPU_NAME": "generic", "SCHMIDT_CACHE_DIR": str(PROJECT / ".cache" / "guest")}
     warm = [PROJECT / ".venv/bin/schmidt", "serve", "--can", "virtual:warm", "--duration", "1"]
@@ -39,3 +39,12 @@ def test_L1_conformance_over_socketcan_in_a_guest_kernel() -> None:
     assert result.returncode == 0, result.stdout[-6000:] + result.stderr[-2000:]
     assert "vcan0  221   [8]" in result.stdout, "candump saw no position frame"
     assert " 0 of what must hold failed" in result.stdout
+    for said in (
+        "cansend commanded the focus board, candump saw its answer",
+        "two python-can clients command, and each sees the other's answer",
+        "what was sent meanwhile is answered after it goes on",
+        "a hidapi program drives the gateway through hidraw",
+        "clients killed with -9 leave the others served",
+        "all checks passed",
+    ):
+        assert said in result.stdout

@@ -1,0 +1,211 @@
+"""One attack per door: so many inputs from a seed, and what became of them.
+
+    python -m tests.fuzz --inputs 1000000          every door, the long run (some hours; --door NAME for one)
+
+An input is accepted or refused with an error the door declares; anything else is the exception it raised.
+After every thousand all boards must have ticked.
+"""
+
+from __future__ import annotations
+
+import socket
+import tempfile
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from random import Random
+
+import can
+
+from bus.door import Door as Fence
+from scenarios.document import ScenarioError
+from scenarios.doors import Served
+from scenarios.doors.can import CanDoor
+from scenarios.doors.clients import Client
+from scenarios.doors.control import ControlDoor
+from scenarios.doors.hid_report import out_report
+from scenarios.doors.serial_tcp import Rfc2217Door
+from scenarios.load import load
+from scenarios.served import chosen
+from tests.fuzz import inputs
+
+MS = 1_000_000
+_LOOK = 1000
+"""Inputs between two looks at the boards."""
+
+
+class Wedged(AssertionError):
+    """A board that no longer ticks."""
+
+
+def ticking(served: Served) -> None:
+    """Let 1.1 s go by; raises Wedged naming the boards whose timer routine did not run."""
+    boards = served.network.boards
+    before = {name: board.ticks for name, board in boards.items()}  # type: ignore[attr-defined]
+    served.entry.running = True
+    served.run_until(served.now_ns + 1_100 * MS)
+    served.entry.running = False
+    still = [name for name, board in boards.items() if board.ticks == before[name] and board.on]  # type: ignore[attr-defined]
+    if still:
+        raise Wedged(", ".join(still))
+
+
+def _attack(served: Served, count: int, one: Callable[[int], None]) -> None:
+    for number in range(count):
+        one(number)
+        if number % 16 == 0:
+            served.run_until(served.now_ns + 2 * MS)
+        if number % _LOOK == _LOOK - 1:
+            ticking(served)
+    ticking(served)
+
+
+class _Outside(can.BusABC):
+    """A python-can bus that reads the way udp_multicast does, from a list of datagrams."""
+
+    channel_info = "fuzz"
+
+    def __init__(self) -> None:
+        super().__init__("fuzz")
+        self.into: deque[can.Message | bytes] = deque()
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        pass
+
+    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        from can.interfaces.udp_multicast.utils import unpack_message
+
+        if not self.into:
+            return None, False
+        item = self.into.popleft()
+        if isinstance(item, can.Message):
+            return item, False
+        try:
+            return unpack_message(item, replace={"timestamp": 0.0}, check=True), False
+        except Exception as error:
+            raise can.CanOperationError("could not unpack received message") from error
+
+
+def _can(served: Served, count: int, random: Random, datagrams: bool) -> dict[str, int]:
+    door = CanDoor("virtual:fuzz", 0, served.network, served.entry)
+    with _Outside() as outside:
+        door.fence = fence = Fence(served.network.queue, served.network.wire, outside, door.node, door._enter)
+
+        def one(_number: int) -> None:
+            if datagrams:
+                outside.into.append(inputs.datagram(random))
+            else:
+                identifier, data, extended, remote = inputs.frame(random)
+                outside.into.append(
+                    can.Message(
+                        arbitration_id=identifier, data=None if remote else data, dlc=len(data),
+                        is_extended_id=extended, is_remote_frame=remote,
+                    )
+                )  # fmt: skip
+            fence.poll()
+
+        _attack(served, count, one)
+        return {"accepted": fence.frames_in, "refused": fence.refused, "rejected": fence.rejected}
+
+
+def frames(served: Served, count: int, random: Random) -> dict[str, int]:
+    """CAN frames."""
+    return _can(served, count, random, False)
+
+
+def datagrams(served: Served, count: int, random: Random) -> dict[str, int]:
+    """Datagrams on the multicast group."""
+    return _can(served, count, random, True)
+
+
+def hid(served: Served, count: int, random: Random) -> dict[str, int]:
+    """HID reports."""
+    plug = served.usb.plug("fuzz")
+    found = {"accepted": 0, "refused": 0}
+
+    def one(_number: int) -> None:
+        report = out_report(inputs.report(random))
+        if report is None or not plug.ready:
+            found["refused"] += 1
+            return
+        plug.write(served.now_ns, report)
+        found["accepted"] += 1
+
+    _attack(served, count, one)
+    return found
+
+
+def control(served: Served, count: int, random: Random) -> dict[str, int]:
+    """Lines of the control plane."""
+    door = ControlDoor("7411", "word", served)
+    ours, theirs = socket.socketpair()
+    client = Client(ours, "127.0.0.1")
+    door._trusted.add(client)
+    found = {"accepted": 0, "refused": 0}
+
+    def one(number: int) -> None:
+        answer = door._answer(client, inputs.line(random).rstrip(b"\n"))
+        if not answer.startswith(("ok", "error: ")) or "\n" in answer:
+            raise AssertionError(f"an answer of its own kind: {answer!r}")
+        found["accepted" if answer.startswith("ok") else "refused"] += 1
+        if number % 100 == 99:
+            for name in served.network.boards:
+                served.switch(name, True)
+
+    _attack(served, count, one)
+    client.close()
+    theirs.close()
+    return found
+
+
+def telnet(served: Served, count: int, random: Random) -> dict[str, int]:
+    """What an RFC 2217 client sends."""
+    door = Rfc2217Door("7501", served)
+    found = {"accepted": 0, "hung up": 0}
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    client = Client(ours, "")
+    door.greet(client)
+    signs = (b"\xff\xfa\x2c", b"\xff\xf0", b"\xff\xfd\x2c", b"\xff", b"\xff\xff", b"\xff\xfb\x00", b"")
+
+    def one(_number: int) -> None:
+        door.take(client, random.choice(signs) + inputs.data(random, 20) + random.choice(signs))
+        found["hung up" if client.gone else "accepted"] += 1
+        if client.gone:
+            client.gone = False
+            door.forget(client)
+            door.greet(client)
+        with suppress(BlockingIOError):
+            theirs.recv(1 << 16)
+
+    _attack(served, count, one)
+    client.close()
+    theirs.close()
+    return found
+
+
+def scenarios(served: Served, count: int, random: Random) -> dict[str, int]:
+    """Scenario files."""
+    found = {"accepted": 0, "refused": 0}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "x.yaml"
+        for _ in range(count):
+            file.write_bytes(inputs.scenario(random).encode("utf-8", "surrogatepass"))
+            try:
+                load(file)
+                found["accepted"] += 1
+            except ScenarioError:
+                found["refused"] += 1
+    return found
+
+
+DOORS: dict[str, Callable[[Served, int, Random], dict[str, int]]] = {
+    "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "telnet": telnet,
+    "scenarios": scenarios,
+}  # fmt: skip
+
+
+def attack(door: str, count: int, seed: int = 1) -> dict[str, int]:
+    """`count` inputs at one door of a fresh network; what became of them."""
+    return DOORS[door](Served(*chosen()), count, Random(seed))

@@ -1,0 +1,109 @@
+"""Hostile bytes, text and frames from a seed: mostly near misses, as plain noise is refused at once."""
+
+from random import Random
+
+from bus.can import Frame
+from bus.protocol import COMMAND_BASE, Device, Opcode
+
+_IDENTIFIERS = [base + device for device in Device for base in (0x080, 0x100, 0x200, 0x300, 0x700)]
+_EDGES = (0, 1, 0x7F, 0x80, 0xF3, 0xF7, 0xFF)
+_WORDS = (
+    "speed", "pause", "resume", "power", "status", "stop", "token", "help", "FOCUS", "AXIS_RA", "on", "off",
+    "nan", "inf", "-1", "1e400", "0", "5", "\0", "\u2028", "\ud7ff", "x" * 1200, " ", "\t",
+)  # fmt: skip
+_YAML = (
+    "name: x", "start_utc: 2026-02-10T14:00:00Z", "steps:", "  - power_on: {}", "  - wait: {for: 1 s}",
+    "  - goto: {target: Capella}", "speed: 1", "description: &a [x, y]", "b: *a", "plant: low-preload",
+    "- ", ": ", "seed: 1",
+    "{", "}", "[", "]", "&a ", "*a", "!!int ", "!!timestamp ", "!!python/object:x ", "|", ">", "'", '"',
+    "\\0", "\0", "\t", ".inf", ".nan", "1e400", "9" * 50, "? ", "<<: ", "%YAML 9.9", "---", "...", "\ufeff",
+    "\x85",
+    "faults: [{node_off: {node: AXIS_RA}, at: 1 s}]", "network: {bitrate: 500 kbit/s}", "logs: {status: 1 s}",
+    "expect: [{overruns: {at_most: 0}}]", "site: {height: 5 m}", "mount: {declination_low: -10 deg}",
+)  # fmt: skip
+
+
+def data(random: Random, most: int) -> bytes:
+    """Up to `most` bytes, edge values more often than others."""
+    length = random.choice((0, 1, most - 1, most, random.randrange(most + 1)))
+    return bytes(
+        random.choice(_EDGES) if random.random() < 0.5 else random.randrange(256) for _ in range(length)
+    )
+
+
+def frame(random: Random) -> Frame:
+    """A frame: a peer's identifier with wrong bytes, a command with odd arguments, or anything."""
+    kind = random.random()
+    if kind < 0.4:
+        identifier = random.choice(_IDENTIFIERS)
+        body = data(random, 8)
+        if body and random.random() < 0.7:
+            body = bytes([identifier & 0x7F]) + body[1:]
+        return Frame(identifier, body, remote=random.random() < 0.05)
+    if kind < 0.8:
+        device = random.choice(list(Device))
+        opcode = random.choice([*Opcode, 0, 0x7E, 0xFE])
+        return Frame(COMMAND_BASE + device, bytes([device, opcode]) + data(random, 6).ljust(6, b"\0"))
+    extended = random.random() < 0.5
+    identifier = random.randrange(1 << (29 if extended else 11))
+    return Frame(identifier, data(random, 8), extended, random.random() < 0.2)
+
+
+def report(random: Random) -> bytes:
+    """A HID report's worth of slots, sometimes of a wrong length."""
+    if random.random() < 0.1:
+        return data(random, 130)
+    slots = [frame(random).data.ljust(8, b"\0") for _ in range(8)]
+    return b"".join(slots)
+
+
+def line(random: Random) -> bytes:
+    """A line for the control plane. `stop` would only end the test."""
+    words = [random.choice(_WORDS) for _ in range(random.randrange(5))]
+    if words[:1] == ["stop"]:
+        words[0] = "status"
+    text = " ".join(words).encode("utf-8", "surrogatepass")
+    return (data(random, 40).replace(b"stop", b"") if random.random() < 0.2 else text) + b"\n"
+
+
+def datagram(random: Random) -> bytes:
+    """Something on the multicast group: msgpack of a message with fields that are wrong, or noise."""
+    import msgpack
+
+    if random.random() < 0.3:
+        return data(random, 80)
+    odd = (None, -1, 1.5, "x", b"", [], {}, True, 1 << 40, 0x7FF, bytes(8), bytes(64))
+    fields: dict[str, object] = {
+        "timestamp": 0.0, "arbitration_id": 0x091, "is_extended_id": False, "is_remote_frame": False,
+        "is_error_frame": False, "channel": None, "dlc": 8, "data": bytes(8), "is_fd": False,
+        "bitrate_switch": False, "error_state_indicator": False,
+    }  # fmt: skip
+    for key in random.sample(sorted(fields), random.randrange(4)):
+        fields[key] = random.choice(odd)
+    if random.random() < 0.2:
+        fields["nonsense"] = random.choice(odd)
+    packed: bytes = msgpack.packb(fields, use_bin_type=True)
+    return packed[: random.randrange(len(packed))] if random.random() < 0.2 else packed
+
+
+def scenario(random: Random) -> str:
+    """A good scenario with some of its lines lost, doubled, or replaced by pieces and signs of YAML."""
+    lines = [
+        "name: x",
+        "start_utc: 2026-02-10T14:00:00Z",
+        "steps:",
+        "  - power_on: {}",
+        "  - wait: {for: 1 s}",
+    ]
+    for _ in range(random.choice((0, 1, 1, 2, 3, 8))):
+        at = random.randrange(len(lines) + 1)
+        kind = random.random()
+        if kind < 0.5:
+            lines.insert(at, random.choice(_YAML))
+        elif kind < 0.8 and lines:
+            at = random.randrange(len(lines))
+            cut = random.randrange(len(lines[at]) + 1)
+            lines[at] = lines[at][:cut] + random.choice(_YAML) + lines[at][cut:]
+        elif lines:
+            del lines[random.randrange(len(lines))]
+    return "\n".join(lines) + "\n"
