@@ -184,7 +184,8 @@ def test_ctrl_c_parks_flushes_and_ends(tmp_path: Path, number: signal.Signals) -
         said, _ = server.communicate(timeout=60)
         took_s = time.monotonic() - start
     assert server.returncode == 0
-    assert "the motors were off" in said and "ticks within 1 ms" in " ".join(said.split())
+    words = " ".join(said.split())
+    assert "the motors were off" in words and ("ticks within 1 ms" in words or "no tick yet" in words)
     print(f"ended within {took_s:.2f} s")
     assert took_s < 1.0 * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
     assert not (tmp_path / "s").exists()
