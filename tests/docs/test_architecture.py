@@ -135,6 +135,8 @@ def package(name: str) -> str:
     return {
         "yaml": "pyyaml",
         "can": "python-can",
+        "hidraw": "hidapi",
+        "msgpack": "python-can",
         "erfa": "pyerfa",
         "alpaca": "alpyca",
         "serial": "pyserial",
