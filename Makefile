@@ -49,7 +49,7 @@ paper: $(READY)
 
 bench: $(VENV)/.bench
 	mkdir -p out
-	$(BIN)/python -m scenarios.bench --json out/bench.json
+	$(BIN)/python -m scenarios.bench --json out/bench.json --history out/bench-history.jsonl
 	$(BIN)/python -m tests.benchmarks.calibration --json out/bench-calibration.json
 
 blind: $(READY)

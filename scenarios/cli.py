@@ -60,6 +60,7 @@ def cli() -> None:
     type=click.Path(path_type=Path),
     help="Load this table, and run without it and with it wrong as well.",
 )
+@click.option("--no-report", is_flag=True, help="Logs and summary.json only, no figures: ends sooner.")
 def run(
     scenario: Path,
     out: Path | None,
@@ -69,6 +70,7 @@ def run(
     log_rate: float | None,
     firmware: str | None,
     compensation: Path | None,
+    no_report: bool,
 ) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
     from scenarios import run as runner
@@ -82,7 +84,7 @@ def run(
         result = _compared(loaded, model, folder, compensation)
     else:
         with runner.bar(loaded, sys.stderr.isatty()) as progress:
-            result = runner.run(loaded, model, folder, progress)
+            result = runner.run(loaded, model, folder, progress, not no_report)
     for verdict in result.verdicts:
         sign, limit = ("≤" if verdict.upper else "≥"), f"{verdict.limit:g}"
         value = "no value" if verdict.value is None else f"{verdict.value:.4g}"
@@ -94,7 +96,8 @@ def run(
     summary = result.summary
     click.echo(
         f"{summary['simulated_s']:.1f} s simulated at {summary['real_time_factor']:.1f} times real time, "
-        f"digest {summary['trace_digest'][:16]}, report {folder / 'report.html'}"
+        f"digest {summary['trace_digest'][:16]}, "
+        + (f"logs in {folder}" if no_report else f"report {folder / 'report.html'}")
     )
     if result.interrupted:
         _fail(f"interrupted, logs up to t={summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
@@ -260,6 +263,21 @@ def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     from scenarios.doors.tell import tell
 
     click.echo(tell(" ".join(command), at, token))
+
+
+@cli.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<campaign>).")
+@click.option("--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core).")
+@click.option(
+    "--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead: pip install 'schmidt[cluster]'."
+)
+@click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
+def campaign(file: Path, out: Path | None, jobs: int | None, scheduler: str | None, resume: bool) -> None:
+    """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
+    from scenarios.campaign.command import campaign as command
+
+    sys.exit(command(file, out if out is not None else Path("out") / file.stem, jobs, scheduler, resume))
 
 
 @cli.command()

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from host.logs.files import LogError
 from scenarios.configure import read_tables, with_firmware
-from scenarios.document import ScenarioError
-from scenarios.load import load
+from scenarios.document import Document, ScenarioError
+from scenarios.load import convert, load
 from scenarios.model import Scenario
 from scenarios.targets import check_targets
 
@@ -48,17 +48,20 @@ class Result:
 
 
 def prepare(
-    file: Path,
+    source: Path | Document,
     seed: int | None = None,
     plant: str | None = None,
     speed: float | None = None,
     status_period_s: float | None = None,
     firmware: str | None = None,
 ) -> tuple[Scenario, PlantModel]:
-    """Load a scenario, apply the command line's changes, check all that can be checked without running."""
+    """Load a scenario, apply the command line's changes, check all that can be checked without running.
+
+    source: the file, or what stands in it (relative names are looked for beside its `file`).
+    """
     from scenarios.plants import plant_model
 
-    scenario = load(file)
+    scenario = convert(source) if isinstance(source, Document) else load(source)
     changes: dict[str, Any] = {"seed": seed, "speed": speed, "status_period_s": status_period_s}
     scenario = dataclasses.replace(
         scenario, **{key: value for key, value in changes.items() if value is not None}
@@ -69,13 +72,18 @@ def prepare(
     scenario = read_tables(scenario)
     if firmware is not None:
         scenario = with_firmware(scenario, firmware)
-    return scenario, plant_model(scenario.plant, file.parent)
+    return scenario, plant_model(scenario.plant, scenario.file.parent)
 
 
 def run(
-    scenario: Scenario, model: PlantModel, folder: Path, progress: Callable[[str, float, float], None]
+    scenario: Scenario,
+    model: PlantModel,
+    folder: Path,
+    progress: Callable[[str, float, float], None],
+    report: bool = True,
 ) -> Result:
     """Run a scenario into a folder. progress: `(step, simulated s, times real time)`, once a second of it.
+    report: draw the figures and write the page; the logs and `summary.json` come in any case.
 
     An interruption (KeyboardInterrupt) ends the run early with readable logs; a disk that is full raises
     `LogError` after everything that could be closed was closed.
@@ -104,7 +112,7 @@ def run(
     failures = session.recorder.close()
     if failures:
         raise LogError(failures[0])
-    return _conclude(session, bus, wall_s, interrupted)
+    return _conclude(session, bus, wall_s, interrupted, report)
 
 
 def _loop(
@@ -134,11 +142,10 @@ def _loop(
 
 
 def _conclude(
-    session: Session, bus: list[tuple[float, float, int]], wall_s: float, interrupted: bool
+    session: Session, bus: list[tuple[float, float, int]], wall_s: float, interrupted: bool, report: bool
 ) -> Result:
     from scenarios.evaluate import judge
     from scenarios.outcome import Outcome
-    from scenarios.report.page import write
 
     network, recorder = session.network, session.recorder
     simulated_s = network.queue.now_ns * 1e-9
@@ -160,7 +167,10 @@ def _conclude(
     verdicts = judge(outcome)
     summary = _summary(session, outcome, verdicts)
     _write_json(recorder.folder / "summary.json", summary)
-    write(outcome, verdicts, summary)
+    if report:
+        from scenarios.report.page import write
+
+        write(outcome, verdicts, summary)
     return Result(summary, verdicts, recorder.folder, outcome, interrupted)
 
 

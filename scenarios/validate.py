@@ -33,8 +33,11 @@ def schema() -> dict[str, Any]:
     return loaded
 
 
-def check(document: Document) -> None:
-    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow."""
+def check(document: Document, language: dict[str, Any] | None = None) -> None:
+    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow.
+
+    language: a JSON schema; None: that of scenarios.
+    """
     from jsonschema import Draft202012Validator
     from jsonschema.validators import extend
 
@@ -46,7 +49,7 @@ def check(document: Document) -> None:
         except UnitError as error:
             yield ValidationError(str(error))
 
-    validator = extend(Draft202012Validator, {"x-quantity": quantity})(schema())  # type: ignore[no-untyped-call]
+    validator = extend(Draft202012Validator, {"x-quantity": quantity})(language or schema())  # type: ignore[no-untyped-call]
     found = (_describe(document, error) for error in validator.iter_errors(_plain(document.data)))
     problems = sorted({problem for problem in found if problem is not None})
     if problems:

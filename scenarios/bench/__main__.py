@@ -1,109 +1,70 @@
-"""`python -m scenarios.bench [--json FILE] [--quick]`: measure, print, write JSON."""
+"""`python -m scenarios.bench [--json FILE] [--history FILE] [--quick]`: measure, print one table, keep it."""
 
 from __future__ import annotations
 
 import json
 import os
 import platform
+import time
 from pathlib import Path
 from typing import Any
 
 import click
 from rich.console import Console
-from rich.table import Table
 
-from scenarios.bench import network, startup, virtual
+from scenarios.bench import counters, history, interleaved, network, profile, startup
+from scenarios.bench.show import headline, show
+from scenarios.native.build import BuildError, build
 
-SIZES = (4, 8, 16, 32, 64)
+SIZES = (11, 22, 44, 64, 128, 256)
 
 
 def measure(quick: bool, say: Console) -> dict[str, Any]:
     """All figures. quick: shorter stretches, for trying the benchmark itself."""
     seconds = 10 if quick else 100
-    with say.status("the whole network, full telemetry"):
-        whole, traffic = network.whole_network(seconds)
-    with say.status("the plant alone"):
-        plant = network.plant_alone(seconds)
-    with say.status("the same traffic over python-can's virtual bus"):
-        peer = virtual.replay(traffic)
+    begun = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    with say.status("compiling what has changed"):
+        native = _native(say)
+    with say.status("plain, compiled, bare loop and python-can in turn"):
+        turns = interleaved.measure(4 if quick else interleaved.ROUNDS, native)
+    with say.status("instructions"):
+        instructions = counters.instructions(native)
     with say.status("cost per node"):
-        sizes = network.nodes(SIZES, seconds // 5)
+        sizes = network.nodes(SIZES, max(5, seconds // 20))
     with say.status("memory"):
         memory = network.memory(max(200, seconds * 4))  # shorter, the first row groups look like growth
     with say.status("profile"):
-        table = network.profile(max(5, seconds // 5), rows=1000)
+        profiled = profile.measure(max(5, seconds // 5))
     with say.status("start-up, compiling from nothing"):
         start = startup.startup()
     return {
-        "machine": {
-            "processor": platform.processor() or platform.machine(),
-            "cores": os.cpu_count(),
-            "load": os.getloadavg(),
-        },
+        "begun": begun,
+        "machine": {"name": history.machine(), "cores": os.cpu_count(), "load": os.getloadavg()},
         "python": platform.python_version(),
-        "network": whole,
-        "plant": plant,
-        "virtual_bus": peer,
-        "ratio_to_virtual_bus": whole["real_time_factor"] / peer["real_time_factor"],
+        "turns": turns,
+        "instructions": instructions,
         "nodes": sizes,
         "memory": memory,
         "startup": start,
-        "rooms": network.rooms(table),
-        "profile": table[:25],
+        "rooms": profiled["rooms"],
+        "profile": profiled["functions"],
     }
 
 
-def show(figures: dict[str, Any], console: Console) -> None:
-    """Print the figures beside what was asked for."""
-    whole, peer, memory, start = (figures[name] for name in ("network", "virtual_bus", "memory", "startup"))
-    table = Table(
-        title=f"schmidt bench, {figures['machine']['cores']} cores, load {figures['machine']['load'][0]:.1f}"
-    )
-    for column in ("what", "measured", "asked for"):
-        table.add_column(column)
-    per_node = [row["ms_per_node_and_s"] for row in figures["nodes"]]
-    rows = (
-        (
-            "eleven nodes, host and all logs",
-            f"{whole['real_time_factor']:.1f}× real time",
-            "≥ 40×, goal 100×",
-        ),
-        ("  by CPU time of this process", f"{whole['cpu_time_factor']:.1f}×", ""),
-        ("  best of five parts", f"{whole['best_real_time_factor']:.1f}×", ""),
-        ("  traffic", f"{whole['frames_per_s']:.0f} frames/s, load {whole['bus_load']:.1%}", ""),
-        ("plant alone, in one piece", f"{figures['plant']['real_time_factor']:.0f}×", ""),
-        ("plant alone, every 5 ms", f"{figures['plant']['in_5_ms_pieces']:.0f}×", ""),
-        ("python-can virtual bus, a Notifier per node", f"{peer['real_time_factor']:.1f}×", ""),
-        ("schmidt over python-can", f"{figures['ratio_to_virtual_bus']:.1f} times", "≥ 4, goal 10"),
-        ("cost per node, 4 to 64 nodes", " ".join(f"{each:.2f}" for each in per_node) + " ms/s", "flat"),
-        ("memory", f"{memory['resident_MiB']:.0f} MiB, {memory['MiB_per_hour']:+.1f} MiB/h", ""),
-        ("  ten-hour night", f"{memory['ten_hours_MiB']:.0f} MiB", "≤ 500 MB"),
-        ("first command until it simulates", f"{start['first_run_s']:.1f} s", "≤ 15 s"),
-        ("later command until it simulates", f"{start['later_run_s']:.1f} s", "≤ 2 s"),
-        ("  a short run with its report", f"{start['short_run_with_report_s']:.1f} s", ""),
-        ("  schmidt --version", f"{start['version_s']:.1f} s", ""),
-    )
-    for row in rows:
-        table.add_row(*row)
-    console.print(table)
-    profile = Table(title="where the time goes (own time, measured with cProfile)")
-    for column in ("function", "calls/s", "own", "with callees"):
-        profile.add_column(column)
-    for row in figures["profile"]:
-        profile.add_row(
-            row["function"],
-            f"{row['calls_per_s']:.0f}",
-            f"{row['own_share']:.1%}",
-            f"{row['total_share']:.1%}",
-        )
-    console.print(profile)
-    console.print("by room: " + ", ".join(f"{name} {share:.0%}" for name, share in figures["rooms"].items()))
+def _native(say: Console) -> bool:
+    try:
+        build()
+    except BuildError as error:
+        say.print(f"only the plain way is measured: {error}")
+        return False
+    return True
 
 
 @click.command()
 @click.option("--json", "json_file", type=click.Path(path_type=Path))
-@click.option("--quick", is_flag=True, help="Short stretches.")
-def main(json_file: Path | None, quick: bool) -> None:
+@click.option("--history", "past", type=click.Path(path_type=Path), help="Earlier benches, a line each.")
+@click.option("--quick", is_flag=True, help="Short stretches; not kept in the history.")
+def main(json_file: Path | None, past: Path | None, quick: bool) -> None:
     """Measure the emulator's speed."""
     console = Console()
     figures = measure(quick, console)
@@ -111,6 +72,11 @@ def main(json_file: Path | None, quick: bool) -> None:
     if json_file is not None:
         json_file.parent.mkdir(parents=True, exist_ok=True)
         json_file.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+    if past is not None and not quick:
+        now = headline(figures)
+        for line in history.falls(history.read(past), now):
+            console.print(f"[bold red]{line}")
+        history.add(past, now, {"begun": figures["begun"], "load": figures["machine"]["load"][0]})
 
 
 if __name__ == "__main__":

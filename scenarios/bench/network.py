@@ -1,27 +1,25 @@
-"""Speed of the whole network, of the plant alone, cost per node, memory, and where the time goes."""
+"""The main scenario set up for measuring; cost per node; memory."""
 
 from __future__ import annotations
 
-import cProfile
 import os
-import pstats
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from bus.can import Frame
 from plant.model import load
 from plant.plant import Plant
 from scenarios import run as runner
-from scenarios.network import NetworkConfig, build
+from scenarios.network import Network, NetworkConfig, build
 from scenarios.session import Session, start_steps
 
 SCENARIO = Path(__file__).parents[1] / "observing-night.yaml"
 _SETTLED_S = 40
 """By then the telescope tracks its first star."""
 _SECOND_NS = 1_000_000_000
+_STEP_NS = 10_000_000
+MOST_NODES = 64
 
 
 def session(folder: Path) -> Session:
@@ -49,47 +47,34 @@ def factor(advance: Callable[[int], None], start_ns: int, seconds: int, parts: i
     }
 
 
-def whole_network(seconds: int) -> tuple[dict[str, Any], list[tuple[int, Frame, str]]]:
-    """Eleven nodes with host, logs and full telemetry; also a second of its traffic."""
-    with tempfile.TemporaryDirectory() as folder:
-        made = session(Path(folder))
-        frames_before = made.network.wire.frames
-        start_ns = made.network.queue.now_ns
-        figures: dict[str, Any] = dict(factor(made.advance, start_ns, seconds))
-        figures["frames_per_s"] = (made.network.wire.frames - frames_before) / seconds
-        figures["bus_load"] = made.network.wire.load
-        traffic: list[tuple[int, Frame, str]] = []
-        made.network.wire.tap(lambda t, frame, sender: traffic.append((t, frame, sender)))
-        made.advance(made.network.queue.now_ns + _SECOND_NS)
-        made.recorder.close()
-    return figures, traffic
-
-
-def plant_alone(seconds: int) -> dict[str, float]:
-    """Both axes without boards, advanced every 5 ms and in one piece a second."""
-    scenario, model = runner.prepare(SCENARIO)
-    plant = Plant(model, 1, start_steps(scenario))
-    plant.advance(_SECOND_NS)
-    whole = factor(plant.advance, plant.now_ns, seconds)
-
-    def ticking(until_ns: int) -> None:
-        for t_ns in range(plant.now_ns, until_ns + 1, 5_000_000):
-            plant.advance(t_ns)
-
-    ticked = factor(ticking, plant.now_ns, seconds)
-    return {"real_time_factor": whole["real_time_factor"], "in_5_ms_pieces": ticked["real_time_factor"]}
-
-
 def nodes(sizes: tuple[int, ...], seconds: int) -> list[dict[str, float]]:
-    """Cost per node: boards, bus and plant without the host, for networks of several sizes."""
+    """Cost per node: boards, bus and plant without the host, for networks of several sizes.
+
+    A bus has 64 nodes at most; more nodes are on two or four buses, each a network of its own, taken forward
+    together in steps of 10 ms.
+    """
+    scenario, _ = runner.prepare(SCENARIO)
     rows = []
     for size in sizes:
-        scenario, _ = runner.prepare(SCENARIO)
-        network = build(NetworkConfig(size=size), Plant(load(), 1, start_steps(scenario)), 1)
-        network.run_until(_SECOND_NS)
-        made = factor(network.run_until, network.queue.now_ns, seconds)
+        buses = -(-size // MOST_NODES)
+        networks = [
+            build(NetworkConfig(size=size // buses), Plant(load(), 1, start_steps(scenario)), 1 + bus)
+            for bus in range(buses)
+        ]
+
+        def together(until_ns: int, networks: list[Network] = networks) -> None:
+            while networks[0].queue.now_ns < until_ns:
+                t_ns = min(until_ns, networks[0].queue.now_ns + _STEP_NS)
+                for network in networks:
+                    network.run_until(t_ns)
+
+        together(_SECOND_NS)
+        made = factor(together, _SECOND_NS, seconds)
         per_node = 1e3 / made["cpu_time_factor"] / size
-        rows.append({"nodes": size, "ms_per_node_and_s": per_node, **made, "bus_load": network.wire.load})
+        load_now = networks[0].wire.load
+        rows.append(
+            {"nodes": size, "buses": buses, "ms_per_node_and_s": per_node, **made, "bus_load": load_now}
+        )
     return rows
 
 
@@ -119,44 +104,3 @@ def resident_mib() -> float:
         import resource
 
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-def profile(seconds: int, rows: int = 25) -> list[dict[str, Any]]:
-    """Where the time goes: the functions with most time of their own, cProfile's overhead included."""
-    with tempfile.TemporaryDirectory() as folder:
-        made = session(Path(folder))
-        profiler = cProfile.Profile()
-        profiler.enable()
-        made.advance(made.network.queue.now_ns + seconds * _SECOND_NS)
-        profiler.disable()
-        made.recorder.close()
-    stats: Any = pstats.Stats(profiler)
-    total = stats.total_tt
-    root = Path(__file__).parents[2]
-    table = []
-    for (file, line, name), (_, calls, own, cumulative, _) in stats.stats.items():
-        place = Path(file)
-        short = (
-            str(place.relative_to(root)) if place.is_relative_to(root) and ".venv" not in file else place.name
-        )
-        table.append(
-            {
-                "function": f"{short}:{line} {name}" if line else name,
-                "calls_per_s": calls / seconds,
-                "own_share": own / total,
-                "total_share": cumulative / total,
-            }
-        )
-    return sorted(table, key=lambda row: -row["own_share"])[:rows]
-
-
-def rooms(table: list[dict[str, Any]]) -> dict[str, float]:
-    """Own time by room, from a profile table."""
-    shares: dict[str, float] = {}
-    for row in table:
-        room = row["function"].split("/", 1)[0] if "/" in row["function"] else "libraries"
-        shares[room] = shares.get(room, 0.0) + row["own_share"]
-    return dict(sorted(shares.items(), key=lambda item: -item[1]))
-
-
-__all__ = ["memory", "nodes", "plant_alone", "profile", "rooms", "whole_network"]

@@ -1,0 +1,107 @@
+"""One way of running the source, asked for one part after another: `python -m scenarios.bench.worker`.
+
+A line in: `PART SECONDS`. A line out: JSON with the CPU seconds it took and what there was to do. Two such
+processes, one plain and one compiled, are asked in turn, so that both see the same weather on the machine.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from bus.can import Frame
+from plant.plant import Plant
+from scenarios import run as runner
+from scenarios.bench import network, virtual
+from scenarios.bench.bare import BareLoop
+from scenarios.native import compiled
+from scenarios.session import start_steps
+
+_SECOND_NS = 1_000_000_000
+
+
+class Worker:
+    """Everything set up once; each part goes on from where it was."""
+
+    def __init__(self, folder: Path) -> None:
+        self.session = network.session(folder)
+        scenario, model = runner.prepare(network.SCENARIO)
+        self.bare = BareLoop(Plant(model, 1, start_steps(scenario)))
+        self.bare.advance(_SECOND_NS)
+        self.plant = Plant(model, 1, start_steps(scenario))
+        self.plant.advance(_SECOND_NS)
+        self.session.recorder.flush()
+        self._traffic = last_second(folder / "can.log")
+
+    def night(self, seconds: int) -> dict[str, float]:
+        """The whole network, host and all logs."""
+        queue, wire = self.session.network.queue, self.session.network.wire
+        frames = wire.frames
+        self.session.advance(queue.now_ns + seconds * _SECOND_NS)
+        return {"frames": wire.frames - frames}
+
+    def bare_loop(self, seconds: int) -> dict[str, float]:
+        """The yardstick."""
+        frames, ticks = self.bare.frames, self.bare.ticks
+        self.bare.advance(self.bare.now_ns + seconds * _SECOND_NS)
+        return {"frames": self.bare.frames - frames, "ticks": self.bare.ticks - ticks}
+
+    def plant_alone(self, seconds: int) -> dict[str, float]:
+        """The kernels, every 5 ms."""
+        start = self.plant.now_ns
+        for t_ns in range(start, start + seconds * _SECOND_NS + 1, 5_000_000):
+            self.plant.advance(t_ns)
+        return {}
+
+    def virtual_bus(self, seconds: int) -> dict[str, float]:
+        """The same traffic over python-can's virtual bus."""
+        for _ in range(seconds):
+            lost = virtual.replay(self._traffic)["lost"]
+        return {"lost": lost, "frames": seconds * len(self._traffic)}
+
+
+def last_second(log: Path) -> list[tuple[int, Frame, str]]:
+    """The traffic of a log's last second: time ns, frame, sender (the device type is in the identifier)."""
+    rows = [line.split() for line in log.read_text(encoding="ascii").splitlines()[-5000:]]
+    end_s = float(rows[-1][0].strip("()"))
+    found = []
+    for stamp, _, text in rows:
+        t_s = float(stamp.strip("()"))
+        identifier, data = text.split("#")
+        if t_s > end_s - 1.0:
+            frame = Frame(int(identifier, 16), bytes.fromhex(data))
+            found.append((round(t_s * 1e9), frame, f"{frame.identifier & 0x7F:02X}"))
+    return found
+
+
+def main() -> None:
+    """Serve until the line is closed."""
+    with tempfile.TemporaryDirectory() as folder:
+        worker = Worker(Path(folder))
+        parts: dict[str, Callable[[int], dict[str, float]]] = {
+            "night": worker.night,
+            "bare": worker.bare_loop,
+            "plant": worker.plant_alone,
+            "virtual": worker.virtual_bus,
+        }
+        _say({"ready": True, "compiled": compiled()})
+        for line in sys.stdin:
+            part, seconds = line.split()
+            cpu, wall = time.process_time(), time.perf_counter()
+            found = parts[part](int(seconds))
+            cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+            _say({"cpu_s": cpu, "wall_s": wall, **found})
+        worker.session.recorder.close()
+
+
+def _say(figures: dict[str, Any]) -> None:
+    print(json.dumps(figures), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,124 @@
+"""Figures of a campaign: distributions, what moves what, what fails first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from scenarios.campaign.sensitivity import Array, Influence, share
+from scenarios.report.style import COLOURS, axes, new_figure, title
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Columns = dict[str, list[Any]]
+_PANELS = 9
+_BAR = "#9db7d5"
+WORDS = 44
+
+
+def numbers(columns: Columns, name: str) -> Array:
+    """A column as floats, nan where there is nothing or no number."""
+    return np.array(
+        [each if isinstance(each, int | float) else np.nan for each in columns[name]], dtype=float
+    )
+
+
+def distributions(
+    columns: Columns, metrics: list[str], limits: dict[str, tuple[float, bool]]
+) -> Figure | None:
+    """A histogram per metric; a line where its limit lies, red where it is missed."""
+    drawn = [name for name in metrics if np.ptp(_finite(numbers(columns, name))) > 0.0][:_PANELS]
+    if not drawn:
+        return None
+    rows = -(-len(drawn) // 3)
+    figure = new_figure(2.3 * rows + 0.3)
+    for place, name in enumerate(drawn):
+        values = _finite(numbers(columns, name))
+        view = axes(figure, rows, 3, place + 1, ylabel="runs" if place % 3 == 0 else "")
+        middle = np.quantile(values, [0.005, 0.995])
+        bars: Any
+        _, edges, bars = view.hist(np.clip(values, *middle), bins=30, color=_BAR)
+        short = name.removeprefix("metric: ")
+        if short in limits:
+            limit, upper = limits[short]
+            for left, bar in zip(edges, bars, strict=False):
+                if left >= limit if upper else left < limit:
+                    bar.set_color(COLOURS["bad"])
+            if middle[0] - np.ptp(middle) < limit < middle[1] + np.ptp(middle):
+                view.axvline(limit, color=COLOURS["bad"], lw=1.2, ls="--")
+        title(view, short[:WORDS])
+    return figure
+
+
+def influences(found: list[Influence], inputs: list[str]) -> Figure | None:
+    """Rank correlation with its interval, a row per metric and input that moves it."""
+    strong = sorted(found, key=lambda each: -abs(each.value))[:18]
+    if not strong:
+        return None
+    strong.sort(key=lambda each: (each.metric, -abs(each.value)), reverse=True)
+    figure = new_figure(0.27 * len(strong) + 1.0)
+    view = axes(figure, 1, 1, 1, xlabel="Spearman's rank correlation, 95 % bootstrap interval")
+    palette = dict(zip(inputs, _PALETTE * (1 + len(inputs) // len(_PALETTE)), strict=False))
+    for place, each in enumerate(strong):
+        sure = each.low > 0.0 or each.high < 0.0
+        colour = palette[each.input]
+        view.plot([each.low, each.high], [place, place], color=colour, lw=1.6, alpha=1.0 if sure else 0.35)
+        view.plot(each.value, place, "o", ms=5, color=colour if sure else "white", mec=colour)
+    view.axvline(0.0, color="#5d6b7a", lw=0.8)
+    view.set_yticks(
+        range(len(strong)),
+        [f"{e.metric.removeprefix('metric: ')[:WORDS]}  ←  {_short(e.input)}" for e in strong],
+    )
+    view.set_xlim(-1.05, 1.05)
+    title(view, "What moves what (filled: the interval does not hold zero)")
+    return figure
+
+
+def failures(columns: Columns, groups: dict[str, list[int]]) -> Figure | None:
+    """Share of runs in which each expectation is missed, with its interval, by group of runs."""
+    missed = [set(filter(None, str(each or "").split("; "))) for each in columns["missed"]]
+    names = sorted(
+        {name for each in missed for name in each}, key=lambda n: sum(n in each for each in missed)
+    )
+    if not names:
+        return None
+    names = names[-12:]
+    height = 0.8 / len(groups)
+    figure = new_figure(max(2.2, 0.2 * len(names) * len(groups) + 1.2))
+    view = axes(figure, 1, 1, 1, xlabel="share of runs in which it is missed, 95 % interval")
+    for number, (label, runs) in enumerate(groups.items()):
+        colour = _PALETTE[number % len(_PALETTE)]
+        for place, name in enumerate(names):
+            value, low, high = share(sum(name in missed[k] for k in runs), len(runs))
+            y = place + 0.4 - (number + 0.5) * height
+            known = label if place == 0 else None
+            view.barh(y, value, height * 0.85, color=colour, alpha=0.85, label=known)
+            view.plot([low, high], [y, y], color="#1c2530", lw=0.9)
+    view.set_yticks(range(len(names)), [name[:WORDS] for name in names])
+    view.set_xlim(0.0, 1.0)
+    title(view, "What fails")
+    if len(groups) > 1:
+        view.legend(fontsize=8, loc="lower right")
+    return figure
+
+
+_PALETTE = [
+    COLOURS["ra"],
+    COLOURS["dec"],
+    COLOURS["mean_1s"],
+    COLOURS["star"],
+    "#7a4fa3",
+    "#5d6b7a",
+    "#b3261e",
+]
+
+
+def _finite(values: Array) -> Array:
+    found = values[np.isfinite(values)]
+    return found if len(found) else np.zeros(1)
+
+
+def _short(name: str) -> str:
+    return name.removeprefix("input: ")

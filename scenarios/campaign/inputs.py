@@ -1,0 +1,168 @@
+"""What a campaign varies: an input turns a share within 0..1 into a value and puts it into a scenario."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scenarios.document import ScenarioError
+from scenarios.validate import nearest
+
+Document = dict[str, Any]
+_LEVELS = 5
+"""Grid points of a distribution when the campaign does not say how many."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """name: its column. draw: share within 0..1 to value, through the inverse distribution. put: writes a
+    value into a scenario's plain document. values: the grid's."""
+
+    name: str
+    draw: Callable[[float], Any]
+    put: Callable[[Document, Any], None]
+    values: Sequence[Any]
+
+    @property
+    def numeric(self) -> bool:
+        """Whether its values are numbers that can be ranked."""
+        return all(isinstance(each, int | float) and not isinstance(each, bool) for each in self.values)
+
+
+def read(given: dict[str, Any], where: str, base: Document) -> Input:
+    """An input from its checked block; raises ScenarioError. base: the scenario it will change."""
+    kind = next(word for word in _PUTS if word in given)
+    put, default_name, scale = _PUTS[kind](given[kind], where, base)
+    draw, values = _distribution(given, where, kind)
+    name = str(given.get("name", default_name))
+    if "times" not in given:
+        return Input(name, draw, put, values)
+    return Input(name, draw, lambda document, value: put(document, scale() * value), values)
+
+
+def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
+    spread = given.get("times", given.get("is"))
+    if isinstance(spread, list):
+        return (lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]), spread
+    if not isinstance(spread, dict):
+        raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
+    levels = int(spread.get("levels", _LEVELS))
+    law = _law(spread, where)
+    whole = bool(spread.get("whole"))
+
+    def draw(share: float) -> Any:
+        value = float(law.ppf(share))
+        return round(value) if whole else value
+
+    return draw, [draw((k + 0.5) / levels) for k in range(levels)]
+
+
+def _law(spread: dict[str, Any], where: str) -> Any:
+    """A frozen distribution of scipy.stats."""
+    from scipy import stats
+
+    if "between" in spread:
+        low, high = map(float, spread["between"])
+        if not low < high:
+            raise ScenarioError(f"{where}: between {low:g} and {high:g} there is nothing")
+        return stats.uniform(low, high - low)
+    name = str(spread["distribution"])
+    known = [word for word, each in vars(stats).items() if isinstance(each, stats.rv_continuous)]
+    if name not in known:
+        hint = nearest(name, known)
+        raise ScenarioError(f"{where}: no distribution of scipy.stats is called {name!r}; {hint}")
+    numbers = {word: float(value) for word, value in spread.get("with", {}).items()}
+    try:
+        law = getattr(stats, name)(**numbers)
+        if not float(law.ppf(0.5)) == float(law.ppf(0.5)):
+            raise ValueError("its parameters are out of range")
+    except (TypeError, ValueError) as error:
+        raise ScenarioError(f"{where}: {name}: {' '.join(str(error).split())}") from None
+    return law
+
+
+Put = tuple[Callable[[Document, Any], None], str, Callable[[], float]]
+
+
+def _plant(path: Any, where: str, base: Document) -> Put:
+    """A number of the plant file, by the file's own paths; `times` is relative to what the scenario has."""
+    from pathlib import Path
+
+    from plant.model import ModelError, get
+    from scenarios.load import DEFAULT_PLANT
+    from scenarios.plants import plant_model
+
+    plant = base.get("plant", DEFAULT_PLANT)
+    whole = {"file": plant} if isinstance(plant, str) else plant
+    try:
+        number = get(plant_model(whole, Path(base["_folder"])), str(path)).value
+    except ModelError as error:
+        raise ScenarioError(f"{where}: {error}") from None
+
+    def put(document: Document, value: Any) -> None:
+        given = document.get("plant", DEFAULT_PLANT)
+        given = {"file": given} if isinstance(given, str) else given
+        document["plant"] = {**given, "overrides": {**given.get("overrides", {}), str(path): float(value)}}
+
+    return put, str(path), lambda: number
+
+
+def _parameter(given: Any, where: str, base: Document) -> Put:
+    """A firmware parameter of a board, by number."""
+
+    def put(document: Document, value: Any) -> None:
+        nodes = document.setdefault("network", {}).setdefault("nodes", {})
+        nodes.setdefault(given["node"], {}).setdefault("parameters", {})[str(given["number"])] = int(value)
+
+    return put, f"{given['node']} parameter {given['number']}", lambda: _none(where, "a firmware parameter")
+
+
+def _seed(_given: Any, where: str, base: Document) -> Put:
+    """The scenario's seed: crystals, encoders' fractions, noise, lost frames."""
+
+    def put(document: Document, value: Any) -> None:
+        document["seed"] = int(value)
+
+    return put, "seed", lambda: _none(where, "a seed")
+
+
+def _fault(_given: Any, where: str, base: Document) -> Put:
+    """One of a list of faults as scenarios have them; `none` is one, too."""
+
+    def put(document: Document, value: Any) -> None:
+        if value != "none":
+            document["faults"] = [*document.get("faults", []), copy.deepcopy(value)]
+
+    return put, "fault", lambda: _none(where, "a fault")
+
+
+def _field(path: Any, where: str, base: Document) -> Put:
+    """Any field of the scenario, by its path (steps.1.goto.target)."""
+    words = [int(word) if word.isdigit() else word for word in str(path).split(".")]
+
+    def put(document: Document, value: Any) -> None:
+        place: Any = document
+        for word in words[:-1]:
+            place = place[word]
+        place[words[-1]] = value
+
+    try:
+        put(copy.deepcopy(base), 0)
+    except (KeyError, IndexError, TypeError):
+        raise ScenarioError(f"{where}: the scenario has no field {path!r}") from None
+    return put, str(path), lambda: _none(where, "a field")
+
+
+def _none(where: str, what: str) -> float:
+    raise ScenarioError(f"{where}: {what} has no value to multiply; use `is`")
+
+
+_PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
+    "plant": _plant,
+    "parameter": _parameter,
+    "seed": _seed,
+    "fault": _fault,
+    "field": _field,
+}

@@ -1,0 +1,94 @@
+"""One run of a campaign, wherever it is made: a scenario in, a row out."""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import tempfile
+import time
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+Row = dict[str, Any]
+_EXPECTATIONS = "expectations"
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker is sent. beside: folder in which relative names are looked for. kept: where the logs of
+    those to `keep` (nothing, failed, all) stay, or None."""
+
+    key: str
+    index: int
+    values: dict[str, Any]
+    document: dict[str, Any]
+    beside: str
+    metrics: tuple[str, ...]
+    keep: str
+    kept: str | None
+
+
+def run(job: Job) -> Row:
+    """Run one case. What the run makes of it is the row's `failure`; only a broken machine raises."""
+    from scenarios.native import compiled
+    from scenarios.probe import digest
+
+    start, cpu = time.perf_counter(), time.process_time()
+    row: Row = {"key": job.key, "index": job.index, "failure": ""}
+    row |= {f"input: {name}": _cell(value) for name, value in job.values.items()}
+    with tempfile.TemporaryDirectory(prefix="schmidt-run-") as folder:
+        try:
+            row |= _made(job, Path(folder))
+        except ValueError as error:
+            row |= {"failure": " ".join(str(error).split()), "passed": False, "missed": ""}
+        if job.kept and (job.keep == "all" or (job.keep == "failed" and not row["passed"])):
+            shutil.copytree(folder, Path(job.kept) / job.key, dirs_exist_ok=True)
+    return row | {
+        "wall_s": time.perf_counter() - start,
+        "cpu_s": time.process_time() - cpu,
+        "probe": digest(),
+        "version": version("schmidt"),
+        "compiled": compiled(),
+        "machine": platform.node(),
+    }
+
+
+def _made(job: Job, folder: Path) -> Row:
+    from scenarios import run as runner
+    from scenarios.document import Document
+
+    document = Document(Path(job.beside) / f"{job.key}.yaml", job.document, {})
+    scenario, model = runner.prepare(document)
+    result = runner.run(scenario, model, folder, lambda _step, _t, _factor: None, report=False)
+    summary = result.summary
+    if result.interrupted:
+        raise KeyboardInterrupt
+    row: Row = {
+        "passed": result.passed,
+        "missed": "; ".join(verdict.name for verdict in result.verdicts if not verdict.passed),
+        "digest": summary["trace_digest"],
+        "simulated_s": summary["simulated_s"],
+    }
+    named = {verdict.name: verdict.value for verdict in result.verdicts}
+    for metric in job.metrics:
+        if metric == _EXPECTATIONS:
+            row |= {f"metric: {name}": value for name, value in named.items()}
+        elif metric in named:
+            row[f"metric: {metric}"] = named[metric]
+        elif isinstance(summary.get(metric), int | float):
+            row[f"metric: {metric}"] = summary[metric]
+        else:
+            raise ValueError(f"the run has no figure {metric!r}")
+    return row
+
+
+def _cell(value: Any) -> Any:
+    """A table's cell: numbers as they are, anything else in words (a fault as `node_off POSITION_RA`)."""
+    if isinstance(value, int | float | str):
+        return value
+    if isinstance(value, dict):
+        return " ".join(str(_cell(each)) if not isinstance(each, dict) else f"{word} {_cell(each)}"
+                        for word, each in value.items() if word not in ("at", "until"))  # fmt: skip
+    return str(value)

@@ -1,0 +1,147 @@
+"""A campaign file, checked, and the cases it plans: as many as asked for, none of them in memory."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.campaign import inputs
+from scenarios.document import Document, ScenarioError, read
+from scenarios.load import convert
+from scenarios.units import parse
+
+SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One planned run. key: hash of everything that decides its outcome. document: the scenario, plain."""
+
+    key: str
+    index: int
+    values: dict[str, Any]
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A campaign as the runner uses it. time_s: no run is begun after so much wall time."""
+
+    file: Path
+    name: str
+    description: str
+    scenario: Path
+    base: dict[str, Any]
+    inputs: tuple[inputs.Input, ...]
+    shares: npt.NDArray[np.float64]
+    """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
+    grid: bool
+    metrics: tuple[str, ...]
+    keep: str
+    time_s: float | None
+
+    @property
+    def count(self) -> int:
+        """Planned runs."""
+        return int(np.prod([len(each.values) for each in self.inputs])) if self.grid else len(self.shares)
+
+    def cases(self) -> Iterator[Case]:
+        """The planned runs, one after the other."""
+        if self.grid:
+            rows: Iterator[tuple[Any, ...]] = itertools.product(*(each.values for each in self.inputs))
+        else:
+            rows = (
+                tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
+                for row in self.shares
+            )
+        for index, values in enumerate(rows):
+            yield self._case(index, values)
+
+    def _case(self, index: int, values: tuple[Any, ...]) -> Case:
+        document = json.loads(json.dumps(self.base))
+        folder = document.pop("_folder")
+        for each, value in zip(self.inputs, values, strict=True):
+            each.put(document, value)
+        text = json.dumps([document, folder], sort_keys=True)
+        key = hashlib.sha256(text.encode()).hexdigest()[:16]
+        named = {each.name: value for each, value in zip(self.inputs, values, strict=True)}
+        return Case(key, index, named, document)
+
+
+def load(file: Path) -> Plan:
+    """Read and check a campaign file and the scenario it names; ScenarioError says what and where."""
+    document = read(file)
+    check(document)
+    data = document.data
+    scenario = file.parent / data["scenario"]
+    base = read(scenario)
+    convert(base)
+    plain = json.loads(json.dumps({**base.data, "_folder": str(scenario.parent.resolve())}, default=_text))
+    found = tuple(
+        inputs.read(given, document.where(("inputs", index)), plain)
+        for index, given in enumerate(data["inputs"])
+    )
+    names = [each.name for each in found]
+    if len(set(names)) < len(names):
+        raise ScenarioError(f"{file}: two inputs have one name; give one a `name`")
+    way = data.get("sample", "latin hypercube")
+    runs = int(data.get("budget", {}).get("runs", 100))
+    plan = Plan(
+        file=file,
+        name=data["name"],
+        description=data.get("description", ""),
+        scenario=scenario,
+        base=plain,
+        inputs=found,
+        shares=np.zeros((0, 0)) if way == "grid" else sample(way, runs, len(found), int(data.get("seed", 1))),
+        grid=way == "grid",
+        metrics=tuple(data.get("metrics", ("expectations",))),
+        keep=data.get("keep", "nothing"),
+        time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
+    )
+    convert(Document(file, next(plan.cases()).document, {}))  # the first case is a scenario, too
+    return plan
+
+
+def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64]:
+    """Shares within 0..1, (runs, width)."""
+    from scipy.stats import qmc
+
+    random = np.random.default_rng(seed)
+    if way == "random":
+        return random.random((runs, width))
+    if way == "sobol":
+        drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
+            max(0, (runs - 1).bit_length())
+        )[:runs]
+        return drawn
+    shares: npt.NDArray[np.float64] = qmc.LatinHypercube(width, rng=random).random(runs)
+    return shares
+
+
+@cache
+def schema() -> dict[str, Any]:
+    """The published JSON schema of campaign files."""
+    loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+    return loaded
+
+
+def check(document: Document) -> None:
+    """Raise ScenarioError for the first thing the language does not allow."""
+    from scenarios import validate
+
+    validate.check(document, schema())
+
+
+def _text(value: object) -> str:
+    """Dates of YAML as text."""
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)

@@ -1,0 +1,148 @@
+"""What a campaign plans: inputs, samples, keys, and what it refuses."""
+
+from collections import Counter
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from scipy.stats import kstest
+
+from scenarios.campaign.plan import Case, load
+from scenarios.document import ScenarioError
+
+SCENARIO = """\
+name: short
+start_utc: 2026-02-10T14:00:00Z
+plant: low-preload
+steps:
+  - power_on: {}
+  - name: go
+    set_rate: {axis: ra, rate: 100 arcsec/s, for: 1 s}
+expect:
+  - name: nothing is lost
+    overruns: {at_most: 0}
+"""
+FRICTION = "axes.ra.friction.coulomb"
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Any:
+    (tmp_path / "short.yaml").write_text(SCENARIO)
+
+    def write(inputs: list[dict[str, Any]], **more: Any) -> Path:
+        path = tmp_path / "many.yaml"
+        path.write_text(yaml.safe_dump({"name": "many", "scenario": "short.yaml", "inputs": inputs, **more}))
+        return path
+
+    return write
+
+
+def cases(path: Path) -> list[Case]:
+    return list(load(path).cases())
+
+
+def test_a_factor_is_on_the_plant_files_own_number(campaign: Any) -> None:
+    from plant.model import get
+    from plant.model import load as plant
+
+    (case,) = cases(campaign([{"plant": FRICTION, "times": [1.5]}], budget={"runs": 1}))
+    declared = get(plant("low_preload"), FRICTION).value
+    assert case.document["plant"]["overrides"][FRICTION] == pytest.approx(1.5 * declared)
+    assert case.values == {FRICTION: 1.5}
+
+
+def test_every_kind_of_input_changes_its_own_place(campaign: Any) -> None:
+    fault = {"node_off": {"node": "DISPLAY"}, "at": "1 s"}
+    inputs = [
+        {"parameter": {"node": "AXIS_RA", "number": 2}, "is": [4000]},
+        {"seed": True, "is": [17]},
+        {"fault": True, "is": [fault]},
+        {"field": "steps.1.set_rate.rate", "is": ["50 arcsec/s"]},
+    ]
+    (case,) = cases(campaign(inputs, sample="grid"))
+    assert case.document["network"]["nodes"]["AXIS_RA"]["parameters"] == {"2": 4000}
+    assert case.document["seed"] == 17
+    assert case.document["faults"] == [fault]
+    assert case.document["steps"][1]["set_rate"]["rate"] == "50 arcsec/s"
+
+
+def test_no_fault_is_one_of_the_faults(campaign: Any) -> None:
+    (case,) = cases(campaign([{"fault": True, "is": ["none"]}], sample="grid"))
+    assert "faults" not in case.document
+
+
+def test_a_grid_has_every_value_with_every_other(campaign: Any) -> None:
+    inputs = [{"seed": True, "is": [1, 2, 3]}, {"plant": FRICTION, "times": {"between": [0, 1], "levels": 4}}]
+    found = cases(campaign(inputs, sample="grid"))
+    assert len(found) == len({case.key for case in found}) == 12
+    factors = sorted({case.values[FRICTION] for case in found})
+    assert factors == pytest.approx([0.125, 0.375, 0.625, 0.875])
+
+
+@pytest.mark.parametrize("way", ["latin hypercube", "random", "sobol"])
+def test_samples_follow_their_distribution(campaign: Any, way: str) -> None:
+    spread = {"distribution": "norm", "with": {"loc": 1.0, "scale": 0.1}}
+    inputs = [{"plant": FRICTION, "times": spread}, {"seed": True, "is": [1, 2]}]
+    found = cases(campaign(inputs, sample=way, budget={"runs": 256}))
+    values = np.array([case.values[FRICTION] for case in found])
+    assert kstest(values, "norm", (1.0, 0.1)).pvalue > 1e-3
+    seeds = Counter(case.values["seed"] for case in found)
+    assert abs(seeds[1] - 128) < 50
+
+
+def test_a_latin_hypercube_has_one_run_in_every_stripe(campaign: Any) -> None:
+    inputs = [{"plant": FRICTION, "times": {"between": [0.0, 1.0]}}]
+    found = cases(campaign(inputs, budget={"runs": 40}))
+    assert sorted(int(case.values[FRICTION] * 40) for case in found) == list(range(40))
+
+
+def test_keys_are_those_of_the_input_and_of_nothing_else(campaign: Any) -> None:
+    inputs = [{"plant": FRICTION, "times": {"between": [0.5, 1.0]}}]
+    once = [case.key for case in cases(campaign(inputs, budget={"runs": 5}))]
+    again = [case.key for case in cases(campaign(inputs, budget={"runs": 5}, description="another"))]
+    other = [case.key for case in cases(campaign(inputs, budget={"runs": 5}, seed=2))]
+    assert once == again
+    assert len({*once, *other}) == 10
+
+
+def test_a_hundred_thousand_runs_are_planned_without_being_held(campaign: Any) -> None:
+    import tracemalloc
+
+    inputs = [
+        {"plant": FRICTION, "times": {"between": [0.5, 1.0]}},
+        {"seed": True, "is": {"between": [0, 1e6]}},
+    ]
+    path = campaign(inputs, budget={"runs": 100_000}, sample="random")
+    load(path)
+    tracemalloc.start()
+    plan = load(path)
+    assert plan.count == 100_000
+    assert sum(1 for _ in islice(plan.cases(), 2000)) == 2000
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 50e6
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"plant": "axes.ra.friction.colomb", "times": [1]}, "coulomb"),
+        ({"plant": FRICTION, "times": {"distribution": "nrm"}}, "did you mean 'norm'"),
+        ({"plant": FRICTION, "times": {"distribution": "norm", "with": {"scale": -1}}}, "norm"),
+        ({"plant": FRICTION, "times": {"between": [2, 1]}}, "nothing"),
+        ({"plant": FRICTION}, "`is` or `times`"),
+        ({"seed": True, "times": [2]}, "use `is`"),
+        ({"field": "steps.9.wait", "is": [1]}, "no field"),
+        ({"weather": 1, "is": [1]}, "unknown field"),
+        ({"parameter": {"node": "AXIS_XY", "number": 1}, "is": [1]}, "AXIS_XY"),
+    ],
+)
+def test_what_cannot_be_is_one_line_with_the_place(campaign: Any, given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ScenarioError) as error:
+        load(campaign([given]))
+    assert words in str(error.value)
+    assert "many.yaml" in str(error.value)
+    assert "\n" not in str(error.value)

@@ -1,0 +1,77 @@
+"""Journal, table and sensitivity: nothing is lost, nothing counted twice, intervals hold what they should."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenarios.campaign import table
+from scenarios.campaign.sensitivity import influence, share
+from scenarios.document import ScenarioError
+
+
+def row(key: str, index: int = 0, **more: object) -> dict[str, object]:
+    return {"key": key, "index": index, "failure": "", **more}
+
+
+def test_a_torn_line_and_a_lost_run_are_made_again(tmp_path: Path) -> None:
+    journal = table.Journal(tmp_path, resume=False)
+    journal.add(row("a", value=1.0))
+    journal.add(row("b", lost=True))
+    journal.close()
+    with (tmp_path / table.JOURNAL).open("a") as file:
+        file.write('{"key": "c", "ind')
+    again = table.Journal(tmp_path, resume=True)
+    assert again.done == {"a"}
+    again.add(row("b", 1, value=2.0))
+    again.add(row("c", 2, value=3.0))
+    again.close()
+    found = table.read(table.write(tmp_path))
+    assert dict(zip(found["key"], found["value"], strict=True)) == {"a": 1.0, "b": 2.0, "c": 3.0}
+
+
+def test_a_folder_with_runs_is_not_gone_on_with_by_accident(tmp_path: Path) -> None:
+    journal = table.Journal(tmp_path, resume=False)
+    journal.add(row("a"))
+    journal.close()
+    with pytest.raises(ScenarioError, match="--resume"):
+        table.Journal(tmp_path, resume=False)
+
+
+def test_columns_take_what_all_rows_need(tmp_path: Path) -> None:
+    journal = table.Journal(tmp_path, resume=False)
+    journal.add(row("a", one=1, two=None, three=True))
+    journal.add(row("b", one=2.5, two="text", three=False))
+    journal.close()
+    found = table.read(table.write(tmp_path))
+    assert found["one"] == [1.0, 2.5]
+    assert found["two"] == [None, "text"]
+    assert found["three"] == [True, False]
+
+
+def test_the_interval_of_a_rank_correlation_holds_the_truth_as_often_as_it_says() -> None:
+    """Bivariate normal numbers: Spearman's is 6/pi asin(rho/2) there (Pearson 1907)."""
+    rho, held, cases = 0.5, 0, 200
+    truth = 6.0 / np.pi * np.arcsin(rho / 2.0)
+    random = np.random.default_rng(5)
+    for case in range(cases):
+        x = random.normal(size=100)
+        y = rho * x + np.sqrt(1 - rho**2) * random.normal(size=100)
+        found = influence("x", x, "y", np.exp(y), seed=case)
+        assert found is not None
+        held += found.low <= truth <= found.high
+    assert held / cases > 0.88  # 95 % +- four standard deviations of 200 cases
+
+
+def test_too_little_to_say_is_nothing_said() -> None:
+    x = np.arange(20.0)
+    assert influence("x", x, "y", np.ones(20)) is None
+    assert influence("x", x[:5], "y", x[:5]) is None
+    assert influence("x", x, "y", np.full(20, np.nan)) is None
+
+
+def test_shares_have_wilsons_interval() -> None:
+    """Wilson (1927) for 8 of 10, as in every textbook: 0.4902 to 0.9433."""
+    value, low, high = share(8, 10)
+    assert value == 0.8
+    assert (low, high) == pytest.approx((0.4902, 0.9433), abs=5e-4)

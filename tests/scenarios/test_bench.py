@@ -1,0 +1,46 @@
+"""The bench: its yardstick does the network's work, and its history tells a fall from noise."""
+
+from pathlib import Path
+
+from plant.model import load
+from plant.plant import Plant
+from scenarios.bench import history
+from scenarios.bench.bare import BareLoop
+
+
+def test_the_bare_loop_has_the_networks_ticks_and_frames() -> None:
+    """Frames and timer ticks a second of the lab network by its periods (ARCHITECTURE.md, the protocol)."""
+    bare = BareLoop(Plant(load(), 1))
+    bare.advance(1_000_000_000)
+    frames, ticks = bare.frames, bare.ticks
+    bare.advance(3_000_000_000)
+    # 2 positions at 5 ms, 2 axes and 4 motors at 10 ms, focus at 50 ms, 4 summaries at 250 ms, 11 heartbeats
+    assert (bare.frames - frames) / 2 == 2 * 200 + 6 * 100 + 20 + 4 * 4 + 11
+    # both encoders of each axis at 5 ms, telemetry and motors at 10 ms, focus, summaries, heartbeats
+    assert (bare.ticks - ticks) / 2 == 4 * 200 + 6 * 100 + 20 + 4 + 1
+
+
+def test_the_bare_loop_moves_the_plant() -> None:
+    plant = Plant(load(), 1)
+    BareLoop(plant).advance(500_000_000)
+    assert 500_000_000 - plant.now_ns <= 5_000_000
+    assert plant.world.any()
+
+
+def test_a_fall_beyond_the_noise_is_said_and_noise_is_not(tmp_path: Path) -> None:
+    path = tmp_path / "history.jsonl"
+    for value in (100.0, 104.0, 97.0, 101.0):
+        history.add(path, {"speed": value, "steady": 1.0}, {})
+    before = history.read(path)
+    assert len(before) == 4
+    assert history.falls(before, {"speed": 95.0, "steady": 0.98}) == []
+    (line,) = history.falls(before, {"speed": 80.0, "steady": 1.2})
+    assert line.startswith("speed fell from 100")
+    assert history.falls(before[:2], {"speed": 1.0}) == []
+
+
+def test_benches_of_another_machine_are_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "history.jsonl"
+    history.add(path, {"speed": 1.0}, {})
+    path.write_text(path.read_text().replace(history.machine(), "another"))
+    assert history.read(path) == []
