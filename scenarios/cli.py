@@ -180,6 +180,14 @@ def objective(
     "--lx200", multiple=True, metavar="[HOST:]PORT|pty:NAME", help="For Stellarium and INDI; repeatable."
 )
 @click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
+@click.option(
+    "--runs",
+    type=click.Path(path_type=Path),
+    default=Path("out/console"),
+    show_default=True,
+    help="Folder of the runs recorded on the console.",
+)
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the host's four logs.")
 @click.option("--control", metavar="[HOST:]PORT", help="Speed, pause, status, stop (see schmidt control).")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
@@ -195,6 +203,8 @@ def serve(
     hid: tuple[str, ...],
     lx200: tuple[str, ...],
     alpaca: str | None,
+    console: str | None,
+    runs: Path,
     logs: Path | None,
     control: str | None,
     token: str | None,
@@ -208,7 +218,7 @@ def serve(
     from scenarios.doors.options import DoorOptions
     from scenarios.serve import serve as command
 
-    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs)
+    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs)
     sys.exit(command(scenario, options, speed, seed, plant, duration, record))
 
 

@@ -34,6 +34,8 @@ class DoorOptions:
     lx200: tuple[str, ...] = ()
     alpaca: str | None = None
     logs: Path | None = None
+    console: str | None = None
+    runs: Path = Path("out/console")
 
     def check(self) -> None:
         """Raise OptionError unless there is a door at all."""
@@ -41,13 +43,13 @@ class DoorOptions:
             value == default for value, default in zip(_values(self), _values(DoorOptions()), strict=True)
         ):
             raise OptionError(
-                "serve needs a door: --can, --serial, --hid, --lx200, --alpaca or --control "
+                "serve needs a door: --can, --serial, --hid, --lx200, --alpaca, --console or --control "
                 "(see schmidt serve -h)"
             )
 
 
 def _values(options: DoorOptions) -> list[object]:
-    return list(vars(replace(options, token=None, logs=None)).values())
+    return list(vars(replace(options, token=None, logs=None, runs=DoorOptions.runs)).values())
 
 
 def make_doors(options: DoorOptions, served: Served) -> list[Door]:
@@ -63,7 +65,7 @@ def make_doors(options: DoorOptions, served: Served) -> list[Door]:
         from scenarios.doors.control import ControlDoor
 
         doors.append(ControlDoor(options.control, options.token, served))
-    if options.lx200 or options.alpaca is not None:
+    if options.lx200 or options.alpaca is not None or options.console is not None:
         doors += _astronomy(options, served)
     return doors
 
@@ -73,7 +75,12 @@ def _astronomy(options: DoorOptions, served: Served) -> list[Door]:
     from scenarios.doors.host import HostDoor
 
     host = HostDoor(served, options.logs)
-    return [host, *astronomy(options, host)]
+    doors: list[Door] = [host, *astronomy(options, host)]
+    if options.console is not None:
+        from scenarios.doors.console import ConsoleDoor
+
+        doors.append(ConsoleDoor(options.console, options.token, options.runs, host, served))
+    return doors
 
 
 def astronomy(options: DoorOptions, host: Host) -> list[Door]:

@@ -1,0 +1,83 @@
+"""The last minutes of the telescope, sampled once for all browsers."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import NamedTuple
+
+from bus.protocol import Device, unpack_tach
+from host.telescope import Snapshot, Telescope
+
+PERIOD_S = 0.25
+"""Wall time between samples; the RS232 links of the paper's console are as fast."""
+KEPT = 480
+"""Samples kept, two minutes."""
+RATIO = (113 / 27) * (123 / 21) * (250 / 17)
+"""Motor turns per axis turn (paper, section 2.2)."""
+TACH_COUNTS = 4096
+ARCSEC_PER_TURN = 1296000.0
+LEAST_ARCSEC_S = 50.0
+"""Slower than this the tachometers' counts do not tell a gear reduction (4.6″/s per count)."""
+
+
+class Sample(NamedTuple):
+    """One moment, axis by axis (ra, dec). gear: motor turns per axis turn; twist: motor A against B, ″."""
+
+    t_s: float
+    error_arcsec: tuple[float | None, float | None]
+    rate_arcsec_s: tuple[float, float]
+    effort_percent: tuple[float, float]
+    current_a: tuple[float, float, float, float]
+    gear: tuple[float | None, float | None]
+    twist_arcsec: tuple[float | None, float | None]
+
+
+class Live:
+    """Samples of one telescope; `run` is the one task that takes them."""
+
+    def __init__(self, telescope: Telescope) -> None:
+        self.telescope = telescope
+        self.samples: deque[Sample] = deque(maxlen=KEPT)
+
+    async def run(self) -> None:
+        """Until cancelled."""
+        while True:
+            self.take()
+            await asyncio.sleep(PERIOD_S)
+
+    def take(self) -> None:
+        """One sample, when time has gone on."""
+        now = self.telescope.snapshot
+        if self.samples and now.t_s <= self.samples[-1].t_s:
+            return
+        errors = now.errors_arcsec
+        self.samples.append(
+            Sample(
+                now.t_s,
+                (errors[0], errors[1]) if errors is not None else (None, None),
+                (now.ra.rate_arcsec_s, now.dec.rate_arcsec_s),
+                (100 * now.ra.effort, 100 * now.dec.effort),
+                (*now.ra.currents_a, *now.dec.currents_a),
+                (_gear(now, "ra"), _gear(now, "dec")),
+                (
+                    self._twist(Device.MOTOR_RA_A, Device.MOTOR_RA_B),
+                    self._twist(Device.MOTOR_DEC_A, Device.MOTOR_DEC_B),
+                ),
+            )
+        )
+
+    def _twist(self, a: Device, b: Device) -> float | None:
+        counts = [self.telescope.client.link.measurements.get(motor) for motor in (a, b)]
+        if counts[0] is None or counts[1] is None:
+            return None
+        first, second = (unpack_tach(data).counts for data in counts if data is not None)
+        return (first - second) / TACH_COUNTS / RATIO * ARCSEC_PER_TURN
+
+
+def _gear(now: Snapshot, axis: str) -> float | None:
+    state = now.ra if axis == "ra" else now.dec
+    turns = [each for each in state.motor_turns_s if each is not None]
+    if not turns or abs(state.rate_arcsec_s) < LEAST_ARCSEC_S:
+        return None
+    return abs(sum(turns) / len(turns)) * ARCSEC_PER_TURN / abs(state.rate_arcsec_s)

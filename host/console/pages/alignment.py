@@ -1,0 +1,52 @@
+"""Maintenance console 1 (H4): encoder offsets from a reference star."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from host.console.figures import pointing
+from host.console.shell import Shell, box, button, table
+from host.sky.catalogue import STARS, star
+from host.sky.mount import CENTRE_STEPS, STEP_ARCSEC
+
+
+def alignment(shell: Shell) -> None:
+    """The page."""
+    with shell.page("/alignment", "Alignment"), ui.element("div").classes("boxes"):
+        with box("Reference star"):
+            ui.label("1. Go to a star and centre it with the paddle of the main console.").classes("small")
+            ui.label("2. Choose it here and align: both encoders get an offset.").classes("small")
+            chosen = shell.control(
+                ui.select(sorted(STARS), label="Star in the middle of the field", with_input=True)
+                .classes("w-full")
+                .props("outlined dense")
+            )
+            result = ui.label().classes("mid").props('role="status"')
+
+            async def align() -> None:
+                if not chosen.value:
+                    ui.notify(
+                        "choose the star that is in the middle of the field", type="negative", position="top"
+                    )
+                    return
+                found = await shell.attempt(shell.desk.do(lambda t: t.drive.sync(star(chosen.value))))
+                if found is not None:
+                    result.set_text(f"aligned: hour angle {found[0]:+.1f}″, declination {found[1]:+.1f}″")
+
+            shell.control(button("Align on this star", on_click=align))
+        with box("Encoder offsets"):
+            fill = table(("axis", "reading, steps", "zero, steps", "offset from the maker's zero, ″"))
+        with box("Where it points"):
+            here = ui.label("–").classes("mid")
+
+    def refresh() -> None:
+        now, mount = shell.desk.now, shell.telescope.observatory.mount
+        rows = []
+        for name, state, scale in (("RA", now.ra, mount.ra), ("Dec", now.dec, mount.dec)):
+            offset = (scale.zero_steps - CENTRE_STEPS) * STEP_ARCSEC
+            rows.append((name, str(state.steps or "–"), str(scale.zero_steps), f"{offset:+.2f}"))
+        fill(rows)
+        place = pointing(shell.telescope)
+        here.set_text(f"RA {place.right_ascension}, Dec {place.declination}")
+
+    shell.each(refresh)

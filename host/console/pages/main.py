@@ -1,0 +1,273 @@
+"""Main console (H2): power, health, slewing, tracking, hand paddle, targets, limits, parameters, status."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import KeyEventArguments
+
+from bus.protocol import AxisParameter, Device, Health, SpeedClass
+from host.console.figures import number, pointing
+from host.console.plots import plots
+from host.console.shell import Shell, box, button, table
+from host.console.skymap import svg
+from host.sky.angles import parse_declination, parse_right_ascension
+from host.sky.apparent import horizontal
+from host.sky.catalogue import STARS, Star, star
+from host.telescope import BoardState
+
+SPEEDS = {
+    speed.name.lower(): speed
+    for speed in (SpeedClass.SLEW, SpeedClass.SET, SpeedClass.GUIDE, SpeedClass.FINE)
+}
+ARROWS = {"ArrowUp": "n", "ArrowDown": "s", "ArrowLeft": "e", "ArrowRight": "w"}
+
+
+def main(shell: Shell) -> None:
+    """The page."""
+    with shell.page("/", "Main console"), ui.element("div").classes("boxes"):
+        _place(shell)
+        _motors(shell)
+        _paddle(shell)
+        _target(shell)
+        _sky(shell)
+        _boards(shell)
+        plots(shell)
+        _parameters(shell)
+        _status(shell)
+
+
+def _place(shell: Shell) -> None:
+    with box("Where it points (apparent, of date)"), ui.element("div").classes("pair"):
+        labels = {}
+        for name, size in (("RA", "big"), ("Dec", "big"), ("HA", "mid"), ("Alt", "mid"), ("Az", "mid")):
+            ui.label(name).classes("small")
+            labels[name] = ui.label("–").classes(size)
+        ui.label("rates").classes("small")
+        rates = ui.label("–").classes("mid")
+        ui.label("errors").classes("small")
+        errors = ui.label("–").classes("mid")
+
+    def refresh() -> None:
+        now, here = shell.desk.now, pointing(shell.telescope)
+        for name, text in zip(labels, here[:5], strict=True):
+            labels[name].set_text(text)
+        rates.set_text(f"{now.ra.rate_arcsec_s:+.1f}″/s  {now.dec.rate_arcsec_s:+.1f}″/s")
+        found = now.errors_arcsec or (None, None)
+        errors.set_text(f"{number(found[0], '+.2f', '″')}  {number(found[1], '+.2f', '″')}")
+
+    shell.each(refresh)
+
+
+def _motors(shell: Shell) -> None:
+    with box("Motors and tracking"):
+        with ui.row():
+            for text, act in (
+                ("Power on", lambda t: t.drive.power_on()),
+                ("Power off", lambda t: t.drive.power_off()),
+                ("Park", lambda t: t.drive.park()),
+                ("Unpark", lambda t: t.drive.power_on()),
+            ):
+                shell.control(button(text, on_click=shell.doing(act)))
+        with ui.row():
+            for text, act in (
+                ("Track", lambda t: t.drive.track(True)),
+                ("Stop tracking", lambda t: t.drive.track(False)),
+                ("Abort slew", lambda t: t.drive.abort()),
+                ("Health check", lambda t: t.boards.check()),
+            ):
+                shell.control(button(text, on_click=shell.doing(act)))
+        supply = ui.label().classes("mid")
+        shell.each(
+            lambda: supply.set_text(
+                "motors on, tracking"
+                if shell.desk.now.powered and shell.desk.now.tracking
+                else "motors on"
+                if shell.desk.now.powered
+                else "motors off"
+            )
+        )
+
+
+def _paddle(shell: Shell) -> None:
+    held: set[str] = set()
+    with box("Hand paddle (also the arrow keys)"):
+        speed = shell.control(
+            ui.radio(list(SPEEDS), value="guide").props('inline aria-label="Speed of the paddle"')
+        )
+
+        async def press(direction: str) -> None:
+            if direction not in held:
+                held.add(direction)
+                chosen = SPEEDS[speed.value]
+                await shell.attempt(shell.desk.do(lambda t: t.paddle.press(direction, chosen)))
+
+        async def release(direction: str) -> None:
+            if direction in held:
+                held.discard(direction)
+                axis = "dec" if direction in "ns" else "ra"
+                await shell.attempt(shell.desk.do(lambda t: t.paddle.release(axis), always=True))
+
+        with ui.element("div").classes("paddle"):
+            for cell in ("", "n", "", "e", "", "w", "", "s", ""):
+                if not cell:
+                    ui.element("span")
+                    continue
+                name = {"n": "N ↑", "s": "S ↓", "e": "E ←", "w": "W →"}[cell]
+                key = shell.control(button(name).props(f'aria-label="Move {name}"'))
+                for event in ("mousedown", "touchstart"):
+                    key.on(event, lambda d=cell: press(d))
+                for event in ("mouseup", "mouseleave", "touchend", "touchcancel"):
+                    key.on(event, lambda d=cell: release(d))
+
+    def arrow(event: KeyEventArguments) -> None:
+        direction = ARROWS.get(str(event.key))
+        if direction and not event.action.repeat:
+            ui.timer(0, lambda: (press if event.action.keydown else release)(direction), once=True)
+
+    def gone() -> None:
+        if held:  # a browser that vanishes lets go of its keys
+            shell.telescope.call(lambda t: t.paddle.release())
+
+    shell.key(arrow)
+    ui.context.client.on_disconnect(gone)
+
+
+def _target(shell: Shell) -> None:
+    with box("Go to"):
+        chosen = shell.control(
+            ui.select(sorted(STARS), label="Named star", with_input=True)
+            .classes("w-full")
+            .props("outlined dense")
+        )
+        with ui.row().classes("w-full"):
+            ra = shell.control(ui.input("RA, ICRS", placeholder="05:16:41.36").props("outlined dense"))
+            dec = shell.control(ui.input("Dec, ICRS", placeholder="+45:59:52.8").props("outlined dense"))
+
+        async def go() -> None:
+            try:
+                wanted = _wanted(chosen.value, ra.value, dec.value)
+            except ValueError as error:
+                ui.notify(str(error), type="negative", position="top")
+                return
+            await shell.attempt(shell.desk.do(lambda t: t.drive.goto(wanted, wake=True)))
+
+        shell.control(button("Go", on_click=go))
+        going = ui.label().classes("mid")
+
+    def refresh() -> None:
+        now = shell.desk.now
+        far = max(abs(now.ra.to_go_arcsec), abs(now.dec.to_go_arcsec))
+        going.set_text(f"{now.target}: {far / 3600:.2f}° to go" if now.slewing and now.target else now.target)
+
+    shell.each(refresh)
+
+
+def _wanted(name: str | None, ra: str, dec: str) -> Star:
+    if ra.strip() or dec.strip():
+        return Star("RA/Dec", parse_right_ascension(ra), parse_declination(dec))
+    if not name:
+        raise ValueError("choose a star, or write right ascension and declination")
+    return star(name)
+
+
+def _sky(shell: Shell) -> None:
+    with box("Soft limits and horizon"):
+        element = ui.html(sanitize=False).classes("w-full").style("max-width: 24rem")
+
+    def refresh() -> None:
+        about = shell.telescope.observatory
+        here = pointing(shell.telescope).place
+        track = shell.telescope.drive.pointing.track
+        target = None
+        if track is not None and (shell.desk.now.slewing or shell.desk.now.tracking):
+            ra, dec = track.steps(shell.desk.now.t_s)
+            target = horizontal(about.mount.ra.angle_rad(ra), about.mount.dec.angle_rad(dec), about.site)
+        picture = svg(about, here, target)
+        if picture != element.content:
+            element.set_content(picture)
+
+    shell.each(_seldom(refresh))
+
+
+def _seldom(refresh: Any, every: int = 4) -> Any:
+    """Once in so many ticks."""
+    count = 0
+
+    def now_and_then() -> None:
+        nonlocal count
+        if count % every == 0:
+            refresh()
+        count += 1
+
+    return now_and_then
+
+
+def _boards(shell: Shell) -> None:
+    with box("Boards"):
+        fill = table(("board", "state", "health", "TEC", "over"))
+
+    def refresh() -> None:
+        fill([_board_row(board) for board in shell.desk.now.boards])
+
+    shell.each(_seldom(refresh))
+
+
+def _board_row(board: BoardState) -> tuple[str, ...]:
+    health = "not asked" if board.health is None else (flags(board.health) or "healthy")
+    state = board.state.name.lower() if board.alive and board.state else "SILENT"
+    return board.device.name, state, health, str(board.tec), str(board.overruns)
+
+
+def flags(health: Health) -> str:
+    """Names of the bits that are set; empty when all is well."""
+    return ", ".join(bit.name.lower().replace("_", " ") for bit in Health if bit in health and bit.name)
+
+
+def _parameters(shell: Shell) -> None:
+    devices = {"RA axis": Device.AXIS_RA, "Dec axis": Device.AXIS_DEC}
+    kinds = {parameter.name.lower(): int(parameter) for parameter in AxisParameter}
+    with box("Parameters"):
+        with ui.row().classes("w-full"):
+            board = shell.control(
+                ui.select(list(devices), value="RA axis", label="Board").props("outlined dense")
+            )
+            kind = shell.control(
+                ui.select(list(kinds), value="kp_q12", label="Parameter").props("outlined dense")
+            )
+            value = shell.control(ui.number("Value", value=0, format="%d").props("outlined dense"))
+
+        async def read() -> None:
+            device, which = devices[board.value], kinds[kind.value]
+            got = await shell.attempt(shell.desk.run(lambda t: t.boards.get(device, which)))
+            if got is not None:
+                value.set_value(got)
+
+        async def write() -> None:
+            device, which, wanted = devices[board.value], kinds[kind.value], int(value.value or 0)
+            got = await shell.attempt(shell.desk.run(lambda t: t.boards.set(device, which, wanted)))
+            if got is not None:
+                value.set_value(got)
+                ui.notify(f"{kind.value} is {got}", position="top")
+
+        with ui.row():
+            shell.control(button("Read", on_click=read))
+            shell.control(button("Write", on_click=write))
+
+
+def _status(shell: Shell) -> None:
+    with box("Status"):
+        lines = ui.html(sanitize=False).props('role="log" aria-label="Status window"')
+    seen = [-1]
+
+    def refresh() -> None:
+        entries = list(shell.telescope.journal.entries.copy())[-14:]
+        last = entries[-1].number if entries else 0
+        if last == seen[0]:
+            return
+        seen[0] = last
+        text = "\n".join(f"{e.t_s:9.1f} s  {e.where}: {e.text}" for e in reversed(entries))
+        lines.set_content(f'<pre class="lines">{text.replace("&", "&amp;").replace("<", "&lt;")}</pre>')
+
+    shell.each(refresh)

@@ -1,0 +1,88 @@
+"""Maintenance console 2 (H5): currents, tachometers, live gear reduction, play, encoders combined."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from host.console.combine import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
+from host.console.figures import number
+from host.console.live import RATIO
+from host.console.plots import plots
+from host.console.shell import Shell, box, table
+
+
+def maintenance(shell: Shell) -> None:
+    """The page."""
+    with shell.page("/maintenance", "Maintenance"), ui.element("div").classes("boxes"):
+        _motors(shell)
+        _gears(shell)
+        _encoders(shell)
+        plots(shell)
+
+
+def _motors(shell: Shell) -> None:
+    with box("Motors"):
+        fill = table(("motor", "current, A", "tachometer, turns/s"))
+
+    def refresh() -> None:
+        now = shell.desk.now
+        rows = []
+        for name, axis in (("RA", now.ra), ("Dec", now.dec)):
+            for k, motor in enumerate("AB"):
+                turns = axis.motor_turns_s[k]
+                rows.append((f"{name} {motor}", f"{axis.currents_a[k]:.3f}", number(turns, "+.4f")))
+        fill(rows)
+
+    shell.each(refresh)
+
+
+def _gears(shell: Shell) -> None:
+    with box("Gear reduction and play"):
+        fill = table(("axis", "motor turns per axis turn", "motor A against B, ″ on the axis"))
+        ui.label(
+            f"By tooth counts {RATIO:.3f}. Seen only above 50″/s. The motors' difference since power-up:"
+            " 419″ is the play between them (42° of a motor), and the train's wind-up."
+        ).classes("small")
+
+    def refresh() -> None:
+        if not shell.live.samples:
+            return
+        last = shell.live.samples[-1]
+        fill(
+            [
+                (name, number(last.gear[k], ".2f"), number(last.twist_arcsec[k], "+.1f"))
+                for k, name in enumerate(("RA", "Dec"))
+            ]
+        )
+
+    shell.each(refresh)
+
+
+def _encoders(shell: Shell) -> None:
+    with box("Encoders"):
+        fill = table(("axis", "on the shaft, ″", "auxiliary, ″", "difference, ″", "combined, ″"))
+        ui.label(
+            "Combined: the mean weighted by inverse variances, the best linear unbiased estimate of two"
+            f" independent readings; σ {ABSOLUTE_ARCSEC:.2f}″ on the shaft,"
+            f" {AUXILIARY_ARCSEC:.2f}″ auxiliary."
+        ).classes("small")
+
+    def refresh() -> None:
+        now = shell.desk.now
+        rows = []
+        for name, state in (("RA", now.ra), ("Dec", now.dec)):
+            found = combine(state.steps, None)
+            rows.append(
+                (
+                    name,
+                    number(found.absolute_arcsec, ".2f"),
+                    number(found.auxiliary_arcsec, ".2f")
+                    if found.auxiliary_arcsec is not None
+                    else "no board",
+                    number(found.difference_arcsec, "+.2f"),
+                    number(found.estimate_arcsec, ".2f", f" ± {found.sigma_arcsec:.2f}"),
+                )
+            )
+        fill(rows)
+
+    shell.each(refresh)

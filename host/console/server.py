@@ -1,0 +1,71 @@
+"""The consoles' web server: one per process, in the thread of the outside world."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+from nicegui import Client, ui
+from nicegui import app as nicegui_app
+
+from host.console.guard import Guard
+from host.console.live import Live
+from host.console.pages.alignment import alignment
+from host.console.pages.bus import bus
+from host.console.pages.calibrate import REPORTS, calibrate
+from host.console.pages.dome import dome
+from host.console.pages.focus import focus
+from host.console.pages.main import main
+from host.console.pages.maintenance import maintenance
+from host.console.shell import Shell
+from host.console.views import BusView, Runs
+from host.telescope import Telescope
+
+
+class Consoles:
+    """Pages over one telescope, one bus and one folder of recorded runs. One object per process: NiceGUI
+    keeps its pages in the module."""
+
+    def __init__(self, telescope: Telescope, bus_view: BusView, runs: Runs, token: str) -> None:
+        self.live = Live(telescope)
+        runs.folder.mkdir(parents=True, exist_ok=True)
+        nicegui_app.add_static_files(REPORTS, runs.folder)
+        pages = {
+            "/": main,
+            "/focus": focus,
+            "/alignment": alignment,
+            "/maintenance": maintenance,
+            "/dome": dome,
+            "/bus": lambda shell: bus(shell, bus_view),
+            "/calibrate": lambda shell: calibrate(shell, runs),
+        }
+        for path, build in pages.items():
+            ui.page(path)(_page(self.live, build))
+        web = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+        ui.run_with(web, title="Schmidt telescope", dark=True, language="en-US", binding_refresh_interval=1.0)
+        self._app = Guard(web, token)
+
+    @property
+    def browsers(self) -> int:
+        """Pages that are open and connected."""
+        return sum(client.has_socket_connection for client in list(Client.instances.values()))
+
+    async def serve(self, listener: socket.socket) -> None:
+        """Answer browsers on a listening socket until cancelled."""
+        config = uvicorn.Config(self._app, log_level="error", access_log=False, timeout_graceful_shutdown=0)
+        sampling = asyncio.ensure_future(self.live.run())
+        try:
+            await uvicorn.Server(config).serve(sockets=[listener])
+        finally:
+            sampling.cancel()
+            listener.close()
+
+
+def _page(live: Live, build: Any) -> Any:
+    def page() -> None:
+        build(Shell(live))
+
+    return page

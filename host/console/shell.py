@@ -1,0 +1,161 @@
+"""What every page has: the way to the others, the state in one line, the lock, the stop, the space bar."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import KeyEventArguments
+
+from host.console.figures import summary
+from host.console.live import PERIOD_S, Live
+from host.console.theme import CSS
+from host.telescope import AsyncDesk, Refused, Telescope
+
+PAGES = (
+    ("/", "Main"),
+    ("/focus", "Focus"),
+    ("/alignment", "Alignment"),
+    ("/maintenance", "Maintenance"),
+    ("/dome", "Dome and weather"),
+    ("/bus", "Bus"),
+    ("/calibrate", "Calibrate"),
+)
+_DAY = "document.body.classList.toggle('day')"
+
+
+class Shell:
+    """One open page of one browser. `control` registers what the lock greys; `each` what is refreshed."""
+
+    def __init__(self, live: Live) -> None:
+        self.live = live
+        self.desk = AsyncDesk(live.telescope, console=True)
+        self.day = False
+        self._controls: list[Any] = []
+        self._refresh: list[Callable[[], object]] = []
+        self._locked: bool | None = None
+        self._keys: list[Callable[[KeyEventArguments], None]] = []
+
+    @property
+    def telescope(self) -> Telescope:
+        """The telescope itself, for reading."""
+        return self.live.telescope
+
+    def control(self, element: Any) -> Any:
+        """An element that is greyed while the consoles are locked."""
+        self._controls.append(element)
+        return element
+
+    def each(self, refresh: Callable[[], object]) -> None:
+        """Call this four times a second, while the page is open."""
+        self._refresh.append(refresh)
+
+    def key(self, act: Callable[[KeyEventArguments], None]) -> None:
+        """Keys that this page takes beside the space bar; not while the consoles are locked."""
+        self._keys.append(act)
+
+    async def attempt(self, work: Awaitable[Any]) -> Any:
+        """Wait for a command; what is refused is told, not raised. Returns its value or None."""
+        try:
+            return await work
+        except Refused as refusal:
+            ui.notify(str(refusal), type="negative", position="top")
+            return None
+
+    def doing(self, act: Callable[[Telescope], Any]) -> Callable[[], Awaitable[None]]:
+        """A handler that has a command carried out."""
+
+        async def handler() -> None:
+            await self.attempt(self.desk.do(act))
+
+        return handler
+
+    async def stop(self) -> None:
+        """The emergency stop."""
+        await self.attempt(self.desk.emergency_stop())
+
+    async def _lock(self) -> None:
+        await self.attempt(self.desk.lock(not self.desk.now.locked))
+        self._tick()
+
+    async def _pressed(self, event: KeyEventArguments) -> None:
+        if event.key == " " and event.action.keydown and not event.action.repeat:
+            await self.stop()
+        elif not self.desk.now.locked:
+            for act in self._keys:
+                act(event)
+
+    def _toggle_day(self) -> None:
+        self.day = not self.day
+        ui.run_javascript(_DAY)
+
+    @contextmanager
+    def page(self, path: str, title: str) -> Iterator[None]:
+        """The frame of a page; its boxes go inside."""
+        ui.add_css(CSS)
+        ui.colors(primary="#ff6a5a")
+        ui.page_title(f"{title} – Schmidt telescope")
+        ui.keyboard(on_key=self._pressed, ignore=["input", "textarea"])
+        with ui.element("header").classes("top w-full"):
+            ui.html(f"<h1>{title}</h1>", sanitize=False)
+            with ui.element("nav").props('aria-label="Consoles"').classes("flex flex-wrap"):
+                for where, name in PAGES:
+                    link = ui.link(name, where)
+                    if where == path:
+                        link.props('aria-current="page"')
+            state = ui.label().classes("mid grow").props('role="status"')
+            button("Night / day", on_click=self._toggle_day)
+            lock = button("Lock", on_click=self._lock)
+            button("STOP  (space)", on_click=self.stop).classes("stop")
+        with ui.element("div").classes("w-full"):
+            yield
+        self.each(lambda: state.set_text(summary(self.desk.now)))
+        self.each(lambda: lock.set_text("Unlock" if self.desk.now.locked else "Lock"))
+        ui.timer(PERIOD_S, self._tick)
+
+    def _tick(self) -> None:
+        for refresh in self._refresh:
+            refresh()
+        locked = self.desk.now.locked
+        if locked != self._locked:
+            self._locked = locked
+            for element in self._controls:
+                element.set_enabled(not locked)
+
+
+def button(text: str, on_click: Any = None) -> ui.button:
+    """A button in the consoles' colours."""
+    return ui.button(text, on_click=on_click, color=None).props("no-caps")
+
+
+@contextmanager
+def box(title: str) -> Iterator[None]:
+    """A group with a heading."""
+    with ui.element("section").classes("box"):
+        ui.html(f"<h2>{title}</h2>", sanitize=False)
+        yield
+
+
+def table(columns: tuple[str, ...]) -> Callable[[Sequence[tuple[str, ...]]], None]:
+    """A plain table; the returned function fills its rows, and sends nothing when they are the same."""
+    element = ui.html(sanitize=False).classes("w-full")
+    last: list[Sequence[tuple[str, ...]]] = [[]]
+
+    def fill(rows: Sequence[tuple[str, ...]]) -> None:
+        if rows == last[0] and element.content:
+            return
+        last[0] = rows
+        head = "".join(f'<th scope="col">{escape(c)}</th>' for c in columns)
+        body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+        element.set_content(
+            f'<table class="plain"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+        )
+
+    return fill
+
+
+def escape(text: str) -> str:
+    """Text for HTML."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

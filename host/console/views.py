@@ -1,0 +1,71 @@
+"""What the consoles are shown beyond the telescope: whoever serves them fills these in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+
+class Node(NamedTuple):
+    """One node of the CAN bus: error state by ISO 11898-1 and its counters."""
+
+    name: str
+    powered: bool
+    state: str
+    tec: int
+    rec: int
+
+
+class SeenFrame(NamedTuple):
+    """One frame as a person reads it: when its last bit ended, who sent it, what it says."""
+
+    t_s: float
+    sender: str
+    identifier: int
+    data: bytes
+    text: str
+
+
+class BusView(Protocol):
+    """The bus as its own emulator or adapter sees it; safe to call from the consoles' thread."""
+
+    def nodes(self) -> list[Node]:
+        """All nodes, in the order they joined."""
+
+    def load(self) -> float:
+        """Share of the time that the bus was busy, 0..1."""
+
+    def errors(self) -> dict[str, int]:
+        """Error frames so far by cause."""
+
+    def frames(self, most: int) -> list[SeenFrame]:
+        """The last frames, newest last."""
+
+    def faults(self) -> tuple[str, ...]:
+        """Names of the boards whose supply can be switched here; empty on a real bus."""
+
+    def switch(self, board: str, on: bool) -> None:
+        """Cut or give back the supply of a board; in force with the next slice of time."""
+
+
+class Runs(Protocol):
+    """Axis logs recorded on request, and the finder over them."""
+
+    folder: Path
+    """Where recordings and reports lie."""
+
+    @property
+    def recording(self) -> bool:
+        """Whether a run is being recorded."""
+
+    def start(self) -> None:
+        """Begin a new run of both axes."""
+
+    def stop(self) -> None:
+        """End it; its files are whole."""
+
+    def logs(self, axis: str) -> list[Path]:
+        """Finished runs of `ra` or `dec`, oldest first."""
+
+    def command(self, axis: str, out: Path) -> list[str]:
+        """The command line that calibrates on them and writes its report to `out`."""

@@ -1,0 +1,99 @@
+"""Parts of the consoles without a browser: combination of encoders, sky map, who may look, tables."""
+
+from __future__ import annotations
+
+import asyncio
+import datetime as dt
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from host.console.combine import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
+from host.console.figures import hours
+from host.console.guard import COOKIE, Guard
+from host.console.skymap import boundary, svg
+from host.sky.mount import STEP_ARCSEC, Mount, scale_from_limits
+from host.sky.observed import Clock
+from host.sky.site import Site
+from host.telescope import Observatory
+
+SITE = Site(math.radians(29.3667), math.radians(79.45), 1950.0, 800.0, 10.0, 0.5)
+MOUNT = Mount(
+    scale_from_limits(-math.radians(80), math.radians(80)),
+    scale_from_limits(-math.radians(30), math.radians(85)),
+    0.0, SITE.latitude_rad,
+)  # fmt: skip
+
+
+def test_the_combined_encoder_is_the_best_linear_unbiased_estimate() -> None:
+    """Against 100 000 drawn readings: no bias, the stated deviation, and smaller than either's."""
+    rng = np.random.default_rng(5)
+    truth = 100_000.0
+    absolute = truth + ABSOLUTE_ARCSEC * rng.standard_normal(100_000)
+    auxiliary = truth + AUXILIARY_ARCSEC * rng.standard_normal(100_000)
+    found = [
+        combine(round(a / STEP_ARCSEC), b) for a, b in zip(absolute[:20_000], auxiliary[:20_000], strict=True)
+    ]
+    estimates = np.array([f.estimate_arcsec for f in found])
+    sigma = found[0].sigma_arcsec
+    assert estimates.mean() == pytest.approx(truth, abs=4 * sigma / math.sqrt(len(found)))
+    assert estimates.std() == pytest.approx(sigma, rel=0.03)
+    assert sigma < min(ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC)
+
+
+def test_one_encoder_alone_keeps_its_own_deviation_and_none_says_nothing() -> None:
+    assert combine(1000, None).sigma_arcsec == ABSOLUTE_ARCSEC
+    assert combine(None, 5.0) == (None, 5.0, None, 5.0, AUXILIARY_ARCSEC)
+    assert combine(None, None).estimate_arcsec is None
+
+
+@given(st.floats(-20, 20))
+def test_hours_are_within_a_day(angle: float) -> None:
+    text = hours(angle)
+    assert 0 <= int(text[:2]) < 24 and 0 <= int(text[3:5]) < 60 and 0 <= float(text[6:10]) < 60
+
+
+def test_the_soft_limits_on_the_sky_map_are_those_of_the_mount() -> None:
+    """The pole's altitude is the latitude; the limit at hour angle 0 in the south is at its altitude."""
+    places = boundary(MOUNT, SITE)
+    top = max(places)
+    assert top[0] <= math.pi / 2
+    lowest_south = math.pi / 2 - SITE.latitude_rad + math.radians(-30)
+    near_south = min(places, key=lambda p: abs(p[1] - math.pi))
+    assert near_south[0] == pytest.approx(lowest_south, abs=0.02)
+
+
+def test_the_map_has_a_text_for_who_cannot_see_it() -> None:
+    about = Observatory(SITE, Clock(dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)), MOUNT)
+    assert 'role="img"' in svg(about, None, None) and "nowhere yet" in svg(about, None, None)
+
+
+async def _ask(host: str, query: bytes = b"", cookie: bytes = b"") -> tuple[int, list[tuple[bytes, bytes]]]:
+    sent: list[dict[str, Any]] = []
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    async def receive() -> Any:
+        return {}
+
+    headers = [(b"cookie", cookie)] if cookie else []
+    scope = {"type": "http", "client": (host, 1), "query_string": query, "headers": headers}
+    await Guard(app, "word")(scope, receive, send)
+    return sent[0]["status"], sent[0]["headers"]
+
+
+def test_this_machine_may_look_and_others_need_the_token() -> None:
+    assert asyncio.run(_ask("127.0.0.1"))[0] == 200
+    assert asyncio.run(_ask("192.0.2.7"))[0] == 403
+    assert asyncio.run(_ask("192.0.2.7", b"token=wrong"))[0] == 403
+    status, headers = asyncio.run(_ask("192.0.2.7", b"token=word"))
+    assert status == 200 and headers[0][0] == b"set-cookie"
+    assert asyncio.run(_ask("192.0.2.7", b"", f"{COOKIE}=word".encode()))[0] == 200
