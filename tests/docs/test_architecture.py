@@ -143,6 +143,7 @@ def package(name: str) -> str:
         "mypy_extensions": "mypy-extensions",
         "mypyc": "mypy",
         "adafruit_mcp2515": "adafruit-circuitpython-mcp2515",
+        "axe_playwright_python": "axe-playwright-python",
     }.get(name, name)
 
 
