@@ -10,7 +10,7 @@ import pytest
 HERE = Path(__file__).parent
 PROJECT = HERE.parent.parent
 SPEEDS = ("0.08", "0.03")
-"""The guest's processor is emulated, about fifteen times slower, and CI's may be busy: the second is for that."""
+"""The guest's processor is emulated, about fifteen times slower, and may be busy: the second is for that."""
 
 pytestmark = [pytest.mark.guest, pytest.mark.slow, pytest.mark.timeout(1800)]
 
@@ -55,6 +55,4 @@ def test_programs_of_others_attach_to_vcan_and_hidraw_in_a_guest_kernel() -> Non
         timeout=1700,
     )
     assert result.returncode == 0, result.stdout[-6000:] + result.stderr[-2000:]
-    for said in ("candump saw its answer", "each sees the other's answer", "after it goes on", "through hidraw",
-                 "leave the others served", "all checks passed"):  # fmt: skip
-        assert said in result.stdout
+    assert "all checks passed" in result.stdout
