@@ -31,6 +31,9 @@ class Outcome:
     counters: dict[str, Any]
     bus: list[tuple[float, float, int]] = field(default_factory=list)
     """(t s, load of the second before, frames so far), once a simulated second."""
+    _places: dict[tuple[Star, tuple[float, float]], tuple[Array, Array, Array]] = field(
+        default_factory=dict, repr=False
+    )
 
     def record(self, name: str) -> Record:
         """The step of a name."""
@@ -69,9 +72,13 @@ class Outcome:
 
     def star_places(self, star: Star, t_s: Array) -> tuple[Array, Array]:
         """Observed hour angle and declination, rad: exact every second, linear between (within 1e-6″)."""
-        knots = np.arange(np.floor(t_s[0]) - 1, np.ceil(t_s[-1]) + 2 * _KNOT_S, _KNOT_S)
-        hour_angle, declination, _, _ = observe_many(star, self.scenario.site, self.scenario.clock, knots)
-        return np.interp(t_s, knots, np.unwrap(hour_angle)), np.interp(t_s, knots, declination)
+        span = float(np.floor(t_s[0])) - 1, float(np.ceil(t_s[-1])) + 2 * _KNOT_S
+        if (star, span) not in self._places:  # most expectations ask about the same stretch
+            knots = np.arange(*span, _KNOT_S)
+            hour_angle, declination, _, _ = observe_many(star, self.scenario.site, self.scenario.clock, knots)
+            self._places[star, span] = knots, np.unwrap(hour_angle), declination
+        knots, hour_angle, declination = self._places[star, span]
+        return np.interp(t_s, knots, hour_angle), np.interp(t_s, knots, declination)
 
     def axis_log(self, axis: str, low_s: float, high_s: float) -> dict[str, Array]:
         """Columns t and velocity of the axis log, rows of the window."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import gc
 import json
 import time
 from collections.abc import Callable, Iterator
@@ -99,6 +100,7 @@ def run(
     bus: list[tuple[float, float, int]] = []
     wall_s = time.perf_counter()
     interrupted = False
+    gc.freeze()  # what is there now stays to the end: the collector need not look through it again and again
     try:
         _loop(session, bus, progress)
     except KeyboardInterrupt:
@@ -106,6 +108,8 @@ def run(
     except BaseException:
         session.recorder.close()
         raise
+    finally:
+        gc.unfreeze()
     wall_s = time.perf_counter() - wall_s
     progress("writing the report", session.network.queue.now_ns * 1e-9, 0.0)
     session.flush_traces()

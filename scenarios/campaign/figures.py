@@ -43,8 +43,9 @@ def distributions(
         short = name.removeprefix("metric: ")
         if short in limits:
             limit, upper = limits[short]
-            for left, bar in zip(edges, bars, strict=False):
-                if left >= limit if upper else left < limit:
+            for left, right, bar in zip(edges[:-1], edges[1:], bars, strict=True):
+                inside = values[(values >= left) & (values <= right)]
+                if len(inside) and (inside.min() > limit if upper else inside.max() < limit):
                     bar.set_color(COLOURS["bad"])
             if middle[0] - np.ptp(middle) < limit < middle[1] + np.ptp(middle):
                 view.axvline(limit, color=COLOURS["bad"], lw=1.2, ls="--")
@@ -100,7 +101,7 @@ def failures(columns: Columns, groups: dict[str, list[int]]) -> Figure | None:
     view.set_xlim(0.0, 1.0)
     title(view, "What fails")
     if len(groups) > 1:
-        view.legend(fontsize=8, loc="lower right")
+        figure.legend(fontsize=8, loc="outside lower center", ncols=len(groups), frameon=False)
     return figure
 
 

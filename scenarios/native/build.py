@@ -18,7 +18,7 @@ from scenarios.native import stamp
 from scenarios.native.derived import derived_from
 from scenarios.native.modules import ROOT, module_name, selected
 
-_REFUSED = re.compile(r"^(\w+/[\w/]+\.py):\d+: (?:error: |AssertionError: )?(.*)")
+_REFUSED = re.compile(r"^(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
 _ROUNDS = 5
 """A round costs some twenty seconds; when five have not been enough, something else is wrong."""
 Say = Callable[[str], None]
@@ -73,7 +73,8 @@ def _compile(folder: Path, say: Say, root: Path) -> Path:
         if not done.returncode:
             return folder / "library"
         output = done.stdout + done.stderr
-        refused = {match[1]: match[2] for match in map(_REFUSED.match, output.splitlines()) if match}
+        found = [match for match in map(_REFUSED.match, output.splitlines()) if match]
+        refused = {match[1]: match[2] for match in reversed(found)}  # the first line on a file says why
         refused = {file: why for file, why in refused.items() if file in files}
         if not refused:
             tail = " ".join(output.split()[-40:])
