@@ -1,28 +1,35 @@
-"""`schmidt paper`: run E1 to E10, print published beside emulated, write JSON, plots and the table."""
+"""`schmidt paper`: run the rows, print published beside emulated, write JSON, plots and the table."""
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
 from plant.model import default_files, load
 from plant.parts import PlantModel
-from scenarios.paper.bench import Bench
-from scenarios.paper.campaign import Campaign
+from scenarios.paper.campaign import rows as run_rows
 from scenarios.paper.emulator import EmulatorBench
+from scenarios.paper.experiments import EXPERIMENTS, Experiment
 from scenarios.paper.figures import draw_all
+from scenarios.paper.record import record
 from scenarios.paper.rows import Row
+from scenarios.paper.starts import ALL, QUICK, STARTS, Benches, Start
 from scenarios.paper.table import markdown, show
 
-DEFAULTS = {"low": "low_preload_motor_units", "high": "high_preload_motor_units"}
-"""The pair of plant files that meets the rows together (docs/paper.md); the pair as printed is `low_preload`,
-`high_preload`."""
-STEPS = 59
-"""Progress reports of a whole campaign, for the bar's length."""
-SEED = 1
+DEFAULTS = {"low": "low_preload_bridge", "high": "high_preload_bridge"}
+"""The pair of plant files that meets most rows together (docs/paper.md); the pair as printed is
+`low_preload`, `high_preload`."""
 
 
 def pair(low: Path | None, high: Path | None) -> dict[str, str]:
@@ -39,25 +46,26 @@ def pair(low: Path | None, high: Path | None) -> dict[str, str]:
     return names
 
 
-def run_rows(
-    plants: dict[str, PlantModel], progress: Any = None, seed: int = SEED
-) -> tuple[list[Row], Campaign]:
-    """Run all experiments on the emulator; `progress(text)` is called before each part. Returns rows and
-    records."""
+def select(names: str | None) -> list[Experiment]:
+    """Return the experiments named by a comma-separated list; all without one. Raises ValueError."""
+    if names is None:
+        return list(EXPERIMENTS)
+    wanted = [name.strip().upper() for name in names.split(",") if name.strip()]
+    known = {row.id: row for row in EXPERIMENTS}
+    strange = [name for name in wanted if name not in known]
+    if strange or not wanted:
+        raise ValueError(f"--rows: '{', '.join(strange) or names}' is no row; there are {', '.join(known)}")
+    return [row for row in EXPERIMENTS if row.id in wanted]
 
-    def bench(preload: str, gains: tuple[float, float] | None = None) -> Bench:
-        return EmulatorBench(plants[preload], seed, gains)
 
-    campaign = Campaign(bench, plants, progress or (lambda text: None))
-    return campaign.rows(), campaign
-
-
-def as_json(rows: list[Row], plants: dict[str, str], seconds: float) -> dict[str, Any]:
+def as_json(
+    rows: Sequence[Row], plants: Mapping[str, str], seconds: float, starts: Sequence[Start]
+) -> dict[str, Any]:
     """Return what `--json` writes."""
     return {
         "plant": plants["low"],
-        "plants": plants,
-        "seed": SEED,
+        "plants": dict(plants),
+        "starts": [{"angle_deg": start.angle_deg, "seed": start.seed} for start in starts],
         "wall_s": round(seconds, 1),
         "rows": [row.as_json() for row in rows],
     }
@@ -79,41 +87,54 @@ def paper(
     plant_high: Path | None = None,
     markdown_path: Path | None = None,
     console: Console | None = None,
+    names: str | None = None,
+    quick: bool = False,
+    every: bool = False,
 ) -> int:
     """Run the paper's experiments.
 
     json_path: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
-    plant_high: plant files for low and high preload instead of the project's own. Returns 0 when every row
-    is met, 1 when one is missed. Raises ValueError for a file that cannot be used.
+    plant_high: plant files for low and high preload instead of the project's own. names: rows,
+    comma-separated. quick: two starts only, for a look; every: all 24 combinations of angle and seed. Returns
+    0 when every row is met at every start, 1 when one is missed. Raises ValueError for a file that cannot be
+    used.
     """
     console = console or Console()
-    names = pair(plant, plant_high)
-    plants = {preload: load(name) for preload, name in names.items()}
+    files = pair(plant, plant_high)
+    plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
+    chosen, starts = select(names), QUICK if quick else ALL if every else STARTS
     if out is not None:
         _write(out / ".probe", "")  # find out before minutes of work, not after
         (out / ".probe").unlink()
     begin = monotonic()
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (
+        SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )  # fmt: skip
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("starting", total=STEPS)
+        task = bar.add_task("starting", total=len(chosen) * len(starts))
 
         def report(text: str) -> None:
             bar.update(task, description=text, advance=1)
 
-        rows, campaign = run_rows(plants, report)
+        found = run_rows(plants, experiments=chosen, starts=starts, progress=report)
     seconds = monotonic() - begin
-    show(rows, console)
-    document = json.dumps(as_json(rows, names, seconds), indent=2, ensure_ascii=False) + "\n"
+    show(found, console)
+    document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
     if json_path is not None:
         _write(json_path, document)
     if out is not None:
         if json_path is None:
             _write(out / "paper.json", document)
-        for path in draw_all(campaign.record, out):
-            console.print(f"  {path}")
-        _write(out / "table.md", markdown(rows, list(names.values()), "schmidt paper"))
+        if names is None:
+            with console.status("figures"):
+                drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
+            for path in drawn:
+                console.print(f"  {path}")
+        _write(out / "table.md", markdown(found, list(files.values()), "schmidt paper"))
     if markdown_path is not None:
-        _write(markdown_path, markdown(rows, list(names.values()), "schmidt paper"))
-    met = sum(row.passed for row in rows)
-    console.print(f"{met} of {len(rows)} rows met, {seconds:.0f} s")
-    return 0 if met == len(rows) else 1
+        _write(markdown_path, markdown(found, list(files.values()), "schmidt paper"))
+    met = sum(row.passed for row in found)
+    where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if quick else "")
+    console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")
+    return 0 if met == len(found) else 1

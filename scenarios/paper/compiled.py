@@ -5,8 +5,6 @@ last one; that is deterministic and still fast for the two or three commands an 
 never judged on it: the search uses it and the emulator has the last word.
 """
 
-import dataclasses
-
 import numpy as np
 
 from plant.loop import simulate
@@ -23,11 +21,17 @@ RAMP = 7200.0 * LOG_PERIOD_S
 class CompiledBench:
     """A bench (see bench.py); gains: (Kp, Ki) instead of the plant file's."""
 
-    def __init__(self, model: PlantModel, seed: int = 1, gains: tuple[float, float] | None = None) -> None:
+    def __init__(
+        self,
+        model: PlantModel,
+        seed: int = 1,
+        gains: tuple[float, float] | None = None,
+        start_steps: float = START_STEPS,
+    ) -> None:
+        self._start_steps = start_steps
         if gains is not None:
             model = with_value(with_value(model, "controller.kp", gains[0]), "controller.ki", gains[1])
-        # one axis is looked at: whatever the other has costs nothing in simulate()
-        self._model = dataclasses.replace(model)
+        self._model = model
         self._seed = seed
         self._setpoint = np.zeros(0)
         self._effort = np.zeros(0)
@@ -56,7 +60,7 @@ class CompiledBench:
             setpoint=self._setpoint,
             effort=self._effort,
             seed=self._seed,
-            start_steps=START_STEPS,
+            start_steps=self._start_steps,
         )
         last = slice(self._setpoint.size - setpoint.size, None)
         true_rate = found.truth["rate"] / ARCSEC

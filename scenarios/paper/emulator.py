@@ -27,7 +27,7 @@ from scenarios.network import NetworkConfig, build
 from scenarios.paper.log import Log
 from scenarios.paper.scales import ARCSEC, LOG_PERIOD_S
 
-START_STEPS = 1 << 28
+START_STEPS = float(1 << 28)
 """Where the axis begins, absolute encoder steps: half a turn from both soft limits."""
 _BOARDS = 2
 """The RA axis board and its EnDat board: the first of the lab network's order."""
@@ -44,8 +44,14 @@ class EmulatorBench:
     """A bench (see bench.py) on the emulator; gains: (Kp, Ki) instead of the plant file's, set over the
     bus."""
 
-    def __init__(self, model: PlantModel, seed: int = 1, gains: tuple[float, float] | None = None) -> None:
-        self._plant = Plant(model, seed, {"ra": float(START_STEPS)})
+    def __init__(
+        self,
+        model: PlantModel,
+        seed: int = 1,
+        gains: tuple[float, float] | None = None,
+        start_steps: float = START_STEPS,
+    ) -> None:
+        self._plant = Plant(model, seed, {"ra": start_steps})
         self._network = build(NetworkConfig(size=_BOARDS), self._plant, seed)
         self._port = self._network.wire.attach("bench")
         self._port.accept(None)

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.paper.campaign import Record
 from scenarios.paper.log import Log
+from scenarios.paper.record import Record
 from scenarios.paper.runs import LOW, STEP_TO, TRACKING
 from scenarios.paper.scales import ARCSEC
 

@@ -39,8 +39,8 @@ def data_sheet(plant: PlantModel) -> DataSheet:
     return DataSheet(motor.torque_constant.si, ripple, controller.counter_split.si)
 
 
-def drive_torque(log: Log, sheet: DataSheet) -> Array:
-    """Return what the two motors give at the axis, N m, from the measured currents. B pulls against A.
+def ripple_free(log: Log, sheet: DataSheet) -> tuple[Array, Array]:
+    """Return the mean currents of motors A and B, A.
 
     The converter samples at the falling edge of the PWM, "where the motor current peaks" (paper 3.3): half
     the ripple, V D (1 - D) / (2 L f), is known from the duty and taken off.
@@ -50,10 +50,17 @@ def drive_torque(log: Log, sheet: DataSheet) -> Array:
     forward = log.effort >= 0.0
 
     def mean(current: Array, duty: Array) -> Array:
-        return np.maximum(0.0, current - sheet.ripple * duty * (1.0 - duty))
+        return np.asarray(np.maximum(0.0, current - sheet.ripple * duty * (1.0 - duty)), dtype=np.float64)
 
-    a = mean(log.current_a, np.where(forward, lead, lag))
-    b = mean(log.current_b, np.where(forward, lag, lead))
+    return (
+        mean(log.current_a, np.where(forward, lead, lag)),
+        mean(log.current_b, np.where(forward, lag, lead)),
+    )
+
+
+def drive_torque(log: Log, sheet: DataSheet) -> Array:
+    """Return what the two motors give at the axis, N m, from the measured currents. B pulls against A."""
+    a, b = ripple_free(log, sheet)
     return np.asarray((a - b) * sheet.torque_constant * GEAR_RATIO, dtype=np.float64)
 
 
@@ -124,8 +131,8 @@ class FrictionFit:
         )
 
 
-EXPONENTS = (0.4, 2.2)
-"""Bounds of the fitted exponent: hardware.md 1.1 has 0.5 to 2."""
+EXPONENTS = (0.5, 2.0)
+"""Bounds of the fitted exponent: hardware.md 1.1."""
 
 
 def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:

@@ -1,4 +1,4 @@
-"""The paper's linear model: equation (6), its PI loop, and its reduction to second order plus dead time."""
+"""The paper's linear model: equation (6) and its PI loop."""
 
 from dataclasses import dataclass
 
@@ -59,38 +59,6 @@ def linear_axis(model: PlantModel) -> LinearAxis:
         model.supply.voltage.si,
         1.0 - model.controller.counter_split.si,
     )
-
-
-@dataclass(frozen=True)
-class DeadTimeModel:
-    """Second order plus dead time: gain (counts in 5 ms per PWM step), two time constants (s, slow first),
-    dead time (s)."""
-
-    gain: float
-    slow_s: float
-    fast_s: float
-    dead_s: float
-
-
-def reduce_to_dead_time(
-    axis: LinearAxis, pwm_steps: int, period_s: float = CONTROL_PERIOD_S
-) -> DeadTimeModel:
-    """Return the model that tuning rules take.
-
-    Dead time: the paper's Delta t / 2 for the sampling, and as much again because the measured velocity is
-    the mean of the last period (a count difference), which the paper leaves out. A complex pole pair is
-    represented by two equal time constants with the same product.
-    """
-    _, a1, a0 = axis.denominator
-    discriminant = a1 * a1 / 4.0 - a0
-    if discriminant > 0.0:
-        root = float(np.sqrt(discriminant))
-        slow, fast = 1.0 / (a1 / 2.0 - root), 1.0 / (a1 / 2.0 + root)
-    else:
-        slow = fast = 1.0 / float(np.sqrt(a0))
-    motor_per_step = axis.gain * axis.voltage * axis.drive / pwm_steps
-    counts = motor_per_step / GEAR_RATIO / ARCSEC / COUNT_RATE
-    return DeadTimeModel(counts, slow, fast, period_s)
 
 
 def simulate_loop(

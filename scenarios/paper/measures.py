@@ -8,18 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.paper.log import Array, Log
+from scenarios.paper.log import Array
 from scenarios.paper.scales import LOG_PERIOD_S
 
 
 def peak_percent(rate: Array, setpoint: float) -> float:
     """Return the largest deviation from `setpoint`, percent of it. Both in arcsec/s."""
     return float(np.max(np.abs(rate - setpoint)) / abs(setpoint) * 100.0)
-
-
-def rms_percent(rate: Array, setpoint: float) -> float:
-    """Return the root mean square deviation from `setpoint`, percent of it."""
-    return float(np.sqrt(np.mean((rate - setpoint) ** 2)) / abs(setpoint) * 100.0)
 
 
 def means(rate: Array, seconds: float = 1.0) -> Array:
@@ -29,33 +24,6 @@ def means(rate: Array, seconds: float = 1.0) -> Array:
     if not count:
         raise ValueError(f"{rate.size} samples are fewer than one window of {seconds} s")
     return np.asarray(rate[: count * width].reshape(count, width).mean(axis=1), dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class ThreeWays:
-    """Peak deviation, percent of the set point: as logged (5 ms counts), true, and of means over one
-    second."""
-
-    logged: float
-    true: float
-    second: float
-
-    def as_dict(self) -> dict[str, float]:
-        """Return the three figures by name, rounded for printing."""
-        return {
-            "peak_5ms_percent": round(self.logged, 3),
-            "peak_true_percent": round(self.true, 3),
-            "peak_1s_percent": round(self.second, 3),
-        }
-
-
-def peaks(log: Log, setpoint: float) -> ThreeWays:
-    """Return the peak deviation of a run from its set point (arcsec/s) in three ways."""
-    return ThreeWays(
-        peak_percent(log.rate, setpoint),
-        peak_percent(log.true_rate, setpoint),
-        peak_percent(means(log.true_rate), setpoint),
-    )
 
 
 def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
@@ -127,39 +95,3 @@ def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PER
 def stalled(rate: Array) -> bool:
     """Whether the axis stood still during any whole second of the record (arcsec/s)."""
     return bool(np.min(np.abs(means(rate))) < 1.0)
-
-
-@dataclass(frozen=True)
-class Step:
-    """A step response: 10-90 % rise time, s; overshoot, percent of the set point; mean and time of settled
-    motion."""
-
-    rise_s: float
-    overshoot_percent: float
-    settled: float
-
-
-def step_response(t_s: Array, rate: Array, setpoint: float) -> Step:
-    """Return what a step response is described by. The settled value is the mean of the last third."""
-    t = t_s - t_s[0]
-    above = rate >= 0.9 * setpoint
-    if not above.any():
-        return Step(float("inf"), 0.0, float(rate[-rate.size // 3 :].mean()))
-    end = int(np.argmax(above))
-    # the last time below 10 % before the first time above 90 %
-    below = np.nonzero(rate[: end + 1] < 0.1 * setpoint)[0]
-    start = int(below[-1]) if below.size else 0
-
-    def crossing(k: int, level: float) -> float:
-        """Time at which the straight line between sample k-1 and k passes `level`."""
-        if k == 0 or rate[k] == rate[k - 1]:
-            return float(t[k])
-        share = (level - rate[k - 1]) / (rate[k] - rate[k - 1])
-        return float(t[k - 1] + share * (t[k] - t[k - 1]))
-
-    begin = crossing(min(start + 1, end), 0.1 * setpoint)
-    return Step(
-        crossing(end, 0.9 * setpoint) - begin,
-        max(0.0, float(rate.max() / setpoint - 1.0) * 100.0),
-        float(rate[-(rate.size // 3) :].mean()),
-    )

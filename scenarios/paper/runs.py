@@ -7,8 +7,7 @@ import numpy as np
 
 from scenarios.paper.bench import Bench
 from scenarios.paper.log import Log, join
-from scenarios.paper.measures import means, stalled
-from scenarios.paper.scales import LOG_PERIOD_S
+from scenarios.paper.measures import stalled
 
 TRACKING = 15.0
 """arcsec/s, the paper's tracking speed (Fig. 13)."""
@@ -22,8 +21,6 @@ SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
 LOW = 100.0
 """arcsec/s, Fig. 7."""
-
-Progress = Callable[[str], None]
 
 
 def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:
@@ -125,30 +122,24 @@ TRIALS = 10
 BROKEN_AWAY = 20.0
 """Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
 MAP_SPEEDS = (
-    5.0, 10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 130.0, 170.0, 220.0, 300.0, 400.0, 600.0, 1000.0,
-    2000.0, 3600.0, 5400.0, 7200.0,
+    10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 450.0, 700.0, 1200.0, 2400.0, 4800.0,
+    7200.0,
 )  # fmt: skip
 """arcsec/s, set points of the torque-velocity map (Fig. 8): from below tracking to the slew speed of Table
 1."""
 
 
-def velocity_map(bench: Bench, progress: Progress | None = None) -> list[tuple[float, Log, Log]]:
-    """E7: (set point, forward, backward): steady states from fast to slow, closed loop, in both directions.
+def map_run(bench: Bench, setpoint: float) -> Log:
+    """E7: one steady state of the torque-velocity map, closed loop.
 
-    Both directions, because the balance of the axis adds to one what it takes from the other. Slow ones are
-    averaged for longer: half a motor turn (the disturbances are periodic in it), 6 s at least and 36 s at
-    most.
+    Slow ones are averaged for longer: half a motor turn (the disturbances are periodic in it), 6 s at least
+    and 36 s at most.
     """
-    found = []
-    for speed in sorted(MAP_SPEEDS, reverse=True):
-        half_turn = 1_296_000.0 / 360.489 / speed / 2.0
-        seconds = min(36.0, max(6.0, half_turn * max(1, round(6.0 / half_turn))))
-        settle = 10.0 if speed < 30.0 else 6.0
-        pair = [bench.closed_loop(sign * speed, settle + seconds).after(settle) for sign in (1.0, -1.0)]
-        found.append((speed, pair[0], pair[1]))
-        if progress:
-            progress(f"torque-velocity map, {speed:g}″/s")
-    return found
+    speed = abs(setpoint)
+    half_turn = 1_296_000.0 / 360.489 / speed / 2.0
+    seconds = min(36.0, max(6.0, half_turn * max(1, round(6.0 / half_turn))))
+    settle = 10.0 if speed < 30.0 else 6.0
+    return bench.closed_loop(setpoint, settle + seconds).after(settle)
 
 
 def break_away(bench: Bench, direction: int, step_s: float = 0.05, limit: int = 3000) -> Log:
@@ -174,13 +165,3 @@ STEP_TO = 600.0
 def step(bench: Bench, setpoint: float = STEP_TO, seconds: float = 3.0) -> Log:
     """E9: from rest to 600 arcsec/s, closed loop."""
     return bench.closed_loop(setpoint, seconds)
-
-
-def slow_means(log: Log) -> np.ndarray:
-    """Return means over one second of the velocity as logged, arcsec/s."""
-    return means(log.rate)
-
-
-def duration(log: Log) -> float:
-    """Return how long a log is, s."""
-    return log.t_s.size * LOG_PERIOD_S

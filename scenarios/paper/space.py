@@ -1,17 +1,15 @@
 """The numbers the paper leaves open, their bounds, and how a point of that space becomes two plant models."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
 import numpy as np
 
 from plant.model import EffectModel, Number, PlantModel, with_effects, with_value
-from scenarios.paper.linear import linear_axis, reduce_to_dead_time
 from scenarios.paper.log import Array
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.scales import GEAR_RATIO
-from scenarios.paper.tuning import simc
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,8 @@ SPACE: tuple[Free, ...] = (
     Free(
         "gear_damping", "N m s/rad", 1e3, 1.5e4, "ASSUMPTION: 1 to 15 % of critical of the axis on its trains"
     ),
-    Free("closed_time", "s", 0.005, 0.08, "of the tuning rule; slower could not carry a position loop"),
+    Free("kp", "steps/count", 0.02, 10.0, "hardware.md 1.4: 20 and more is unstable"),
+    Free("ki", "steps/count", 5e-4, 1.0, "hardware.md 1.4"),
     Free("twice", "N m", 0.5, 120.0, "gear_eccentricity, motor, 2nd harmonic; design.md: 15 to 25"),
     Free("once", "N m", 0.1, 60.0, "gear_eccentricity, motor, 1st harmonic"),
     Free("mesh", "N m", 0.1, 15.0, "gear_mesh, mesh 1: ASSUMPTION"),
@@ -86,17 +85,25 @@ def values(x: Sequence[float] | Array) -> dict[str, float]:
     return {free.name: float(exp(v)) for free, v in zip(SPACE, x, strict=True)}
 
 
-def vector(found: dict[str, float]) -> Array:
+def vector(found: Mapping[str, float]) -> Array:
     """Return the search vector of free numbers."""
     return np.array([log(found[free.name]) for free in SPACE])
 
 
+FREEWHEEL = EffectModel(
+    "diode_braking", None, 1,
+    {
+        "share": Number(1.0, "1", "hardware.md 2.3: a bridge needs its freewheel diode"),
+        "drop": Number(0.7, "V", "ASSUMPTION: forward voltage of a silicon diode"),
+    },
+)  # fmt: skip
+"""The lagging motor's freewheel path."""
 DEC_SHARE = 316.0 / 933.0
 """Declination over RA: ratio of the load torques of Table 1. What is fitted on RA, the paper's axis, is
 carried over."""
 
 
-def _effects(found: dict[str, float], source: str, share: float) -> tuple[EffectModel, ...]:
+def _effects(found: Mapping[str, float], source: str, share: float) -> tuple[EffectModel, ...]:
     def torque(name: str) -> dict[str, Number]:
         return {"amplitude": Number(_rounded(found[name] * share, 3), "N m", source)}
 
@@ -114,15 +121,16 @@ def _rounded(value: float, digits: int = 4) -> float:
     return float(f"{value:.{digits}g}")
 
 
-def models(bases: dict[str, PlantModel], found: dict[str, float], source: str) -> dict[str, PlantModel]:
+def models(
+    bases: Mapping[str, PlantModel], found: Mapping[str, float], source: str, diode: bool = False
+) -> dict[str, PlantModel]:
     """Return the low and the high preload plant at a point of the space: one drive, one controller, two
     frictions.
 
     bases: the declared plants by preload; what the space does not name is theirs.
-    source: what the plant files shall say about the numbers.
+    source: what the plant files shall say about the numbers. diode: the freewheel path of a real bridge.
     """
     result = {}
-    gains: tuple[float, float] | None = None
     for preload in ("low", "high"):
         table = TABLE_2[preload]
         stiffness = found["bristle_stiffness"] * (found["stiffness_ratio"] if preload == "high" else 1.0)
@@ -150,13 +158,8 @@ def models(bases: dict[str, PlantModel], found: dict[str, float], source: str) -
             }
             for path, value in numbers.items():
                 model = with_value(model, f"axes.{axis}.{path}", value, said)
-            model = with_effects(model, axis, _effects(found, said, share))
-        if gains is None:  # tuned once, on the low preload, as equation (6) with its parameters gives it
-            rule = simc(
-                reduce_to_dead_time(linear_axis(model), round(model.controller.pwm_steps.si)),
-                found["closed_time"],
-            )
-            gains = _rounded(rule.kp), _rounded(rule.ki)
-        model = with_value(model, "controller.kp", gains[0], source)
-        result[preload] = with_value(model, "controller.ki", gains[1], source)
+            effects = _effects(found, said, share)
+            model = with_effects(model, axis, (*effects, FREEWHEEL) if diode else effects)
+        model = with_value(model, "controller.kp", _rounded(found["kp"]), source)
+        result[preload] = with_value(model, "controller.ki", _rounded(found["ki"]), source)
     return result

@@ -1,17 +1,25 @@
-"""A published tuning rule for a PI on a second-order-plus-dead-time model.
+"""Published tuning rules for a PI on a first-order model with dead time.
 
-Skogestad, "Simple analytic rules for model reduction and PID controller tuning", J. Process Control 13
-(2003) 291, and its "smooth" use, Ind. Eng. Chem. Res. 45 (2006) 7817; one of the internal-model rules that
-O'Dwyer's Handbook of PI and PID Controller Tuning Rules (the paper's ref. 15) lists. The half rule makes the
-second order a first: tau = slow + fast/2, theta = dead + fast/2; then Kc = tau / (k (tau_c + theta)), Ti =
-min(tau, 4 (tau_c + theta)). tau_c is the rule's one free number: the wanted closed-loop time constant; tau_c
-= theta is the tightest advised.
+All are in O'Dwyer's Handbook of PI and PID Controller Tuning Rules (the paper's ref. 15), under their
+authors: Ziegler and Nichols (1942, reaction curve); Chien, Hrones and Reswick (1952, servo, without and with
+20 % overshoot); Cohen and Coon (1953); Rivera, Morari and Skogestad (1986, improved PI, lambda = 1.7 L);
+Skogestad (2003, closed-loop time constant = dead time); Astrom and Hagglund (2006, AMIGO; also the paper's
+ref. 16).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from scenarios.paper.linear import DeadTimeModel
 from scenarios.paper.scales import CONTROL_PERIOD_S
+
+
+@dataclass(frozen=True)
+class FirstOrder:
+    """Gain (counts in 5 ms per PWM step), lag (s), dead time (s)."""
+
+    gain: float
+    lag_s: float
+    dead_s: float
 
 
 @dataclass(frozen=True)
@@ -22,19 +30,55 @@ class Gains:
     ki: float
 
 
-def simc(model: DeadTimeModel, closed_s: float | None = None) -> Gains:
-    """Return the rule's gains for a wanted closed-loop time constant, s; None: the tightest advised."""
-    tau = model.slow_s + model.fast_s / 2.0
-    theta = model.dead_s + model.fast_s / 2.0
-    wanted = theta if closed_s is None else closed_s
-    if wanted <= -theta:
-        raise ValueError(f"closed-loop time constant {wanted} s is not above minus the dead time {theta} s")
-    kc = tau / (model.gain * (wanted + theta))
-    ti = min(tau, 4.0 * (wanted + theta))
-    return Gains(kc, kc * CONTROL_PERIOD_S / ti)
+def _gains(proportional: float, integral_s: float) -> Gains:
+    return Gains(proportional, proportional * CONTROL_PERIOD_S / integral_s)
 
 
-def closed_time_constant(model: DeadTimeModel, kp: float) -> float:
-    """Return the wanted closed-loop time constant, s, at which the rule gives `kp`."""
-    tau = model.slow_s + model.fast_s / 2.0
-    return tau / (model.gain * kp) - (model.dead_s + model.fast_s / 2.0)
+def ziegler_nichols(m: FirstOrder) -> Gains:
+    """Reaction curve."""
+    return _gains(0.9 * m.lag_s / (m.gain * m.dead_s), 3.33 * m.dead_s)
+
+
+def chien_0(m: FirstOrder) -> Gains:
+    """Servo, no overshoot."""
+    return _gains(0.35 * m.lag_s / (m.gain * m.dead_s), 1.17 * m.lag_s)
+
+
+def chien_20(m: FirstOrder) -> Gains:
+    """Servo, 20 % overshoot."""
+    return _gains(0.6 * m.lag_s / (m.gain * m.dead_s), m.lag_s)
+
+
+def cohen_coon(m: FirstOrder) -> Gains:
+    """Quarter decay ratio."""
+    r = m.dead_s / m.lag_s
+    kc = (0.9 / r + 0.083) / m.gain
+    return _gains(kc, m.dead_s * (3.33 + 0.31 * r) / (1.0 + 2.22 * r))
+
+
+def rivera(m: FirstOrder) -> Gains:
+    """Internal model control, improved PI, lambda = 1.7 L."""
+    return _gains((2.0 * m.lag_s + m.dead_s) / (2.0 * m.gain * 1.7 * m.dead_s), m.lag_s + m.dead_s / 2.0)
+
+
+def skogestad(m: FirstOrder) -> Gains:
+    """SIMC with the tightest closed-loop time constant that is advised."""
+    return _gains(m.lag_s / (2.0 * m.gain * m.dead_s), min(m.lag_s, 8.0 * m.dead_s))
+
+
+def amigo(m: FirstOrder) -> Gains:
+    """Largest integral gain at a maximum sensitivity of 1.4."""
+    dead, lag = m.dead_s, m.lag_s
+    kc = (0.15 + (0.35 - dead * lag / (dead + lag) ** 2) * lag / dead) / m.gain
+    return _gains(kc, 0.35 * dead + 13.0 * dead * lag**2 / (lag**2 + 12.0 * dead * lag + 7.0 * dead**2))
+
+
+RULES: dict[str, Callable[[FirstOrder], Gains]] = {
+    "Ziegler-Nichols": ziegler_nichols,
+    "Chien 0 %": chien_0,
+    "Chien 20 %": chien_20,
+    "Cohen-Coon": cohen_coon,
+    "Rivera": rivera,
+    "Skogestad": skogestad,
+    "AMIGO": amigo,
+}

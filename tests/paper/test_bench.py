@@ -3,7 +3,6 @@ import pytest
 
 from plant.model import load
 from scenarios.paper.compiled import CompiledBench
-from scenarios.paper.direct import DirectBench
 from scenarios.paper.emulator import BenchError, EmulatorBench
 from scenarios.paper.runs import TRIALS, low_speed
 from tests.paper.synthetic import log_of
@@ -13,7 +12,7 @@ MODEL = load("low_preload")
 
 def test_the_compiled_loop_and_the_emulator_agree_on_a_steady_run():
     runs = {}
-    for maker in (CompiledBench, DirectBench, EmulatorBench):
+    for maker in (CompiledBench, EmulatorBench):
         log = maker(MODEL, gains=(0.5, 0.02)).closed_loop(800.0, 8.0).after(4.0)
         runs[maker.__name__] = log
         assert log.rate.mean() == pytest.approx(800.0, rel=0.01)  # a slow disturbance rides on it

@@ -2,15 +2,20 @@ import numpy as np
 import pytest
 
 from plant.model import load
-from scenarios.paper.cost import outside
-from scenarios.paper.linear import linear_axis, reduce_to_dead_time
-from scenarios.paper.proposals import as_points, draw
+from scenarios.paper.compiled import CompiledBench
+from scenarios.paper.cost import Term, cost
 from scenarios.paper.published import INERTIA, TABLE_2
-from scenarios.paper.scales import ARCSEC, GEAR_RATIO
-from scenarios.paper.screen import Axis, open_loop_room, rule_gains, spectral_radius
-from scenarios.paper.space import SPACE, models, values, vector
-from scenarios.paper.statics import shortfalls, stribeck_slope
-from scenarios.paper.tuning import simc
+from scenarios.paper.scales import GEAR_RATIO
+from scenarios.paper.search import Objective, population
+from scenarios.paper.space import SPACE, bounds, models, values, vector
+from scenarios.paper.starts import QUICK, Benches
+from scenarios.paper.statics import (
+    linear_effort,
+    low_speed_margin,
+    shortfalls,
+    shortfalls_of,
+    stribeck_slope,
+)
 
 BASES = {"low": load("low_preload"), "high": load("high_preload")}
 DRIVE = {
@@ -23,7 +28,8 @@ DRIVE = {
     "electrical_time": 1e-3,
     "rotor_inertia": 4e-4,
     "gear_damping": 9e3,
-    "closed_time": 0.02,
+    "kp": 0.3,
+    "ki": 0.02,
     "twice": 10.0,
     "once": 2.0,
     "mesh": 3.0,
@@ -56,33 +62,6 @@ def test_every_fitted_number_says_where_it_comes_from():
     assert model.axes.ra.friction.coulomb.source != "fitted by a test"
 
 
-def test_E10_the_batch_of_gains_is_the_rule_applied_to_equation_6():
-    # found twice: by screen.py for a batch, by linear.py and tuning.py from the plant model
-    random = np.random.default_rng(5)
-    x = draw(random, 8)
-    points = as_points(x)
-    kp, ki = rule_gains(Axis(points, 1.0))
-    for k in range(8):
-        plant = models(BASES, values(x[k]), "test")["low"]
-        rule = simc(reduce_to_dead_time(linear_axis(plant), 3000), points["closed_time"][k])
-        assert (kp[k], ki[k]) == pytest.approx((rule.kp, rule.ki), rel=5e-3)
-
-
-def test_E6_room_in_open_loop_is_the_work_of_the_torque_balance():
-    axis = Axis({name: np.array([value]) for name, value in (DRIVE | {"torque_constant": 1.1}).items()}, 1.0)
-    room, fold = open_loop_room(axis, 300.0)
-    motor = (1.1 * GEAR_RATIO) ** 2 / DRIVE["resistance"]
-
-    def surplus(rate):
-        friction = 229.0 + 392.0 * np.exp(-rate / 4e-4) + 6700.0 * rate
-        return motor * rate + friction
-
-    at = np.linspace(10.0, 300.0, 3000) * ARCSEC
-    low = at[np.argmin(surplus(at))]
-    assert fold[0] == pytest.approx(low / ARCSEC, abs=6.0)
-    assert room[0] == pytest.approx(surplus(300.0 * ARCSEC) - surplus(low), rel=0.1)
-
-
 def test_stribeck_slope_is_the_derivative_of_the_curve():
     for exponent in (0.5, 1.0, 2.0):
         w, h = 3e-4, 1e-9
@@ -92,25 +71,85 @@ def test_stribeck_slope_is_the_derivative_of_the_curve():
         )
 
 
+def test_E6_a_steady_100_arcsec_per_s_wants_more_damping_than_friction_falls():
+    strong = DRIVE | {"torque_constant": 1.2, "resistance": 0.4}
+    assert low_speed_margin(DRIVE, 1.0) < 1.0 < low_speed_margin(strong, 1.0 / 2.774)
+
+
+def _feasible(scale, diode):
+    """A hundred thousand points of the space, those that pass the statics."""
+    low, high = np.array(bounds()).T
+    x = np.exp(low + (high - low) * np.random.default_rng(1).random((100_000, low.size)))
+    points = {free.name: x[:, k] for k, free in enumerate(SPACE)}
+    keep = shortfalls_of(points, scale, diode) == 0.0
+    return {name: column[keep] for name, column in points.items()}
+
+
+def _six_ampere(points):
+    return np.abs(24.0 / points["resistance"] - 6.0) <= 0.6
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.0 / 2.774], ids=["printed", "motor"])
+def test_E14_a_drive_of_6_A_cannot_have_freewheel_diodes_and_reach_3_degrees_per_second(scale):
+    assert not _six_ampere(_feasible(scale, diode=True)).any()
+
+
+def test_E14_and_E6_exclude_each_other_without_diodes_too():
+    assert not _six_ampere(_feasible(1.0, diode=False)).any()
+    points = _feasible(1.0 / 2.774, diode=False)
+    six = _six_ampere(points)
+    assert six.sum() > 100
+    assert low_speed_margin(points, 1.0 / 2.774)[six].max() < 0.7  # row E6 wants 1
+
+
+def test_E6_cannot_be_met_as_printed_with_diodes():
+    assert low_speed_margin(_feasible(1.0, diode=True), 1.0).max() < 0.9
+
+
+def test_E9_the_settled_effort_cannot_be_met_with_diodes_and_hardly_without():
+    assert linear_effort(_feasible(1.0, diode=True), 1.0).min() > 1.5
+    assert linear_effort(_feasible(1.0, diode=False), 1.0).min() > 1.2
+    assert linear_effort(_feasible(1.0 / 2.774, diode=True), 1.0 / 2.774).min() > 1.25
+    assert linear_effort(_feasible(1.0 / 2.774, diode=False), 1.0 / 2.774).min() < 1.2
+
+
 def test_statics_know_a_drive_that_cannot_reach_3_degrees_per_second():
     assert shortfalls(DRIVE)["reaches 3 deg/s at 24 V"] == 0.0
     assert shortfalls(DRIVE | {"torque_constant": 1.24})["reaches 3 deg/s at 24 V"] > 0.0
 
 
-def test_spectral_radius_of_a_loop_without_gain_is_the_axis_own():
-    axis = Axis({name: np.array([value]) for name, value in DRIVE.items()}, 1.0)
-    none = (np.zeros(1), np.zeros(1))
-    # the effort's integrator stays at one; the sliding axis at 600 arcsec/s decays
-    assert spectral_radius(axis, "low", none, 600.0 * ARCSEC)[0] == pytest.approx(1.0, abs=1e-9)
-    # at 15 arcsec/s friction falls faster than the motor's torque: unstable in open loop
-    assert spectral_radius(axis, "low", none, 15.0 * ARCSEC)[0] > 1.001
+def test_a_freewheel_diode_takes_the_voltage_of_both_motors():
+    assert shortfalls(DRIVE, diode=True)["reaches 3 deg/s at 24 V"] > 0.0
+    assert (
+        shortfalls(DRIVE | {"torque_constant": 0.5, "resistance": 0.4}, diode=True)["reaches 3 deg/s at 24 V"]
+        == 0.0
+    )
+    plants = models(BASES, DRIVE, "test", diode=True)
+    assert [effect.name for effect in plants["low"].axes.ra.effects][-1] == "diode_braking"
 
 
-def test_distance_to_a_band():
-    assert outside(5.0, 2.0, 7.0, 1.0) == 0.0
-    assert outside(8.0, 2.0, 7.0, 0.5) == pytest.approx(2.0)
-    assert outside(0.0, 2.0, 7.0, 1.0) == pytest.approx(2.0)
-    assert outside(1e9, 2.0, 7.0, 1.0, limit=5.0) == 5.0
+def test_a_missed_row_costs_one_and_up_to_as_much_again():
+    assert Term("E1", "peak", 20.0, -1.0).cost == 0.0
+    assert Term("E1", "peak", 25.1, 0.01).cost == pytest.approx(1.0, abs=0.01)
+    assert Term("E1", "peak", 1e6, 1e6).cost == 2.0
+
+
+def test_a_point_that_is_hopeless_is_left_early():
+    plants = models(BASES, DRIVE | {"kp": 9.0, "ki": 1.0}, "test")
+    benches = [Benches(CompiledBench, plants, QUICK[0])]
+    total, found = cost(benches, stop_at=1.0)
+    assert total > 90.0
+    assert len(found) < 12
+
+
+def test_a_first_population_passes_the_statics_and_keeps_to_the_bounds():
+    objective = Objective("motor", True, QUICK, 10, lambda text: None)
+    low, high = np.array(bounds()).T
+    for known in (None, vector(DRIVE | {"torque_constant": 0.5})):
+        first = population(objective, 3, known)
+        assert len(first) >= 5
+        assert (first >= low - 1e-12).all() and (first <= high + 1e-12).all()
+    assert all(objective.shortfall(x) == 0.0 for x in population(objective, 3, None))
 
 
 def test_every_free_number_has_bounds_and_a_reason():

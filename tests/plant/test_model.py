@@ -14,7 +14,8 @@ FILES = sorted(model.default_files())
 
 
 def test_four_plant_files_both_preloads_and_both_readings() -> None:
-    assert FILES == ["high_preload", "high_preload_motor_units", "low_preload", "low_preload_motor_units"]
+    kinds = ("", "_bridge", "_motor_units")
+    assert [f"{preload}_preload{kind}" for preload in ("high", "low") for kind in kinds] == FILES
 
 
 @pytest.mark.parametrize("name", FILES)

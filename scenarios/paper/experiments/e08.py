@@ -1,0 +1,48 @@
+"""E8: run-down and moment of inertia."""
+
+from scenarios.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.paper.experiments.frictionmap import friction_map
+from scenarios.paper.experiments.noise import Noise
+from scenarios.paper.friction_map import data_sheet
+from scenarios.paper.published import INERTIA
+from scenarios.paper.rundown import fit_inertia
+from scenarios.paper.runs import run_down
+from scenarios.paper.starts import Benches, with_inertia
+
+OTHERS = (0.8, 1.2)
+
+
+def measure(benches: Benches) -> Figures:
+    """Inertia of the plant and of two others, percent off what each has."""
+    plant = benches.plants["low"]
+    noise = Noise(benches.start.seed, f"e8.{benches.start.angle_deg}")
+    noise.constant = 1.0  # an error of the torque constant is one of J, share for share: E7 has it
+    fit = friction_map(benches, "low", noise).fit
+    if fit is None:
+        return {}
+    sheet = data_sheet(plant)
+    found: Figures = {}
+    for factor in (1.0, *OTHERS):
+        model = plant if factor == 1.0 else with_inertia(plant, factor)
+        logs = [noise.log(run_down(benches.of(model), way)) for way in (1, -1)]
+        inertia = sum(fit_inertia(log, fit, sheet).inertia for log in logs) / 2.0
+        found[f"off {factor:g}"] = (inertia / (factor * INERTIA) - 1.0) * 100.0
+        found[f"J {factor:g}"] = inertia
+    return found
+
+
+ROW = Experiment(
+    "E8", "run-down, J", "Fig. 9", "1.76e6 N mm s²",
+    "after reaching a steady state speed, the input torque is set to zero ... From the deceleration curve "
+    "and friction characteristics, the moment of inertia was determined to be J = 1.76 × 10⁶ N-mm sec².",
+    "Low preload, from 2°/s both ways, noise as in E7 and a torque constant that is known, with the friction"
+    " of a map like E7's (δ free): J within 5 %, and the same for plants with 20 % less and 20 % more "
+    "inertia.",
+    (
+        Limit("off 1", "%", -5.0, 5.0, "J of the plant", 5.0),
+        Limit("off 0.8", "%", -5.0, 5.0, "J of the plant with 0.8 J", 5.0),
+        Limit("off 1.2", "%", -5.0, 5.0, "J of the plant with 1.2 J", 5.0),
+    ),
+    measure,
+    (("J 1", "kg m²"),),
+)  # fmt: skip

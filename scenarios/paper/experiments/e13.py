@@ -1,0 +1,41 @@
+"""E13: negligible rms at all velocities."""
+
+import numpy as np
+
+from scenarios.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.paper.measures import means
+from scenarios.paper.runs import HIGH, LOW, SLOW_SLEW, TRACKING
+from scenarios.paper.starts import Benches
+
+SPEEDS = (TRACKING, LOW, *HIGH, *SLOW_SLEW)
+OBJECTIVE = 1.0
+"""arcsec/s: the paper's objective for velocity."""
+SHARE = 0.01
+"""Of the set point: the paper's "within 1%"."""
+
+
+def allowed(speed: float) -> float:
+    """Return what is negligible at a speed, arcsec/s."""
+    return max(OBJECTIVE, SHARE * speed)
+
+
+def measure(benches: Benches) -> Figures:
+    """Rms error of one-second means of the true rate over what is negligible, at every speed."""
+    found = {}
+    for speed in SPEEDS:
+        settle = 25.0 if speed < LOW else 8.0
+        log = benches("low").closed_loop(speed, settle + 12.0).after(settle)
+        error = means(log.true_rate) - speed
+        found[f"at {speed:g}"] = float(np.sqrt(np.mean(error**2))) / allowed(speed)
+    return {"worst": max(found.values())} | found
+
+
+ROW = Experiment(
+    "E13", "rms at all velocities", "abstract", "negligible",
+    "This controller is able to maintain negligible rms errors at all velocities.",
+    "Low preload, closed loop at 15, 100, 600 to 1000″/s and 1, 2, 3°/s: rms error of one-second means of "
+    "the true rate ≤ 1″/s (the objective) or 1 % of the set point, whichever is more.",
+    (Limit("worst", "1", 0.0, 1.0, "largest rms over what is allowed", 0.4),),
+    measure,
+    tuple((f"at {speed:g}", "of the allowed") for speed in SPEEDS),
+)  # fmt: skip

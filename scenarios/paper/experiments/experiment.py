@@ -1,0 +1,56 @@
+"""What every row is: a sentence of the paper, figures measured at one start, and the bounds they are held
+to."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scenarios.paper.starts import Benches
+
+Figures = dict[str, float]
+EVER = 1e9
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Bounds of one figure, inclusive. scale: a small change of it, the unit of the search's distance."""
+
+    figure: str
+    unit: str
+    low: float
+    high: float
+    words: str
+    scale: float = 1.0
+
+    def holds(self, value: float) -> bool:
+        """Whether a value is within the bounds; NaN never is."""
+        return self.low <= value <= self.high
+
+    def excess(self, value: float) -> float:
+        """How far outside, in units of `scale`; negative inside, by the distance to the nearer bound."""
+        if value != value:
+            return EVER
+        return max(self.low - value, value - self.high) / self.scale
+
+    @property
+    def bounds(self) -> str:
+        """The bounds as text."""
+        if self.low <= -EVER or (self.low == 0.0 and self.high < EVER):
+            return f"≤ {self.high:g}"
+        return f"≥ {self.low:g}" if self.high >= EVER else f"{self.low:g}–{self.high:g}"
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One row. figure: published, in words; quote: the paper's text (Opt. Eng. 52(8) 081607); bound: how it
+    is measured and why held to these limits; beside: figures that are printed and decide nothing, with
+    unit."""
+
+    id: str
+    title: str
+    where: str
+    figure: str
+    quote: str
+    bound: str
+    limits: tuple[Limit, ...]
+    measure: Callable[[Benches], Figures]
+    beside: tuple[tuple[str, str], ...] = ()
