@@ -29,12 +29,19 @@ class Limit:
         """How far outside, in units of `scale`; negative inside, by the distance to the nearer bound."""
         if value != value:
             return EVER
+        if self.one_sided:
+            return (value - self.high) / self.scale
         return max(self.low - value, value - self.high) / self.scale
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether only the upper bound means anything: figures that cannot be negative."""
+        return self.low <= 0.0 < self.high < EVER and self.low != -self.high
 
     @property
     def bounds(self) -> str:
         """The bounds as text."""
-        if self.low <= -EVER or (self.low == 0.0 and self.high < EVER):
+        if self.one_sided or self.high == 0.0:
             return f"≤ {self.high:g}"
         return f"≥ {self.low:g}" if self.high >= EVER else f"{self.low:g}–{self.high:g}"
 
