@@ -20,6 +20,7 @@ from calibration.decide.finding import Finding
 from calibration.decide.merge import merge
 from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.select import Selection
+from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import Verdict, judge
 from calibration.decide.withdraw import withdraw
 from calibration.plantfile import declared_model, write_plant
@@ -76,6 +77,7 @@ def axis_answer(
         thresholds=gate_rows(result.selections),
         refused=[*withdrawn, *result.refused, *refusals(result.selections)],
         controls=tried,
+        earned=AXIS_EARNED,
     )
     v.calibrated = dict(result.calibrated)
     if "E" in result.selections:

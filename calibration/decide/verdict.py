@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-import numpy as np
-
 from calibration.decide.experiments import experiment
 from calibration.decide.finding import Finding, Parameter
+from calibration.decide.probability import probability
+from calibration.decide.thresholds import Earned
 
 PHASES = (
     "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
@@ -33,6 +33,7 @@ class Verdict:
     thresholds: dict[str, dict[str, float]] = field(default_factory=dict)
     refused: list[tuple[str, str, str]] = field(default_factory=list)
     closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
+    earned: Mapping[str, Earned] | None = None  # of this kind of drive; without it no probability is told
 
 
 def judge(effects: list[Finding], lacks: Sequence[str] = ()) -> tuple[str, str | None]:
@@ -48,22 +49,15 @@ def judge(effects: list[Finding], lacks: Sequence[str] = ()) -> tuple[str, str |
     return verdict, experiment(names)
 
 
-def probability(effect: Finding) -> float:
-    """Posterior-like weight: how far the evidence is beyond the gate, shared with the names it cannot be
-    told from."""
-    sure = 1.0 - 10.0 ** -min(max(effect.evidence, 0.3), 12.0) * 0.5
-    return float(np.clip(sure / (1 + 0.7 * len(effect.equivalent)), 0.0, 0.999))
-
-
-def effect_as_dict(effect: Finding) -> dict[str, Any]:
-    """One effect as in report.json."""
+def effect_as_dict(effect: Finding, sure: float | None) -> dict[str, Any]:
+    """One effect as in report.json, `sure` its probability."""
     return {
         "name": effect.name,
         "equivalent": effect.equivalent,
         "stage": effect.stage,
         "harmonic": effect.harmonic,
         "channel": effect.channel,
-        "probability": round(probability(effect), 4),
+        "probability": None if sure is None else round(sure, 4),
         "parameters": {k: p.as_dict() for k, p in effect.parameters.items()},
         "domain": effect.domain,
         "order": effect.order,
@@ -77,7 +71,7 @@ def as_dict(v: Verdict) -> dict[str, Any]:
     """report.json, with a few fields beside the contract's."""
     return {
         "verdict": v.verdict,
-        "effects": [effect_as_dict(e) for e in v.effects],
+        "effects": [effect_as_dict(e, probability(e, k, v.error, v.earned)) for k, e in enumerate(v.effects)],
         "error": v.error,
         **({"closed_loop": v.closed_loop} if v.closed_loop else {}),
         "held_out": v.held_out,

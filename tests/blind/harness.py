@@ -143,12 +143,16 @@ def run(
         "commit": commit(),
         "wall_s": float(clock.read_text()),
         "finder": command,
-        "finder_source_sha256": digest(Path("plant").rglob("*.py")),
+        "finder_source_sha256": digest(
+            p for room in ("plant", "calibration") for p in Path(room).rglob("*.py")
+        ),
         "finder_median_s": seconds[len(seconds) // 2],
         "finder_max_s": seconds[-1],
     }
     lines = table.figures(rows)
     results = {"about": about, "figures": lines, "cases": rows}
     (out / "results.json").write_text(json.dumps(results, indent=1))
-    (out / "table.md").write_text(table.markdown(lines, about) + "\n" + table.per_name(rows))
+    (out / "table.md").write_text(
+        table.markdown(lines, about) + "\n" + table.reliability(rows) + "\n" + table.per_name(rows)
+    )
     return results

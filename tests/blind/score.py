@@ -19,6 +19,7 @@ TWINS: tuple[frozenset[str], ...] = (
     frozenset({"roller_ratio", "roller_slip"}),
     frozenset({"supply_sag", "pwm_deadband"}),
 )
+SURE = 0.9  # probability of a name beyond which it must not be wrong
 CHANNEL_KEYS = {
     "T": ("torque",),
     "K": ("position", "velocity"),
@@ -53,7 +54,7 @@ def match(effects: list[dict[str, Any]], truths: list[dict[str, Any]]) -> tuple[
 def held_out(report: dict[str, Any], channel: str | None) -> dict[str, float] | None:
     """before, after, floor of the channel the effect lives in; without one, of the channel furthest off its
     floor."""
-    errors = {k: e for k, e in report.get("error", {}).items() if e.get("floor")}
+    errors = {k: e for k, e in report.get("error", {}).items() if e.get("floor") is not None}
     if not errors:
         return None
     for key in CHANNEL_KEYS.get(channel or "", ()):
@@ -69,6 +70,29 @@ def worse(report: dict[str, Any]) -> bool:
         if error is not None and error["after"] > error["before"] * (1.0 + 1e-9):
             return True
     return False
+
+
+def wrong_names(effects: list[dict[str, Any]], truths: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Stated catalogue names that are no hidden effect's, by the answer's first name or class."""
+    return [e for e in effects if e["name"] != "unknown" and not any(right(e, t) for t in truths)]
+
+
+def sureness(effects: list[dict[str, Any]], truths: list[dict[str, Any]]) -> list[list[float]]:
+    """[probability, 1 or 0 for a right first name] of every stated effect that has a probability."""
+    names = {t["name"] for t in truths}
+    return [
+        [
+            e["probability"],
+            float(e["name"] in names or (e["name"] == "unknown" and bool(names) and not known(truths))),
+        ]
+        for e in effects
+        if e.get("probability") is not None
+    ]
+
+
+def known(truths: list[dict[str, Any]]) -> bool:
+    """Whether the hidden effects are of the catalogue."""
+    return all(t.get("in_catalogue", True) for t in truths)
 
 
 def intervals(report: dict[str, Any], truth: dict[str, Any]) -> list[dict[str, Any]]:
@@ -129,6 +153,10 @@ def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str
         row["unknown"] = bool(top and top["name"] == "unknown")
     if truth["cell"] == "nothing":
         row["right"] = report is not None and not effects
+    wrong = wrong_names(effects, truth["effects"])
+    row["wrong"] = len(wrong)
+    row["sure_and_wrong"] = sum((e.get("probability") or 0.0) > SURE for e in wrong)
+    row["sureness"] = sureness(effects, truth["effects"])
     if report is not None:
         first = truth["effects"][0]["channel"] if truth["effects"] else None
         row["held_out"] = held_out(report, first)
