@@ -128,7 +128,7 @@ def sensor_floors(result: AxisResult, drive: Transmission) -> dict[str, float]:
     rows = result.held[m.pick] & m.trusted[m.pick]
     found = {
         "T": noise.torque_floor(n, drive, inertia, m.period_s),
-        "E": noise.electrical_floor(n, resistance),
+        "E": noise.electrical_floor(n, resistance, frame.scale["supply_V"], frame.scale["counter_torque"]),
         "K": noise.encoder_floor(n, frame, m, rows, drive),
         "S": noise.roller_floor(n),
     }

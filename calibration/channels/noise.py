@@ -35,6 +35,7 @@ class Noise:
     position: float
     velocity: float | None
     current: dict[str, float]
+    effort: float = 0.0  # what changes from row to row, of full effort
 
 
 def rough(x: Array, order: int) -> float:
@@ -65,7 +66,8 @@ def column_noise(frame: Frame) -> Noise:
     current = {
         k: _least(_current_noise(frame, k), ampere) for k in "ab" if frame.get(f"current_{k}") is not None
     }
-    return Noise(position, velocity, current)
+    effort = rough(frame.columns["effort"], 2)
+    return Noise(position, velocity, current, effort if np.isfinite(effort) else 0.0)
 
 
 def _least(found: float, quantum: float) -> float:
@@ -106,12 +108,15 @@ def torque_floor(n: Noise, drive: Transmission, inertia: float, period_s: float)
     return float(np.sqrt(currents + (inertia * n.position) ** 2 * float(np.sum(second**2))))
 
 
-def electrical_floor(n: Noise, resistance: float) -> float | None:
-    """V: a current through the resistance (the rate's noise through the constant is a thousandth of it)."""
+def electrical_floor(n: Noise, resistance: float, supply: float, counter: float) -> float | None:
+    """V: a current through the resistance (the rate's noise through the constant is a thousandth of it), and
+    the effort of the tick between two rows, which is not logged: half of a row's volts are of that tick.
+    `counter`: the lagging motor's share of the effort."""
     if not n.current:
         return None
     mean = float(np.mean([s**2 for s in n.current.values()]))
-    return float(resistance * np.sqrt(np.sum(BOX**2) * mean))
+    between = (supply * n.effort) ** 2 / 2 * (1 + counter**2) / 2
+    return float(np.sqrt(np.sum(BOX**2) * (resistance**2 * mean + between)))
 
 
 def encoder_floor(n: Noise, frame: Frame, m: Motion, rows: Mask, drive: Transmission) -> float:

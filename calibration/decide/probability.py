@@ -13,8 +13,8 @@ ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}
 
 
 def kind_of(effect: Finding, place: int, error: Mapping[str, Mapping[str, Any]]) -> str | None:
-    """Kind of an answer: by what is left in its channel, by whether the log tells its name from others, by its
-    place in the list. None where the channel's floor is not known."""
+    """Kind of an answer: by what is left in its channel, by whether the log tells its name from others, by
+    its place in the list. None where the channel's floor is not known."""
     row = error.get(ROWS.get(effect.channel, ""))
     if not row or not row["floor"]:
         return None

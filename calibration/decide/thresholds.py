@@ -24,9 +24,9 @@ class Earned:
         return (self.right + 1) / (self.named + 2)
 
 
-# Axis logs of tests/blind, development seed 1800, set develop: the 81 effects in the 91 answers that there was
-# time for (nothing, one effect at ratio 2 and 5, the first pairs), given by the finder of commit b92d544, before
-# the names and floors that came with this table. docs/blind.md has the intervals.
+# Axis logs of tests/blind, development seed 1800, set develop: the 81 effects in the 91 answers that there
+# was time for (nothing, one effect at ratio 2 and 5, the first pairs), given by the finder of commit b92d544,
+# before the names and floors that came with this table. docs/blind.md has the intervals.
 AXIS_EARNED = {
     "sole": Earned(69, 69),
     "further": Earned(2, 3),

@@ -148,3 +148,17 @@ def test_clopper_pearson(hits: int, total: int, low: float, high: float) -> None
         assert binom.sf(hits - 1, total, got[0]) == pytest.approx(0.025, abs=1e-9)
         assert binom.cdf(hits, total, got[1]) == pytest.approx(0.025, abs=1e-9)
     assert got == pytest.approx((low, high), abs=2e-4)
+
+
+def test_a_sure_wrong_name_is_counted_and_an_absent_probability_is_not() -> None:
+    sure = effect("gear_mesh", probability=0.95)
+    wrong = score.score(ANSWER, report(sure), truth("single", "motor_cogging"))
+    right = score.score(ANSWER, report(sure), truth("single", "gear_mesh"))
+    unsure = score.score(
+        ANSWER, report(effect("gear_mesh", probability=None)), truth("single", "wind_torque")
+    )
+    assert [r["sure_and_wrong"] for r in (wrong, right, unsure)] == [1, 0, 0]
+    assert [r["sureness"] for r in (wrong, right, unsure)] == [[[0.95, 0.0]], [[0.95, 1.0]], []]
+    lines = {line["figure"]: line["measured"] for line in table.figures([wrong, right, unsure])}
+    assert lines["a wrong name with probability > 0.9, all cases"]["hits"] == 1
+    assert "| 0.950 | 1 | 2 |" in table.reliability([wrong, right, unsure])
