@@ -122,7 +122,7 @@ def before_of(result: AxisResult, f: Finding) -> dict[str, float]:
     """Per channel, the held-out error of the declared model on the logs as they are."""
     out = {}
     for key, s in result.selections.items():
-        if np.isfinite(s.held.before):
+        if key in "TEKS" and np.isfinite(s.held.before):
             late = f.name == "channel_delay" and key in NOMINAL
             out[key] = without_nuisance(s, key) if late else s.held.before
     return out
@@ -130,7 +130,7 @@ def before_of(result: AxisResult, f: Finding) -> dict[str, float]:
 
 def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal | None:
     """None when the held-out error falls once the effect is applied; else why it was not the effect."""
-    after = {k: s.held.before for k, s in again.selections.items() if k in before and k in "TEKS"}
+    after = {k: s.held.before for k, s in again.selections.items() if k in before}
     falls = [k for k, a in after.items() if a < FALLS * before[k]]
     rises = [k for k, a in after.items() if a > RISES * before[k]]
     if falls and not rises:

@@ -64,3 +64,31 @@ def test_two_effects_in_different_channels_are_both_named(tmp_path: Path) -> Non
         ],
     )
     assert {e["name"] for e in report["effects"]} == {"gear_eccentricity", "pwm_deadband"}
+
+
+def test_a_drag_that_begins_in_every_run_is_a_brake_and_nothing_else(tmp_path: Path) -> None:
+    """The plant's clock starts anew with every run of these logs: 40 N m from 20 s on, in each."""
+    drag = effect("brake_drag", torque=(40.0, "N m"), start=(20.0, "s"), duration=(1e6, "s"))
+    report = answer(tmp_path, [drag])
+    assert [e["name"] for e in report["effects"]] == ["brake_drag"]
+    found = report["effects"][0]["parameters"]
+    assert found["torque"]["value"] == pytest.approx(40.0, rel=0.05)
+    assert found["onset_in_run"]["value"] == pytest.approx(20.0, abs=0.1)
+    assert report["error"]["torque"]["after"] < 0.2 * report["error"]["torque"]["before"]
+
+
+def test_play_of_the_encoder_is_named_and_taken_out_of_the_positions(tmp_path: Path) -> None:
+    report = answer(tmp_path, [effect("play", gap=(6.0, "arcsec"), encoder=(1.0, "1"))])
+    assert [e["name"] for e in report["effects"]] == ["play"]
+    assert report["effects"][0]["parameters"]["gap"]["value"] == pytest.approx(6.0, rel=0.1)
+    for channel in ("position", "torque"):  # the steps of the reading are in both
+        assert report["error"][channel]["after"] < 0.5 * report["error"][channel]["before"]
+
+
+def test_a_square_between_effort_and_amplifier_is_a_disturbance_with_its_frequency(tmp_path: Path) -> None:
+    square = effect("command_disturbance", amplitude=(0.03, "1"), frequency=(0.8, "Hz"), shape=(1.0, "1"))
+    report = answer(tmp_path, [square])
+    assert [e["name"] for e in report["effects"]] == ["command_disturbance"]
+    found = report["effects"][0]["parameters"]
+    assert found["frequency"]["value"] == pytest.approx(0.8, abs=0.001)
+    assert found["amplitude"]["value"] == pytest.approx(90.0, rel=0.1)
