@@ -71,8 +71,8 @@ def analyse(
     if fault is None:
         return result
     tell(f"once more without the {fault.name.replace('_', ' ')}")
-    before = before_of(result, fault)
     again = _look(corrected_runs(result, fault), hold_out, seed, tell, plant)
+    before = before_of(result, again, fault)
     refusal = judged(before, again, fault)
     if refusal is not None:
         result.findings = [f for f in result.findings if f.name != fault.name]

@@ -19,6 +19,7 @@ from calibration.decide.controls import controls
 from calibration.decide.finding import Finding
 from calibration.decide.merge import merge
 from calibration.decide.missing import above_floor, lives_in
+from calibration.decide.passive import sound
 from calibration.decide.select import Selection
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import Verdict, judge
@@ -66,6 +67,8 @@ def axis_answer(
     named = merge(result.findings)
     tried = _controls(result, named)
     effects, withdrawn = withdraw(named, tried)
+    effects, against = sound(effects, result.selections)
+    withdrawn += against
     doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]
     verdict, separating = judge(effects, [*lacks(result), *doubts])
     v = Verdict(

@@ -103,9 +103,9 @@ def axis_by_motors(result: AxisResult) -> Array | None:
     return np.asarray(np.mean(both, axis=0))
 
 
-def without_nuisance(s: Selection, key: str) -> float:
-    """Held-out rms of a channel's declared model when its delay is held at a sound log's: what the log leaves
-    before a late column is shifted."""
+def without_nuisance(s: Selection, key: str) -> Array:
+    """Held-out residual (rows of test) of a channel's declared model when its delay is held at a sound log's:
+    what the log leaves before a late column is shifted."""
     p = s.problem
     at = [label for label, _ in p.base_labels].index(NOMINAL[key])
     value = float(s.before.beta[at])
@@ -115,16 +115,25 @@ def without_nuisance(s: Selection, key: str) -> float:
     y = p.y - p.base[:, at] * held
     fit = gls(y, p.base[:, free], p.train, p.ar_order, p.block)
     part = replace(p, y=y, base=p.base[:, free])
-    return float(np.sqrt(np.mean(predict_residual(part, part.base, fit.beta, p.test) ** 2)))
+    return predict_residual(part, part.base, fit.beta, p.test)
 
 
-def before_of(result: AxisResult, f: Finding) -> dict[str, float]:
-    """Per channel, the held-out error of the declared model on the logs as they are."""
+def before_of(result: AxisResult, again: AxisResult, f: Finding) -> dict[str, float]:
+    """Per channel, the held-out error of the declared model on the logs as they are, on the rows that the
+    corrected logs have, too."""
     out = {}
-    for key, s in result.selections.items():
-        if key in "TEKS" and np.isfinite(s.held.before):
-            late = f.name == "channel_delay" and key in NOMINAL
-            out[key] = without_nuisance(s, key) if late else s.held.before
+    for key in "TEKS":
+        if key not in result.selections or key not in again.selections:
+            continue
+        s, p = result.selections[key], result.selections[key].problem
+        both = again.selections[key].problem.test
+        if not np.isfinite(s.held.before) or len(both) != len(p.test):
+            continue
+        late = f.name == "channel_delay" and key in NOMINAL
+        e = without_nuisance(s, key) if late else predict_residual(p, p.base, s.before.beta, p.test)
+        e = e[both[p.test]]
+        if len(e):
+            out[key] = float(np.sqrt(np.mean(e**2)))
     return out
 
 

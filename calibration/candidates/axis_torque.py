@@ -17,6 +17,7 @@ from calibration.readers.run import Array
 
 # of a current's gain error: one motor's torque is most of the torque, and would explain itself
 LARGEST_GAIN = 0.5
+PASSIVE = 1.0  # of the friction itself: a larger asymmetry would drive the axis in one direction
 ONSETS_IN_RUN = 19  # tried within the longest run
 
 
@@ -50,8 +51,11 @@ def direction_effects(c: Context, f: Friction) -> list[Candidate]:
             "velocity",
             np.column_stack([sided, np.abs(f.viscous)]),
             (("coulomb_asymmetry", "1"), ("viscous_asymmetry", "1")),
+            most=PASSIVE,
         ),
-        Candidate("friction_asymmetry", "velocity", sided[:, None], (("coulomb_asymmetry", "1"),)),
+        Candidate(
+            "friction_asymmetry", "velocity", sided[:, None], (("coulomb_asymmetry", "1"),), most=PASSIVE
+        ),
         Candidate("load_friction", "current", f.level.answer(f.transmitted)[:, None], (("mu", "1"),), sign=1),
         Candidate("adc_offset", "current", np.ones((len(c.t), 1)), (("offset_torque", "N m"),)),
         Candidate("adc_gain", "current", f.torque_a[:, None], (("gain_a", "1"),), most=LARGEST_GAIN),

@@ -16,6 +16,7 @@ from calibration.channels.problem import Problem
 from calibration.decide.finding import Finding, Parameter, middle
 from calibration.decide.heldout import HeldOut
 from calibration.decide.missing import above_floor
+from calibration.decide.passive import sound
 from calibration.decide.probability import kind_of, probability
 from calibration.decide.select import select
 from calibration.decide.thresholds import AXIS_EARNED
@@ -128,3 +129,21 @@ def test_a_phase_is_found_on_rows_that_are_half_missing(square: bool) -> None:
     y = (np.sign(wave) if square else wave)[kept] + 0.7
     found = _phase(x[kept], y, square)
     assert np.angle(np.exp(1j * (found - 2.0))) == pytest.approx(0.0, abs=0.05 if square else 1e-6)
+
+
+def test_a_fit_with_a_negative_inertia_names_nothing() -> None:
+    zero, every = np.zeros(10), np.ones(10, dtype=bool)
+    run = zero.astype(np.int64)
+    labels = [("inertia", "kg m2"), ("coulomb", "N m")]
+    p = Problem("T", "N m", zero, np.zeros((10, 2)), labels, zero, run, run, every, every, 1.0)
+    for inertia, kept in ((-5.0, 0), (-0.5, 1), (5.0, 1)):  # half a standard error below zero is no sign
+        fit = type("F", (), {"beta": np.array([inertia, 3.0]), "covariance": np.eye(2)})()
+        s = type("S", (), {"problem": p, "after": fit})()
+        found, refused = sound([finding()], {"T": s})
+        assert (len(found), len(refused)) == (kept, 1 - kept)
+    assert not refused and "inertia would be -5" in sound([finding()], {"T": _with(s, -5.0)})[1][0][2]
+
+
+def _with(s: Any, inertia: float) -> Any:
+    s.after.beta = np.array([inertia, 3.0])
+    return s
