@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.axisapply import before_of, corrected_runs, judged, to_apply
+from calibration.axisapply import before_of, corrected_runs, judged, keep_untouched, to_apply
 from calibration.axisresult import AxisResult
 from calibration.axistorque import torque_channel
 from calibration.candidates import amplifier, axis_torque
@@ -81,7 +81,9 @@ def analyse(
     again.before = before
     if fault.name == "play":  # the motors see the crossings that the corrected encoder leaves out
         again.selections["K"] = result.selections["K"]
-    fault.share = max(1 - (again.selections[k].held.before / b) ** 2 for k, b in before.items() if b > 0)
+        before["K"] = result.selections["K"].held.before
+    keep_untouched(result, again)
+    fault.share = max(1 - (again.selections[k].held.after / b) ** 2 for k, b in before.items() if b > 0)
     stamps = [f for f in result.findings if f.domain == "clock" and f.name != fault.name]
     rest = [f for f in again.findings if f.name != fault.name and f.domain != "clock"]
     again.findings = [fault, *stamps, *rest]

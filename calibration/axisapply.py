@@ -137,6 +137,16 @@ def before_of(result: AxisResult, again: AxisResult, f: Finding) -> dict[str, fl
     return out
 
 
+def keep_untouched(first: AxisResult, again: AxisResult) -> None:
+    """Channels without any effect that the correction does not help are left as they were: other rows to fit
+    on are no gain and no loss of the effect's. In place."""
+    for key, before in list(again.before.items()):
+        was, now = first.selections[key], again.selections[key]
+        if not was.chosen and not now.chosen and now.held.before >= before:
+            again.selections[key] = was
+            again.before[key] = was.held.before
+
+
 def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal | None:
     """None when the held-out error falls once the effect is applied; else why it was not the effect."""
     after = {k: s.held.before for k, s in again.selections.items() if k in before}
