@@ -78,7 +78,7 @@ def _check_events(events: object) -> None:
             # an alias of a collection that is still open holds itself
             if any(anchor == event.anchor for anchor, _ in open_):
                 raise TextError(f"the alias {event.anchor!r} holds itself", line)
-            count += sizes.get(event.anchor, 1)
+            count += sizes.get(event.anchor or "", 1)
         elif isinstance(event, yaml.ScalarEvent):
             count += 1
             _check_scalar(event.value, line)

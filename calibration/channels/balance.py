@@ -119,7 +119,7 @@ def _term(view: View, name: str) -> Array:
         angle = view.x / (view.turn or 1.0) * 2 * pi
         return np.column_stack([np.cos(angle), np.sin(angle)])
     free = view.response.channel == "acceleration"  # what brakes is negative there
-    column: Array = {
+    columns: dict[str, Callable[[], Array]] = {
         "inertia": lambda: view.columns.get("acceleration", view.second(view.x)),
         "viscous": lambda: view.rate(view.x) * (-1.0 if free else 1.0),
         "coulomb": lambda: view.direction * (-1.0 if free else 1.0),
@@ -127,8 +127,8 @@ def _term(view: View, name: str) -> Array:
         "drift": lambda: view.clock - view.clock.mean(),
         "stiffness": lambda: view.x - view.x.mean(),
         "scale": lambda: view.x - view.x.mean(),
-    }[name]()
-    return np.asarray(column)[:, None]
+    }
+    return np.asarray(columns[name]())[:, None]
 
 
 def _held(

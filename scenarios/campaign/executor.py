@@ -143,7 +143,8 @@ def _cluster(address: str) -> tuple[Maker, int]:
         raise ValueError(
             f"--scheduler {address}: Dask is not installed; pip install 'schmidt[cluster]'"
         ) from None
-    client: Any = Client(address, timeout=20)  # type: ignore[no-untyped-call]
+    connect: Any = Client  # Dask has no types
+    client = connect(address, timeout=20)
     client.wait_for_workers(1)
     width = max(1, sum(client.nthreads().values()))
 

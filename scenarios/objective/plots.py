@@ -31,7 +31,7 @@ def _with(model: PlantModel, *names: str) -> PlantModel:
 def low() -> Figure:
     """The velocity loop at 15.041 arcsec/s: the paper's firmware and the proposed one, two plants."""
     declared = load("low_preload_motor_units")
-    rows = (
+    rows: tuple[tuple[str, PlantModel, list[tuple[int, int]]], ...] = (
         ("declared plant, the paper's firmware", declared, []),
         ("declared plant, spread duty alone", declared, _FINE[:1]),
         ("declared plant, spread duty, lock, blend, bias", declared, _FINE),
