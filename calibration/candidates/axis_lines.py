@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +21,7 @@ COGGING = (
     72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
 )
 NEAR = 0.35  # resolution cells about a known order that are that order's
+ORDER_STEP = 0.05  # of a resolution cell, for the refinement of an order
 FREE = 4  # free orders tried per spectrum
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
@@ -114,6 +116,11 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
 LABELS = {"motor_cogging": ("amplitude", "N m at the motor"), "torque_ripple": ("ripple", "1")}
 
 
+def _at_order(c: Context, turns: Array, period_s: float) -> Callable[[Array], Array]:
+    """A sine pair at order p[0]: between the orders of a spectrum it would leave a part to its neighbours."""
+    return lambda p: pair(turns * float(p[0]), c, period_s, None, float(p[0]))
+
+
 def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
     """The strongest orders of the residual that no stage explains: even (bearing) and odd in direction
     (friction)."""
@@ -131,10 +138,14 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
             for shift in (-0.2, 0.0, 0.2):
                 o = float(order + shift / span)
                 if name == "bearing_pass":
-                    columns = pair(turns * o, c, period_s, None, o)
-                else:
-                    x = o * level.angle
-                    columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])
-                one = line(c, name, None, None, o, columns, "axis_angle")
-                out.append(replace(one, searched=1 if name == "bearing_pass" else 0))
+                    shape = _at_order(c, turns, period_s)
+                    one = line(c, name, None, None, o, shape(np.array([o])), "axis_angle")
+                    step = (ORDER_STEP / span,)
+                    out.append(
+                        replace(one, searched=1, shape=shape, steps=step, fixed={"order": (o, "1/turn")})
+                    )
+                    continue
+                x = o * level.angle
+                columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])
+                out.append(line(c, name, None, None, o, columns, "axis_angle"))
     return out

@@ -42,6 +42,14 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
         Candidate("diode_braking", "velocity", (-k * e.dragged)[:, None], (("fraction", "1"),), sign=1),
         Candidate("supply_sag", "current", (e.duty * e.sum_power)[:, None], (("resistance", "ohm"),), sign=1),
         Candidate(
+            "supply_sag",
+            "current",
+            (e.duty * np.tile(e.current[: len(e.duty) // 2] + e.current[len(e.duty) // 2 :], 2))[:, None],
+            (("resistance", "ohm"),),
+            sign=1,
+            fixed={"of_the_sum": (1.0, "0 currents drawn from the supply, 1 currents of the motors")},
+        ),
+        Candidate(
             "backlash_loss",
             "reversal",
             (e.duty * e.supply * e.lagging)[:, None],

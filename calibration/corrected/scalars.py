@@ -28,6 +28,8 @@ def plain(f: Finding, facts: Facts) -> Made:
     made = Made()
     table = PLAIN[f.name]
     made.add(f.name, facts, {k: value(f, name) * factor for k, (name, factor) in table.items()})
+    if value(f, "of_the_sum"):
+        made.remarks.append(f"{f.name}: found with the motors' currents, the plant draws duty times current")
     if value(f, "before_split"):
         made.remarks.append(f"{f.name}: found before the split between the motors, the plant has it behind")
     return made

@@ -157,7 +157,7 @@ def finding_of(selection: Selection, index: int, name: str | None = None) -> Fin
         c.domain,
         c.stage,
         c.harmonic,
-        c.order,
+        c.fixed["order"][0] if "order" in c.fixed else c.order,
         c.frequency,
         equivalent,
         parameters_of(selection, index),
