@@ -116,9 +116,27 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
 LABELS = {"motor_cogging": ("amplitude", "N m at the motor"), "torque_ripple": ("ripple", "1")}
 
 
-def _at_order(c: Context, turns: Array, period_s: float) -> Callable[[Array], Array]:
+def _between(order: float, known: Array, span: float) -> tuple[float, float]:
+    """How far an order may be moved: within its resolution cell, and not to where a stage's order begins."""
+    low, high = order - 0.5 / span, order + 0.5 / span
+    for stage in known[np.abs(known - order) < 1.0 / span]:
+        if stage >= order:
+            high = min(high, float(stage) - NEAR / span)
+        else:
+            low = max(low, float(stage) + NEAR / span)
+    return low, max(low, high)
+
+
+def _at_order(
+    c: Context, turns: Array, period_s: float, within: tuple[float, float]
+) -> Callable[[Array], Array]:
     """A sine pair at order p[0]: between the orders of a spectrum it would leave a part to its neighbours."""
-    return lambda p: pair(turns * float(p[0]), c, period_s, None, float(p[0]))
+
+    def shape(p: Array) -> Array:
+        order = float(np.clip(p[0], *within))
+        return pair(turns * order, c, period_s, None, order)
+
+    return shape
 
 
 def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) -> list[Candidate]:
@@ -138,7 +156,7 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
             for shift in (-0.2, 0.0, 0.2):
                 o = float(order + shift / span)
                 if name == "bearing_pass":
-                    shape = _at_order(c, turns, period_s)
+                    shape = _at_order(c, turns, period_s, _between(o, known, span))
                     one = line(c, name, None, None, o, shape(np.array([o])), "axis_angle")
                     step = (ORDER_STEP / span,)
                     out.append(

@@ -10,6 +10,7 @@ import pytest
 from calibration.answers import error_row
 from calibration.axislacks import motion_lacks
 from calibration.candidates.amplifier import _phase
+from calibration.candidates.axis_lines import _between
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.kinematic import lag_in_gap
 from calibration.channels.problem import Problem
@@ -147,3 +148,12 @@ def test_a_fit_with_a_negative_inertia_names_nothing() -> None:
 def _with(s: Any, inertia: float) -> Any:
     s.after.beta = np.array([inertia, 3.0])
     return s
+
+
+def test_a_free_order_is_moved_within_its_cell_and_never_onto_a_stage() -> None:
+    known = np.array([14.7, 24.5, 250.0])
+    assert _between(20.7, known, 1.0) == (20.2, 21.2)
+    low, high = _between(249.2, known, 1.0)
+    assert (low, high) == (248.7, pytest.approx(250.0 - 0.35))
+    low, high = _between(24.9, known, 1.0)
+    assert (low, high) == (pytest.approx(24.85), pytest.approx(25.4))
