@@ -6,6 +6,7 @@ is the pure one. `SCHMIDT_PURE=1` asks for the pure one. An editable installatio
 """
 
 import os
+import shutil
 import sys
 from pathlib import Path
 
@@ -25,11 +26,14 @@ class BuildWithLibrary(build_py):
     def run(self) -> None:
         """Copy the sources, then compile them."""
         super().run()
-        if PURE or self.editable_mode:
+        if self.editable_mode:
+            return
+        target = Path(self.build_lib).resolve() / "scenarios" / "native" / "library"
+        shutil.rmtree(target, ignore_errors=True)  # parts of a library that lay in the checkout
+        if PURE:
             return
         from scenarios.native.build import BuildError, build
 
-        target = Path(self.build_lib).resolve() / "scenarios" / "native" / "library"
         try:
             build(target, root=HERE.resolve())
         except BuildError as error:
