@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from calibration.decide.verdict import Verdict, as_dict
 from calibration.errors import CalibrationInputError
@@ -59,7 +60,40 @@ def calibrate(
         )
         tell("writing the report")
         write_report(verdict, pictures, title, runs, out)
+    print(paragraph(as_dict(verdict), out))
     return 0
+
+
+def show_rig(rig: Path, logs: list[Path], out: Path | None = None) -> str:
+    """What is understood of a rig file and its logs: columns with unit, range, rate, gaps, quantum; `out`: a
+    PNG of them."""
+    from calibration.rigview import show
+
+    return show(rig, logs, out)
+
+
+def paragraph(data: dict[str, Any], out: Path) -> str:
+    """The verdict in words, for the terminal."""
+    from calibration.report.page import summary
+
+    parts = [f"{data['verdict']}:", summary(data)]
+    names = [
+        e["name"]
+        + (f" on {e['stage']}" if e["stage"] else "")
+        + (f", harmonic {e['harmonic']}" if e["harmonic"] else "")
+        for e in data["effects"]
+    ]
+    if len(names) > 1:
+        parts.append(f"In order of what they take away: {'; '.join(dict.fromkeys(names))}.")
+    for channel, row in data["error"].items():
+        floor = "floor not known" if row["floor"] is None else f"floor {row['floor']:.4g}"
+        parts.append(
+            f"Held-out {channel}: {row['before']:.4g} -> {row['after']:.4g} {row['unit']} ({floor})."
+        )
+    if data["separating_experiment"]:
+        parts.append(f"To be sure: {data['separating_experiment']}.")
+    parts.append(f"Report: {out / 'report.html'}")
+    return " ".join(p for p in parts if p)
 
 
 def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:

@@ -11,7 +11,7 @@ from calibration.channels.agreement import Agreement, velocity_against_position
 from calibration.channels.balance import problem_of
 from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
-from calibration.channels.view import View, view_of
+from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection, design, select
@@ -20,10 +20,10 @@ from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.record import Record
 from calibration.names import NAMES
-from calibration.names.lateness import effort_delay
+from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
-from calibration.names.unknown import flexible, smooth_functions
+from calibration.names.unknown import flexible, plain, smooth_functions
 from calibration.prune import prune
 
 MOST = 14  # effects: a cogging motor shows several orders
@@ -128,6 +128,8 @@ def _balance(
     seed: int,
 ) -> Balance:
     rng = np.random.default_rng(seed)
+    if view.dynamic:
+        _sharpen(view, records, hold_out)
     problem = problem_of(view, records, hold_out)
     delay = None
     before = None
@@ -146,6 +148,12 @@ def _balance(
         if delay is not None:
             before = _held_rms(problem)
             problem = problem_of(view, records, hold_out, delay.parameters["delay"].value)
+            if is_hold(delay, view.period_s):
+                value = delay.parameters["delay"].value
+                notes.append(
+                    f"{response.channel}: acts {-value:.2g} s after its row: the hold of a sampled loop"
+                )
+                delay = before = None
     floor, source = floor_of(view, problem)
     problem.floor = floor or 0.0
     s, scene = _search(view, problem, rng, tell)
@@ -171,6 +179,20 @@ def _balance(
     return Balance(
         view, problem, scene, together, s, findings, floor, source, delay, before, lacks, [*notes, *bounds]
     )
+
+
+def _sharpen(view: View, records: list[Record], hold_out: list[str]) -> None:
+    """Choose how sharply friction turns with the speed: by what the declared terms leave on fitted rows."""
+    left = []
+    for part in STANDSTILLS:
+        fade(view, part)
+        p = problem_of(view, records, hold_out)
+        s = _scene(view, p)
+        x = np.hstack([p.base, plain(s)])[p.train]
+        beta = np.linalg.lstsq(x / np.maximum(np.linalg.norm(x, axis=0), 1e-300), p.y[p.train], rcond=1e-8)
+        e = p.y[p.train] - x / np.maximum(np.linalg.norm(x, axis=0), 1e-300) @ beta[0]
+        left.append(float(np.mean(e**2)))
+    fade(view, STANDSTILLS[int(np.argmin(left))])
 
 
 def _acts_on_the_drive(view: View, problem: Problem) -> bool:

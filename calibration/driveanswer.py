@@ -83,8 +83,8 @@ def _close(found: DriveResult) -> list[str]:
     out = []
     for b in found.balances:
         for r in b.selection.refused:
-            if r.what != "every candidate" and not r.why.startswith(
-                ("gains less", "superfluous", "too little")
+            if r.what != "every candidate" and r.why.startswith(
+                ("cross-validated gain is within luck", "makes the held-out", "no held-out")
             ):
                 name = r.what.split(" on ")[0].split(",")[0]
                 hint = NAMES[name].experiment if name in NAMES else "repeat the run"

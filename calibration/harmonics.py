@@ -15,6 +15,8 @@ def findings_of(s: Selection, index: int) -> list[Finding]:
     """The chosen effect as findings: one, or one per harmonic (the evidence is that of all together)."""
     c = s.chosen[index].candidate
     whole = finding_of(s, index)
+    if "frequency" in whole.parameters:  # as refined
+        whole.frequency = whole.parameters["frequency"].value
     sessions = _sessions(s, index)
     pairs = c.width // 2 // max(sessions, 1)
     if c.kind != "line" or c.harmonic is not None or c.stage is None or pairs < 2:

@@ -12,6 +12,8 @@ from calibration.decide.select import Refusal, Selection, design, phases
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
 
+SEARCHED = ("bearing_pass", "command_disturbance")  # lines found among hundreds
+LINE = 0.04  # what such a line must add, likewise
 WORTH = 0.01  # of the final held-out mean square, that leaving an effect out must add
 
 
@@ -20,15 +22,16 @@ def prune(s: Selection) -> Selection:
     p = s.problem
     if p.test.sum() < 20:
         return s
-    while len(s.chosen) > 1:
+    while s.chosen:
         now = _held(s, [x.candidate for x in s.chosen])
         cost = []
         for k in range(len(s.chosen)):
-            cost.append(_held(s, [x.candidate for j, x in enumerate(s.chosen) if j != k]) / now - 1.0)
+            rise = _held(s, [x.candidate for j, x in enumerate(s.chosen) if j != k]) / now - 1.0
+            cost.append(rise / (LINE if s.chosen[k].candidate.name in SEARCHED else WORTH))
         k = int(np.argmin(cost))
-        if cost[k] >= WORTH:
+        if cost[k] >= 1.0:
             break
-        s = _without(s, k, f"adds {100 * max(cost[k], 0.0):.1f} % only to what is left when it is left out")
+        s = _without(s, k, "adds too little to what is left when it is left out")
     return s
 
 

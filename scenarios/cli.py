@@ -317,6 +317,17 @@ def calibrate(
 
 
 @cli.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
+@click.option("--plot", type=click.Path(path_type=Path), help="Write a PNG of all columns.")
+def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
+    """Show what is understood of a rig FILE and its LOGS, before anything is fitted."""
+    from calibration.command import show_rig
+
+    click.echo(show_rig(file, list(logs), plot))
+
+
+@cli.command()
 @click.option(
     "--can",
     "channel",

@@ -14,6 +14,7 @@ from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
 LOADED = 0.5  # of the median divisor: below, the ratio says nothing
+STANDS = 0.2  # of a row's filter, that may lie where the drive stands
 BLOCKS = 60  # of the logged time, for the block-robust covariance
 COVER = 0.02  # of its own quantile range that a held-out file may exceed the others
 
@@ -27,6 +28,8 @@ def problem_of(view: View, records: list[Record], hold_out: list[str], delay_s: 
         y = y - value * _term(view, name)[:, 0]
     at = view.rows
     valid = (view.ok & ok)[at]
+    if view.dynamic and response.channel != "acceleration":
+        valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
     if not view.dynamic and response.is_force:
         valid &= np.abs(view.direction[at]) > 0
     session = view.file[at]

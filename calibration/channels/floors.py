@@ -11,7 +11,7 @@ from calibration.readers.run import Array
 
 FEWEST = 50  # rows that have a partner
 BINS = 200  # of a stage's turn
-AGREE = 0.05  # of the range, that a repeated motion may differ from the first
+AGREE = 0.005  # of the range, that a repeated motion may differ from the first
 
 
 def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:

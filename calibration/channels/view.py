@@ -20,9 +20,12 @@ from calibration.inputs.units import units_per_turn
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
+SLOWEST = 0.01  # of the usual top speed: slower, friction may have any size up to break-away
+SURE = 4.0  # standard errors of the speed that the position's noise leaves
 REACH = 3.0  # standard deviations of the filter: nearer to an edge or a bad row is not used
 SHORT = 3  # rows without a number that are bridged by a straight line
-STANDSTILL = 0.005  # of the usual top speed: slower is standing
+# of the usual top speed: slower is standing. How sharply friction turns is fitted, from these
+STANDSTILLS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02)
 MOST_ROWS = 24_000  # that are fitted: more are averaged together
 SENSOR_ROWS = 4_000  # of one sensor against another, which has no accelerations to follow
 WINDOW = 5.0  # standard deviations of the filter in `smooth_s`
@@ -52,6 +55,8 @@ class View:
     rows: NDArray[np.int64]
     dynamic: bool  # the balance holds accelerations
     turn: float | None  # position units per turn
+    slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
+    standstill: float = 0.0  # speed, position units per s, below which the direction fades
     speed: Array = field(default_factory=lambda: np.zeros(0))  # smoothed, for what is not linear in it
     direction: Array = field(default_factory=lambda: np.zeros(0))
     since: Array = field(default_factory=lambda: np.zeros(0))
@@ -197,11 +202,7 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
     """Rows: wide enough for the position's noise to be a small part of the acceleration."""
     if rig.smooth_s is not None:
         return rig.smooth_s / WINDOW / period
-    fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
-    noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(70.0)  # of white noise: 1+16+36+16+1
-    steps = np.abs(np.diff(x))
-    steps = steps[steps > 0]
-    noise = max(noise, float(np.quantile(steps, 0.02)) / np.sqrt(12.0) if len(steps) else 0.0)
+    noise = position_noise(x, file)
     sigma = LEAST
     while sigma < MOST:
         a = np.diff(gaussian_filter1d(x, sigma), 2)
@@ -210,6 +211,16 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
             break
         sigma *= 1.25
     return sigma if dynamic else max(sigma, 4.0)
+
+
+def position_noise(x: Array, file: NDArray[np.int64]) -> float:
+    """rms of the position's white noise, from its fourth differences, and of its rounding."""
+    fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
+    noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(70.0)  # of white noise: 1+16+36+16+1
+    steps = np.abs(np.diff(x))
+    steps = steps[steps > 0]
+    rounding = float(np.quantile(steps, 0.02)) / np.sqrt(12.0) if len(steps) else 0.0
+    return max(noise, rounding)
 
 
 def least_travel(x: Array) -> float:
@@ -226,8 +237,18 @@ def _motion(view: View, sigma: float) -> None:
     view.direction = direction_of(soft, view.file, least_travel(soft))
     view.since = since_reversal(soft, view.direction, view.file)
     if view.dynamic:  # a driven axis also stands still: there its friction has no direction
+        fade(view, STANDSTILLS[3])
+        width = max(sigma / 2, 1.0)
+        noise = position_noise(view.x, view.file) / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
         top = float(np.quantile(np.abs(view.speed[view.ok]), 0.95)) if view.ok.any() else 0.0
-        view.direction = np.tanh(view.speed / (STANDSTILL * top or 1.0))
+        view.slow = max(SURE * noise, SLOWEST * top)
+
+
+def fade(view: View, part: float) -> None:
+    """Let the direction fade below `part` of the usual top speed."""
+    top = float(np.quantile(np.abs(view.speed[view.ok]), 0.95)) if view.ok.any() else 0.0
+    view.standstill = part * top
+    view.direction = np.tanh(view.speed / (view.standstill or 1.0))
 
 
 def _runs(view: View, label: Array) -> NDArray[np.int64]:

@@ -6,13 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.inputs.declaration import Rig
-from calibration.inputs.record import Record, Repair
+from calibration.inputs.record import Record, Repair, quantum
 from calibration.readers.run import Array
 
 WORDS = tuple(2.0**k for k in (8, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 22, 24, 32))
 CIRCLES = (1.0, 24.0, 360.0, 2 * np.pi, 86400.0, 1296000.0, 400.0, 1000.0)
 NEAR = 0.2  # of the counter's length, by which a wrap's jump may differ: what is moved in one row
 SPIKE = 12.0  # robust deviations from the neighbours' line
+LEAP = 2.5  # between the smallest spike and the largest of the rest
 MOST_SPIKES = 0.01  # of rows: more is no spike but the signal
 FROZEN = 5  # rows: a column that stands still for so long while it moves before and after
 MOVING = ("position", "position2", "velocity", "reference")
@@ -110,11 +111,24 @@ def _spikes(x: Array, t: Array, period: float) -> np.ndarray:
         noise = max(noise, float(np.nanquantile(np.abs(off), 0.95)) / 2)
         extreme = np.abs(off) > SPIKE * noise
         alone = np.abs(off) > 4 * np.maximum(near, calm)
-        bad |= np.asarray(finite & extreme & alone & (noise > 0))
+        found = np.asarray(finite & extreme & alone & (noise > 0))
+        bad |= found & (np.abs(off) > _clear_of_tails(np.abs(np.nan_to_num(off)), n))
     gap = np.zeros(n, dtype=bool)
     gap[1:] = np.diff(t) > 2.5 * period
     bad &= ~(gap | np.roll(gap, -1))
     return bad if bad.sum() <= max(3, MOST_SPIKES * n) else np.zeros(n, dtype=bool)
+
+
+def _clear_of_tails(off: Array, n: int) -> float:
+    """Size from which on values are a group of their own: heavy tails thin out, spikes leave a gap."""
+    top = off.copy()
+    for shift in (-2, -1, 1, 2):  # a spike moves its neighbours' lines, too
+        top[off < np.roll(off, shift)] = 0.0
+    largest = np.sort(top)[::-1][: max(int(MOST_SPIKES * n), 3) + 1]
+    for k in range(1, len(largest)):
+        if largest[k - 1] > LEAP * largest[k]:
+            return float(largest[k])
+    return float("inf")
 
 
 def _saturation(record: Record, channel: str, x: Array) -> None:
@@ -140,7 +154,8 @@ def _repeats(record: Record, rig: Rig) -> None:
         same &= np.diff(record.columns[c]) == 0
     x = record.columns["position"]
     usual = float(np.nanmedian(np.abs(np.diff(x))))
-    if usual == 0 or not same.any():
+    step = quantum(x[np.isfinite(x)]) or 0.0
+    if usual == 0 or usual < 4 * step or not same.any():  # a coarse column repeats itself anyway
         return
     quick = np.abs(np.nan_to_num(x[2:] - x[:-2])) > usual  # over two rows it moved
     lost = np.concatenate([[False], same[:-1] & quick, [False]])

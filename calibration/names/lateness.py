@@ -19,6 +19,7 @@ MATTERS = 0.03  # of the mean square on held-out rows, beside the flexible fit
 SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output
 LONGEST = 25.0  # sample periods that are looked at
 ROUNDS = 5
+HOLD, SLACK = 0.55, 0.05  # periods
 PARTS = 5  # of the log, in each of which the delay must be seen
 ALIKE = 0.35  # of the delay: standard deviation over those parts
 
@@ -26,8 +27,8 @@ ALIKE = 0.35  # of the delay: standard deviation over those parts
 def effort_delay(s: Scene) -> Finding | None:
     """The delay of the response's column against the motion, positive when it tells of earlier times.
 
-    It is looked for beside loops, asymmetry and weight, and must beat friction over the speed; its size is
-    then taken beside a friction curve of any smooth shape, where that can be told from it.
+    It is looked for beside loops, asymmetry, weight and friction over the speed; its size is then taken
+    beside a friction curve of any smooth shape, where that can be told from it.
     """
     p, v = s.problem, s.view
     r = v.response
@@ -39,15 +40,15 @@ def effort_delay(s: Scene) -> Finding | None:
     def late(delay: float) -> Array:
         return s.at(v.delayed(full, delay)) + known
 
-    delay, error = _converge(s, late)
+    # beside the friction over the speed that explains most: along one kind of ramp it looks like a delay
+    rival = min(_rivals(s), key=lambda r: _left(s, p.y, r))
+    delay, error = _converge(s, late, rival)
     reach = LONGEST * v.period_s
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
         return None
-    before, after = _left(s, p.y), _left(s, late(delay))
+    before, after = _left(s, p.y, rival), _left(s, late(delay), rival)
     share = 1 - (after / before) ** 2
-    if share < MATTERS or any(_left(s, p.y, rival) < after for rival in _rivals(s)):
-        return None
-    if not _everywhere(s, late(0.0), delay):
+    if share < MATTERS or not _everywhere(s, late(0.0), delay, rival):
         return None
     curve = any_friction_curve(s)
     finer, spread = _converge(s, late, curve)
@@ -67,6 +68,14 @@ def effort_delay(s: Scene) -> Finding | None:
     )
 
 
+def is_hold(f: Finding, period_s: float) -> bool:
+    """Whether a delay is what a sound sampled loop shows: an effort that is held for a period acts half a
+    period after its row."""
+    p = f.parameters["delay"]
+    error = (p.high - p.low) / 2 / 1.96
+    return bool(-HOLD * period_s - error < p.value < SLACK * period_s + error)
+
+
 def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = None) -> tuple[float, float]:
     """The delay at which nothing of it is left, and its standard error."""
     reach = LONGEST * s.view.period_s
@@ -79,10 +88,10 @@ def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = Non
     return delay, error
 
 
-def _everywhere(s: Scene, y: Array, delay: float) -> bool:
+def _everywhere(s: Scene, y: Array, delay: float, more: Array) -> bool:
     """A clock is late by the same time in every part of the log."""
     p = s.problem
-    x = _columns(s)
+    x = _columns(s, more)
     rows = p.train
     beta = np.linalg.lstsq(x[rows], y[rows], rcond=1e-8)[0]
     rate = _rate(s, x @ beta)

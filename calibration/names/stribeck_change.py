@@ -9,6 +9,7 @@ from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 
 PARTS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)  # Stribeck speeds, of the top speed
+CLEAR = 3.0  # of the speed at which the direction fades: below, a dip is only how friction turns
 FEWEST = 0.005  # of the rows below the Stribeck speed
 
 
@@ -16,15 +17,18 @@ def columns(s: Scene) -> list[Candidate]:
     """sign(speed) exp(-(speed/vs)^2), for speeds on both sides of vs; only ever more friction at rest."""
     speed = np.abs(s.view.speed)
     top = float(np.quantile(speed[s.view.ok], 0.98)) if s.view.ok.any() else 0.0
+    least = CLEAR * s.view.standstill
     out = []
     for part in PARTS:
         vs = part * top
         low = np.mean((speed < vs) & (speed > 0.1 * vs))
-        if low < FEWEST or top < 2.5 * vs:
+        if low < FEWEST or top < 2.5 * vs or vs < least:
             continue
 
         def full(p: np.ndarray) -> np.ndarray:
-            return np.asarray(s.view.direction * np.exp(-((s.view.speed / max(p[0], 1e-9 * top)) ** 2)))
+            return np.asarray(
+                s.view.direction * np.exp(-((s.view.speed / max(p[0], least, 1e-9 * top)) ** 2))
+            )
 
         shape = s.shaped(full)
         out.append(
