@@ -10,6 +10,9 @@ from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import amplitude_interval, finding_of, interval
 from calibration.decide.select import Selection
 
+FEW = 6  # harmonics that are all told, because the evidence is theirs together
+CLEAR = 3.0  # standard errors of an amplitude that is told among more
+
 
 def findings_of(s: Selection, index: int) -> list[Finding]:
     """The chosen effect as findings: one, or one per harmonic (the evidence is that of all together)."""
@@ -35,6 +38,8 @@ def findings_of(s: Selection, index: int) -> list[Finding]:
         spread = float(np.sqrt(max(np.trace(cov) / 2, 0.0)))
         phase = float(np.arctan2(-beta[1], beta[0]))
         around = interval(phase, min(spread / max(value, 1e-300), 2.0), blocks, 0.0)
+        if pairs > FEW and value < CLEAR * spread:
+            continue
         unit = c.labels[0][1]
         parameters = {c.labels[0][0]: Parameter(value, unit, low, high)}
         parameters["phase"] = Parameter(phase, "rad", *around)

@@ -54,14 +54,6 @@ class Response:
 
 
 @dataclass(frozen=True)
-class Controller:
-    """The law that makes the effort: gains by name (kp, ki, kd, kv), of the error reference - position."""
-
-    law: str
-    gains: dict[str, float]
-
-
-@dataclass(frozen=True)
 class Rig:
     """A rig file, checked. `constants` are known coefficients of the model's terms, by the term's name."""
 
@@ -81,5 +73,4 @@ class Rig:
     analyse_period_s: float | None
     turn: float | None  # position units per turn
     sample_period_s: float | None
-    controller: Controller | None
     raw: dict[str, Any] = field(default_factory=dict)

@@ -55,8 +55,8 @@ def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
         return raw, None
     span = float(x.max() - x.min())
     step = np.diff(x)
-    usual = float(np.quantile(np.abs(step), 0.98))
-    jumps = np.abs(step) > max(0.5 * span, 8 * usual)
+    usual = float(np.quantile(np.abs(step), 0.75))  # quick motion may wrap in every tenth row
+    jumps = np.abs(step) > max(0.5 * span, 4 * usual)
     if span <= 0 or not jumps.any() or jumps.mean() > 0.2:
         return raw, None
     size = float(np.median(np.abs(step[jumps])))

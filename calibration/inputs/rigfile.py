@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Column, Controller, Response, Rig
+from calibration.inputs.declaration import Column, Response, Rig
 from calibration.inputs.stages import stages_of
 from calibration.inputs.yamltext import load_yaml
 
@@ -77,7 +77,6 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         for r in given
     )
     _check(path, data, columns, responses)
-    control = data.get("controller")
     return Rig(
         name=data["rig"],
         path=path,
@@ -95,7 +94,6 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         analyse_period_s=data.get("analyse_period_s"),
         turn=data.get("turn"),
         sample_period_s=data.get("sample_period_s"),
-        controller=Controller(control["law"], dict(control["gains"])) if control else None,
         raw=data,
     )
 
@@ -155,10 +153,13 @@ def _check_model(
         "inertia" in data.get("estimate", ()) or "inertia" in data.get("constants", {})
     ):
         refuse("inertia: a response of acceleration is a balance per unit of inertia; leave it out")
-    if "controller" in data:
-        for needed in ("reference", "effort"):
-            if needed not in columns:
-                refuse(f"controller: needs a column '{needed}'")
+    used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference"}
+    used |= {r.channel for r in responses} | {r.divide_by for r in responses if r.divide_by}
+    if any(r.channel == "position2" for r in responses):
+        used |= {"effort", "force", "current"}
+    for name in columns:
+        if name not in used:
+            refuse(f"columns.{name}: nothing uses it with this response; leave it out")
 
 
 def _check_runs(data: dict[str, Any], refuse: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
@@ -46,6 +48,11 @@ def columns(s: Scene) -> list[Candidate]:
                 most=most,
             )
         )
+    for g in v.rig.stages:
+        mine = [c for c in out if c.stage == g.name]
+        if len(mine) > 1:  # several hide each other when taken one by one
+            whole = np.hstack([c.columns for c in mine])
+            out.append(replace(mine[0], columns=whole, harmonic=None, searched=1))
     return out
 
 

@@ -15,7 +15,7 @@ from calibration.readers.run import Array
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
-TOGETHER = 6  # harmonics of a stage that are also looked for as one
+TOGETHER = 12  # harmonics of a stage that are also looked for as one
 STANDS_OUT = 12.0  # times the spectrum around it, in power
 HIGHEST = 4000  # cycles within the travel that are searched
 
@@ -48,8 +48,8 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
                     order=rate * (s.view.turn or 1.0),
                 )
             )
-        mine = [c for c in out if c.stage == stage.name]
-        if 1 < len(mine) <= TOGETHER:  # several large harmonics hide each other when taken one by one
+        mine = [c for c in out if c.stage == stage.name][:TOGETHER]
+        if len(mine) > 1:  # several large harmonics hide each other when taken one by one
             whole = np.hstack([c.columns for c in mine])
             out.append(replace(mine[0], columns=whole, harmonic=None, searched=1))
     return out
