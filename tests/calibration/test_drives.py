@@ -1,5 +1,5 @@
-"""Drives with a rig file: what was done to their columns is found and undone, names are right where the truth is
-known."""
+"""Drives with a rig file: what was done to their columns is found and undone, names are right where
+the truth is known."""
 
 from __future__ import annotations
 
