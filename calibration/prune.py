@@ -12,6 +12,7 @@ from calibration.decide.select import Refusal, Selection, design, phases
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
 
+STICTION = 0.2  # a dip of friction near rest, likewise: less is how friction turns (development seed 1011)
 SEARCHED = ("bearing_pass", "command_disturbance")  # lines found among hundreds
 LINE = 0.04  # what such a line must add, likewise
 WORTH = 0.01  # of the final held-out mean square, that leaving an effect out must add
@@ -27,7 +28,9 @@ def prune(s: Selection) -> Selection:
         cost = []
         for k in range(len(s.chosen)):
             rise = _held(s, [x.candidate for j, x in enumerate(s.chosen) if j != k]) / now - 1.0
-            cost.append(rise / (LINE if s.chosen[k].candidate.name in SEARCHED else WORTH))
+            name = s.chosen[k].candidate.name
+            least = LINE if name in SEARCHED else STICTION if name == "stribeck_change" else WORTH
+            cost.append(rise / least)
         k = int(np.argmin(cost))
         if cost[k] >= 1.0:
             break

@@ -220,7 +220,7 @@ def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     steps = np.abs(np.diff(x))
     steps = steps[steps > 0]
     rounding = float(np.quantile(steps, 0.02)) / np.sqrt(12.0) if len(steps) else 0.0
-    return max(noise, rounding)
+    return float(max(noise, rounding))
 
 
 def least_travel(x: Array) -> float:
