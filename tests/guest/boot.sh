@@ -45,7 +45,7 @@ EOF
 cp "$work/command" "$work/initramfs/command"
 chmod +x "$work/initramfs/init"
 (cd "$work/initramfs" && find . | cpio -o -H newc --quiet | gzip -1) >"$work/initramfs.gz"
-timeout "${GUEST_TIMEOUT:-1600}" qemu-system-x86_64 -accel tcg -cpu max -m 2048 -smp 2 -nographic -no-reboot -nic none \
+timeout -k 10 "${GUEST_TIMEOUT:-1600}" qemu-system-x86_64 -accel tcg -cpu max -m 2048 -smp 2 -nographic -no-reboot -nic none \
     -kernel "$kernel" -initrd "$work/initramfs.gz" -append "console=ttyS0 quiet panic=-1" \
     -virtfs "local,path=/,mount_tag=root,security_model=none,multidevs=remap" </dev/null | tee "$work/out"
 status=$(tr -d '\r' <"$work/out" | awk '$1 == "GUEST-STATUS" {print $2}' | tail -n 1)

@@ -7,7 +7,7 @@ until timeout 5 candump -n 1 vcan0 >/dev/null 2>&1; do
     kill -0 "$server" || { cat /tmp/serve.log; exit 1; }
 done
 status=0
-.venv/bin/python tests/guest/attach.py 7411 || status=$?
+timeout -k 5 200 .venv/bin/python tests/guest/attach.py 7411 || status=$?
 kill -TERM "$server"
 wait "$server" || true
 tail -n 8 /tmp/serve.log
