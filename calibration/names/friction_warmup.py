@@ -9,7 +9,7 @@ from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
-PARTS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)  # time constants, of the time from the first row to the last
+PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)  # time constants, of the time from the first row to the last
 LEAST_K = 0.5  # of temperature before its coefficient means anything
 
 
@@ -21,7 +21,7 @@ def columns(s: Scene) -> list[Candidate]:
     start = v.clock - float(v.clock.min())
 
     def full(p: Array) -> Array:
-        return np.asarray(weight * np.exp(-start / max(float(p[0]), 1e-3 * span)))
+        return np.asarray(weight * np.exp(-start / float(np.clip(p[0], 1e-3 * span, span))))
 
     shape = s.shaped(full)
     out = [
