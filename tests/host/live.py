@@ -3,7 +3,7 @@
 import datetime as dt
 import threading
 from pathlib import Path
-from time import sleep
+from time import monotonic, sleep
 
 from tests.host.telescope.conftest import START, Rig
 
@@ -24,6 +24,14 @@ class Live(Rig):
         while not self._end.is_set():
             self.advance(slice_s * self._speed)
             sleep(slice_s)
+
+    def let(self, seconds: float) -> None:
+        """Wait until this much simulated time has gone by, however slow the machine is."""
+        end_s = self.telescope.snapshot.t_s + seconds
+        limit = monotonic() + 120.0
+        while self.telescope.snapshot.t_s < end_s:
+            assert monotonic() < limit, "simulated time stands still"
+            sleep(0.01)
 
     def close(self) -> None:
         self._end.set()

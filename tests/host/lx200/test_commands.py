@@ -236,16 +236,16 @@ def test_keys_pulses_and_rates(door: Door, client: Client) -> None:
     client.wait()
     start = angles.parse(client.ask("GD"))
     client.send(b":RC#:Mn#")
-    sleep(0.4)
+    door.let(8.0)
     assert door.telescope.snapshot.activity == "moved by hand"
     client.send(b":Qn#")
     client.wait()
     assert angles.parse(client.ask("GD")) - start > 300 / 3600
-    sleep(0.5)
+    door.let(10.0)
     start = angles.parse(client.ask("GD"))
     client.send(b":Mgs4000#")
     assert client.rest() == b""
-    sleep(0.5)
+    door.let(10.0)
     assert (angles.parse(client.ask("GD")) - start) * 3600 == pytest.approx(-30, abs=4)
     client.send(b":TL#")
     assert client.ask("GT") == "57.9"
@@ -265,15 +265,15 @@ def test_focus_keys(door: Door, client: Client) -> None:
 
     start = position()
     client.send(b":FF#:F-#")
-    sleep(0.3)
+    door.let(6.0)
     client.send(b":FQ#")
-    sleep(0.2)
+    door.let(4.0)
     out = position()
     assert out > start
     client.send(b":FS#:F+#")
-    sleep(0.3)
+    door.let(6.0)
     client.send(b":FQ#")
-    sleep(0.2)
+    door.let(4.0)
     assert position() < out
 
 
