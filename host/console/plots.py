@@ -39,8 +39,8 @@ def _refresher(shell: Shell, chart: Any, names: tuple[str, ...], pick: Any) -> A
         if count % _EVERY != 1:
             return
         samples = list(shell.live.samples)
-        colours = options(names, "day" if shell.day else "night")["color"]
-        chart.options["color"] = colours
+        fresh = options(names, "day" if shell.day else "night")
+        chart.options.update({key: value for key, value in fresh.items() if key != "series"})
         for k, one in enumerate(series(samples, pick, len(names))):
             chart.options["series"][k]["data"] = one
         chart.update()

@@ -23,7 +23,8 @@ PAGES = (
     ("/bus", "Bus"),
     ("/calibrate", "Calibrate"),
 )
-_DAY = "document.body.classList.toggle('day')"
+_COOKIE = "schmidt-day"
+"""A browser keeps its mode from page to page."""
 
 
 class Shell:
@@ -32,7 +33,8 @@ class Shell:
     def __init__(self, live: Live) -> None:
         self.live = live
         self.desk = AsyncDesk(live.telescope, console=True)
-        self.day = False
+        request = ui.context.client.request
+        self.day = request is not None and request.cookies.get(_COOKIE) == "1"
         self._controls: list[Any] = []
         self._refresh: list[Callable[[], object]] = []
         self._locked: bool | None = None
@@ -89,13 +91,18 @@ class Shell:
 
     def _toggle_day(self) -> None:
         self.day = not self.day
-        ui.run_javascript(_DAY)
+        self._show_mode()
+        ui.run_javascript(f"document.cookie = '{_COOKIE}={int(self.day)}; path=/; SameSite=Strict'")
+
+    def _show_mode(self) -> None:
+        ui.query("body").classes(add="day" if self.day else None, remove=None if self.day else "day")
 
     @contextmanager
     def page(self, path: str, title: str) -> Iterator[None]:
         """The frame of a page; its boxes go inside."""
         ui.add_css(CSS)
         ui.colors(primary="#ff6a5a")
+        self._show_mode()
         ui.page_title(f"{title} – Schmidt telescope")
         ui.keyboard(on_key=self._pressed, ignore=["input", "textarea"])
         with ui.element("header").classes("top w-full"):
@@ -131,9 +138,9 @@ def button(text: str, on_click: Any = None) -> ui.button:
 
 
 @contextmanager
-def box(title: str) -> Iterator[None]:
-    """A group with a heading."""
-    with ui.element("section").classes("box"):
+def box(title: str, wide: bool = False) -> Iterator[None]:
+    """A group with a heading; wide: across all columns."""
+    with ui.element("section").classes("box wide" if wide else "box"):
         ui.html(f"<h2>{title}</h2>", sanitize=False)
         yield
 

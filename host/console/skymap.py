@@ -61,7 +61,7 @@ def _span(scale: AxisScale) -> tuple[float, float]:
 
 
 def _radius(altitude_rad: float) -> float:
-    return RADIUS * (1 - max(altitude_rad, -0.2) / (math.pi / 2))
+    return RADIUS * (1 - max(altitude_rad, 0.0) / (math.pi / 2))
 
 
 def _xy(altitude_rad: float, azimuth_rad: float) -> tuple[float, float]:

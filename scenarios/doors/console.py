@@ -8,6 +8,7 @@ import sys
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from bus.can.frame import Frame
 from bus.protocol import Device
@@ -80,10 +81,15 @@ def _seen(t_ns: int, frame: Frame, sender: str) -> SeenFrame:
 
     try:
         said = database().decode_message(frame.identifier, frame.data)
-        text = ", ".join(f"{name} {value}" for name, value in said.items()) if isinstance(said, dict) else ""
+        text = _words(said) if isinstance(said, dict) else ""
     except Exception:  # whatever anybody put on the bus is shown as it is
         text = "not in the protocol"
     return SeenFrame(t_ns * 1e-9, sender, frame.identifier, frame.data, text)
+
+
+def _words(said: dict[str, Any]) -> str:
+    """Signals of a frame; its device is the sender's column already."""
+    return ", ".join(f"{name} {value}" for name, value in said.items() if name != "Device")
 
 
 class RecordedRuns:

@@ -84,3 +84,13 @@ def test_the_readme_names_what_the_command_does() -> None:
     assert isinstance(cli, click.Group)
     for name, command in cli.commands.items():
         assert command.help, f"schmidt {name} has no help"
+
+
+def test_every_door_of_the_readme_is_an_option_of_serve() -> None:
+    """The cells of "attach your host", parsed by click."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    cells = re.findall(r"^\|[^|]+\| `(--[a-z0-9]+ [^`]+)` \|", text, re.MULTILINE)
+    for cell in cells:
+        assert cli.commands["serve"].make_context("serve", shlex.split(cell)) is not None
+    named = {cell.split()[0] for cell in cells}
+    assert named == {"--can", "--serial", "--hid", "--lx200", "--alpaca", "--console", "--control"}

@@ -20,7 +20,7 @@ def bus(shell: Shell, view: BusView) -> None:
             nodes = table(("node", "supply", "state", "TEC", "REC"))
         with box("Faults"):
             _faults(shell, view)
-        with box("Frames"):
+        with box("Frames", wide=True):
             running = ui.switch("follow", value=True).props('aria-label="Follow the frames"')
             frames = table(("t, s", "from", "id", "data", "says"))
 

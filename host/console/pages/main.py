@@ -234,7 +234,9 @@ def _parameters(shell: Shell) -> None:
                 ui.select(list(devices), value="RA axis", label="Board").props("outlined dense")
             )
             kind = shell.control(
-                ui.select(list(kinds), value="kp_q12", label="Parameter").props("outlined dense")
+                ui.select(list(kinds), value="kp_q12", label="Parameter")
+                .classes("w-full")
+                .props("outlined dense")
             )
             value = shell.control(ui.number("Value", value=0, format="%d").props("outlined dense"))
 
