@@ -25,6 +25,19 @@ PAGES = (
 )
 _COOKIE = "schmidt-day"
 """A browser keeps its mode from page to page."""
+_SPACE = """<script>
+for (const kind of ['keydown', 'keyup']) window.addEventListener(kind, event => {
+  const at = event.target;
+  const typing = ['INPUT', 'TEXTAREA'].includes(at.tagName) && !at.readOnly && at.type !== 'checkbox';
+  if (event.key !== ' ' || !event.isTrusted || typing) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+  if (document.activeElement) document.activeElement.blur();
+  document.dispatchEvent(new KeyboardEvent(kind, {key: ' ', code: 'Space', repeat: event.repeat}));
+}, true);
+</script>"""
+"""The space bar is the stop wherever the focus is but in a text: a focused button would swallow the key and
+be clicked by it instead, and the telescope sent on."""
 
 
 class Shell:
@@ -101,6 +114,7 @@ class Shell:
     def page(self, path: str, title: str) -> Iterator[None]:
         """The frame of a page; its boxes go inside."""
         ui.add_css(CSS)
+        ui.add_body_html(_SPACE)
         ui.colors(primary="#ff6a5a")
         self._show_mode()
         ui.page_title(f"{title} – Schmidt telescope")

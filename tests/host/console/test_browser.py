@@ -197,6 +197,20 @@ def test_the_lock_greys_everything_but_the_way_out_and_the_stop(browser: Any, se
     page.close()
 
 
+def test_the_space_bar_stops_also_when_a_button_has_the_focus(browser: Any, served: Served) -> None:
+    """A focused Track button would start the tracking again."""
+    page = opened(browser, served, "/")
+    press(page, "Power on")
+    page.get_by_text("motors on").first.wait_for()
+    press(page, "Track")
+    state(page, "^tracking")
+    page.keyboard.press("Space")
+    state(page, "^(stopping|idle)")
+    page.wait_for_timeout(2000)
+    state(page, "^idle")
+    page.close()
+
+
 def test_focus(browser: Any, served: Served) -> None:
     page = opened(browser, served, "/focus")
     press(page, "Motor power OFF: hold")
