@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 WORKERS ?= $(shell $(PYTHON) -c "import os; print(min(4, os.cpu_count() or 1))")
 
-.PHONY: run compiled wheels both test fast slow guest lint paper bench blind fit clean
+.PHONY: run compiled wheels both test fast slow long guest lint paper bench blind fit clean
 
 run: $(READY) compiled
 	$(BIN)/schmidt run scenarios/observing-night.yaml --out out/observing-night
@@ -26,13 +26,17 @@ test: lint fast slow
 
 # The fast suite on the compiled library (it runs plain otherwise, which is what a debugger sees).
 both: compiled
-	SCHMIDT_PURE=0 $(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not guest"
+	SCHMIDT_PURE=0 $(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not long and not guest"
 
 fast: $(READY)
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not guest"
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not long and not guest"
 
 slow: $(READY)
-	$(BIN)/python -m pytest -n $(WORKERS) -m "slow and not guest"
+	$(BIN)/python -m pytest -n $(WORKERS) -m "slow and not long and not guest"
+
+# Minutes of an idle core each: the finder on many logs, the paper's table, a cluster of workers. Not in CI.
+long: $(READY)
+	$(BIN)/python -m pytest -n $(WORKERS) -m "long"
 
 # In a Linux guest with vcan, under emulation; skips with a message where qemu is not installed.
 guest: $(READY)

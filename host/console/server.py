@@ -55,7 +55,10 @@ class Consoles:
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer browsers on a listening socket until cancelled."""
-        config = uvicorn.Config(self._app, log_level="error", access_log=False, timeout_graceful_shutdown=0)
+        # what goes wrong in a page NiceGUI logs itself; here only our own cancelling at the end is an "error"
+        config = uvicorn.Config(
+            self._app, log_level="critical", access_log=False, timeout_graceful_shutdown=0
+        )
         sampling = asyncio.ensure_future(self.live.run())
         try:
             await uvicorn.Server(config).serve(sockets=[listener])

@@ -64,7 +64,7 @@ def test_a_finder_whose_process_dies_is_a_case_without_an_answer(tmp_path: Path)
     assert [row["answered"] for row in results["cases"]] == [False, False]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_small_deterministic_subset(tmp_path: Path) -> None:
     """The real finder on ten logs of a development seed: an answer to each, no name where there is
     nothing."""

@@ -82,20 +82,20 @@ def high(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return manoeuvre(tmp_path_factory.mktemp("high"), "high-preload", added)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_is_found_on_the_declared_plant_low_preload(low: Path) -> None:
     report = verdict(low, "ra")
     assert report["verdict"] == "nothing", report["effects"]
     assert report["error"]["torque"]["after"] == report["error"]["torque"]["before"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_is_found_on_the_declared_plant_high_preload_declination(high: Path) -> None:
     report = verdict(high, "dec")
     assert report["verdict"] == "nothing", report["effects"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_added_imbalance_is_named_with_its_size(low: Path) -> None:
     report = verdict(low, "dec")
     first = report["effects"][0]
@@ -107,7 +107,7 @@ def test_an_added_imbalance_is_named_with_its_size(low: Path) -> None:
     assert not {e["name"] for e in report["effects"][1:]} - {"unknown"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_added_supply_sag_is_named_beside_the_ripple_of_the_current(high: Path) -> None:
     report = verdict(high, "ra")
     # A wind of less than a newton metre may be named beside it: a known weakness (docs/calibration.md).

@@ -139,7 +139,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], list[
     return made
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("drive", "axis", "name", "parameter"), CASES)
 def test_what_was_added_is_named_and_nothing_else(
     drive: str,

@@ -108,7 +108,7 @@ def test_a_late_column_still_starts_from_its_first_reading() -> None:
     assert abs(log.position[0] - 4e8) < 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_report_holds_the_closed_loop_and_may_leave_it_out(tmp_path: Path) -> None:
     paths = write_logs(tmp_path, [LINE])
     calibrate(paths, out=tmp_path / "with", plots=True)

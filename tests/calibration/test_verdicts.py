@@ -14,7 +14,7 @@ from plant.model import load
 from plant.parts import EffectModel
 from tests.calibration.logs import effect, write_logs
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 
 def answer(folder: Path, effects: list[EffectModel]) -> dict[str, Any]:

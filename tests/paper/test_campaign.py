@@ -14,7 +14,7 @@ from scenarios.paper.figures import draw_all
 from scenarios.paper.record import record
 from scenarios.paper.starts import QUICK, STARTS, Benches
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 TABLE = Path(__file__).parents[2] / "docs" / "paper-table.md"
 

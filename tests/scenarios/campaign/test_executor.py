@@ -38,14 +38,14 @@ def test_every_key_gets_its_own_answer_or_its_own_error() -> None:
     assert not found["3"].error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_dead_worker_costs_nothing_but_another_try(tmp_path: Path) -> None:
     inputs = [(str(n), (str(tmp_path), n)) for n in range(12)]
     found = {done.key: (done.value, done.error) for done in each(die_once, inputs, jobs=2)}
     assert found == {str(n): (n, "") for n in range(12)}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_task_that_always_kills_its_worker_is_given_up() -> None:
     (done,) = each(die, [("deadly", 0)], jobs=1)
     assert done.value is None
