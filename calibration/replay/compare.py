@@ -70,7 +70,8 @@ def residual(channel: str, log: Trace, model: Trace, use: Mask) -> Array:
         stretch = np.cumsum(~use)
         for k in np.unique(stretch[use]):
             at = use & (stretch == k) & np.isfinite(e)
-            e[at] -= e[at].mean()
+            if at.any():  # a stretch may have no finite row
+                e[at] -= e[at].mean()
     return np.asarray(e[use & np.isfinite(e)])
 
 
