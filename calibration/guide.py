@@ -128,15 +128,17 @@ def analyse_guide(runs: list[Run], rig: Rig | None, hold_out: list[str], seed: i
     seen = [part for part in known if part not in short]
     told = rig is not None or bool(known_mount(runs))
     s = _search(problem, seen, known, span, told, seed)
-    if s.chosen:
+    while s.chosen:  # what is slower than twice the slowest that was found is drift, then
         found = max(1.0 / (c.candidate.frequency or 1.0) for c in s.chosen)
-        if found < NEXT * slowest:  # what is slower than twice the slowest that was found is drift, then
-            quicker = guide_problem(runs, hold_out, found)[0]
-            rest = [part for part in seen if part.rate * found > 0.99]
-            again = _search(quicker, rest, known, span, told, seed)
-            if again.chosen:
-                again.refused = s.refused + again.refused
-                problem, s = quicker, again
+        if found >= NEXT * slowest:
+            break
+        quicker = guide_problem(runs, hold_out, found)[0]
+        rest = [part for part in seen if part.rate * found > 0.99]
+        again = _search(quicker, rest, known, span, told, seed)
+        if not again.chosen:
+            break
+        again.refused = s.refused + again.refused
+        problem, s, slowest = quicker, again, found
     findings = [_finding(s, k) for k in range(len(s.chosen))]
     for f in findings:
         f.note = _note(f, known, span, not told)
