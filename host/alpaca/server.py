@@ -6,7 +6,6 @@ import importlib.metadata
 import itertools
 import socket
 
-import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
@@ -18,6 +17,7 @@ from host.alpaca.focuser import FocuserDevice
 from host.alpaca.parameters import Parameters
 from host.alpaca.telescope import TelescopeDevice
 from host.telescope import AsyncDesk, Telescope
+from host.web import answer
 
 _BODY_BYTES = 1 << 16
 
@@ -44,16 +44,7 @@ class Alpaca:
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer on a listening socket until cancelled."""
-        # uvicorn writes head and body apart; without this, Nagle and delayed acknowledges make that 40 ms
-        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        config = uvicorn.Config(
-            self.app, log_config=None, access_log=False, lifespan="off", timeout_graceful_shutdown=0
-        )
-        server = uvicorn.Server(config)
-        try:
-            await server.serve(sockets=[listener])
-        finally:
-            listener.close()
+        await answer(self.app, listener)
 
     async def _device(self, request: Request) -> Response:
         """One property or method."""

@@ -6,7 +6,6 @@ import asyncio
 import socket
 from typing import Any
 
-import uvicorn
 from fastapi import FastAPI
 from nicegui import Client, ui
 from nicegui import app as nicegui_app
@@ -23,6 +22,7 @@ from host.console.pages.maintenance import maintenance
 from host.console.shell import Shell
 from host.console.views import BusView, Runs
 from host.telescope import Telescope
+from host.web import answer
 
 
 class Consoles:
@@ -55,16 +55,11 @@ class Consoles:
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer browsers on a listening socket until cancelled."""
-        # what goes wrong in a page NiceGUI logs itself; here only our own cancelling at the end is an "error"
-        config = uvicorn.Config(
-            self._app, log_level="critical", access_log=False, timeout_graceful_shutdown=0
-        )
         sampling = asyncio.ensure_future(self.live.run())
         try:
-            await uvicorn.Server(config).serve(sockets=[listener])
+            await answer(self._app, listener)
         finally:
             sampling.cancel()
-            listener.close()
 
 
 def _page(live: Live, build: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 
 LIMIT = 64
@@ -14,6 +15,9 @@ class Client:
 
     def __init__(self, connection: socket.socket, peer: str) -> None:
         connection.setblocking(False)
+        with contextlib.suppress(OSError):  # a Unix socket has no such option
+            # a line's bytes leave when they are through, not when the last ones have been acknowledged
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.peer = peer
         self.lost = 0
         self.gone = False

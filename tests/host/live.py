@@ -14,7 +14,7 @@ class Live(Rig):
     def __init__(self, logs: Path | None = None, speed: float = 20.0, start: dt.datetime = START) -> None:
         super().__init__(logs, start)
         self.outside = self.host.outside
-        self._speed = speed
+        self.speed = speed
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -22,7 +22,7 @@ class Live(Rig):
     def _run(self) -> None:
         slice_s = 0.02
         while not self._end.is_set():
-            self.advance(slice_s * self._speed)
+            self.advance(slice_s * self.speed)
             sleep(slice_s)
 
     def let(self, seconds: float) -> None:

@@ -135,9 +135,11 @@ def test_focuser(live: AlpacaLive) -> None:
     assert focuser.IsMoving
     until(lambda: not focuser.IsMoving)
     assert focuser.Position == 850
+    live.speed = 1.0  # so that a fast machine is not there before it is halted
     focuser.Move(100)
-    sleep(0.1)
+    until(lambda: focuser.Position < 850)
     focuser.Halt()
+    live.speed = 30.0
     until(lambda: not focuser.IsMoving)
     assert 100 < focuser.Position < 850
     for wrong in (-1, 1601):
