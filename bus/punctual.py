@@ -6,9 +6,24 @@ from bus.pacer import Pacer
 
 TICK_NS = 5_000_000
 ON_TIME_S = 1e-3
-_BINS = 2000
-_BIN_S = 1e-5
-"""Histogram of |lateness|: 10 µs up to 20 ms, and one bin for the rest."""
+_BIN_S, _FINE = 1e-5, 2000
+_COARSE_S, _COARSE = 1e-3, 1000
+"""Histogram of |lateness|: bins of 10 µs up to 20 ms, of 1 ms up to a second, and one for the rest."""
+
+
+def _bin(late_s: float) -> int:
+    """Where a lateness is counted."""
+    if late_s < _FINE * _BIN_S:
+        return int(late_s / _BIN_S)
+    return _FINE + min(int((late_s - _FINE * _BIN_S) / _COARSE_S), _COARSE)
+
+
+def _edge(index: int) -> float:
+    """Upper edge of a bin, s; inf for the last."""
+    if index < _FINE:
+        return (index + 1) * _BIN_S
+    above = index - _FINE + 1
+    return _FINE * _BIN_S + above * _COARSE_S if above <= _COARSE else float("inf")
 
 
 class Punctuality:
@@ -20,7 +35,7 @@ class Punctuality:
     def __init__(self, pacer: Pacer) -> None:
         self.worst_s = 0.0
         self.ticks = 0
-        self._late = [0] * (_BINS + 1)
+        self._late = [0] * (_FINE + _COARSE + 1)
         self._pacer = pacer
         self.counting = True
         pacer.queue.at(pacer.queue.now_ns + TICK_NS, self._tick)
@@ -28,7 +43,7 @@ class Punctuality:
     def _tick(self, t_ns: int) -> None:
         if self.counting:
             late_s = abs(perf_counter() - self._pacer.due_s(t_ns))
-            self._late[min(int(late_s / _BIN_S), _BINS)] += 1
+            self._late[_bin(late_s)] += 1
             self.ticks += 1
             if late_s > self.worst_s:
                 self.worst_s = late_s
@@ -40,13 +55,21 @@ class Punctuality:
         return sum(self._late[: round(ON_TIME_S / _BIN_S)]) / self.ticks if self.ticks else float("nan")
 
     def quantile_s(self, share: float) -> float:
-        """The lateness that `share` of the ticks stay below, to 10 µs; inf when beyond 20 ms."""
+        """The lateness that `share` of the ticks stay below, to a bin, never more than the worst; nan before
+        the first."""
+        if not self.ticks:
+            return float("nan")
         need, seen = share * self.ticks, 0
         for index, count in enumerate(self._late):
             seen += count
             if seen >= need:
-                return (index + 1) * _BIN_S if index < _BINS else float("inf")
-        return float("nan")
+                return min(_edge(index), self.worst_s)
+        return self.worst_s
+
+    def restart(self) -> None:
+        """Count afresh from here."""
+        self.worst_s, self.ticks = 0.0, 0
+        self._late = [0] * len(self._late)
 
     def text(self) -> str:
         """One line."""

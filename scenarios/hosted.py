@@ -48,10 +48,11 @@ class Hosted:
         self._next_ns = 0
 
     def poll(self, t_ns: int) -> None:
-        """Tick, when one is due."""
-        if t_ns < self._next_ns:
+        """Tick, when one is due, or at once for an emergency stop."""
+        if t_ns >= self._next_ns:
+            self._next_ns = max(self._next_ns + TICK_NS, t_ns + 1)
+        elif not self.telescope.urgent:
             return
-        self._next_ns = max(self._next_ns + TICK_NS, t_ns + 1)
         self.telescope.tick(t_ns)
         if self.files is not None and t_ns >= self._next_log_ns:
             self._next_log_ns = t_ns + self._log_ns

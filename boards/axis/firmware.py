@@ -194,7 +194,7 @@ class AxisBoard(PeriodicBoard):
         adc_b = self.adc.read(t_ns, 1)
         data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b, self.clip)
         if not self.send(_frame(Frame, (self._identifier, data, False, False)), end_ns):
-            self.dropped += 1
+            self.drop()
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT
         position = motion.measured(now, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF

@@ -54,6 +54,7 @@ class Board:
     __slots__ = (
         "_clipped_ns",
         "_command",
+        "_dropped_ns",
         "_foreign_ns",
         "can",
         "clipped",
@@ -102,7 +103,7 @@ class Board:
         self.dropped = 0
         self.foreign = 0
         self.clipped = 0
-        self._foreign_ns = self._clipped_ns = _LONG_AGO
+        self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO
         self.on = False
         self.epoch_ns = 0
         """True time less the board's own; kept by whoever has the timer."""
@@ -142,7 +143,7 @@ class Board:
         self.on = True
         self.port.online = True
         self.epoch_ns = t_ns
-        self._foreign_ns = self._clipped_ns = _LONG_AGO
+        self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO
         self.inbox.clear()
         self.reset()
         self.start(t_ns)
@@ -175,6 +176,11 @@ class Board:
         self.foreign += 1
         self._foreign_ns = self.clock_ns(t_ns)
 
+    def drop(self) -> None:
+        """Count something that found no room."""
+        self.dropped += 1
+        self._dropped_ns = self.clock_ns(self.queue.now_ns)
+
     def clip(self) -> None:
         """Count a value that did not fit its field."""
         self.clipped += 1
@@ -182,7 +188,7 @@ class Board:
 
     def _take_command(self, _now_ns: int, data: bytes) -> None:
         if len(self.inbox) >= _INBOX:
-            self.dropped += 1
+            self.drop()
             return
         self.inbox.append(data)
         self.cpu.lines[CAN_LINE].request(self.queue.now_ns)
@@ -199,7 +205,7 @@ class Board:
         """Load a frame into a transmit buffer at `ready_ns`; a full controller costs the frame and is
         counted."""
         if not self.send(Frame(identifier, data), ready_ns):
-            self.dropped += 1
+            self.drop()
 
     def heartbeat(self, t_ns: int) -> None:
         """Send the HEARTBEAT frame, ready at `t_ns`."""
@@ -219,9 +225,9 @@ class Board:
             bits |= Health.BUS
         if self.cpu.overruns:
             bits |= Health.OVERRUN
-        if self.dropped:
-            bits |= Health.DROPPED
         now_ns = self.clock_ns(self.queue.now_ns)
+        if now_ns - self._dropped_ns < WARNING_NS:
+            bits |= Health.DROPPED
         if now_ns - self._foreign_ns < WARNING_NS:
             bits |= Health.FOREIGN
         if now_ns - self._clipped_ns < WARNING_NS:

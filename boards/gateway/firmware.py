@@ -100,7 +100,7 @@ class GatewayBoard(PeriodicBoard):
         count = len(ring)
         if count >= RING_SLOTS:
             self.lost += 1
-            self.dropped += 1
+            self.drop()
             return
         ring.append(data)
         if not count:
@@ -140,7 +140,7 @@ class GatewayBoard(PeriodicBoard):
         if not self.on:
             return
         if len(self._reports) >= _REPORTS:
-            self.dropped += 1
+            self.drop()
             return
         self._reports.append(report)
         self.cpu.lines["usb"].request(t_ns)

@@ -52,6 +52,6 @@ class MotorVelocityBoard(PeriodicBoard):
         # TACH: no flag is defined yet, byte 1 stays zero
         data = (self.device_type | count << 16 | (delta & 0xFFFF) << 48).to_bytes(8, "little")
         if not self.send(_frame(Frame, (self._identifier, data, False, False)), end):
-            self.dropped += 1
+            self.drop()
         if self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

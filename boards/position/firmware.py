@@ -112,7 +112,7 @@ class PositionBoard(PeriodicBoard):
         ticks = self.ticks
         data = (self._age | flags << 8 | position << 16 | (ticks & 0xFF) << 56).to_bytes(8, "little")
         if not self.send(_frame(Frame, (self._identifier, data, False, False)), end):
-            self.dropped += 1
+            self.drop()
         if ticks & 1:
             self._slow(ticks, end)
             return

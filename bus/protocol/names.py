@@ -77,6 +77,7 @@ class Health(IntFlag):
     BUS = 0x04
     OVERRUN = 0x08
     DROPPED = 0x10
+    """Something found no room (a buffer, the inbox) in the last ten seconds; the count stays."""
     LIMIT = 0x20
     FAULT = 0x40
     FOREIGN = 0x80

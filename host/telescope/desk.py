@@ -53,9 +53,9 @@ class _Desk:
 class PlainDesk(_Desk):
     """Blocking; for threads other than the ticking one."""
 
-    def do(self, act: Callable[[Telescope], T], always: bool = False) -> T:
+    def do(self, act: Callable[[Telescope], T], always: bool = False, urgent: bool = False) -> T:
         """Have a command carried out at the next tick; returns its value or raises `Refused`."""
-        future = self.telescope.call(self._guarded(act, always))
+        future = self.telescope.call(self._guarded(act, always), urgent)
         try:
             return future.result(ANSWER_S)
         except FutureTimeout:
@@ -72,7 +72,7 @@ class PlainDesk(_Desk):
 
     def emergency_stop(self) -> None:
         """Stop everything, whatever the lock says."""
-        self.do(lambda telescope: telescope.emergency_stop(), always=True)
+        self.do(lambda telescope: telescope.emergency_stop(), always=True, urgent=True)
 
     def lock(self, on: bool) -> None:
         """Lock the consoles, or unlock them."""
@@ -82,9 +82,9 @@ class PlainDesk(_Desk):
 class AsyncDesk(_Desk):
     """For one asyncio loop in a thread of its own."""
 
-    async def do(self, act: Callable[[Telescope], T], always: bool = False) -> T:
+    async def do(self, act: Callable[[Telescope], T], always: bool = False, urgent: bool = False) -> T:
         """Have a command carried out at the next tick; returns its value or raises `Refused`."""
-        future = asyncio.wrap_future(self.telescope.call(self._guarded(act, always)))
+        future = asyncio.wrap_future(self.telescope.call(self._guarded(act, always), urgent))
         try:
             return await asyncio.wait_for(future, ANSWER_S)
         except TimeoutError:
@@ -97,7 +97,7 @@ class AsyncDesk(_Desk):
 
     async def emergency_stop(self) -> None:
         """Stop everything, whatever the lock says."""
-        await self.do(lambda telescope: telescope.emergency_stop(), always=True)
+        await self.do(lambda telescope: telescope.emergency_stop(), always=True, urgent=True)
 
     async def lock(self, on: bool) -> None:
         """Lock the consoles, or unlock them."""

@@ -45,6 +45,8 @@ class Telescope:
         self.focuser = Focuser(client, journal)
         self.boards = Boards(client, observatory, self.side)
         self.locked = False
+        self.urgent = False
+        """Somebody asked for a stop: whoever ticks does it now instead of at the next one due."""
         self._closed = False
         self._inbox: SimpleQueue[tuple[Callable[[Telescope], Any], Future[Any]]] = SimpleQueue()
         self.snapshot = self._look()
@@ -62,19 +64,21 @@ class Telescope:
         """Altitude below which nothing is gone to or tracked."""
         self.observatory.horizon_rad = altitude_rad
 
-    def call(self, act: Callable[[Telescope], T]) -> Future[T]:
+    def call(self, act: Callable[[Telescope], T], urgent: bool = False) -> Future[T]:
         """Have `act(telescope)` called at the next tick; from any thread. The future holds its value or
-        what it raised, `Refused` above all."""
+        what it raised, `Refused` above all. urgent: that tick does not wait until it is due."""
         future: Future[T] = Future()
         if self._closed:
             future.set_exception(Refused(Reason.SILENT, "the telescope is shut down"))
         else:
             self._inbox.put((act, future))
+            self.urgent = self.urgent or urgent
         return future
 
     def tick(self, t_ns: int) -> None:
         """One tick of the host: what came in, what goes on, what goes out, and a new snapshot."""
         self.client.now_ns = t_ns
+        self.urgent = False
         answers = self._let_in()
         self.drive.tick()
         self.focuser.tick()

@@ -108,3 +108,21 @@ def test_what_the_gateway_cannot_name_never_reaches_the_pc() -> None:
     bench.queue.run_until(20_000_000)
     assert bench.frames == []
     assert bench.board.foreign == 2
+
+
+def test_what_found_no_room_is_said_for_ten_seconds_and_counted_for_good() -> None:
+    """A flood of the highest priority keeps the axis board's frames in its three buffers."""
+    lab = Lab()
+    lab.run(0.1)
+    lab.pc.on_sent = lambda t_ns, frame: lab.pc.send(frame, t_ns) and None
+    for _ in range(3):
+        lab.pc.send(Frame(0, bytes(8)), lab.queue.now_ns)
+    lab.run(0.1)
+    lab.pc.on_sent = None
+    lab.run(0.01)
+    lost = lab.axis.dropped
+    assert lost > 0
+    assert Health.DROPPED in ill(lab)
+    lab.run(11.0)
+    assert Health.DROPPED not in ill(lab), "ten seconds later the board is well again"
+    assert lab.axis.dropped == lost
