@@ -5,6 +5,9 @@ leaves its mark. The lock sums the velocity error up and returns it as a correct
 The absolute encoder errs within each of its lines, by up to a few tenths of an arcsec every 2.6 s at the
 tracking rate, and the position loop follows. The blend takes what is faster than its time constant from the
 incremental encoder, which was sampled in the same tick, and only the slow rest from the absolute one.
+
+Widths: the lock's sum is 32 bits, limited to 2 arcsec in a 64-bit register before it is stored; its product
+with the gain and the blend's position are 64 bits.
 """
 
 from boards.axis.config import COUNTS_PER_TURN
@@ -37,20 +40,30 @@ class RateLock:
 
 
 class Blend:
-    """shift: time constant, 2**shift ticks."""
+    """shift: time constant, 2**shift ticks.
 
-    __slots__ = ("_offset_q18", "counts", "shift")
+    The position is kept, not a sum of counts, so nothing grows with the night: 64 bits, and never farther
+    from the absolute encoder than 2**shift ticks of counts (2^15 ticks of 2^33: 2^48).
+    """
+
+    __slots__ = ("_begun", "_position_q18", "shift")
 
     def __init__(self, shift: int) -> None:
         self.shift = shift
-        self.counts = 0
-        self._offset_q18 = 0
+        self._begun = False
+        self._position_q18 = 0
+
+    def start(self) -> None:
+        """The next position is the absolute encoder's: counts of the time between were not taken along."""
+        self._begun = False
 
     def step(self, absolute_q18: int, velocity: int, creeping: bool) -> int:
         """Position, Q18 counts. Fast motion takes the absolute encoder as it is: the roller's ratio is not
         exact."""
-        self.counts += velocity
-        summed = self.counts << UNIT_SHIFT
-        gap = absolute_q18 - summed - self._offset_q18
-        self._offset_q18 += gap >> self.shift if creeping else gap
-        return summed + self._offset_q18
+        if not self._begun or not creeping:
+            self._begun = True
+            self._position_q18 = absolute_q18
+            return absolute_q18
+        position = self._position_q18 + (velocity << UNIT_SHIFT)
+        self._position_q18 = position = position + (absolute_q18 - position >> self.shift)
+        return position

@@ -170,6 +170,8 @@ class Motion:
         self.profile.rate = self.rate << _RATE_TO_UNIT
         self.profile.take_over(self.measured(now_ns, velocity), self.setpoint_q16 << _RATE_TO_UNIT)
         self.near_ticks = 0
+        if self.blend is not None:
+            self.blend.start()
         self._pi.kp_q12 = self._kp_pointing
         self.setpoint = self._point
 

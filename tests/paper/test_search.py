@@ -3,7 +3,8 @@ import pytest
 
 from plant.model import load
 from scenarios.paper.compiled import CompiledBench
-from scenarios.paper.cost import Term, cost
+from scenarios.paper.cost import Term, cost, worst
+from scenarios.paper.experiments import Limit
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.scales import GEAR_RATIO
 from scenarios.paper.search import Objective, population
@@ -129,9 +130,27 @@ def test_a_freewheel_diode_takes_the_voltage_of_both_motors():
 
 
 def test_a_missed_row_costs_one_and_up_to_as_much_again():
-    assert Term("E1", "peak", 20.0, -1.0).cost == 0.0
-    assert Term("E1", "peak", 25.1, 0.01).cost == pytest.approx(1.0, abs=0.01)
-    assert Term("E1", "peak", 1e6, 1e6).cost == 2.0
+    assert Term("E1", "peak", 20.0, -1.0, 0.0).cost == 0.0
+    assert Term("E1", "peak", 25.1, 0.01, 0.003).cost == pytest.approx(1.003)
+    assert Term("E1", "peak", 1e6, 1e6, 1.0).cost == 2.0
+
+
+def test_every_limit_and_every_start_counts_for_what_a_missed_row_costs():
+    class Twice:
+        """Misses one limit of two by 1.5 scales, half of what counts at most, at every second bench."""
+
+        id, limits = "X", (Limit("a", "1", 0.0, 1.0, "a", 2.0), Limit("b", "1", 0.0, 1.0, "b", 2.0))
+
+        def __init__(self):
+            self.calls = 0
+
+        def measure(self, bench):
+            self.calls += 1
+            return {"a": 0.5, "b": 4.0 if self.calls % 2 else 0.5}
+
+    found = worst(Twice(), [None] * 4)
+    assert (found.figure, found.value, found.excess) == ("b", 4.0, 1.5)
+    assert found.cost == pytest.approx(1.0 + 0.5 * 0.5 * 0.5)
 
 
 def test_a_point_that_is_hopeless_is_left_early():

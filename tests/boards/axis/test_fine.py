@@ -169,3 +169,27 @@ def test_B1_the_blend_passes_a_slow_difference_and_stops_a_fast_one() -> None:
         slow = blend.step(500 * count, 0, creeping=True)
     assert slow / count == pytest.approx(500, abs=0.01)
     assert blend.step(700 * count, 0, creeping=False) == 700 * count
+
+
+@pytest.mark.parametrize("before", ["tracking", "another mode"])
+def test_B1_a_blend_begins_where_the_axis_is(lab: Lab, before: str) -> None:
+    """Switched on while the axis creeps, or entered after a mode that did not take the counts along: the
+    axis goes on as if nothing had happened."""
+    number = AxisParameter.POSITION_BLEND
+    if before == "another mode":
+        put(lab, number, 11)
+        lab.command(Opcode.SET_RATE, rate_q16(15.0))
+    else:
+        lab.command(Opcode.TRACK_RATE, rate_q16(15.0))
+    lab.run(5.0)
+    start = lab.angle_arcsec
+    if before == "another mode":
+        lab.command(Opcode.TRACK_RATE, rate_q16(15.0))
+    else:
+        put(lab, number, 11)
+    fastest = 0.0
+    for _ in range(400):
+        lab.run(0.005)
+        fastest = max(fastest, abs(lab.axis.velocity))
+    assert fastest < 3 * 15.0 / 2.296  # counts in 5 ms; one is 2.296 arcsec/s
+    assert lab.angle_arcsec - start == pytest.approx(30.0, abs=2.0)

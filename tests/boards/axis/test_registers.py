@@ -2,21 +2,25 @@
 
 from math import isqrt
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from boards.axis.commands import RATE_LIMIT
-from boards.axis.config import STEPS_PER_TURN, AxisConfig, rate_q16
+from boards.axis.compensator import Compensator
+from boards.axis.config import COUNTS_PER_TURN, STEPS_PER_TURN, AxisConfig, rate_q16
 from boards.axis.counter import CounterTorque
+from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
-from bus.protocol import AxisMode
+from bus.protocol import HARMONICS, AxisMode, AxisParameter
 from bus.protocol.tach import pack_tach
 from tests.boards.checked import Checked, checked
+from tests.boards.lab import Lab
 
 INT16 = (-(1 << 15), (1 << 15) - 1)
 ACCELERATION = (1, rate_q16(7200.0) // 20)
@@ -184,3 +188,104 @@ def test_B2_the_counter_register_stays_within_a_step_of_its_share(
     for effort in efforts:
         counter.follow(Checked(effort), 0)
         assert abs(counter.register * 100 - abs(effort) * split) < 100
+
+
+efforts_q8 = extremes(-(3000 << 8), 3000 << 8)
+orders = extremes(0, (1 << 31) - 1)
+
+
+@given(
+    st.lists(st.tuples(orders, efforts_q8, efforts_q8), min_size=HARMONICS, max_size=HARMONICS),
+    positions,
+    velocities,
+)
+@example([((1 << 31) - 1, 3000 << 8, 3000 << 8)] * HARMONICS, STEPS_PER_TURN - 1, INT16[1])
+@example([((1 << 31) - 1, -(3000 << 8), 3000 << 8)] * HARMONICS, 0, INT16[0])
+def test_B1_every_line_of_the_table_at_its_largest(
+    lines: list[tuple[int, int, int]], position: int, velocity: int
+) -> None:
+    compensator = Compensator()
+    for k, (order, cosine, sine) in enumerate(lines):
+        compensator.orders_q16[k] = Checked(order)
+        compensator.cosines_q8[k], compensator.sines_q8[k] = Checked(cosine), Checked(sine)
+    compensator.refresh()
+    found = compensator.effort_q16(Checked(position), Checked(velocity), Checked(0))
+    most = sum(abs(cosine) + abs(sine) for _, cosine, sine in lines)
+    assert abs(found) <= (most << 8) + 1
+
+
+@given(
+    extremes(0, 3000 << 8),
+    extremes(1, COUNTS_PER_TURN),
+    st.lists(extremes(-INT32, INT32), min_size=1, max_size=20),
+)
+@example(3000 << 8, 1, [INT32, -INT32, INT32])
+def test_B1_friction_ahead_of_the_loop_never_exceeds_its_level(
+    level: int, travel: int, setpoints: list[int]
+) -> None:
+    """Whatever the set point is that a mode can ask for: 32 bits."""
+    compensator = Compensator()
+    compensator.level_q8, compensator.travel = Checked(level), Checked(travel)
+    checked(compensator, "_level_q16", "_reciprocal_q32", "_friction_q16")
+    for setpoint in setpoints:
+        assert abs(compensator.effort_q16(Checked(0), Checked(0), Checked(setpoint))) <= level << 8
+
+
+@given(extremes(0, 65536), st.lists(st.tuples(rates, velocities), min_size=1, max_size=20))
+@example(65536, [(RATE_LIMIT, INT16[0])] * 20)
+def test_B1_the_lock_sums_in_32_bits(gain: int, ticks: list[tuple[int, int]]) -> None:
+    lock = RateLock(Checked(gain))
+    checked(lock, "_error_q16")
+    for setpoint, velocity in ticks:
+        assert abs(lock.step(Checked(setpoint), Checked(velocity))) <= LOCK_LIMIT_Q16
+        assert abs(lock._error_q16) <= LOCK_LIMIT_Q16 <= INT32
+
+
+@given(
+    extremes(1, 15),
+    st.lists(st.tuples(positions, velocities, st.booleans()), min_size=1, max_size=30),
+)
+@example(15, [(0, INT16[1], True)] * 30)
+def test_B1_the_blend_keeps_a_position_of_64_bits(shift: int, ticks: list[tuple[int, int, bool]]) -> None:
+    blend = Blend(Checked(shift))
+    for position, velocity, creeping in ticks:
+        blend.step(Checked(position * UNITS_PER_STEP), Checked(velocity), creeping)
+
+
+def test_B1_the_blend_stays_in_48_bits_of_its_encoder_however_long_the_counts_run_away() -> None:
+    """The encoders contradict each other at the largest rate, for ever: the gap settles at 2^shift ticks."""
+    blend = Blend(15)
+    for _ in range(400_000):  # twelve time constants, 33 minutes
+        found = blend.step(0, INT16[1], True)
+    assert found == pytest.approx((1 << 15) * (INT16[1] << 18), rel=1e-4)
+    assert found < 1 << 48
+
+
+@given(
+    extremes(-(3000 << 16), 3000 << 16),
+    st.lists(st.tuples(efforts_q8, efforts_q8), min_size=HARMONICS, max_size=HARMONICS),
+    extremes(10, 25),
+    extremes(0, 300 << 8),
+    st.booleans(),
+)
+@example(3000 << 16, [(3000 << 8, 3000 << 8)] * HARMONICS, 25, 300 << 8, True)
+def test_B1_whatever_is_added_the_duty_registers_get_what_they_hold(
+    effort: int, lines: list[tuple[int, int]], split: int, bias: int, spread: bool
+) -> None:
+    """Loop, table, counter torque and bias at once: 0 to 3000 steps, 16 bits and their fraction."""
+    lab = Lab()
+    board = lab.axis
+    for k, (cosine, sine) in enumerate(lines):
+        board.parameters.set(AxisParameter.HARMONIC_FIRST + 3 * k + 1, Checked(cosine))
+        board.parameters.set(AxisParameter.HARMONIC_FIRST + 3 * k + 2, Checked(sine))
+    board.parameters.set(AxisParameter.COUNTER_BIAS_Q8, Checked(bias))
+    board.parameters.set(AxisParameter.DUTY_FRACTION, int(spread))
+    board.parameters.set(AxisParameter.COMPENSATION, 1)
+    board.set_split(Checked(split))
+    lab.run(0.02)
+    board.motion.mode = AxisMode.RATE
+    board.command_effort(None)
+    board.pi.effort_q16 = Checked(effort)
+    assert board.fine is not None
+    board.fine.drive(lab.queue.now_ns, 0, Checked(0))
+    assert all(0.0 <= duty <= 1.0 for duty in lab.plant.duties)
