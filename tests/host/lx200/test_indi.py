@@ -92,8 +92,12 @@ class Indi:
         else:
             self.set("s", "CONNECTION_MODE", ("CONNECTION_SERIAL", "On"))
             self.set("x", "DEVICE_PORT", ("PORT", where))
-        self.set("s", "CONNECTION", ("CONNECT", "On"))
-        self.until("CONNECTION._STATE", "Ok")
+        for attempt in range(3):  # the drivers give a handshake two seconds of wall time; a user clicks again
+            self.set("s", "CONNECTION", ("CONNECT", "On"))
+            if self.until("CONNECTION._STATE", "Ok", "Alert") == "Ok":
+                break
+            print(f"{self.device}: connection {attempt + 1} refused by the driver")
+        self.until("CONNECTION._STATE", "Ok", limit_s=1.0)
         self.set("n", "POLLING_PERIOD", ("PERIOD_MS", 200))
 
     def goto(self, ra_h: float, dec_deg: float) -> None:
@@ -122,7 +126,9 @@ def indi(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Indi]:
     """A driver of its own for each test: what one run leaves in it must not help or hurt the next."""
     port, driver = free_port(), str(request.param)
     log = tmp_path / "indiserver.txt"
-    with running("indiserver", "-p", port, driver, ready="startup", log=log, HOME=str(tmp_path)):
+    # a socket name of its own: two servers with the default one (this file in two workers) end each other
+    server = ("indiserver", "-p", port, "-u", f"schmidt-test-{port}", driver)
+    with running(*server, ready="startup", log=log, HOME=str(tmp_path)):
         yield Indi(DRIVERS[driver], port)
 
 
