@@ -35,6 +35,8 @@ SPEED = Number(0.01, 1000)
 """`bus.pacer` has the same bounds; not imported here, so that the command starts at once."""
 SEED = click.IntRange(0, 2**63 - 1)
 SECONDS = Number(min=0, min_open=True, max=1e7)
+NETWORK = click.Choice(["lab", "serial", "final"])
+"""`scenarios/networks.py` has the same; not imported here, for the same reason."""
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -54,6 +56,7 @@ def cli() -> None:
     help="Times real time (default: as fast as it goes).",
 )
 @click.option("--log-rate", type=Number(0.01, 20), help="Lines per second of the status and sensor logs.")
+@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
 @click.option("--firmware", type=click.Choice(["paper", "fine"]), help="What the axis boards run.")
 @click.option(
     "--compensation",
@@ -68,6 +71,7 @@ def run(
     plant: str | None,
     speed: float | None,
     log_rate: float | None,
+    network: str | None,
     firmware: str | None,
     compensation: Path | None,
     no_report: bool,
@@ -79,7 +83,7 @@ def run(
     if compensation is not None:
         firmware = firmware or "fine"  # a table in fractions of a step wants a duty in fractions of a step
     period_s = 1.0 / log_rate if log_rate else None
-    loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware)
+    loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware, network)
     if compensation is not None:
         result = _compared(loaded, model, folder, compensation)
     else:
@@ -206,6 +210,7 @@ def objective(
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
+@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
     scenario: Path | None,
@@ -223,6 +228,7 @@ def serve(
     seed: int | None,
     plant: str | None,
     duration: float | None,
+    network: str | None,
     record: Path | None,
 ) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
@@ -230,7 +236,7 @@ def serve(
     from scenarios.serve import serve as command
 
     options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs)
-    sys.exit(command(scenario, options, speed, seed, plant, duration, record))
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network))
 
 
 @cli.command()
@@ -328,6 +334,8 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
 
 
 @cli.command()
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
 @click.option(
     "--can",
     "channel",
@@ -349,12 +357,18 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
     help="Send commands that move the telescope, too. Default: in this process only.",
 )
 def conformance(
-    channel: str | None, json_file: Path | None, speed: float, tolerance: float, motion: bool | None
+    scenario: Path | None,
+    network: str | None,
+    channel: str | None,
+    json_file: Path | None,
+    speed: float,
+    tolerance: float,
+    motion: bool | None,
 ) -> None:
-    """Check boards, emulated or real, against the protocol."""
+    """Check boards, emulated or real, against the protocol; SCENARIO or --network says which boards."""
     from scenarios.conformance import command
 
-    sys.exit(command(channel, json_file, speed, motion, tolerance))
+    sys.exit(command(channel, json_file, speed, motion, tolerance, scenario, network))
 
 
 @cli.command()

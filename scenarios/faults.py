@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bus.can import Flip, Frame
 from bus.can.length import frame_bits
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Device
+from bus.protocol import COMMAND_BASE, REPLY_BASE, device_named
 from bus.time import generator
 from scenarios.model import Fault
 
@@ -88,7 +88,7 @@ def _selector(given: dict[str, Any]) -> Callable[[Frame], bool]:
     if "identifier" in given:
         wanted = given["identifier"]
         return lambda frame: frame.identifier == wanted
-    device = Device[given["node"]]
+    device = device_named(given["node"])
     return lambda frame: (
         frame.identifier & 0x7F == device and not COMMAND_BASE <= frame.identifier < REPLY_BASE
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import datetime as dt
 import math
@@ -31,9 +32,10 @@ def load(file: Path) -> model.Scenario:
 
 def convert(document: Document) -> model.Scenario:
     """Check and convert a parsed document."""
-    check(document)
+    language = with_boards(document)
+    check(document, language)
     check_finite(document)
-    data: dict[str, Any] = in_base_units(document.data, schema())
+    data: dict[str, Any] = in_base_units(document.data, language)
     steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
     _check_names(document, steps)
     plant = data.get("plant", DEFAULT_PLANT)
@@ -64,6 +66,28 @@ def convert(document: Document) -> model.Scenario:
     return scenario
 
 
+def with_boards(document: Document) -> dict[str, Any]:
+    """The language, with the names of the boards that the document brings along; raises `ScenarioError`."""
+    network = document.data.get("network") if isinstance(document.data, Mapping) else None
+    files = network.get("boards") if isinstance(network, Mapping) else None
+    if not isinstance(files, list) or not all(isinstance(file, str) for file in files):
+        return schema()
+    from scenarios.nodes import load_board
+
+    names: list[str] = []
+    for index, file in enumerate(files):
+        try:
+            names += load_board(document.file.parent / file).KIND.nodes
+        except ValueError as error:
+            where = document.where(("network", "boards", index))
+            raise ScenarioError(f"{where}: network.boards: {error}") from None
+    language = copy.deepcopy(schema())
+    nodes = language["properties"]["network"]["properties"]["nodes"]["properties"]
+    language["$defs"]["node"]["enum"] += [name for name in names if name not in nodes]
+    nodes |= {name: {"$ref": "#/$defs/settings"} for name in names}
+    return language
+
+
 def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
     """A value with every quantity the schema marks turned into a number in its base unit."""
     if "$ref" in rule:
@@ -71,13 +95,18 @@ def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
     if "x-quantity" in rule:
         return parse(value, rule["x-quantity"])
     if isinstance(value, Mapping):
-        properties: Mapping[str, Any] = rule.get("properties") or next(
-            (each["properties"] for each in rule.get("oneOf", []) if "properties" in each), {}
-        )
-        return {key: in_base_units(each, properties.get(key, {})) for key, each in value.items()}
+        properties: Mapping[str, Any] = _part(rule, "properties")
+        others = rule.get("additionalProperties") or {}
+        return {key: in_base_units(each, properties.get(key, others)) for key, each in value.items()}
     if isinstance(value, list):
-        return [in_base_units(each, rule.get("items", {})) for each in value]
+        return [in_base_units(each, _part(rule, "items")) for each in value]
     return value
+
+
+def _part(rule: Mapping[str, Any], part: str) -> Mapping[str, Any]:
+    """What a rule, or the first of its alternatives that has it, says of its `part`."""
+    own: Mapping[str, Any] = rule.get(part) or {}
+    return own or next((each[part] for each in rule.get("oneOf", []) if part in each), {})
 
 
 def _step(document: Document, index: int, data: dict[str, Any]) -> model.Step:

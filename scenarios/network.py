@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from boards.axis import AxisBoard, AxisPins
 from boards.axis.config import STEPS_PER_TURN
 from boards.core import Board
+from boards.core.declared import DeclaredBoard, uart_of
 from boards.display import DisplayBoard
 from boards.focus import FocusBoard, FocusConfig, FocusPins
 from boards.gateway import GatewayBoard
@@ -16,10 +18,13 @@ from boards.silicon.hid import HidEndpoint
 from boards.silicon.uart import Uart
 from bus.can import Wire
 from bus.protocol import Device
+from bus.protocol.nodes import KindError, kind_of
 from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
 from plant.plant import Plant
 from scenarios.drive import axis_config
+from scenarios.networks import FINAL, NETWORKS
+from scenarios.nodes import BOARDS, Site, load_board, pins_of
 
 CRYSTAL_PPM = 50.0
 """Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
@@ -37,11 +42,12 @@ class NetworkError(ValueError):
 @dataclass(frozen=True, slots=True)
 class NodeConfig:
     """What may be set per board: crystal error and phase (None: drawn from the seed), parameters by
-    number."""
+    number, inputs of a declared board by pin."""
 
     ppm: float | None = None
     phase_ns: int | None = None
     parameters: Mapping[int, int] = field(default_factory=dict)
+    inputs: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,33 +55,21 @@ class NetworkConfig:
     """bitrate: of the CAN bus, bit/s. nodes: settings by board name. limits: soft limits (low, high)
     in steps by axis.
 
-    size: number of boards. 11 is the lab network L2 with the focus board; fewer leaves out boards from
-        the end
-    of `ORDER`, more adds motor velocity boards of unassigned device types (for scaling measurements).
+    name: which network (`scenarios/networks.py`). extra: declared boards beside it.
+    size: number of boards, None: those of the network. Fewer leaves out boards from its end, more adds motor
+        velocity boards of unassigned device types (for scaling measurements).
     """
 
     bitrate: int = 1_000_000
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
     limits: Mapping[str, tuple[int, int]] = field(default_factory=dict)
-    size: int = 11
+    size: int | None = None
+    name: str = "lab"
+    extra: tuple[type[DeclaredBoard], ...] = ()
 
 
-ORDER = (
-    Device.AXIS_RA,
-    Device.POSITION_RA,
-    Device.MOTOR_RA_A,
-    Device.MOTOR_RA_B,
-    Device.AXIS_DEC,
-    Device.POSITION_DEC,
-    Device.MOTOR_DEC_A,
-    Device.MOTOR_DEC_B,
-    Device.GATEWAY,
-    Device.FOCUS,
-    Device.DISPLAY,
-)
-"""The boards of the lab network, those that make up one axis first."""
 SPARE_TYPES = tuple(
-    number for number in range(0x35, 0x80) if number not in {int(device) for device in Device}
+    number for number in range(0x35, 0x80) if number not in {int(device) for device in (*Device, *FINAL)}
 )
 """Device types for boards beyond the lab network."""
 
@@ -136,6 +130,8 @@ class _Wiring:
         self.seed = seed
         self.queue = EventQueue()
         self.wire = Wire(self.queue, config.bitrate)
+        self.boards: dict[str, Board] = {}
+        self.site = Site(plant, self.boards)
 
     def common(self, name: str, device: int) -> tuple[str, int, EventQueue, Wire]:
         return name, int(device), self.queue, self.wire
@@ -190,6 +186,16 @@ class _Wiring:
         crystal = self.crystal(device.name)
         return DisplayBoard(*self.common(device.name, device), crystal, positions, int(Device.FOCUS))
 
+    def declared(self, device: Device) -> Board:
+        kind = kind_of(device)
+        board = BOARDS[kind.name if kind is not None else ""]
+        given = self.config.nodes.get(device.name, NodeConfig()).inputs
+        try:
+            pins = pins_of(board, device.name, self.site, given)
+            return board(*self.common(device.name, device), pins, self.crystal(device.name))
+        except KindError as error:
+            raise NetworkError(str(error)) from None
+
 
 _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
     ("AXIS", _Wiring.axis),
@@ -201,18 +207,33 @@ _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
 )
 
 
+def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
+    """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
+    if config.name not in NETWORKS:
+        raise NetworkError(
+            f"network: there is no network '{config.name}'; expected one of {', '.join(NETWORKS)}"
+        )
+    own = tuple(Device(number) for board in config.extra for number in board.KIND.nodes.values())
+    return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
+
+
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     """The network, every board running from time 0 on; raises NetworkError for settings no network can
     have."""
     config = config or NetworkConfig()
-    if not 1 <= config.size <= _MAXIMUM_NODES:
-        raise NetworkError(f"network: size {config.size} is not within 1..{_MAXIMUM_NODES}")
+    devices = devices_of(config)
+    size = len(devices) if config.size is None else config.size
+    if not 1 <= size <= _MAXIMUM_NODES:
+        raise NetworkError(f"network: size {size} is not within 1..{_MAXIMUM_NODES}")
     wiring = _Wiring(config, plant, seed)
-    boards: dict[str, Board] = {}
-    for device in ORDER[: config.size]:
+    boards = wiring.boards
+    for device in devices[:size]:
+        if kind_of(device) is not None:
+            boards[device.name] = wiring.declared(device)
+            continue
         make = next(maker for prefix, maker in _MAKERS if device.name.startswith(prefix))
         boards[device.name] = make(wiring, device)
-    for device_type in SPARE_TYPES[: max(0, config.size - len(ORDER))]:
+    for device_type in SPARE_TYPES[: max(0, size - len(devices))]:
         name = f"MOTOR_{device_type:02X}"
         encoder = plant.ra.tachometer_b if device_type & 1 else plant.ra.tachometer_a
         boards[name] = wiring.velocity(name, device_type, encoder)
@@ -223,11 +244,7 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
         )
     gateway = boards.get(Device.GATEWAY.name)
     hid = gateway.hid if isinstance(gateway, GatewayBoard) else HidEndpoint()
-    uarts = {
-        name: board.uart
-        for name, board in boards.items()
-        if isinstance(board, AxisBoard | PositionBoard | FocusBoard)
-    }
+    uarts = {name: uart for name, board in boards.items() if (uart := uart_of(board)) is not None}
     for name, board in boards.items():
         board.begin()
         _set_parameters(board, config.nodes.get(name, NodeConfig()))
@@ -242,14 +259,22 @@ def _set_parameters(board: Board, settings: NodeConfig) -> None:
             raise NetworkError(f"network: nodes.{board.name}.parameters: parameter {number} {reason}")
 
 
-def config_from(network: Mapping[str, Any], limits: Mapping[str, tuple[int, int]]) -> NetworkConfig:
-    """The configuration of a scenario's checked `network` section (bit/s, s, ppm, parameters by number)."""
+def config_from(
+    network: Mapping[str, Any], limits: Mapping[str, tuple[int, int]], folder: Path = Path()
+) -> NetworkConfig:
+    """The configuration of a scenario's checked `network` section (bit/s, s, ppm, parameters by number).
+
+    folder: where its `boards` are looked for.
+    """
     nodes = {
         name: NodeConfig(
             settings.get("ppm"),
             None if settings.get("phase") is None else round(settings["phase"] * 1e9),
             {int(number): int(value) for number, value in settings.get("parameters", {}).items()},
+            settings.get("inputs", {}),
         )
         for name, settings in network.get("nodes", {}).items()
     }
-    return NetworkConfig(round(network.get("bitrate", 1_000_000)), nodes, dict(limits))
+    extra = tuple(load_board(folder / file) for file in network.get("boards", ()))
+    bitrate = round(network.get("bitrate", 1_000_000))
+    return NetworkConfig(bitrate, nodes, dict(limits), name=network.get("name", "lab"), extra=extra)

@@ -55,6 +55,7 @@ def prepare(
     speed: float | None = None,
     status_period_s: float | None = None,
     firmware: str | None = None,
+    network: str | None = None,
 ) -> tuple[Scenario, PlantModel]:
     """Load a scenario, apply the command line's changes, check all that can be checked without running.
 
@@ -69,6 +70,8 @@ def prepare(
     )
     if plant is not None:
         scenario = dataclasses.replace(scenario, plant={**scenario.plant, "file": plant})
+    if network is not None:
+        scenario = dataclasses.replace(scenario, network={**scenario.network, "name": network})
     check_targets(scenario)
     scenario = read_tables(scenario)
     if firmware is not None:

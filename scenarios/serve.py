@@ -29,6 +29,7 @@ def serve(
     plant: str | None = None,
     duration_s: float | None = None,
     record: Path | None = None,
+    network: str | None = None,
 ) -> int:
     """Pace the network with its doors open, until Ctrl-C, `schmidt control stop`, or `duration_s` (wall).
 
@@ -38,7 +39,7 @@ def serve(
     console = Console()
     checked_speed(speed)
     options.check()
-    scenario, model = chosen(scenario_file, seed, plant)
+    scenario, model = chosen(scenario_file, seed, plant, network)
     with console.status("starting (the first time compiles)") as line:
         recording = Recording(record, scenario, model) if record is not None else None
         served = Served(scenario, model, speed, recording)

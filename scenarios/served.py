@@ -18,9 +18,12 @@ UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 
 
 def chosen(
-    scenario_file: Path | None = None, seed: int | None = None, plant: str | None = None
+    scenario_file: Path | None = None,
+    seed: int | None = None,
+    plant: str | None = None,
+    network_name: str | None = None,
 ) -> tuple[Scenario, PlantModel]:
-    """Scenario and plant of a file, or of the lab network when None.
+    """Scenario and plant of a file, or of a network by name (None: the scenario's, or `lab`).
 
     Raises ValueError subclasses with one line for what cannot be used.
     """
@@ -29,8 +32,10 @@ def chosen(
     from scenarios.run import prepare
 
     if scenario_file is not None:
-        return prepare(scenario_file, seed, plant)
-    scenario = Scenario(Path("lab"), "lab", "", UNDATED, (), seed=1 if seed is None else seed)
+        return prepare(scenario_file, seed, plant, network=network_name)
+    name = network_name or "lab"
+    on_it = {"name": name}
+    scenario = Scenario(Path(name), name, "", UNDATED, (), network=on_it, seed=1 if seed is None else seed)
     return scenario, plant_model({"file": plant or DEFAULT_PLANT}, Path())
 
 
@@ -45,12 +50,17 @@ def wire(scenario: Scenario, model: PlantModel) -> Network:
 
     pins = Plant(model, scenario.seed, start_steps(scenario))
     faults.stick_sensors(pins, scenario.faults)
-    config = config_from(scenario.network, soft_limits(scenario))
+    config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
     made = build(config, pins, scenario.seed)
     faults.apply(made, scenario.faults, scenario.seed)
     return made
 
 
-def network(scenario_file: Path | None = None, seed: int | None = None, plant: str | None = None) -> Network:
+def network(
+    scenario_file: Path | None = None,
+    seed: int | None = None,
+    plant: str | None = None,
+    network_name: str | None = None,
+) -> Network:
     """Both in one: what the checks in this process work on."""
-    return wire(*chosen(scenario_file, seed, plant))
+    return wire(*chosen(scenario_file, seed, plant, network_name))

@@ -36,7 +36,7 @@ class Session:
         self.plant = Plant(model, scenario.seed, start_steps(scenario))
         self.recorder = Recorder(folder, scenario, self.plant, log_headers(scenario, model))
         faults.stick_sensors(self.plant, scenario.faults)
-        config = config_from(scenario.network, soft_limits(scenario))
+        config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
         self.network: Network = build(config, self.plant, scenario.seed)
         self.network.wire.tap(self.recorder.can.take)
         self.link = HidLink(self.network.hid.write)

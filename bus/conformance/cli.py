@@ -1,6 +1,7 @@
 """`schmidt conformance --can INTERFACE:CHANNEL [--json FILE] [--speed X] [--motion] [--tolerance R]`."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from bus.conformance.result import CheckResult, summary
 from bus.conformance.run import run
 from bus.conformance.settings import Settings
 from bus.external import SpecError, open_bus
+from bus.protocol import Device
 
 
 def conformance_command(
@@ -20,19 +22,26 @@ def conformance_command(
     speed: float = 1.0,
     motion: bool = False,
     tolerance: float = 0.02,
+    devices: Sequence[Device] = tuple(Device),
 ) -> int:
-    """Check the boards behind `spec`; 0 when every `must` holds, 1 when one fails.
+    """Check the boards `devices` behind `spec`; 0 when every `must` holds, 1 when one fails.
 
     Raises SpecError (a ValueError) when the bus cannot be opened or breaks, or `json_path` cannot be written.
     """
     with open_bus(spec) as bus:
         try:
-            return check(bus, json_path, Settings(speed=speed, motion=motion, period_tolerance=tolerance))
+            settings = Settings(speed=speed, motion=motion, period_tolerance=tolerance)
+            return check(bus, json_path, settings, devices)
         except can.CanError as error:
             raise SpecError(f'"{spec}": the bus broke down: {error}') from None
 
 
-def check(bus: can.BusABC, json_path: Path | None, settings: Settings) -> int:
+def check(
+    bus: can.BusABC,
+    json_path: Path | None,
+    settings: Settings,
+    devices: Sequence[Device] = tuple(Device),
+) -> int:
     """Check the boards on an open bus, print what failed, write the results; 0 or 1 as above."""
     console = Console()
     with console.status("listening") as status:
@@ -40,7 +49,7 @@ def check(bus: can.BusABC, json_path: Path | None, settings: Settings) -> int:
         def show(result: CheckResult) -> None:
             status.update(f"{result.check}: {result.subject}")
 
-        results = run(bus, settings=replace(settings, each=show))
+        results = run(bus, devices=devices, settings=replace(settings, each=show))
     found = summary(results)
     if json_path is not None:
         try:

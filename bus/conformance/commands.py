@@ -7,6 +7,7 @@ from typing import NamedTuple
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, Level
 from bus.protocol import Device, Health, Opcode, Reply, Result, SpeedClass
+from bus.protocol.nodes import arguments_of, kind_of
 
 _OK = (Result.OK,)
 _REFUSED_TOO = (Result.OK, Result.NOT_ALLOWED)
@@ -55,6 +56,15 @@ _PARAMETER = 1
 """Axis boards have it; a board without parameters says out of range."""
 
 
+def declared_cases(device: Device) -> tuple[Case, ...]:
+    """Opcodes of a declared board's own, every argument at its upper limit."""
+    kind = kind_of(device)
+    return tuple(
+        Case(opcode, tuple(each.high for each in arguments), _REFUSED_TOO, True)
+        for opcode, arguments in (arguments_of(kind) if kind is not None else {}).items()
+    )
+
+
 def judge(
     check: str, subject: str, replies: Sequence[Reply], device: int, results: Sequence[int], duration_s: float
 ) -> CheckResult:
@@ -83,7 +93,7 @@ def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
     observed = "no reply" if health is None else f"{health:#x}"
     yield CheckResult("health", name, Level.SHOULD, well, "0", observed, 0.0)
     yield from _parameters(link, device)
-    for case in _FAMILIES.get(name.partition("_")[0], ()):
+    for case in _FAMILIES.get(name.partition("_")[0]) or declared_cases(device):
         if case.moves and not link.settings.motion:
             continue
         start = link.now()
@@ -95,7 +105,8 @@ def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
 
 def _parameters(link: Link, device: Device) -> Iterator[CheckResult]:
     """Read a parameter and write the same value back."""
-    has_parameters = device.name.startswith("AXIS_")
+    kind = kind_of(device)
+    has_parameters = device.name.startswith("AXIS_") or (kind is not None and bool(kind.parameters))
     results = _OK if has_parameters else _EXISTS_OR_NOT
     start = link.now()
     replies = link.ask(device, Opcode.GET_PARAMETER, _PARAMETER)

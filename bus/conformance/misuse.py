@@ -1,11 +1,13 @@
 """What boards make of frames that are wrong: an answer that says so, or none where nobody is meant."""
 
+import struct
 from collections.abc import Iterator
 
 from bus.conformance.commands import judge
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, Level
-from bus.protocol import COMMAND_BASE, Device, Opcode, Result, pack_command
+from bus.protocol import COMMAND_BASE, LAYOUTS, Device, Opcode, Result, pack_command
+from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
 _UNKNOWN_PARAMETER = 200
@@ -49,11 +51,39 @@ def check_misuse(link: Link, device: Device) -> Iterator[CheckResult]:
         (Opcode.GET_PARAMETER, (_UNKNOWN_PARAMETER,)),
         (Opcode.SET_PARAMETER, (_UNKNOWN_PARAMETER, 0)),
     ]
-    wrong += _OUT_OF_RANGE.get(device.name.partition("_")[0], ())
+    wrong += _OUT_OF_RANGE.get(device.name.partition("_")[0], ()) or declared_misuse(device)
     for known, arguments in wrong:
         data = pack_command(device, known, *arguments)
         subject = f"{device.name} {known.name} {' '.join(map(str, arguments))}"
         yield _one(link, device, "out of range", subject, data, known, Result.OUT_OF_RANGE)
+
+
+def declared_misuse(device: Device) -> list[tuple[Opcode, tuple[int, ...]]]:
+    """Every parameter, and every argument of an opcode of its own, beyond each limit its bytes can pass."""
+    kind = kind_of(device)
+    if kind is None:
+        return []
+    wrong: list[tuple[Opcode, tuple[int, ...]]] = [
+        (Opcode.SET_PARAMETER, (row.number, value))
+        for row in kind.parameters
+        for value in (row.low - 1, row.high + 1)
+    ]
+    for opcode, arguments in arguments_of(kind).items():
+        highest = tuple(each.high for each in arguments)
+        for k, each in enumerate(arguments):
+            for value in (each.low - 1, each.high + 1):
+                beyond = (*highest[:k], value, *highest[k + 1 :])
+                if _fits(opcode, beyond):
+                    wrong.append((opcode, beyond))
+    return wrong
+
+
+def _fits(opcode: Opcode, arguments: tuple[int, ...]) -> bool:
+    try:
+        LAYOUTS[opcode][0].pack(*arguments)
+    except struct.error:
+        return False
+    return True
 
 
 def _one(

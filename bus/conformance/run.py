@@ -12,7 +12,7 @@ from bus.conformance.result import CheckResult, Level
 from bus.conformance.settings import Settings
 from bus.conformance.telemetry import check_telemetry
 from bus.protocol import Device, Opcode
-from bus.protocol.database import database
+from bus.protocol.nodes import documented
 
 if TYPE_CHECKING:
     from cantools.database import Database
@@ -31,7 +31,7 @@ def run(
     """
     settings = settings or Settings()
     results = []
-    for result in _checks(Link(bus, settings), dbc or database(), devices):
+    for result in _checks(Link(bus, settings), dbc or documented(devices), devices):
         settings.each(result)
         results.append(result)
     return results

@@ -22,6 +22,7 @@ from bus.protocol.names import (
     Result,
     SpeedClass,
     State,
+    device_named,
 )
 from bus.protocol.position import (
     AGE_UNIT_NS,
@@ -69,6 +70,7 @@ __all__ = [
     "Summary",
     "Tach",
     "Target",
+    "device_named",
     "opcodes",
     "pack_command",
     "pack_focus",

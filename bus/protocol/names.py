@@ -35,6 +35,10 @@ class Device(IntEnum):
     DISPLAY = 0x51
     GATEWAY = 0x61
 
+    @classmethod
+    def _missing_(cls, value: object) -> "Device | None":
+        return DECLARED.get(value) if isinstance(value, int) else None
+
 
 class Opcode(IntEnum):
     """Byte 1 of a COMMAND, repeated in byte 1 of its REPLY."""
@@ -56,6 +60,10 @@ class Opcode(IntEnum):
     FOCUS_FREE = 0x23
     FOCUS_REFERENCE = 0x24
     BRIGHTNESS = 0x30
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Opcode | None":
+        return DECLARED_OPCODES.get(value) if isinstance(value, int) else None
 
 
 class Result(IntEnum):
@@ -155,3 +163,33 @@ class AxisParameter(IntEnum):
 
 HARMONICS: Final = 8
 """Lines of the compensation table."""
+
+DECLARED: Final[dict[int, Device]] = {}
+"""Boards beyond those above, by device type (`bus/protocol/nodes/`). `Device(number)` finds them; going
+through `Device` gives the eleven of the lab network."""
+DECLARED_OPCODES: Final[dict[int, Opcode]] = {}
+
+
+def declared_device(name: str, number: int) -> Device:
+    """A further device; the way the standard library makes the unnamed members of a Flag."""
+    device = int.__new__(Device, number)
+    device._name_ = name
+    device._value_ = number
+    DECLARED[number] = device
+    return device
+
+
+def declared_opcode(name: str, number: int) -> Opcode:
+    """A further opcode."""
+    opcode = int.__new__(Opcode, number)
+    opcode._name_ = name
+    opcode._value_ = number
+    DECLARED_OPCODES[number] = opcode
+    return opcode
+
+
+def device_named(name: str) -> Device:
+    """A device by name, declared ones too; raises KeyError."""
+    if name in Device.__members__:
+        return Device[name]
+    return next((device for device in DECLARED.values() if device.name == name), None) or Device[name]

@@ -14,7 +14,7 @@ from itertools import starmap
 from struct import Struct, error
 from typing import Final, NamedTuple
 
-from bus.protocol.names import Device
+from bus.protocol.names import DECLARED, Device
 from bus.protocol.saturate import Clip, fitted, nobody
 
 SYNC: Final = b"\xaa\x55"
@@ -62,7 +62,19 @@ class FocusSample(NamedTuple):
     lvdt: int
 
 
-Sample = AxisSample | PositionSample | FocusSample
+class FrameSample(NamedTuple):
+    """A declared board's measurement frame: its bytes 1..7, to be read by the board's DBC."""
+
+    byte1: int
+    byte2: int
+    byte3: int
+    byte4: int
+    byte5: int
+    byte6: int
+    byte7: int
+
+
+Sample = AxisSample | PositionSample | FocusSample | FrameSample
 _AXIS: Final = (Struct("<hIhHHhhIi"), AxisSample)
 _POSITION: Final = (Struct("<I"), PositionSample)
 _LAYOUTS: Final[dict[int, tuple[Struct, type[Sample]]]] = {
@@ -72,7 +84,13 @@ _LAYOUTS: Final[dict[int, tuple[Struct, type[Sample]]]] = {
     Device.POSITION_DEC: _POSITION,
     Device.FOCUS: (Struct("<hhH"), FocusSample),
 }
-"""The five boards with a serial line."""
+"""The five boards with a serial line (L3)."""
+_FRAME: Final[tuple[Struct, type[Sample]]] = (Struct("<7B"), FrameSample)
+
+
+def _layout(device: int) -> tuple[Struct, type[Sample]] | None:
+    """How the samples of a device look; None: it has no serial line."""
+    return _LAYOUTS.get(device) or (_FRAME if device in DECLARED else None)
 
 
 class SerialError(ValueError):
@@ -89,8 +107,15 @@ class Packet(NamedTuple):
 
 
 def packet_bytes(device: int) -> int:
-    """Length of a packet of `device`, sync and CRC included."""
-    return len(SYNC) + _head.size + SAMPLES * _LAYOUTS[device][0].size + _crc.size
+    """Length of a packet of `device`, sync and CRC included; raises SerialError for one without a line."""
+    return len(SYNC) + _head.size + SAMPLES * _known(device)[0].size + _crc.size
+
+
+def _known(device: int) -> tuple[Struct, type[Sample]]:
+    layout = _layout(device)
+    if layout is None:
+        raise SerialError(f"device type {device:#04x} has no serial line")
+    return layout
 
 
 def pack_packet(
@@ -100,11 +125,9 @@ def pack_packet(
 
     Raises SerialError for a device without a serial line and a wrong number of samples.
     """
-    if device not in _LAYOUTS:
-        raise SerialError(f"device type {device:#04x} has no serial line")
+    layout = _known(device)[0]
     if len(samples) != SAMPLES:
         raise SerialError(f"a packet holds {SAMPLES} samples, got {len(samples)}")
-    layout = _LAYOUTS[device][0]
     try:
         rows = b"".join(starmap(layout.pack, samples))
     except error:
@@ -132,7 +155,7 @@ class PacketDecoder:
         packets: list[Packet] = []
         while self._seek() and len(buffer) > len(SYNC):
             device = buffer[len(SYNC)]
-            if device not in _LAYOUTS:
+            if _layout(device) is None:
                 self._skip(1)
                 continue
             length = packet_bytes(device)
@@ -164,6 +187,6 @@ class PacketDecoder:
 
 def _decode(body: bytes) -> Packet:
     device, sequence, stamp = _head.unpack_from(body)
-    layout, kind = _LAYOUTS[device]
+    layout, kind = _known(device)
     rows = layout.iter_unpack(body[_head.size :])
     return Packet(device, sequence, stamp, tuple(map(kind._make, rows)))

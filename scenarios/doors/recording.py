@@ -52,6 +52,7 @@ class Recording:
         self._facts = {
             "scenario": scenario.file.is_file(),
             "seed": scenario.seed,
+            "network": scenario.network.get("name", "lab"),
             "kinds": served.entry.kinds(),
             "version": version("schmidt"),
         }

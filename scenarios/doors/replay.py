@@ -23,7 +23,7 @@ def replay(folder: Path, out: Path) -> tuple[str, str | None]:
     """Run the session in `folder` again into `out`; returns both digests (None: it was never closed)."""
     facts = _facts(folder)
     scenario_file = folder / SCENARIO if facts["scenario"] else None
-    scenario, _ = chosen(scenario_file, int(facts["seed"]))
+    scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
     model = load_plant(folder / PLANT)
     if out.resolve() == folder.resolve():
         raise ReplayError(f"{out}: a session is not replayed onto itself; give another --out")

@@ -1,0 +1,27 @@
+"""Boards whose protocol is declared instead of written out: one `Kind` and one small DBC each."""
+
+from bus.protocol.nodes.codec import FrameCodec
+from bus.protocol.nodes.command import Argument, arguments_of
+from bus.protocol.nodes.kind import Kind, KindError, ParameterRow, declare, declared_kinds, kind_of
+from bus.protocol.nodes.kinds import AUXILIARY, DOME, KINDS, POWER, WEATHER
+from bus.protocol.nodes.messages import documented, messages_of, own_messages
+
+__all__ = [
+    "AUXILIARY",
+    "DOME",
+    "KINDS",
+    "POWER",
+    "WEATHER",
+    "Argument",
+    "FrameCodec",
+    "Kind",
+    "KindError",
+    "ParameterRow",
+    "arguments_of",
+    "declare",
+    "declared_kinds",
+    "documented",
+    "kind_of",
+    "messages_of",
+    "own_messages",
+]

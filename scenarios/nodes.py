@@ -1,0 +1,126 @@
+"""Declared boards: found, wired to the plant and to what a scenario puts on their inputs."""
+
+from __future__ import annotations
+
+import sys
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from boards.auxiliary import AuxiliaryBoard
+from boards.core import Board
+from boards.core.declared import DeclaredBoard, Pin
+from boards.dome import DomeBoard
+from boards.power import PowerBoard
+from boards.weather import WeatherBoard
+from bus.protocol.nodes import KindError, arguments_of, declare, messages_of
+from plant.dome import DomePort
+from plant.plant import Plant
+from scenarios.supply import CHANNELS, Supply
+
+BOARDS: dict[str, type[DeclaredBoard]] = {
+    board.KIND.name: board for board in (AuxiliaryBoard, DomeBoard, WeatherBoard, PowerBoard)
+}
+"""Class by kind; `load_board` adds to it."""
+
+
+class Input:
+    """An input pin that holds a value from each of some times on. times_ns: rising, the first is 0."""
+
+    def __init__(self, times_ns: Sequence[int], values: Sequence[float]) -> None:
+        self.times_ns = list(times_ns)
+        self.values = list(values)
+
+    def __call__(self, t_ns: int) -> float:
+        """The value at `t_ns`."""
+        return self.values[bisect_right(self.times_ns, t_ns) - 1]
+
+
+class Site:
+    """What declared boards' pins may be wired to: the plant's ports, the dome, the supplies."""
+
+    def __init__(self, plant: Plant, boards: Mapping[str, Board]) -> None:
+        self.ra, self.dec, self.focus = plant.ra, plant.dec, plant.focus
+        self.dome = DomePort()
+        self.supplies = {name: Supply(plant, boards, channels) for name, channels in CHANNELS.items()}
+
+    def pin(self, name: str, pin: Pin, inputs: Mapping[str, Input]) -> Callable[..., float]:
+        """The callable for one pin of board `name`; raises KindError when there is no such thing."""
+        if not pin.source:
+            return inputs.get(pin.name) or Input([0], [pin.default])
+        port_name, _, method = pin.source.format(side=name.rpartition("_")[2].lower()).partition(".")
+        port = self.supplies.get(name) if port_name == "supply" else getattr(self, port_name, None)
+        found = getattr(port, method, None) if method and not method.startswith("_") else None
+        if not callable(found):
+            raise KindError(f"board {name}: pin {pin.name}: there is no {pin.source} to wire it to")
+        wired: Callable[..., float] = found
+        return wired
+
+
+def pins_of(
+    board: type[DeclaredBoard], name: str, site: Site, given: Mapping[str, Any]
+) -> dict[str, Callable[..., float]]:
+    """All pins of a board. given: a scenario's `inputs`, pin -> number or list of {at (s), value}."""
+    known = [pin.name for pin in board.PINS if not pin.source]
+    for pin in given:
+        if pin not in known:
+            raise KindError(
+                f"network: nodes.{name}.inputs: there is no input '{pin}'; "
+                f"it has {', '.join(known) or 'none'}"
+            )
+    inputs = {pin: _input(name, pin, value, board) for pin, value in given.items()}
+    return {pin.name: site.pin(name, pin, inputs) for pin in board.PINS}
+
+
+def _input(name: str, pin: str, value: Any, board: type[DeclaredBoard]) -> Input:
+    if not isinstance(value, list):
+        return Input([0], [float(value)])
+    times = [round(each["at"] * 1e9) for each in value]
+    if times != sorted(set(times)):
+        raise KindError(f"network: nodes.{name}.inputs.{pin}: the times must rise")
+    first = next(each.default for each in board.PINS if each.name == pin)
+    return Input([-1, *times], [first, *(float(each["value"]) for each in value)])
+
+
+def load_board(file: Path) -> type[DeclaredBoard]:
+    """The one declared board in a Python file, made known under its kind; a second time it is the same.
+
+    Raises KindError with one line for a file that cannot be used.
+    """
+    module = _module(file)
+    found = [
+        each
+        for each in vars(module).values()
+        if isinstance(each, type) and issubclass(each, DeclaredBoard) and each.__module__ == module.__name__
+    ]
+    if len(found) != 1:
+        raise KindError(f"{file}: holds {len(found)} classes derived from DeclaredBoard, expected one")
+    board = found[0]
+    missing = [word for word in ("KIND", "TABLE") if not hasattr(board, word)]
+    if missing:
+        raise KindError(f"{file}: {board.__name__} has no {' and no '.join(missing)}")
+    declare(board.KIND)
+    messages_of(board.KIND)
+    arguments_of(board.KIND)
+    BOARDS[board.KIND.name] = board
+    return board
+
+
+def _module(file: Path) -> ModuleType:
+    name = f"schmidt_board_{file.resolve().as_posix()}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = spec_from_file_location(name, file)
+    if spec is None or spec.loader is None or not file.is_file():
+        raise KindError(f"{file}: no such Python file")
+    module = module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise KindError(f"{file}: cannot be imported: {type(error).__name__}: {error}") from None
+    return module
