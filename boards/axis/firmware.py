@@ -223,7 +223,7 @@ class AxisBoard(PeriodicBoard):
                 self.trip()
             distance = motion.distance_steps(now, self.velocity)
             data = pack_target(self.device_type, motion.selected, motion.settled, distance, self.clip)
-            self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
+            self.refresh(SUMMARY_BASE + self.device_type, data, end_ns)
         elif ticks % _HEARTBEAT_TICKS == 3:
             self.heartbeat(end_ns)
 

@@ -56,6 +56,7 @@ class Board:
         "_command",
         "_dropped_ns",
         "_foreign_ns",
+        "_last",
         "can",
         "clipped",
         "commands",
@@ -100,6 +101,7 @@ class Board:
         self.parameters = ParameterTable()
         self.commands: Mapping[int, Handler] = self.common_commands()
         self._command = COMMAND_BASE + device_type
+        self._last: dict[int, Frame] = {}
         self.dropped = 0
         self.foreign = 0
         self.clipped = 0
@@ -145,6 +147,7 @@ class Board:
         self.epoch_ns = t_ns
         self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO
         self.inbox.clear()
+        self._last.clear()
         self.reset()
         self.start(t_ns)
 
@@ -207,11 +210,23 @@ class Board:
         if not self.send(Frame(identifier, data), ready_ns):
             self.drop()
 
+    def refresh(self, identifier: int, data: bytes, ready_ns: int) -> None:
+        """Send a frame that makes the one before it old news: if that still waits, this one takes its buffer.
+
+        On a bus full of more important frames the three buffers would else hold old heartbeats, and no
+        measurement would find room.
+        """
+        last = self._last.get(identifier)
+        if last is not None:
+            self.port.withdraw(last)
+        self._last[identifier] = Frame(identifier, data)
+        self.transmit(identifier, data, ready_ns)
+
     def heartbeat(self, t_ns: int) -> None:
         """Send the HEARTBEAT frame, ready at `t_ns`."""
         uptime_s = self.clock_ns(t_ns) // 1_000_000_000
         data = pack_heartbeat(self.device_type, self.state(), uptime_s, self.cpu.overruns, self.port.tec)
-        self.transmit(HEARTBEAT_BASE + self.device_type, data, t_ns)
+        self.refresh(HEARTBEAT_BASE + self.device_type, data, t_ns)
 
     # --- health and parameters --------------------------------------------------------------------
     def state(self) -> State:

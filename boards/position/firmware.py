@@ -127,7 +127,7 @@ class PositionBoard(PeriodicBoard):
         """SUMMARY every 250 ms, heartbeat every second, never in one tick."""
         if ticks % _SUMMARY_TICKS == 1:
             data = pack_summary(self.device_type, self.flags, self.position)
-            self.transmit(SUMMARY_BASE + self.device_type, data, end_ns)
+            self.refresh(SUMMARY_BASE + self.device_type, data, end_ns)
         elif ticks % _HEARTBEAT_TICKS == 3:
             self.heartbeat(end_ns)
 

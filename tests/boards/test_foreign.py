@@ -3,7 +3,17 @@
 import pytest
 
 from bus.can import Frame
-from bus.protocol import Device, Health, Opcode, pack_tach, unpack_motion, unpack_target
+from bus.protocol import (
+    HEARTBEAT_BASE,
+    MEASUREMENT_BASE,
+    SUMMARY_BASE,
+    Device,
+    Health,
+    Opcode,
+    pack_tach,
+    unpack_motion,
+    unpack_target,
+)
 from bus.protocol.motion import pack_motion
 from bus.protocol.serial import SAMPLES, PacketDecoder, pack_packet
 from bus.protocol.tach import unpack_tach
@@ -126,3 +136,22 @@ def test_what_found_no_room_is_said_for_ten_seconds_and_counted_for_good() -> No
     lab.run(11.0)
     assert Health.DROPPED not in ill(lab), "ten seconds later the board is well again"
     assert lab.axis.dropped == lost
+
+
+def test_a_bus_full_of_less_important_frames_costs_no_measurement() -> None:
+    """Heartbeats lose against 0x6F0 for ever; the old ones must not fill the three transmit buffers."""
+    lab = Lab()
+    lab.run(0.1)
+    lab.pc.on_sent = lambda t_ns, frame: lab.pc.send(frame, t_ns) and None
+    for _ in range(3):
+        lab.pc.send(Frame(0x6F0, bytes(8)), lab.queue.now_ns)
+    seen: dict[int, list[int]] = {}
+    lab.wire.tap(lambda t_ns, frame, _sender: seen.setdefault(frame.identifier, []).append(t_ns))
+    lab.run(5.0)
+    lab.pc.on_sent = None
+    assert len(seen[MEASUREMENT_BASE + Device.AXIS_RA]) >= 499
+    assert len(seen[SUMMARY_BASE + Device.AXIS_RA]) == 20
+    assert HEARTBEAT_BASE + Device.AXIS_RA not in seen, "it waits, as the least important"
+    assert lab.axis.dropped == 0
+    lab.run(0.01)
+    assert len(seen[HEARTBEAT_BASE + Device.AXIS_RA]) == 1, "the newest, not all that were due"
