@@ -6,13 +6,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from bus.protocol.database import database
-from bus.protocol.names import SUMMARY_KIND, Device
+from bus.protocol.names import SUMMARY_KIND, Device, device_named
+from bus.protocol.nodes import KINDS, documented
 
 PAGE_PATH = Path(__file__).parents[2] / "docs" / "protocol.md"
+DBC_PATH = Path(__file__).with_name("final.dbc")
+"""All boards in one file, for other people's tools; written beside the page."""
+PLANNED = tuple(Device(number) for kind in KINDS for number in kind.nodes.values())
 _INTRO = f"""# The protocol
 
-Made from `bus/protocol/schmidt.dbc` by `python -m bus.protocol.page`; change the DBC, not this page.
+Made from `bus/protocol/schmidt.dbc` and, for the planned nodes, `bus/protocol/nodes/*.dbc` by
+`python -m bus.protocol.page`; change the DBC, not this page.
+`bus/protocol/final.dbc`, written with it, has all boards in one file.
 
 CAN 2.0A, standard identifiers, 1 Mbit/s unless a scenario says otherwise; every frame has eight bytes,
 little endian, and byte 0 is the device type. In a 64-byte HID report bit 7 of byte 0 marks what is not a
@@ -22,6 +27,10 @@ measurement frame (identifier 0x200 + device type); byte 1 then tells which: an 
 A COMMAND is answered exactly once by the device's REPLY. A frame with an identifier nobody accepts is
 acknowledged and ignored.
 """
+
+
+def _everything() -> Any:
+    return documented((*Device, *PLANNED))
 
 
 def _family(name: str) -> str:
@@ -35,9 +44,9 @@ def _suffix(name: str) -> str:
 def _devices() -> Iterator[str]:
     yield "\n## Devices\n"
     yield "| device | type | frames |\n|---|---|---|"
-    for device in Device:
+    for device in (*Device, *PLANNED):
         names = [
-            message.name for message in database().messages if message.name.startswith(f"{device.name}_")
+            message.name for message in _everything().messages if message.name.startswith(f"{device.name}_")
         ]
         frames = ", ".join(_suffix(name) for name in names if name == f"{device.name}_{_suffix(name)}")
         yield f"| {device.name} | {int(device):#04x} | {frames} |"
@@ -56,7 +65,7 @@ def _row(signal: Any) -> str:
 
 
 def _message(message: Any, devices: list[str]) -> Iterator[str]:
-    base = message.frame_id - Device[devices[0]]
+    base = message.frame_id - device_named(devices[0])
     period = f"every {message.cycle_time} ms" if message.cycle_time else "on demand"
     yield f"\n### {_family(message.name)} {_suffix(message.name)}: {base:#05x} + device type, {period}\n"
     yield f"{message.comment} Devices: {', '.join(devices)}.\n"
@@ -69,7 +78,7 @@ def page() -> str:
     """The whole page, Markdown. Messages that differ only in the device are shown once."""
     lines = [_INTRO.rstrip(), *_devices(), "\n## Frames"]
     shown: dict[tuple[str, str], tuple[Any, list[str]]] = {}
-    for message in database().messages:
+    for message in _everything().messages:
         device = message.name.rpartition("_")[0]
         key = _family(message.name), _suffix(message.name)
         shown.setdefault(key, (message, []))[1].append(device)
@@ -80,7 +89,7 @@ def page() -> str:
 
 def main(arguments: list[str]) -> int:
     """Write the page, or with `--check` return 1 when the one in docs is not what the DBC gives."""
-    if arguments == ["--check"]:
+    if arguments == ["--check"]:  # final.dbc: by what it says, tests/bus/protocol/test_nodes.py
         current = PAGE_PATH.exists() and PAGE_PATH.read_text(encoding="utf-8") == page()
         if not current:
             print(
@@ -88,6 +97,8 @@ def main(arguments: list[str]) -> int:
             )
         return 0 if current else 1
     PAGE_PATH.write_text(page(), encoding="utf-8")
+    text: str = _everything().as_dbc_string(sort_signals=None).replace("\r\n", "\n")
+    DBC_PATH.write_text(text, encoding="utf-8", newline="\n")
     return 0
 
 

@@ -129,10 +129,12 @@ def _kind_byte() -> Sequence[Any]:
 def documented(devices: Iterable[int]) -> Database:
     """schmidt.dbc and the frames of those kinds that some of `devices` belong to."""
     from cantools.database import Database
+    from cantools.database.can import Node
 
     kinds = dict.fromkeys(kind for device in devices if (kind := kind_of(device)) is not None)
     if not kinds:
         return database()
     base = database()
     own = [message for kind in kinds for message in messages_of(kind)]
-    return Database([*base.messages, *own], base.nodes)
+    nodes = [Node(name) for kind in kinds for name in kind.nodes]
+    return Database([*base.messages, *own], [*base.nodes, *nodes], dbc_specifics=base.dbc)

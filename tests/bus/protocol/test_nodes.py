@@ -1,0 +1,127 @@
+"""Declared boards: codecs against cantools, the file for other tools, and declarations that cannot be."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from cantools.database import load_file
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bus.protocol import Device, Opcode, device_named, pack_command
+from bus.protocol.nodes import (
+    DOME,
+    KINDS,
+    FrameCodec,
+    Kind,
+    KindError,
+    arguments_of,
+    declare,
+    documented,
+    kind_of,
+    messages_of,
+    own_messages,
+)
+from bus.protocol.page import DBC_PATH, PLANNED
+
+MEASURED = [m for kind in KINDS for m in messages_of(kind) if 0x200 <= m.frame_id < 0x400]
+
+
+@pytest.mark.parametrize("message", MEASURED, ids=lambda message: message.name)
+@settings(max_examples=50)
+@given(data=st.data())
+def test_B8_packing_is_what_cantools_makes_of_the_dbc(message: Any, data: Any) -> None:
+    codec = FrameCodec(message)
+    raw = {
+        signal.name: data.draw(
+            st.integers(round(signal.minimum / signal.scale), round(signal.maximum / signal.scale))
+        )
+        for signal in message.signals
+    }
+    values = {signal.name: raw[signal.name] * signal.scale for signal in message.signals}
+    packed = codec.pack(values)
+    assert packed == message.encode(values, scaling=True, strict=False)
+    again = codec.unpack(packed)
+    decoded = message.decode(packed, decode_choices=False)
+    assert again == pytest.approx({name: decoded[name] for name in again})
+    assert set(decoded) - set(again) == {"Device"}
+
+
+def test_what_does_not_fit_is_cut_and_told() -> None:
+    codec = FrameCodec(next(m for m in MEASURED if m.name == "WEATHER_MAST_WEATHER"))
+    told: list[int] = []
+    packed = codec.pack({"Wind": 1e6, "Temperature": -1e6}, lambda: told.append(1))
+    assert len(told) == 2
+    assert codec.unpack(packed)["Wind"] == pytest.approx(75.0)
+    assert codec.unpack(packed)["Temperature"] == pytest.approx(-60.0)
+
+
+def test_final_dbc_says_what_the_declarations_say() -> None:
+    def facts(database: Any) -> dict[int, Any]:
+        return {
+            message.frame_id: (
+                message.name, message.length, message.cycle_time, message.comment, message.senders,
+                sorted(
+                    (s.name, s.start, s.length, s.is_signed, s.scale, s.offset, s.minimum, s.maximum, s.unit,
+                     s.comment, s.choices, s.multiplexer_ids)
+                    for s in message.signals
+                ),
+            )
+            for message in database.messages
+        }  # fmt: skip
+
+    assert facts(load_file(DBC_PATH, strict=True)) == facts(documented((*Device, *PLANNED)))
+
+
+def test_declared_devices_and_opcodes_are_found_and_not_counted() -> None:
+    assert len(Device) == 11
+    assert Device(0x71) is device_named("DOME")
+    assert kind_of(0x71) is DOME
+    assert kind_of(Device.DISPLAY) is None
+    assert arguments_of(DOME)[Opcode(0x40)][0].high == 35999
+    assert (Device(0x71).name, Opcode(0x40).name) == ("DOME", "DOME_GOTO")
+    assert pack_command(0x71, 0x40, 12345) == bytes([0x71, 0x40, 0x39, 0x30, 0, 0, 0, 0])
+    with pytest.raises(ValueError, match="127"):
+        Device(127)
+
+
+@pytest.mark.parametrize(
+    ("name", "nodes", "text"),
+    [
+        ("lower", {"lower": 0x7A}, "capitals"),
+        ("OTHER", {"DOME_2": 0x7A}, "are called OTHER"),
+        ("OTHER", {"OTHER": 0x80}, "not within"),
+        ("OTHER", {"OTHER": 0x71}, "is taken"),
+        ("OTHER", {"OTHER": 0x11}, "is taken"),
+        ("DOME", {"DOME": 0x7A}, "declared twice"),
+    ],
+)
+def test_a_declaration_that_cannot_be_is_one_line(name: str, nodes: dict[str, int], text: str) -> None:
+    with pytest.raises(KindError, match=text) as error:
+        declare(Kind(name, nodes, Path("none.dbc")))
+    assert "\n" not in str(error.value)
+
+
+GOOD = 'BO_ 512 X: 8 NODE\n SG_ A : 8|8@1+ (1,0) [0|1] "" GATEWAY\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("BO_ nonsense", "no DBC"),
+        (GOOD, "GenMsgCycleTime"),
+        (GOOD.replace("512", "513"), "513"),
+        (GOOD.replace("X: 8", "X: 4"), "4 bytes"),
+    ],
+)
+def test_a_dbc_that_cannot_be_is_one_line(tmp_path: Path, text: str, complaint: str) -> None:
+    file = tmp_path / "x.dbc"
+    file.write_text(f'VERSION ""\nBU_: GATEWAY NODE\n{text}')
+    with pytest.raises(KindError, match=complaint) as error:
+        own_messages(Kind("X", {"X": 0x7A}, file))
+    assert "\n" not in str(error.value)
+
+
+def test_a_dbc_that_is_not_there_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(KindError, match="no such file"):
+        own_messages(Kind("X", {"X": 0x7A}, tmp_path / "none.dbc"))
