@@ -2,8 +2,9 @@
 reproducibly.
 
 Sobol points of the space of space.py that pass the statics, scipy's differential evolution on the compiled
-loop from several such populations, then a simplex from the best of all; seeded, one process. Writes plant
-files with their sources, and what was tried. The emulator has the last word: `schmidt paper --plant ...
+loop from several such populations, then short steps from the best of all, a third of the numbers at a time;
+with `--start` those steps alone, from a known point. Seeded, one process. Writes plant files with their
+sources, and what was tried. The emulator has the last word: `schmidt paper --plant ...
 --plant-high ...`.
 """
 
@@ -45,9 +46,11 @@ SIFTED = 4096
 """Sobol points of which those that pass the statics are taken."""
 ROOM = 2.0
 """How far beyond the best a point may cost before the rest of its rows is left out."""
-SIMPLEX_SHARE = 0.25
-NEAR = 0.1
-"""Spread about a known point, logarithmic."""
+STEP_SHARE = 0.25
+"""Of the points, for the short steps."""
+STEP, MOVED, AGAIN = 0.08, 0.35, 0.3
+"""Of a short step: spread (logarithmic), share of the numbers that move, how often the last step that helped
+is tried again."""
 
 
 class Enough(Exception):
@@ -77,6 +80,7 @@ class Objective:
         self.best_x: Array | None = None
         self.best_terms: list[Term] = []
         self.tried = 0
+        self.room = ROOM
 
     def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
         """Return the two plants at a search vector."""
@@ -100,7 +104,7 @@ class Objective:
         self.tried += 1
         plants = self.plants(x)
         benches = [Benches(CompiledBench, plants, start) for start in self.starts]
-        found, terms = cost(benches, self.best + ROOM, self.leave_out)
+        found, terms = cost(benches, self.best + self.room, self.leave_out)
         if found < self.best:
             self.best, self.best_x, self.best_terms = found, np.array(x), terms
             missed = [term for term in terms if term.excess > 0.0]
@@ -110,31 +114,25 @@ class Objective:
         return found
 
 
-def population(objective: Objective, seed: int, known: Array | None) -> Array:
-    """Return a first population: Sobol points that pass the statics, about the known point if there is
-    one."""
+def population(objective: Objective, seed: int) -> Array:
+    """Return a first population: Sobol points that pass the statics."""
     from scipy.stats import qmc
 
     low, high = np.array(bounds()).T
     random = np.random.default_rng(seed)
     sobol = low + (high - low) * qmc.Sobol(low.size, rng=random).random(SIFTED)
     possible = sobol[[objective.shortfall(x) == 0.0 for x in sobol]]
-    if known is None:
-        return np.asarray(possible[:POPULATION], dtype=np.float64)
-    possible = possible[: POPULATION // 12]
-    near = known + NEAR * random.standard_normal((POPULATION - len(possible), low.size))
-    near[0] = known
-    return np.concatenate([np.clip(near, low, high), possible])
+    return np.asarray(possible[:POPULATION], dtype=np.float64)
 
 
-def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = None) -> None:
-    """Search until all points are used up or one costs nothing; the result is in `objective`."""
-    from scipy.optimize import differential_evolution, minimize
+def evolve(objective: Objective, seeds: tuple[int, ...]) -> None:
+    """Differential evolution from one population per seed, each with its share of the points."""
+    from scipy.optimize import differential_evolution
 
     most = objective.most
     for k, seed in enumerate(seeds):
-        objective.most = round(most * (1.0 - SIMPLEX_SHARE) * (k + 1) / len(seeds))
-        start = population(objective, seed, known)
+        objective.most = round(most * (k + 1) / len(seeds))
+        start = population(objective, seed)
         if len(start) < 5:
             raise ValueError("hardly a point of the space passes the statics; there is nothing to search")
         objective.tell(f"      population {seed}")
@@ -143,13 +141,37 @@ def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = N
                 objective, bounds(), init=start, maxiter=10_000, tol=0.0, polish=False,
                 rng=np.random.default_rng(seed), mutation=(0.4, 0.9), recombination=0.8,
             )  # fmt: skip
-    objective.most = most
-    random = np.random.default_rng(seeds[0])
+
+
+def descend(objective: Objective, start: Array, seed: int) -> None:
+    """Short steps from a point, each from the best so far; a step that costs more is not run to its end."""
+    random = np.random.default_rng(seed)
+    low, high = np.array(bounds()).T
+    objective.room = 0.0
+    helped: Array | None = None
     with suppress(Enough):
-        while objective.best_x is not None:
-            simplex = objective.best_x + 0.05 * random.standard_normal((len(SPACE) + 1, len(SPACE)))
-            simplex[0] = objective.best_x
-            minimize(objective, simplex[0], method="Nelder-Mead", options={"initial_simplex": simplex})
+        if objective.best_x is None:
+            objective(start)
+        while True:
+            best, before = objective.best, start if objective.best_x is None else objective.best_x
+            if helped is not None and random.random() < AGAIN:
+                step = helped * random.uniform(0.3, 1.5)
+            else:
+                step = STEP * random.standard_normal(low.size) * (random.random(low.size) < MOVED)
+            objective(np.clip(before + step, low, high))
+            if objective.best < best:
+                helped = step
+
+
+def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = None) -> None:
+    """Search until all points are used up or one costs nothing; the result is in `objective`."""
+    most = objective.most
+    if known is None:
+        objective.most = round(most * (1.0 - STEP_SHARE))
+        evolve(objective, seeds)
+        known, objective.most = objective.best_x, most
+    if known is not None:
+        descend(objective, known, seeds[0])
 
 
 def report(objective: Objective, seeds: tuple[int, ...], seconds: float) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from scenarios.paper.cost import Term, cost, worst
 from scenarios.paper.experiments import Limit
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.scales import GEAR_RATIO
-from scenarios.paper.search import Objective, population
+from scenarios.paper.search import Objective, population, search
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.starts import QUICK, Benches
 from scenarios.paper.statics import (
@@ -164,11 +164,28 @@ def test_a_point_that_is_hopeless_is_left_early():
 def test_a_first_population_passes_the_statics_and_keeps_to_the_bounds():
     objective = Objective("motor", True, QUICK, 10, lambda text: None)
     low, high = np.array(bounds()).T
-    for known in (None, vector(DRIVE | {"torque_constant": 0.5})):
-        first = population(objective, 3, known)
-        assert len(first) >= 5
-        assert (first >= low - 1e-12).all() and (first <= high + 1e-12).all()
-    assert all(objective.shortfall(x) == 0.0 for x in population(objective, 3, None))
+    first = population(objective, 3)
+    assert len(first) >= 5
+    assert (first >= low - 1e-12).all() and (first <= high + 1e-12).all()
+    assert all(objective.shortfall(x) == 0.0 for x in first)
+
+
+def test_short_steps_go_downhill_within_the_bounds_and_end_with_their_points(monkeypatch):
+    """The way to a known point of the space, every logarithm counting the same."""
+    goal, begin = vector(DRIVE), np.log([0.5 * (free.low + free.high) for free in SPACE])
+    monkeypatch.setattr("scenarios.paper.search.CompiledBench", None)
+    objective = Objective("motor", True, QUICK, 600, lambda text: None)
+    monkeypatch.setattr(objective, "shortfall", lambda x: 0.0)
+    monkeypatch.setattr(objective, "plants", lambda x: x)
+    monkeypatch.setattr(
+        "scenarios.paper.search.Benches", lambda _make, x, _start: float(np.sum((x - goal) ** 2))
+    )
+    monkeypatch.setattr("scenarios.paper.search.cost", lambda found, *_: (found[0], []))
+    search(objective, (1,), begin)
+    low, high = np.array(bounds()).T
+    assert objective.tried == 600
+    assert objective.best < 0.1 * np.sum((begin - goal) ** 2)
+    assert (objective.best_x >= low).all() and (objective.best_x <= high).all()
 
 
 def test_every_free_number_has_bounds_and_a_reason():
