@@ -52,11 +52,13 @@ class Board:
     """
 
     __slots__ = (
+        "_before",
         "_clipped_ns",
         "_command",
         "_dropped_ns",
         "_foreign_ns",
         "_last",
+        "_late",
         "can",
         "clipped",
         "commands",
@@ -102,6 +104,8 @@ class Board:
         self.commands: Mapping[int, Handler] = self.common_commands()
         self._command = COMMAND_BASE + device_type
         self._last: dict[int, Frame] = {}
+        self._late: bytes | None = None
+        self._before: Callable[[int, Frame], None] | None = None
         self.dropped = 0
         self.foreign = 0
         self.clipped = 0
@@ -148,6 +152,8 @@ class Board:
         self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO
         self.inbox.clear()
         self._last.clear()
+        if self._late is not None:
+            self._late, self.port.on_sent = None, self._before
         self.reset()
         self.start(t_ns)
 
@@ -197,10 +203,32 @@ class Board:
         self.cpu.lines[CAN_LINE].request(self.queue.now_ns)
 
     def _serve(self, t_ns: int) -> None:
-        if not self.inbox or not self.on:
+        if not self.inbox or not self.on or self._late is not None:
             return
         opcode, reply = answer(self.device_type, self.commands, t_ns, self.inbox.popleft())
-        self.transmit(REPLY_BASE + self.device_type, pack_reply(self.device_type, opcode, *reply), t_ns)
+        data = pack_reply(self.device_type, opcode, *reply)
+        if self.port.free_buffers or self.port.state == "bus_off":
+            self.transmit(REPLY_BASE + self.device_type, data, t_ns)
+        else:
+            self._late, self._before = data, self.port.on_sent
+            self.port.on_sent = self._freed
+        if self.inbox:
+            self.cpu.lines[CAN_LINE].request(t_ns)
+
+    def _freed(self, t_ns: int, frame: Frame) -> None:
+        """A transmit buffer is free for the reply that found none; commands wait in the inbox meanwhile, so
+        that every one is answered."""
+        before = self._before
+        self._reply_late(t_ns)
+        if before is not None:
+            before(t_ns, frame)
+
+    def _reply_late(self, t_ns: int) -> None:
+        data = self._late
+        if data is None:
+            return
+        self._late, self.port.on_sent = None, self._before
+        self.transmit(REPLY_BASE + self.device_type, data, t_ns)
         if self.inbox:
             self.cpu.lines[CAN_LINE].request(t_ns)
 
@@ -224,6 +252,8 @@ class Board:
 
     def heartbeat(self, t_ns: int) -> None:
         """Send the HEARTBEAT frame, ready at `t_ns`."""
+        if self._late is not None and self.port.free_buffers:
+            self._reply_late(t_ns)  # buffers that were emptied, as after bus off, tell nobody
         uptime_s = self.clock_ns(t_ns) // 1_000_000_000
         data = pack_heartbeat(self.device_type, self.state(), uptime_s, self.cpu.overruns, self.port.tec)
         self.refresh(HEARTBEAT_BASE + self.device_type, data, t_ns)

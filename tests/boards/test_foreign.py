@@ -2,14 +2,18 @@
 
 import pytest
 
-from bus.can import Frame
+from bus.can import Frame, Port
 from bus.protocol import (
+    COMMAND_BASE,
     HEARTBEAT_BASE,
     MEASUREMENT_BASE,
+    REPLY_BASE,
     SUMMARY_BASE,
     Device,
     Health,
     Opcode,
+    Result,
+    pack_command,
     pack_tach,
     unpack_motion,
     unpack_target,
@@ -155,3 +159,48 @@ def test_a_bus_full_of_less_important_frames_costs_no_measurement() -> None:
     assert lab.axis.dropped == 0
     lab.run(0.01)
     assert len(seen[HEARTBEAT_BASE + Device.AXIS_RA]) == 1, "the newest, not all that were due"
+
+
+def pestered() -> tuple[Lab, Port, list[int]]:
+    """Eight commands in a row for the axis board, on a bus where frames before its replies come without end;
+    the parameters that are answered."""
+    lab = Lab()
+    lab.run(0.1)
+    answered: list[int] = []
+    commands = [
+        Frame(COMMAND_BASE + Device.AXIS_RA, pack_command(Device.AXIS_RA, Opcode.GET_PARAMETER, number))
+        for number in range(1, 9)
+    ]
+    busy = lab.wire.attach("busy")
+    busy.on_sent = lambda t_ns, frame: busy.send(frame, t_ns) and None
+    busy.send(Frame(0x0FF, bytes(8)), lab.queue.now_ns)
+    lab.wire.tap(
+        lambda _t, frame, _s: (
+            answered.append(frame.data[3]) if frame.identifier == REPLY_BASE + Device.AXIS_RA else None
+        )
+    )
+    lab.pc.on_sent = lambda t_ns, _frame: commands and lab.pc.send(commands.pop(0), t_ns) and None
+    lab.pc.send(commands.pop(0), lab.queue.now_ns)
+    lab.run(0.01)
+    return lab, busy, answered
+
+
+def test_every_command_is_answered_once_when_the_replies_find_no_buffer() -> None:
+    lab, busy, answered = pestered()
+    assert answered == [] and lab.axis.port.free_buffers == 0
+    busy.on_sent = None
+    lab.run(0.01)
+    assert answered == list(range(1, 9))
+    assert lab.axis.port.on_sent is None
+    assert Result(lab.command(Opcode.PING).result) is Result.OK
+
+
+def test_a_board_that_loses_its_supply_with_a_reply_in_hand_begins_anew() -> None:
+    lab, busy, answered = pestered()
+    lab.axis.power_off(lab.queue.now_ns)
+    busy.on_sent = None
+    lab.run(0.01)
+    lab.axis.power_on(lab.queue.now_ns)
+    lab.run(1.0)
+    assert answered == []
+    assert Result(lab.command(Opcode.PING).result) is Result.OK
