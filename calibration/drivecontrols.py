@@ -32,7 +32,8 @@ def drive_controls(b: Balance) -> list[dict[str, Any]]:
         others = [o.candidate.columns for j, o in enumerate(s.chosen) if j != k]
         for shift in (CELLS, -CELLS):
             rate = c.order / (b.view.turn or 1.0) + shift / span
-            wrong = replace(c, columns=sine_columns(x * rate, b.scene.session), shape=None)
+            label = p.session if c.per_run else np.zeros_like(p.session)
+            wrong = replace(c, columns=sine_columns(x * rate, label), shape=None)
             fit = gls(p.y, np.hstack([p.base, *others, wrong.columns]), p.train, p.ar_order, p.block)
             out.append(
                 {

@@ -9,9 +9,11 @@ import numpy as np
 from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import compare
 from calibration.decide.select import Refusal, Selection, design, phases
+from calibration.names.structural_mode import MOST_DAMPED
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
 
+PASSIVE = ("inertia", "viscous", "coulomb")  # terms that cannot be negative
 STICTION = 0.2  # a dip of friction near rest, likewise: less is how friction turns (development seed 1011)
 SEARCHED = ("bearing_pass", "command_disturbance")  # lines found among hundreds
 LINE = 0.04  # what such a line must add, likewise
@@ -36,6 +38,51 @@ def prune(s: Selection) -> Selection:
             break
         s = _without(s, k, "adds too little to what is left when it is left out")
     return s
+
+
+def sound(s: Selection) -> Selection:
+    """Names beside which a mass or friction that was positive turns negative are not believed; and none is
+    when all together make the held-out error worse."""
+    while s.chosen:
+        bad = _negative(s)
+        if bad is None:
+            break
+        trials = [
+            _without(s, k, f"beside it {bad} comes out negative, which feeds energy")
+            for k in range(len(s.chosen))
+        ]
+        good = [x for x in trials if _negative(x) is None]
+        s = min(good or trials, key=lambda x: x.held.after)
+    while s.chosen and s.held.after > s.held.before:
+        s = min(
+            (_without(s, k, "the held-out error grows with what was found") for k in range(len(s.chosen))),
+            key=lambda x: x.held.after,
+        )
+    return s
+
+
+def within_bounds(s: Selection, resolved: float) -> Selection:
+    """Leave out what ended where its shape means nothing: a loop narrower than the sensor's steps, a mode
+    that is no resonance. `resolved`: travel, position units."""
+    bounds = {
+        "presliding": ("breakaway_travel", 0.0, resolved, "narrower than the sensor's steps show"),
+        "play": ("gap", 0.0, resolved, "narrower than the sensor's steps show"),
+        "structural_mode": ("damping", MOST_DAMPED, np.inf, "damped too much for a resonance"),
+    }
+    for name, (key, low, high, why) in bounds.items():
+        at = [k for k, x in enumerate(s.chosen) if x.candidate.name == name]
+        for k in reversed(at):
+            if low <= s.chosen[k].candidate.fixed.get(key, (np.nan, ""))[0] <= high:
+                s = _without(s, k, why)
+    return s
+
+
+def _negative(s: Selection) -> str | None:
+    """A passive term that was positive before anything was named and is negative now."""
+    for k, (name, _) in enumerate(s.problem.base_labels):
+        if name in PASSIVE and s.before.beta[k] > 0 > s.after.beta[k]:
+            return name
+    return None
 
 
 def _fit(s: Selection, chosen: list[Candidate]) -> tuple[Array, Fit]:

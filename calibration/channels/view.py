@@ -33,6 +33,9 @@ NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave i
 LEAST, MOST = 2.0, 40.0  # rows: standard deviation of the filter, where the rig file does not say it
 
 
+RESOLVED = 6.0  # steps of the position's sensor that a travel must have before its shape is seen
+
+
 @dataclass
 class View:
     """Full-rate columns (n,) of all records, one after the other, each on a regular grid of `period_s`.
@@ -75,6 +78,11 @@ class View:
     def angle_unit(self) -> str:
         """Of the position."""
         return self.rig.columns["position"].unit
+
+    @property
+    def resolved(self) -> float:
+        """Travel, position units, below which what happens after a reversal is the sensor's."""
+        return RESOLVED * float(np.sqrt(12.0)) * position_noise(self.x, self.file)
 
     @property
     def step(self) -> int:
@@ -205,7 +213,7 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
     noise = position_noise(x, file)
     sigma = LEAST
     while sigma < MOST:
-        a = np.diff(gaussian_filter1d(x, sigma), 2)
+        a = np.concatenate([np.diff(gaussian_filter1d(x[i:j], sigma), 2) for i, j in pieces(file)])
         size = float(np.sqrt(np.mean(np.clip(a, *np.quantile(a, [0.005, 0.995])) ** 2)))
         if noise * np.sqrt(3 / (8 * np.sqrt(np.pi)) / sigma**5) < NOISE * size:
             break
@@ -218,7 +226,7 @@ def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
     noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(70.0)  # of white noise: 1+16+36+16+1
     steps = np.abs(np.diff(x))
-    steps = steps[steps > 0]
+    steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently
     rounding = float(np.quantile(steps, 0.02)) / np.sqrt(12.0) if len(steps) else 0.0
     return float(max(noise, rounding))
 

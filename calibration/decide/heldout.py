@@ -42,19 +42,30 @@ def predict_residual(
 
 
 def _new_phase(pairs: Array, beta: Array, train: Mask, rows: Mask, e: Array) -> Array:
-    """What a line of known amplitude and a phase of its own in every run (cos, sin per run) takes off `e`
-    there."""
-    weight = np.abs(pairs[train]).max(axis=0)
-    known = [k for k in range(0, pairs.shape[1], 2) if weight[k] > 0]
+    """What lines of known amplitude and a phase of their own in every run (cos, sin per run) take off `e`
+    there; the j-th pair of every run is the same harmonic."""
+    known: dict[int, list[float]] = {}
+    fresh: list[tuple[int, int]] = []
+    seen: dict[int, int] = {}
+    for k in range(0, pairs.shape[1] - 1, 2):
+        pair = pairs[:, k : k + 2]
+        begin = int(np.argmax(np.any(pair != 0, axis=1)))
+        harmonic = seen.get(begin, 0)
+        seen[begin] = harmonic + 1
+        if np.abs(pair[train]).max(initial=0.0) > 0:
+            known.setdefault(harmonic, []).append(float(np.hypot(beta[k], beta[k + 1])))
+        elif np.abs(pair[rows]).max(initial=0.0) > 0:
+            fresh.append((k, harmonic))
     out = np.zeros(len(e))
-    if not known:
+    fresh = [(k, h) for k, h in fresh if h in known]
+    if not fresh:
         return out
-    amplitude = float(np.median([np.hypot(beta[k], beta[k + 1]) for k in known]))
-    for k in range(0, pairs.shape[1], 2):
-        pair = pairs[rows, k : k + 2]
-        if weight[k] == 0 and np.abs(pair).max() > 0:
-            b = solve(pair, e)
-            out += pair @ b * (amplitude / max(float(np.hypot(b[0], b[1])), 1e-300))
+    at = [c for k, _ in fresh for c in (k, k + 1)]
+    b = solve(pairs[rows][:, at], e)
+    for j, (k, harmonic) in enumerate(fresh):
+        here = b[2 * j : 2 * j + 2]
+        size = float(np.median(known[harmonic])) / max(float(np.hypot(here[0], here[1])), 1e-300)
+        out += pairs[rows, k : k + 2] @ here * size
     return out
 
 

@@ -40,10 +40,7 @@ def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
     beta, cov = selection.after.beta[where], selection.after.covariance[where, where]
     blocks = int(problem.train.sum() / problem.block)
     out: dict[str, Parameter] = {}
-    if candidate.per_run:
-        pairs = range(0, candidate.width, 2)
-        out["amplitude"] = _common_amplitude(candidate, beta, cov, blocks, pairs)
-    elif candidate.kind == "line":
+    if candidate.kind == "line" or candidate.per_run:
         sections = pairs_by_section(candidate.columns)
         out = _waves(candidate, beta, cov, blocks, sections)
     else:

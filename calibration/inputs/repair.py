@@ -9,11 +9,13 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.record import Record, Repair, quantum
 from calibration.readers.run import Array
 
-WORDS = tuple(2.0**k for k in (8, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 22, 24, 32))
+WORDS = tuple(2.0**k for k in range(8, 33))
 CIRCLES = (1.0, 24.0, 360.0, 2 * np.pi, 86400.0, 1296000.0, 400.0, 1000.0)
 NEAR = 0.2  # of the counter's length, by which a wrap's jump may differ: what is moved in one row
 SPIKE = 12.0  # robust deviations from the neighbours' line
 LEAP = 2.5  # between the smallest spike and the largest of the rest
+TAIL = 20  # values below the leap, from which the tail's index is taken (Hill 1975)
+BY_CHANCE = 1e-4  # of a leap that a heavy tail makes by itself
 MOST_SPIKES = 0.01  # of rows: more is no spike but the signal
 FROZEN = 5  # rows: a column that stands still for so long while it moves before and after
 MOVING = ("position", "position2", "velocity", "reference")
@@ -124,10 +126,17 @@ def _clear_of_tails(off: Array, n: int) -> float:
     top = off.copy()
     for shift in (-2, -1, 1, 2):  # a spike moves its neighbours' lines, too
         top[off < np.roll(off, shift)] = 0.0
-    largest = np.sort(top)[::-1][: max(int(MOST_SPIKES * n), 3) + 1]
-    for k in range(1, len(largest)):
-        if largest[k - 1] > LEAP * largest[k]:
-            return float(largest[k])
+    most = max(int(MOST_SPIKES * n), 3)
+    largest = np.sort(top)[::-1][: most + 1 + TAIL]
+    for k in range(1, min(most + 1, len(largest) - TAIL)):
+        rest = largest[k : k + TAIL + 1]
+        if rest[0] <= 0 or rest[-1] <= 0:
+            return float(rest[0])
+        leap = largest[k - 1] / rest[0]
+        tail = float(np.mean(np.log(rest[:-1] / rest[-1])))  # Hill's estimate of 1 / the tail's index
+        # the k largest of a power law all lie `leap` above the next with this probability (Renyi)
+        if leap > LEAP and k * np.log(leap) > -np.log(BY_CHANCE) * tail:
+            return float(rest[0])
     return float("inf")
 
 

@@ -13,8 +13,10 @@ CALLED = {
     "repeat": "sample_loss",
     "saturation": "log_wrap",
 }
+FORCES = ("effort", "current", "force", "acceleration")
 SAID = {"saturation"}  # told, but no fault of the log
 FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
+FEWEST_OF_FORCE = 3  # spikes in a force: noise with heavy tails makes one or two; a position's has none
 CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise
 
 
@@ -28,7 +30,8 @@ def repairs_found(records: list[Record]) -> list[Finding]:
     out = []
     for (kind, channel), found in groups.items():
         rows = sum(n for _, n, _, _ in found)
-        if rows < FEWEST.get(kind, 1):
+        least = FEWEST_OF_FORCE if kind == "spike" and channel in FORCES else FEWEST.get(kind, 1)
+        if rows < least:
             continue
         where = f"{channel} column" if channel != "all" else "all columns"
         files = f" in {len(found)} of {len(records)} files" if len(records) > 1 else ""

@@ -52,6 +52,7 @@ def columns(s: Scene) -> list[Candidate]:
                     shape=shape,
                     steps=(0.1 / length,),
                     searched=1,
+                    per_run=len(np.unique(files)) > 1,
                     twins=() if len(overtones) > 1 else ("structural_mode",),
                 )
             )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calibration.candidates.candidate import Candidate, sine_columns
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
 from calibration.names.name import SENSORS, Name
 from calibration.names.scene import Scene
-from calibration.names.sines import stage_lines
+from calibration.names.sines import over_place, stage_lines
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -17,7 +19,6 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     out = stage_lines(s, "encoder_eccentricity", default=True)
     turn = s.view.turn
-    x = s.view.x[s.view.rows]
     have = [c.order for c in out]
     if turn and s.span > 0.4 * turn:
         for h in (1, 2):
@@ -25,14 +26,14 @@ def columns(s: Scene) -> list[Candidate]:
                 one = Candidate(
                     "encoder_eccentricity",
                     "axis_angle",
-                    sine_columns(x * h / turn, s.session),
+                    np.zeros((len(s.view.rows), 0)),
                     (("amplitude", s.unit),),
                     kind="line",
                     stage="axis",
                     harmonic=h,
                     order=float(h),
                 )
-                out.append(one)
+                out += over_place(s, one, h / turn)
     return [replace(c, twins=("gear_eccentricity",)) for c in out]
 
 

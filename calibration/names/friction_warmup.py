@@ -14,23 +14,36 @@ LEAST_K = 0.5  # of temperature before its coefficient means anything
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Friction times exp(-time / tau), on the clock that all files share, or times the temperature."""
+    """Friction times exp(-time / tau), on the clock that all files share or from the start of every file, or
+    times the temperature."""
     v = s.view
     weight = v.direction * s.friction
-    span = float(np.ptp(v.clock)) or 1.0
-    start = v.clock - float(v.clock.min())
+    out = _cooling(s, weight, v.clock - float(v.clock.min()), "tau")
+    if len(np.unique(v.file)) > 1:
+        out += _cooling(s, weight, v.t, "tau_in_each_run")
+    t = v.columns.get("temperature")
+    if t is not None and np.ptp(t) > LEAST_K:
+        column = s.at(weight * (t - t.mean()))[:, None]
+        label = (("relative_per_degree", "1/K"),)
+        out.append(Candidate("friction_warmup", "temperature", column, label, sign=-1))
+    return out
+
+
+def _cooling(s: Scene, weight: Array, since: Array, name: str) -> list[Candidate]:
+    """`weight` (full rate) times exp(-since / tau) for the time constants that are tried."""
+    span = float(since.max()) or 1.0
 
     def full(p: Array) -> Array:
-        return np.asarray(weight * np.exp(-start / float(np.clip(p[0], 1e-3 * span, span))))
+        return np.asarray(weight * np.exp(-since / float(np.clip(p[0], 1e-3 * span, span))))
 
     shape = s.shaped(full)
-    out = [
+    return [
         Candidate(
             "friction_warmup",
             "time",
             shape(np.array([part * span])),
             (("relative_rise", "1"),),
-            fixed={"tau": (part * span, "s")},
+            fixed={name: (part * span, "s")},
             sign=1,
             shape=shape,
             steps=(0.1 * part * span,),
@@ -38,12 +51,6 @@ def columns(s: Scene) -> list[Candidate]:
         )
         for part in PARTS
     ]
-    t = v.columns.get("temperature")
-    if t is not None and np.ptp(t) > LEAST_K:
-        column = s.at(weight * (t - t.mean()))[:, None]
-        label = (("relative_per_degree", "1/K"),)
-        out.append(Candidate("friction_warmup", "temperature", column, label, sign=-1))
-    return out
 
 
 NAME = Name(

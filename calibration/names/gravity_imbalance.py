@@ -36,8 +36,15 @@ def columns(s: Scene) -> list[Candidate]:
             stage="axis",
             harmonic=1,
             order=1.0,
+            twins=("gear_eccentricity",) if any(_once_per_turn(s)) else (),
         )
     ]
+
+
+def _once_per_turn(s: Scene) -> list[bool]:
+    """For every declared stage, whether it turns with the weight."""
+    turn = s.view.turn or 1.0
+    return [bool(g.period) and abs(float(g.period or 0.0) / turn - 1) < 1e-6 for g in s.view.rig.stages]
 
 
 def lacks(s: Scene) -> str:

@@ -8,6 +8,7 @@ from calibration.candidates.candidate import Candidate
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
+EDGE = 0.04  # of the time, at either end: a step there is how a run begins or ends
 TRIALS = 24  # onsets that are tried
 
 
@@ -21,8 +22,9 @@ def steps(s: Scene, name: str, weight: Array, label: tuple[str, str], sign: int)
             continue
         span = float(clock.max())
 
-        def full(p: Array, clock: Array = clock) -> Array:
-            return np.asarray(weight * np.clip((clock - p[0]) / (2 * v.period_s * max(v.step, 1)), 0.0, 1.0))
+        def full(p: Array, clock: Array = clock, span: float = span) -> Array:
+            at = float(np.clip(p[0], EDGE * span, (1 - EDGE) * span))
+            return np.asarray(weight * np.clip((clock - at) / (2 * v.period_s * max(v.step, 1)), 0.0, 1.0))
 
         shape = s.shaped(full)
         for at in np.linspace(0.06, 0.94, TRIALS) * span:

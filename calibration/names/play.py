@@ -38,15 +38,18 @@ def columns(s: Scene) -> list[Candidate]:
     if not s.force:
         return _between_sensors(s)
     v = s.view
+    if v.response.channel == "acceleration":
+        return []  # nothing drives through a gap
     stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    least = v.resolved
     out = []
     for part in PARTS:
         gap = part * stroke
-        if np.mean(np.abs(v.since) < gap) < 0.005:
+        if gap < least or np.mean(np.abs(v.since) < gap) < 0.005:
             continue
 
         def full(p: Array) -> Array:
-            return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), 0.0)))
+            return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), least)))
 
         shape = s.shaped(full)
         out.append(

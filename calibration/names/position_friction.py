@@ -6,54 +6,72 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.candidates.candidate import Candidate
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
+from calibration.names.sines import as_one, over_place
+from calibration.readers.run import Array
 
 HARMONICS = 3  # of the travelled range, and up to 12 of every stage
+WAVES = np.arange(0.75, 12.1, 0.5)  # over the travelled range, of a friction that follows no stage
+STEP = 0.1  # of a wave over the range: a small one
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Sines over the range and over every slow stage, odd in direction."""
+    """Sines over the range, over every slow stage, and of any length, odd in direction."""
     if not s.both or s.span <= 0:
         return []
     v = s.view
     period = min(s.span, v.turn or s.span)
     most = s.declared.get("coulomb", 0.0) or np.inf  # friction that changes its sign would feed energy
-    places = [(h / period, "axis", h, False) for h in range(1, HARMONICS + 1)]
-    for g in v.rig.stages:
-        if g.period:
-            places += [
-                (h / g.period, g.name, h, True)
-                for h in range(1, min(g.harmonics, 12) + 1)
-                if s.span * h / g.period > 1.5
-            ]
+    blank = Candidate(
+        "position_friction",
+        "axis_angle",
+        np.zeros((len(v.rows), 0)),
+        (("amplitude", s.unit),),
+        kind="line",
+        stage="axis",
+        most=most,
+    )
     out = []
-    sessions = s.session
-    for rate, stage, h, own in places:
-        phase = 2 * np.pi * v.x * rate
-        pair = s.at(np.column_stack([v.direction * np.cos(phase), v.direction * np.sin(phase)]))
-        if own and len(np.unique(sessions)) > 1:
-            pair = sine_columns(v.x[v.rows] * rate, sessions, s.at(v.direction))
-        out.append(
-            Candidate(
-                "position_friction",
-                "axis_angle",
-                pair,
-                (("amplitude", s.unit),),
-                kind="line",
-                stage=stage,
-                harmonic=h,
-                order=rate * (v.turn or 1.0),
-                most=most,
-            )
-        )
+    for h in range(1, HARMONICS + 1):
+        rate = h / period
+        out.append(replace(blank, columns=_waves(s, rate), harmonic=h, order=rate * (v.turn or 1.0)))
     for g in v.rig.stages:
-        mine = [c for c in out if c.stage == g.name]
-        if len(mine) > 1:  # several hide each other when taken one by one
-            whole = np.hstack([c.columns for c in mine])
-            out.append(replace(mine[0], columns=whole, harmonic=None, searched=1))
-    return out
+        mine: list[Candidate] = []
+        for h in range(1, min(g.harmonics, 12) + 1) if g.period else ():
+            rate = h / float(g.period or 1.0)
+            one = replace(blank, stage=g.name, harmonic=h, order=rate * (v.turn or 1.0))
+            if s.span * rate > 1.5:
+                mine += over_place(s, one, rate, v.direction)
+        out += [*mine, *as_one(mine)]
+    return out + _of_any_length(s, blank)
+
+
+def _waves(s: Scene, rate: float) -> Array:
+    phase = 2 * np.pi * s.view.x * rate
+    d = s.view.direction
+    return s.at(np.column_stack([d * np.cos(phase), d * np.sin(phase)]))
+
+
+def _of_any_length(s: Scene, blank: Candidate) -> list[Candidate]:
+    """Waves over the range whose length is fitted."""
+    unit = s.view.turn or 1.0
+
+    def shape(p: Array) -> Array:
+        return _waves(s, float(p[0]) / unit)
+
+    return [
+        replace(
+            blank,
+            columns=shape(np.array([w / s.span * unit])),
+            fixed={"order": (w / s.span * unit, "1")},
+            shape=shape,
+            steps=(STEP / s.span * unit,),
+            searched=1,
+        )
+        for w in WAVES
+    ]
 
 
 def lacks(s: Scene) -> str:

@@ -21,21 +21,22 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     v = s.view
     stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    least = v.resolved
     labels = (("loop_force", s.unit), ("second_loop_force", s.unit))
 
     def element(radius: float) -> Array:
         return stop_operator(v.x, v.file, radius) / radius - v.direction
 
     def one(p: Array) -> Array:
-        return element(max(float(p[0]), 1e-6 * stroke))
+        return element(max(float(p[0]), least, 1e-6 * stroke))
 
     def two(p: Array) -> Array:
-        return np.column_stack([one(p), one(p / 2)])
+        return np.column_stack([one(p), one(np.maximum(p, 2 * least) / 2)])
 
     out = []
     for part in RADII:
         radius = part * stroke
-        if np.mean(np.abs(v.since) < 2 * radius) < FEWEST:
+        if radius < least or np.mean(np.abs(v.since) < 2 * radius) < FEWEST:
             continue
         fixed = {"breakaway_travel": (radius, s.angle_unit)}
         for full, width in ((one, 1), (two, 2)):

@@ -48,10 +48,14 @@ class Scene:
         return self.view.at(full)
 
     @property
-    def session(self) -> NDArray[np.int64]:
-        """Label (n_fitted,) of rows that share the position's zero."""
-        s = self.problem.session
-        return np.zeros_like(s) if self.view.rig.runs.get("origin") == "shared" else s
+    def zeros(self) -> list[tuple[NDArray[np.int64], bool]]:
+        """Labels (n_fitted,) of rows that share the position's zero, and whether every label has a zero of
+        its own. Files that are not declared to share it may do so, or not: both are tried."""
+        own = self.problem.session
+        shared = [(np.zeros_like(own), False)]
+        if self.view.rig.runs.get("origin") == "shared" or len(np.unique(own)) < 2:
+            return shared
+        return [*shared, (own, True)]
 
     @property
     def both(self) -> bool:

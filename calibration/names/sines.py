@@ -13,6 +13,7 @@ from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
+SAME = 1e-6  # of a turn
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
 TOGETHER = 12  # harmonics of a stage that are also looked for as one
@@ -34,24 +35,51 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
             continue
         for h in range(1, stage.harmonics + 1):
             rate = h / stage.period
+            if s.force and s.view.turn and abs(rate * s.view.turn - 1) < SAME:
+                continue  # once per turn of an angle: gravity_imbalance has the same columns
             if (s.span * rate < ENOUGH and stage.harmonics < 3) or s.span * rate < 0.5 or not seen(s, rate):
                 continue
-            out.append(
+            out += over_place(
+                s,
                 Candidate(
                     kind,
                     "motor_angle" if kind in ("motor_cogging", "torque_ripple") else "axis_angle",
-                    sine_columns(x * rate, s.session),
+                    np.zeros((len(x), 0)),
                     (("amplitude", s.unit),),
                     kind="line",
                     stage=stage.name,
                     harmonic=h,
                     order=rate * (s.view.turn or 1.0),
-                )
+                ),
+                rate,
             )
-        mine = [c for c in out if c.stage == stage.name][:TOGETHER]
-        if len(mine) > 1:  # several large harmonics hide each other when taken one by one
-            whole = np.hstack([c.columns for c in mine])
-            out.append(replace(mine[0], columns=whole, harmonic=None, searched=1))
+        out += as_one([c for c in out if c.stage == stage.name])
+    return out
+
+
+def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = None) -> list[Candidate]:
+    """`blank` with the sine pair of `rate` cycles per position unit, its phase bound to the place; and with
+    a phase of every file's own where the files' zeros may differ. `weight` is at full rate."""
+    phase = 2 * np.pi * rate * s.view.x
+    w = 1.0 if weight is None else weight
+    pair = s.at(np.column_stack([w * np.cos(phase), w * np.sin(phase)]))
+    return [
+        replace(
+            blank, columns=np.hstack([pair * (label == k)[:, None] for k in np.unique(label)]), per_run=own
+        )
+        for label, own in s.zeros
+    ]
+
+
+def as_one(mine: list[Candidate]) -> list[Candidate]:
+    """Several large harmonics of a stage hide each other when they are taken one by one: all of one zero as
+    one."""
+    out = []
+    for own in (False, True):
+        some = [c for c in mine if c.per_run == own][:TOGETHER]
+        if len(some) > 1:
+            whole = np.hstack([c.columns for c in some])
+            out.append(replace(some[0], columns=whole, harmonic=None, searched=1))
     return out
 
 
@@ -94,16 +122,18 @@ def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
     for rate in peaks(s, x, s.span, FREE_TURNS / s.span, most):
         if any(abs(rate - r) * s.span < 0.8 for r in taken) or not seen(s, rate):
             continue
-        out.append(
+        out += over_place(
+            s,
             Candidate(
                 name,
                 "axis_angle",
-                sine_columns(x * rate, s.session),
+                np.zeros((len(x), 0)),
                 (("amplitude", s.unit),),
                 kind="line",
                 order=float(rate * (s.view.turn or 1.0)),
                 searched=1,
-            )
+            ),
+            rate,
         )
     return out
 

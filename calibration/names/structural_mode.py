@@ -12,6 +12,7 @@ from calibration.readers.run import Array
 
 COUNT = 14  # frequencies that are tried
 DAMPING = 0.05  # ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
+MOST_DAMPED = 0.2  # of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
 BELOW = 0.5  # of the filter's corner: above it nothing is left to see
 
 
@@ -27,7 +28,7 @@ def columns(s: Scene) -> list[Candidate]:
 
     def full(p: Array) -> Array:
         return oscillator(
-            a, v.file, v.period_s, max(float(p[0]), lowest / 2), float(np.clip(p[1], 0.002, 0.5))
+            a, v.file, v.period_s, max(float(p[0]), lowest / 2), float(np.clip(p[1], 0.002, MOST_DAMPED))
         )
 
     shape = s.shaped(full)

@@ -4,27 +4,32 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calibration.candidates.candidate import Candidate, sine_columns
+import numpy as np
+
+from calibration.candidates.candidate import Candidate
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
-from calibration.names.sines import stage_lines
+from calibration.names.sines import over_place, stage_lines
+
+MOST = 0.5  # of the force: motors' data sheets have 0.01 to 0.1; ASSUMPTION: more is something else
 
 
 def columns(s: Scene) -> list[Candidate]:
     """Sines of a motor stage times the force that the motor makes."""
     if lacks(s):
         return []
-    load = s.problem.y - s.residual  # the declared part: the response itself would bring its noise along
-    x = s.view.x[s.view.rows]
+    # the declared part: the response itself would bring its noise along
+    load = np.interp(np.arange(len(s.view.t)), s.view.rows, s.problem.y - s.residual)
     stages = {g.name: g for g in s.view.rig.stages}
     out = []
     for c in [*stage_lines(s, "torque_ripple"), *stage_lines(s, "motor_cogging")]:
         stage = stages[str(c.stage)]
         if not stage.period or c.harmonic is None or c.harmonic > 12:
             continue
-        rate = c.harmonic / stage.period
-        columns = sine_columns(x * rate, s.session, load)
-        out.append(replace(c, name="torque_ripple", columns=columns, labels=(("ripple", "1"),)))
+        if c.per_run:
+            continue  # over_place makes both
+        blank = replace(c, name="torque_ripple", labels=(("ripple", "1"),), most=MOST)
+        out += over_place(s, blank, c.harmonic / stage.period, load)
     return out
 
 

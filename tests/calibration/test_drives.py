@@ -244,3 +244,57 @@ def test_every_name_is_of_the_catalogue_and_says_how_to_be_told_apart() -> None:
     for name in NAMES.values():
         assert name.name in CATALOGUE and name.experiment
         assert set(name.twins) <= set(CATALOGUE) and name.name not in name.twins
+
+
+def several(count: int = 3) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Files of one drive that share the position's zero, each at its own speed and noise."""
+    out = []
+    for k in range(count):
+        t = np.arange(0, 24.0, PERIOD)
+        w = 2 * np.pi * np.array([0.21, 0.53]) * (1 + 0.07 * k)
+        size = np.array([0.3, 0.1])
+        x = (size * np.sin(np.outer(t, w))).sum(1)
+        v = (size * w * np.cos(np.outer(t, w))).sum(1)
+        a = -(size * w**2 * np.sin(np.outer(t, w))).sum(1)
+        noise = 0.02 * np.random.default_rng(k).standard_normal(len(t))
+        out.append((t, x, MASS * a + VISCOUS * v + COULOMB * np.sign(v) + noise))
+    return out
+
+
+def test_a_gear_is_found_though_a_whole_file_is_held_out(tmp_path: Path) -> None:
+    stage = FORCE + "stages:\n  - {name: screw, period: 0.05}\n"
+    tables = [(t, x, u + 0.5 * np.cos(2 * np.pi * x / 0.05 + 1.0)) for t, x, u in several()]
+    data = answer(tmp_path, stage, *tables)
+    assert found(data)[:1] == ["gear_eccentricity"]
+    assert data["effects"][0]["parameters"]["amplitude"]["value"] == pytest.approx(0.5, rel=0.05)
+
+
+def test_a_gear_whose_zero_differs_from_file_to_file_is_found_too(tmp_path: Path) -> None:
+    stage = FORCE + "stages:\n  - {name: screw, period: 0.05}\n"
+    tables = [
+        (t, x, u + 0.5 * np.cos(2 * np.pi * x / 0.05 + 2.1 * k)) for k, (t, x, u) in enumerate(several())
+    ]
+    data = answer(tmp_path, stage, *tables)
+    assert found(data)[:1] == ["gear_eccentricity"]
+
+
+def test_friction_in_waves_of_no_stage_is_found_with_their_length(tmp_path: Path) -> None:
+    tables = [
+        (
+            t,
+            x,
+            u + 0.4 * np.gradient(x, t) / np.abs(np.gradient(x, t)).clip(1e-6) * np.cos(2 * np.pi * x / 0.13),
+        )
+        for t, x, u in several()
+    ]
+    data = answer(tmp_path, FORCE, *tables)
+    assert found(data)[:1] == ["position_friction"]
+    assert 1 / data["effects"][0]["order"] == pytest.approx(0.13, rel=0.02)
+
+
+def test_half_a_sample_of_delay_either_way_is_a_sound_loop(tmp_path: Path) -> None:
+    for k, shift in enumerate((-0.5, 0.5)):
+        tables = [(t, x, np.interp(t - shift * PERIOD, t, u)) for t, x, u in several()]
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        assert found(answer(folder, FORCE, *tables)) == []

@@ -1,0 +1,85 @@
+"""When the effort acts: a late column, and the hold of a sampled loop. Both are settled before any name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.channels.balance import problem_of
+from calibration.channels.problem import Problem
+from calibration.channels.view import View
+from calibration.decide.finding import Finding
+from calibration.decide.select import Selection
+from calibration.drivesearch import scene_of
+from calibration.inputs.record import Record
+from calibration.names.lateness import effort_delay, is_hold
+from calibration.names.scene import Scene
+from calibration.names.unknown import plain
+
+Found = tuple[Selection, Scene, list[str]]
+Find = Callable[[Problem], Found]
+EARNS = 0.05  # of the held-out mean square, that a delay must take off beside the names found without it
+
+
+@dataclass
+class Timed:
+    """A balance whose effort is where it belongs: `delay` when that is an effect, `before` its held-out
+    error without; `note` when it is a sound loop's hold."""
+
+    problem: Problem
+    found: Found
+    delay: Finding | None = None
+    before: float | None = None
+    note: str = ""
+
+
+def timed(
+    view: View, records: list[Record], hold_out: list[str], problem: Problem, channel: str, find: Find
+) -> Timed:
+    """Look for a delay; keep it only when names without it do not explain as much."""
+    delay = effort_delay(scene_of(view, problem))
+    if delay is not None and is_hold(delay, view.period_s):
+        value = delay.parameters["delay"].value
+        held = problem_of(view, records, hold_out, value)
+        return Timed(
+            held, find(held), note=f"{channel}: acts {-value:.2g} s after its row: the hold of a sampled loop"
+        )
+    plain_loop = _held_loop(view, records, hold_out, problem)
+    found = find(plain_loop)
+    if delay is None:
+        return Timed(plain_loop, found)
+    moved = problem_of(view, records, hold_out, delay.parameters["delay"].value)
+    late = find(moved)
+    now, was = late[0].held.after, found[0].held.after
+    simpler = len(late[0].chosen) < len(found[0].chosen)
+    if now**2 < (1.0 if simpler else 1.0 - EARNS) * was**2:
+        return Timed(moved, late, delay, _held_rms(problem))
+    return Timed(plain_loop, found)
+
+
+def _held_loop(view: View, records: list[Record], hold_out: list[str], problem: Problem) -> Problem:
+    """The balance in which the effort acts half a period after its row, before it, or at it: whichever fits
+    best, since no log tells which row an effort that is held for a period was written to."""
+    half = view.period_s / 2
+    return min(
+        (problem, *(problem_of(view, records, hold_out, d) for d in (-half, half))),
+        key=lambda p: left_by_the_declared(view, p),
+    )
+
+
+def left_by_the_declared(view: View, p: Problem) -> float:
+    """Mean square on fitted rows beside the declared terms, loops, asymmetry and weight."""
+    x = np.hstack([p.base, plain(scene_of(view, p))])[p.train]
+    x = x / np.maximum(np.linalg.norm(x, axis=0), 1e-300)
+    beta = np.linalg.lstsq(x, p.y[p.train], rcond=1e-8)[0]
+    return float(np.mean((p.y[p.train] - x @ beta) ** 2))
+
+
+def _held_rms(problem: Problem) -> float:
+    rows, train = problem.test, problem.train
+    beta = np.linalg.lstsq(problem.base[train], problem.y[train], rcond=None)[0]
+    return (
+        float(np.sqrt(np.mean((problem.y - problem.base @ beta)[rows] ** 2))) if rows.any() else float("nan")
+    )

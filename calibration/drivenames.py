@@ -1,0 +1,60 @@
+"""From the effects that were fitted to what they may be called."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.decide.finding import Finding
+from calibration.names.scene import Scene
+
+LINES = ("gear_eccentricity", "gear_mesh", "motor_cogging", "bearing_pass")
+LOOPS = ("presliding", "play")  # after a reversal: two of them are the shape of one
+# of the usual stroke: a wider loop is no bristle's. Contacts slide after micrometres to some hundred of them
+# (Al-Bender, Lampaert, Swevers 2005)
+WIDEST = 0.05
+BRISTLE = {"m": 1e-3, "mm": 1.0}  # position unit -> a stroke that bristles may fill (same paper)
+
+
+def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
+    """Findings of a balance of forces with the names that the log carries."""
+    named = [_wide_loop(_line(f, scene), scene) for f in findings]
+    return _one_loop(named) if scene.force else named
+
+
+def _line(f: Finding, scene: Scene) -> Finding:
+    """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
+    if f.name == "bearing_pass" and f.order:
+        f.note = f"period {(scene.view.turn or 1.0) / f.order:.5g} {scene.angle_unit}"
+        if not scene.view.rig.stages:
+            f.name, f.stage = "gear_eccentricity", None
+            f.equivalent = list(dict.fromkeys([*f.equivalent, *(n for n in LINES if n != f.name)]))
+            f.note += "; no gear table was given, so its stage cannot be named"
+    return f
+
+
+def _wide_loop(f: Finding, scene: Scene) -> Finding:
+    """A hysteresis over a good part of the stroke is a loop, but of what is not known."""
+    if f.name != "presliding" or "breakaway_travel" not in f.parameters:
+        return f
+    v = scene.view
+    stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    travel = f.parameters["breakaway_travel"].value
+    small = stroke <= BRISTLE.get(scene.angle_unit, 0.0)
+    if travel > WIDEST * stroke and not small:
+        f.name, f.equivalent = "unknown", []
+        f.note = f"a loop of {travel:.3g} {scene.angle_unit} after every reversal: too wide for bristles"
+    return f
+
+
+def _one_loop(findings: list[Finding]) -> list[Finding]:
+    """Only the first of several loops is an effect; the others are told as its shape."""
+    out: list[Finding] = []
+    first: Finding | None = None
+    for f in findings:
+        if f.domain == "reversal" and (f.name in LOOPS or f.name == "unknown"):
+            if first is not None:
+                first.note = f"{first.note}; its shape needs a second element ({f.name})".lstrip("; ")
+                continue
+            first = f
+        out.append(f)
+    return out
