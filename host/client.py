@@ -26,6 +26,7 @@ from bus.protocol import (
     unpack_position,
     unpack_reply,
 )
+from bus.protocol.names import DECLARED
 from host.link import HidLink
 from host.logs.journal import Logs
 
@@ -178,7 +179,8 @@ class Client:
 
     def _take_reply(self, t_ns: int, data: bytes) -> None:
         reply = unpack_reply(data)
-        queue = self._waiting.get(Device(reply.device)) if reply.device in _KNOWN else None
+        known = reply.device in _KNOWN or reply.device in DECLARED
+        queue = self._waiting.get(Device(reply.device)) if known else None
         if not queue or queue[0].opcode != reply.opcode:
             self.logs.status(
                 t_ns, f"device {reply.device:#04x}", f"late answer to opcode {reply.opcode:#04x}"

@@ -210,6 +210,7 @@ def objective(
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
+@click.option("--debug", metavar="DIR", help="Every board's debug port as a pseudo-terminal in DIR (slcan).")
 @click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
@@ -228,6 +229,7 @@ def serve(
     seed: int | None,
     plant: str | None,
     duration: float | None,
+    debug: str | None,
     network: str | None,
     record: Path | None,
 ) -> None:
@@ -235,7 +237,7 @@ def serve(
     from scenarios.doors.options import DoorOptions
     from scenarios.serve import serve as command
 
-    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs)
+    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs, debug)
     sys.exit(command(scenario, options, speed, seed, plant, duration, record, network))
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from bus.protocol import Device
+from bus.protocol.names import DECLARED
 from host.client import TICK_NS, Client
 from host.link import HidLink
 from host.logs.ascii import AsciiLogs
@@ -41,7 +42,7 @@ class Hosted:
         self.journal = Journal(self.files)
         self.observatory = Observatory(scenario.site, self.clock, scenario.mount, scenario.horizon_rad)
         self.link = HidLink(send)
-        devices = tuple(device for device in Device if device.name in boards)
+        devices = tuple(device for device in (*Device, *DECLARED.values()) if device.name in boards)
         self.telescope = Telescope(Client(self.link, self.journal, devices), self.observatory, self.journal)
         self._log_ns = round(scenario.status_period_s * 1e9)
         self._next_log_ns = 0

@@ -8,6 +8,7 @@ from typing import Any
 from boards.axis import AxisBoard, AxisPins
 from boards.axis.config import STEPS_PER_TURN
 from boards.core import Board
+from boards.core.debug import DebugPort
 from boards.core.declared import DeclaredBoard, uart_of
 from boards.display import DisplayBoard
 from boards.focus import FocusBoard, FocusConfig, FocusPins
@@ -84,6 +85,7 @@ class Network:
     plant: Plant
     hid: HidEndpoint
     uarts: dict[str, Uart]
+    debug: dict[str, DebugPort] = field(default_factory=dict)
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`."""
@@ -248,7 +250,8 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     for name, board in boards.items():
         board.begin()
         _set_parameters(board, config.nodes.get(name, NodeConfig()))
-    return Network(wiring.queue, wiring.wire, boards, plant, hid, uarts)
+    debug = {name: DebugPort(board, wiring.wire) for name, board in boards.items()}
+    return Network(wiring.queue, wiring.wire, boards, plant, hid, uarts, debug)
 
 
 def _set_parameters(board: Board, settings: NodeConfig) -> None:

@@ -17,6 +17,7 @@ from scenarios.configure import read_tables, with_firmware
 from scenarios.document import Document, ScenarioError
 from scenarios.load import convert, load
 from scenarios.model import Scenario
+from scenarios.present import check_boards
 from scenarios.targets import check_targets
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ def prepare(
     if network is not None:
         scenario = dataclasses.replace(scenario, network={**scenario.network, "name": network})
     check_targets(scenario)
+    check_boards(scenario)
     scenario = read_tables(scenario)
     if firmware is not None:
         scenario = with_firmware(scenario, firmware)

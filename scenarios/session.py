@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from bus.protocol import Device
+from bus.protocol.names import DECLARED
 from bus.time import generator
 from host.client import TICK_NS, Client
 from host.link import HidLink
@@ -15,6 +16,7 @@ from host.serial_link import SerialLink
 from plant.model import PlantModel
 from plant.plant import Plant
 from scenarios import faults
+from scenarios.cables import Cables
 from scenarios.model import Scenario
 from scenarios.network import Network, build, config_from
 from scenarios.programme import Programme
@@ -39,9 +41,8 @@ class Session:
         config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
         self.network: Network = build(config, self.plant, scenario.seed)
         self.network.wire.tap(self.recorder.can.take)
-        self.link = HidLink(self.network.hid.write)
-        self.network.hid.to_host = self.link.receive
-        self.client = Client(self.link, self.recorder.ascii)
+        self.link = plugged(self.network)
+        self.client = Client(self.link, self.recorder.ascii, devices_on(self.network))
         self.serial = [self._serial(device) for device in SERIAL]
         self.programme = Programme(scenario, self.client, self.recorder.ascii)
         faults.apply(self.network, scenario.faults, scenario.seed)
@@ -100,6 +101,24 @@ class Session:
         )
         port = self.plant.focus
         self._focus_rows.append((t_ns * 1e-9, port.position(t_ns), float(port.encoder(t_ns))))
+
+
+def plugged(network: Network) -> HidLink:
+    """The host's link: the gateway's USB, or every board's debug port where there is no gateway."""
+    if Device.GATEWAY.name in network.boards:
+        link = HidLink(network.hid.write)
+        network.hid.to_host = link.receive
+        return link
+    cables = Cables({board.device_type: network.debug[name] for name, board in network.boards.items()})
+    link = HidLink(cables.write)
+    cables.plug(link, network.queue.now_ns)
+    return link
+
+
+def devices_on(network: Network) -> tuple[Device, ...]:
+    """The boards a host may expect: those of the protocol, in its order, then the declared ones."""
+    written = tuple(device for device in Device if device.name in network.boards)
+    return written + tuple(device for device in DECLARED.values() if device.name in network.boards)
 
 
 def start_steps(scenario: Scenario) -> dict[str, float]:

@@ -195,6 +195,10 @@ class Board:
         self.clipped += 1
         self._clipped_ns = self.clock_ns(self.queue.now_ns)
 
+    def take_command(self, data: bytes) -> None:
+        """A COMMAND by another way than CAN: the debug port."""
+        self._take_command(0, data)
+
     def _take_command(self, _now_ns: int, data: bytes) -> None:
         if len(self.inbox) >= _INBOX:
             self.drop()

@@ -36,6 +36,7 @@ class DoorOptions:
     logs: Path | None = None
     console: str | None = None
     runs: Path = Path("out/console")
+    debug: str | None = None
 
     def check(self) -> None:
         """Raise OptionError unless there is a door at all."""
@@ -43,8 +44,8 @@ class DoorOptions:
             value == default for value, default in zip(_values(self), _values(DoorOptions()), strict=True)
         ):
             raise OptionError(
-                "serve needs a door: --can, --serial, --hid, --lx200, --alpaca, --console or --control "
-                "(see schmidt serve -h)"
+                "serve needs a door: --can, --serial, --hid, --lx200, --alpaca, --console, --debug "
+                "or --control (see schmidt serve -h)"
             )
 
 
@@ -61,11 +62,17 @@ def make_doors(options: DoorOptions, served: Served) -> list[Door]:
     ]
     doors += [_serial(spec, served) for spec in options.serial]
     doors += [_hid(spec, served) for spec in options.hid]
+    if options.debug is not None:
+        from scenarios.doors.debug_pty import DebugDoor
+
+        doors.append(DebugDoor(options.debug, served))
     if options.control is not None:
         from scenarios.doors.control import ControlDoor
 
         doors.append(ControlDoor(options.control, options.token, served))
     if options.lx200 or options.alpaca is not None or options.console is not None:
+        if "GATEWAY" not in served.network.boards:
+            raise OptionError("--lx200, --alpaca and --console need the gateway: take --network lab or final")
         doors += _astronomy(options, served)
     return doors
 

@@ -6,7 +6,9 @@ import os
 import select
 import termios
 import tty
+from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
@@ -15,11 +17,20 @@ from scenarios.doors.served import Served
 _CHUNK = 4096
 
 
-class PtyPort:
-    """One line. heard, lost: bytes that went to a reader, and that it was too slow for."""
+class Source(Protocol):
+    """Where a line's bytes come from."""
 
-    def __init__(self, link: Path, feed: Feed) -> None:
+    def until(self, now_ns: int) -> bytes:
+        """What is through by now and has not been handed out."""
+
+
+class PtyPort:
+    """One line. heard, lost: bytes that went to a reader, and that it was too slow for. take: gets what a
+    program sends, None: the line has no receiver, it goes nowhere."""
+
+    def __init__(self, link: Path, feed: Source, take: Callable[[bytes], None] | None = None) -> None:
         self.link = link
+        self.take = take
         self.feed = feed
         self.heard = 0
         self.lost = 0
@@ -73,11 +84,12 @@ class PtyPort:
         self.lost += len(data) - count
 
     def _swallow(self) -> None:
-        """The boards' lines have no receiver: what a program sends goes nowhere."""
         try:
-            os.read(self._master, _CHUNK)
+            data = os.read(self._master, _CHUNK)
         except OSError:  # the reader has just gone
             return
+        if self.take is not None and data:
+            self.take(data)
 
     def close(self) -> None:
         """Take the port and its name away."""
@@ -94,6 +106,7 @@ class PtyDoor:
         self._folder = Path(folder)
         self._served = served
         self.ports: list[PtyPort] = []
+        self._feeds: dict[str, Feed] = {}
 
     def open(self) -> None:
         """Make folder, terminals and names; raises OSError."""
@@ -102,7 +115,8 @@ class PtyDoor:
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             for name in self._served.lines.uarts:
-                self.ports.append(PtyPort(self._folder / name, self._served.lines.feed(name)))
+                self._feeds[name] = feed = self._served.lines.feed(name)
+                self.ports.append(PtyPort(self._folder / name, feed))
         except OSError as error:
             self.close()
             if isinstance(error, DoorError):
@@ -117,9 +131,11 @@ class PtyDoor:
     def close(self) -> None:
         """Remove all of them."""
         for port in self.ports:
-            self._served.lines.drop(port.link.name, port.feed)
             port.close()
+        for name, feed in self._feeds.items():
+            self._served.lines.drop(name, feed)
         self.ports.clear()
+        self._feeds.clear()
 
     def state(self) -> str:
         """Who is open."""

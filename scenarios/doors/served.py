@@ -13,6 +13,8 @@ from scenarios.served import wire
 
 BOARD = "board"
 """Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""
+DEBUG = "debug"
+"""Kind of entry of a debug port: `NAME ` and the bytes."""
 
 
 class Served:
@@ -35,6 +37,7 @@ class Served:
         self.punctual = Punctuality(self.pacer)
         self.ending = False
         self.entry.register(BOARD, self._switch)
+        self.entry.register(DEBUG, self._debug)
 
     @property
     def now_ns(self) -> int:
@@ -54,6 +57,14 @@ class Served:
         name, _, state = data.decode().partition(" ")
         board = self.network.board(name)
         (board.power_on if state == "on" else board.power_off)(self.now_ns)
+
+    def debug(self, board: str, data: bytes) -> None:
+        """Bytes for a board's debug port."""
+        self.entry.enter(DEBUG, board.encode() + b" " + data)
+
+    def _debug(self, data: bytes) -> None:
+        name, _, text = data.partition(b" ")
+        self.network.debug[name.decode()].write(self.now_ns, text)
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`, as fast as it goes."""

@@ -13,8 +13,11 @@ from bus.protocol.serial import PacketDecoder
 from bus.pythoncan import SchmidtBus
 from plant.model import load
 from plant.plant import Plant
+from scenarios.document import ScenarioError
 from scenarios.network import Network, NetworkConfig, NetworkError, NodeConfig, build
 from scenarios.networks import FINAL, LAB, NETWORKS, SERIAL
+from scenarios.run import prepare
+from scenarios.run import run as execute
 from scenarios.served import chosen, wire
 
 SECOND_NS = 1_000_000_000
@@ -188,3 +191,27 @@ def test_a_scenario_names_its_network(tmp_path: Path) -> None:
     mast = made.board("WEATHER_MAST")
     assert isinstance(mast, DeclaredBoard)
     assert [mast.read("rain", t * SECOND_NS) for t in (0, 59, 60)] == [0, 0, 1]
+
+
+def test_a_step_or_fault_of_a_board_that_is_not_there_is_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "x.yaml"
+    start = "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: serial}\nsteps:\n  - "
+    for text in ("display: {brightness: 5}\n", "wait: {for: 1 s}\nfaults: [{node_off: {node: GATEWAY}}]\n"):
+        file.write_text(start + text)
+        with pytest.raises(ScenarioError, match=r"x\.yaml:\d+: the network 'serial' has no board"):
+            prepare(file)
+
+
+@pytest.mark.slow
+def test_L3_the_host_runs_the_five_boards_by_their_serial_lines(tmp_path: Path) -> None:
+    file = tmp_path / "x.yaml"
+    file.write_text(
+        "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: serial}\nsteps:\n"
+        "  - power_on: {}\n  - name: go\n    goto: {target: {ra: '04:31:00.0', dec: '+29:40:00'}}\n"
+        "  - name: follow\n    track: {for: 8 s}\n"
+        "expect: [{pointing_error: {during: follow, settle: 3 s, source: truth, at_most: 10 arcsec}},"
+        " {error_log_entries: {at_most: 0}}]\n"
+    )
+    scenario, model = prepare(file)
+    result = execute(scenario, model, tmp_path / "out", lambda *_: None, report=False)
+    assert result.passed, result.verdicts

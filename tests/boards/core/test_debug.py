@@ -1,0 +1,122 @@
+"""The debug port (B9): its text against python-can's slcan driver, its commands, its buffers, its pace."""
+
+import can
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boards.core.debug import BUFFER_BYTES, DebugPort, frame_of, line_of
+from boards.display import DisplayBoard
+from bus.can import Frame, Wire
+from bus.protocol import COMMAND_BASE, Device, Opcode, Result, pack_command, unpack_reply
+from bus.time import EventQueue, Oscillator
+
+MS = 1_000_000
+DISPLAY = Device.DISPLAY
+
+
+class Desk:
+    """A display, a peer that acknowledges, and a PC on the display's debug port."""
+
+    def __init__(self) -> None:
+        self.queue = EventQueue()
+        wire = Wire(self.queue)
+        wire.attach("peer")
+        self.board = DisplayBoard(
+            "DISPLAY", DISPLAY, self.queue, wire, Oscillator(0.0, 0),
+            (Device.POSITION_RA, Device.POSITION_DEC), Device.FOCUS,
+        )  # fmt: skip
+        self.board.begin()
+        self.port = DebugPort(self.board, wire)
+        self.heard: list[tuple[int, bytes]] = []
+        self.port.sink = lambda t_ns, data: self.heard.append((t_ns, data))
+
+    def say(self, data: bytes, ms: int = 20) -> bytes:
+        """Bytes in; what comes out meanwhile."""
+        self.heard.clear()
+        self.port.write(self.queue.now_ns, data)
+        self.queue.run_until(self.queue.now_ns + ms * MS)
+        return b"".join(data for _, data in self.heard)
+
+
+@given(st.integers(0, 0x7FF), st.binary(max_size=8))
+def test_a_frame_comes_back_from_its_line(identifier: int, data: bytes) -> None:
+    line = line_of(Frame(identifier, data))
+    assert frame_of(line.removesuffix(b"\r")) == Frame(identifier, data)
+
+
+@given(st.binary(max_size=30))
+def test_any_line_is_a_frame_or_none(line: bytes) -> None:
+    frame = frame_of(line)
+    assert frame is None or line_of(frame).rstrip(b"\r").lower() == line.lower()
+
+
+def test_python_cans_own_slcan_driver_reads_and_writes_the_same() -> None:
+    frame = Frame(0x0D1, bytes(range(8)))
+    with can.Bus(interface="slcan", channel="loop://", sleep_after_open=0, timeout=1) as bus:
+        cable = bus.serialPortOrig  # type: ignore[attr-defined]
+        cable.reset_input_buffer()
+        bus.send(can.Message(arbitration_id=frame.identifier, data=frame.data, is_extended_id=False))
+        assert frame_of(cable.read_until(b"\r").removesuffix(b"\r")) == frame
+        cable.write(line_of(frame))
+        message = bus.recv(timeout=1)
+    assert message is not None
+    assert (message.arbitration_id, bytes(message.data), message.is_extended_id) == (0x0D1, frame.data, False)
+
+
+def test_B9_a_command_is_answered_on_the_port_and_does_what_it_says() -> None:
+    desk = Desk()
+    assert desk.say(b"V\rO\r") == b"V1013\r\r"
+    command = pack_command(DISPLAY, Opcode.BRIGHTNESS, 40)
+    out = desk.say(line_of(Frame(COMMAND_BASE + DISPLAY, command)))
+    accepted, answer = out.split(b"\r")[:2]
+    assert accepted == b"z"
+    frame = frame_of(answer)
+    assert frame is not None and frame.identifier == 0x100 + DISPLAY
+    assert unpack_reply(frame.data).result == Result.OK
+    assert desk.board.brightness == 40
+
+
+@pytest.mark.parametrize(
+    "line", [b"t0D2851300000000000000", b"t0D18zz", b"T000000D10", b"x", b"t0D1", b"\xff\xfe"]
+)
+def test_what_is_not_for_this_board_is_refused(line: bytes) -> None:
+    desk = Desk()
+    desk.say(b"O\r")
+    assert desk.say(line + b"\r") == b"\a"
+
+
+def test_a_closed_port_says_nothing_of_the_bus_and_takes_no_command() -> None:
+    desk = Desk()
+    command = line_of(Frame(COMMAND_BASE + DISPLAY, pack_command(DISPLAY, Opcode.PING)))
+    assert desk.say(command) == b"\a"
+    desk.say(b"O\r")
+    assert b"t751" in desk.say(b"", 1100)  # the heartbeat
+    desk.say(b"C\r")
+    assert desk.say(b"", 1100) == b""
+
+
+def test_bytes_take_their_time_and_a_board_without_supply_is_silent() -> None:
+    desk = Desk()
+    desk.say(b"V\r")
+    # 2 bytes in, 6 out, ten bits each at 115 200 baud
+    assert desk.heard[0][0] == pytest.approx(8 * 10 / 115_200 * 1e9, abs=2)
+    desk.board.power_off(desk.queue.now_ns)
+    assert desk.say(b"V\r") == b""
+
+
+def test_more_than_the_buffer_is_lost_and_counted() -> None:
+    desk = Desk()
+    desk.say(b"V" * (BUFFER_BYTES + 1))
+    assert desk.port.lost == BUFFER_BYTES + 1
+    assert desk.say(b"V\r") == b"V1013\r"
+
+
+def test_the_same_bytes_cut_anywhere_do_the_same() -> None:
+    text = b"O\r" + line_of(Frame(COMMAND_BASE + DISPLAY, pack_command(DISPLAY, Opcode.PING)))
+    whole, cut = Desk(), Desk()
+    expected = whole.say(text)
+    for byte in text:
+        cut.port.write(cut.queue.now_ns, bytes([byte]))
+    cut.queue.run_until(20 * MS)
+    assert b"".join(data for _, data in cut.heard) == expected
