@@ -10,7 +10,7 @@ from bus.protocol import HEARTBEAT_KIND, SUMMARY_KIND
 from bus.protocol.report import REPORT_BYTES, SLOTS, pack_report
 
 _NOT_MEASUREMENT: Final = 0x80
-_slots = Struct("8s" * SLOTS).unpack
+_slots: Final = Struct("8s" * SLOTS).unpack
 
 Subscriber = Callable[[int, bytes], None]
 

@@ -1,6 +1,7 @@
 """The plant: both axes and the focus, behind the pins of the boards."""
 
 from collections.abc import Callable, Mapping
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,8 @@ from plant.kernels.advance import advance
 from plant.parts import AxisModel, PlantModel
 from plant.world import AXES, build, grid_ns
 
-TRUTH_COLUMNS = at.TRUTH_COLUMNS
-COLUMNS = (
+TRUTH_COLUMNS: Final = at.TRUTH_COLUMNS
+COLUMNS: Final = (
     "effort",
     "position",
     "velocity",

@@ -1,6 +1,6 @@
 """Commands and parameters of the axis board, as tables."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from boards.axis.config import STEPS_PER_TURN, rate_q16
 from boards.axis.motion import POINTING
@@ -11,14 +11,14 @@ from bus.protocol import AxisMode, Opcode, SpeedClass
 if TYPE_CHECKING:
     from boards.axis.firmware import AxisBoard
 
-RATE_LIMIT = rate_q16(3.1 * 3600)
+RATE_LIMIT: Final = rate_q16(3.1 * 3600)
 """Fastest rate that is accepted: the paper reports up to 3 deg/s (Fig. 12)."""
-_EFFORT_LIMIT = 3000
-_SPLIT_BOUNDS = (10, 25)
+_EFFORT_LIMIT: Final = 3000
+_SPLIT_BOUNDS: Final = (10, 25)
 """Percent (paper, section 3.3)."""
-_GAIN_BOUND = 1 << 20
+_GAIN_BOUND: Final = 1 << 20
 """Q12: gains up to 256 PWM steps per count."""
-_CLASS_NAMES = ("slew", "set", "guide", "fine", "track")
+_CLASS_NAMES: Final = ("slew", "set", "guide", "fine", "track")
 
 
 class AxisCommands:

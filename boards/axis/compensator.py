@@ -6,19 +6,20 @@ of the absolute encoder, serves every stage: line k has its order in cycles per 
 """
 
 from math import cos, pi, sin
+from typing import Final
 
 from bus.protocol import HARMONICS
 
-_TABLE_BITS = 10
-_SIZE = 1 << _TABLE_BITS
-_MASK = _SIZE - 1
-_SHIFT = 32 - _TABLE_BITS
-_PART_BITS = 12
+_TABLE_BITS: Final = 10
+_SIZE: Final = 1 << _TABLE_BITS
+_MASK: Final = _SIZE - 1
+_SHIFT: Final = 32 - _TABLE_BITS
+_PART_BITS: Final = 12
 """Between two values of the table: slow waves would move in jumps of a tenth of a step otherwise."""
-_PART_MASK = (1 << _PART_BITS) - 1
-_COS = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
-_SIN = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
-_LEAD_Q16 = round(1.5 * (1 << 29) / 112_896_000 * 65536)
+_PART_MASK: Final = (1 << _PART_BITS) - 1
+_COS: Final = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
+_SIN: Final = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
+_LEAD_Q16: Final = round(1.5 * (1 << 29) / 112_896_000 * 65536)
 """Steps per count, one and a half ticks: the mean age of a position frame (up to one tick, both boards run on
 their own crystals) and half the tick in which the effort will be in force. ASSUMPTION."""
 

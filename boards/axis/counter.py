@@ -7,7 +7,9 @@ effort takes the same step with it: the torque goes on without a bump. ASSUMPTIO
 and not its rounding.
 """
 
-_PERCENT = 100
+from typing import Final
+
+_PERCENT: Final = 100
 
 
 class CounterTorque:

@@ -1,6 +1,6 @@
 """Parameters 12 to 42: spread duty, compensation table, friction model, bias, lock, blend."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from boards.axis.config import COUNTS_PER_TURN
 from boards.core import Parameter
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
     from boards.axis.motion import Motion
     from boards.axis.output import FineOutput
 
-_EFFORT_Q8 = 3000 << 8
+_EFFORT_Q8: Final = 3000 << 8
 """All of the supply."""
-_BIAS_Q8 = 300 << 8
+_BIAS_Q8: Final = 300 << 8
 """A tenth of the supply."""
-_ORDER_Q16 = (1 << 31) - 1
+_ORDER_Q16: Final = (1 << 31) - 1
 """32767 cycles per turn of the axis: motor orders up to 90."""
 
 

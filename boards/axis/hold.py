@@ -10,10 +10,12 @@ Widths: the lock's sum is 32 bits, limited to 2 arcsec in a 64-bit register befo
 with the gain and the blend's position are 64 bits.
 """
 
+from typing import Final
+
 from boards.axis.config import COUNTS_PER_TURN
 from boards.axis.profile import UNIT_SHIFT
 
-LOCK_LIMIT_Q16 = round(2.0 / 1_296_000 * COUNTS_PER_TURN) << 16
+LOCK_LIMIT_Q16: Final = round(2.0 / 1_296_000 * COUNTS_PER_TURN) << 16
 """Largest position error the lock remembers, 2 arcsec: more is a set point that the axis cannot follow, and
 would be paid back with a swing. ASSUMPTION."""
 

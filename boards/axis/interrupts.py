@@ -6,11 +6,13 @@ their own: 20 000 ADC interrupts a second would tell nothing that the last conve
 does not.
 """
 
+from typing import Final
+
 from boards.core import Source
 
-FCY_HZ = 30_000_000
+FCY_HZ: Final = 30_000_000
 
-TABLE = (
+TABLE: Final = (
     Source(
         "control", priority=6, latency_cycles=9, cost_cycles=1200
     ),  # 40 us: QEI, PI (32-bit errors, 64-bit products), PWM, SPI load of a frame
@@ -19,11 +21,11 @@ TABLE = (
     ),  # 30 us: SPI read, dispatch, SPI load
 )
 
-PWM_ROUTINE = Source("pwm", priority=7, latency_cycles=5, cost_cycles=20)
+PWM_ROUTINE: Final = Source("pwm", priority=7, latency_cycles=5, cost_cycles=20)
 """Only with the spread duty: per channel load, add, load, add with carry, store (10 cycles for two), flag,
 shadow registers, return. Every PWM period, 1.7 % of the processor's time."""
-HARMONIC_CYCLES = 120
+HARMONIC_CYCLES: Final = 120
 """Per line of the compensation: 32 x 29 bit product for the phase (45), table with two interpolations (30),
 two products and sums (35)."""
-FRICTION_CYCLES = 60
+FRICTION_CYCLES: Final = 60
 """The friction model: two 32-bit products, sums."""

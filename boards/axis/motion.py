@@ -21,7 +21,7 @@ _OLDEST_NS: Final = 2 * STALE_NS
 """A reading is carried on no further than this."""
 _SETTLE_TICKS: Final = 100
 """The axis is settled when it has been near its target for this long, 0.5 s. ASSUMPTION."""
-_BAD_POSITION = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
+_BAD_POSITION: Final = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 """Position flags that make a reading worthless: alarm, CRC error."""
 POINTING: Final = (AxisMode.MOVE, AxisMode.TRACK)
 """Modes with the position loop closed. A finished move without tracking rate stays in MOVE and holds its

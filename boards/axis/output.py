@@ -4,7 +4,7 @@ The paper's firmware rounds effort and counter torque to whole steps (firmware.p
 parameters 12 and 13 put in its place.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from boards.axis.compensator import Compensator
 from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
@@ -12,7 +12,7 @@ from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
 if TYPE_CHECKING:
     from boards.axis.firmware import AxisBoard
 
-_HALF = 1 << 15
+_HALF: Final = 1 << 15
 
 
 class FineOutput:

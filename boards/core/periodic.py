@@ -67,6 +67,5 @@ class PeriodicBoard(Board):
             cpu.top.overruns += lost
         self.ticks = ticks = self.ticks + 1
         self.epoch_ns = t_ns - ticks * self.period_ns
-        queue = self.queue
-        queue.push((start, queue.ticket(), self._routine))  # never in the past: `late` sees to that
+        self.queue.at(start, self._routine)
         return end

@@ -19,7 +19,7 @@ class Timer:
     offset_ns: local time of the first fire modulo the period.
     """
 
-    __slots__ = ("_local_ns", "_oscillator", "latency_ns", "period_ns", "times")
+    __slots__ = ("_local_ns", "_oscillator", "_true_ns", "latency_ns", "period_ns", "times")
 
     def __init__(self, oscillator: Oscillator, period_ns: int, latency_ns: int, offset_ns: int = 0) -> None:
         if period_ns <= 0:
@@ -35,6 +35,7 @@ class Timer:
         period = self.period_ns
         local = self._oscillator.local_ns(after_ns) - offset_ns
         self._local_ns = (local // period + 1) * period + offset_ns
+        self._true_ns = self._oscillator.true_ns(self._local_ns)
         self.times.clear()
 
     def next_ns(self) -> int:
@@ -58,10 +59,9 @@ class Timer:
         return end_ns, lost
 
     def _refill(self) -> None:
-        true_ns = self._oscillator.true_ns
-        first = self._local_ns
-        self._local_ns = last = first + _BLOCK * self.period_ns
-        start = true_ns(first)
-        span = true_ns(last) - start
+        self._local_ns += _BLOCK * self.period_ns
+        start = self._true_ns
+        self._true_ns = end = self._oscillator.true_ns(self._local_ns)
+        span = end - start
         start += self.latency_ns
         self.times = [start + k * span // _BLOCK for k in range(_BLOCK - 1, -1, -1)]

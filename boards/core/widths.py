@@ -6,8 +6,10 @@ accepted (the tests compute with integers that complain), or it saturates (the f
 (counters).
 """
 
-INT32_TOP = (1 << 31) - 1
-INT64_TOP = (1 << 63) - 1
+from typing import Final
+
+INT32_TOP: Final = (1 << 31) - 1
+INT64_TOP: Final = (1 << 63) - 1
 
 
 def saturate(value: int, top: int) -> int:

@@ -1,5 +1,7 @@
 """Firmware of the focus board: a 10 ms sample interrupt and, while moving, a step interrupt."""
 
+from typing import Final
+
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PeriodicBoard
 from boards.core.commands import i8, i16
 from boards.core.widths import wrap
@@ -17,12 +19,12 @@ from bus.protocol import MEASUREMENT_BASE, FocusFlag, Health, Opcode, State, pac
 from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
 from bus.time import EventQueue, Oscillator
 
-TICK_NS = 10_000_000
-_FRAME_TICKS = 5
-_HEARTBEAT_TICKS = 100
-_REST_NS = 50_000_000
+TICK_NS: Final = 10_000_000
+_FRAME_TICKS: Final = 5
+_HEARTBEAT_TICKS: Final = 100
+_REST_NS: Final = 50_000_000
 """Full current after the last step, until the rotor is surely at rest. ASSUMPTION."""
-_LOST = 2
+_LOST: Final = 2
 """Half steps between counter and encoder that count as lost steps. ASSUMPTION."""
 
 

@@ -3,11 +3,13 @@
 The PWM channel that makes the LVDT's 2 kHz carrier runs by itself and needs no routine.
 """
 
+from typing import Final
+
 from boards.core import Source
 
-FCY_HZ = 10_000_000
+FCY_HZ: Final = 10_000_000
 
-TABLE = (
+TABLE: Final = (
     Source("sample", priority=3, latency_cycles=12, cost_cycles=500),  # 50 us: QEI, ADC, SPI load
     Source("step", priority=2, latency_cycles=12, cost_cycles=150),  # 15 us: table look-up, ramp, port
     Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),

@@ -3,10 +3,12 @@
 The LVDT alone is good to a fraction of a millimetre; the pulses are 2.5 mm apart and exact to a half step.
 """
 
+from typing import Final
+
 from boards.focus.config import FocusConfig
 
-_MIDDLE = 512
-_HALF_RANGE = 512
+_MIDDLE: Final = 512
+_HALF_RANGE: Final = 512
 """ADC counts from the middle of the travel to its end, at nominal LVDT gain (hardware.md 1.3)."""
 
 

@@ -4,11 +4,13 @@ ASSUMPTION: a PIC18F4431 at 10 MIPS like the focus board, since the paper names 
 a QEI. Cycles are estimated from instruction counts.
 """
 
+from typing import Final
+
 from boards.core import Source
 
-FCY_HZ = 10_000_000
+FCY_HZ: Final = 10_000_000
 
-TABLE = (
+TABLE: Final = (
     # 40 us: QEI, difference, SPI load of a frame
     Source("sample", priority=2, latency_cycles=12, cost_cycles=400),
     # 60 us: SPI read, dispatch, SPI load

@@ -23,7 +23,7 @@ TICK_NS: Final = 5_000_000
 _SUMMARY_TICKS: Final = 50
 _HEARTBEAT_TICKS: Final = 200
 _LAST_STEP: Final = (1 << POSITION_BITS) - 1
-_BAD = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
+_BAD: Final = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 _ALARM, _CRC_ERROR, _LOW, _HIGH = map(
     int, (PositionFlag.ALARM, PositionFlag.CRC_ERROR, PositionFlag.LIMIT_LOW, PositionFlag.LIMIT_HIGH)
 )

@@ -3,11 +3,13 @@
 The sample routine waits for the EnDat transfer (some 55 us at 1 MHz), checks the CRC and loads the ECAN.
 """
 
+from typing import Final
+
 from boards.core import Source
 
-FCY_HZ = 10_000_000
+FCY_HZ: Final = 10_000_000
 
-TABLE = (
+TABLE: Final = (
     Source("sample", priority=2, latency_cycles=12, cost_cycles=1200),  # 120 us
     Source("can", priority=1, latency_cycles=12, cost_cycles=400, level=True),  # 40 us, no SPI
 )

@@ -1,6 +1,7 @@
 """Logs in the format of `candump -L`: `(1.000129) can0 211#1101000000000000`, times since the start or an
 epoch."""
 
+from array import array
 from hashlib import sha256
 from typing import BinaryIO, Final, Protocol
 
@@ -10,8 +11,13 @@ from numpy.typing import NDArray
 from bus.can.frame import Frame
 
 _BATCH: Final = 1024
-_HEX: Final = np.frombuffer(b"0123456789ABCDEF", np.uint8)
-_ZERO: Final = ord("0")
+Whole = NDArray[np.int64]
+Text = NDArray[np.uint8]
+_DECIMAL: Final[Text] = np.frombuffer(b"".join(b"%03d" % k for k in range(1000)), np.uint8).reshape(-1, 3)
+"""Three digits of every number below 1000."""
+_HEXADECIMAL: Final[Text] = np.frombuffer(b"".join(b"%03X" % k for k in range(2048)), np.uint8).reshape(-1, 3)
+"""Every standard identifier."""
+_US_PER_S: Final = 1_000_000
 _BYTES: Final = 8
 
 
@@ -31,37 +37,33 @@ def line(t_ns: int, frame: Frame, channel: str = "can0") -> str:
 def block(times_ns: list[int], frames: list[Frame], channel: str = "can0") -> bytes:
     """The lines of many frames. Eight-byte frames of standard identifiers, as nearly all of a night are, make
     lines of one length: those are filled in column by column."""
+    if not frames:
+        return b""
     plain = all(len(frame[1]) == _BYTES and not frame[2] and not frame[3] for frame in frames)
-    width = len(str(max(times_ns, default=0) // 1000))
-    if not plain or width < 7 or len(str(min(times_ns) // 1000)) != width:
+    seconds, micro = np.divmod(np.frombuffer(array("q", times_ns), np.int64) // 1000, _US_PER_S)
+    width = len(str(seconds.max()))
+    if not plain or len(str(seconds.min())) != width:
         lines = [line(t_ns, frame, channel) + "\n" for t_ns, frame in zip(times_ns, frames, strict=True)]
         return "".join(lines).encode()
-    return _columns(
-        np.array(times_ns) // 1000,
-        width,
-        np.array([frame[0] for frame in frames]),
-        np.frombuffer(b"".join([frame[1] for frame in frames]), np.uint8).reshape(-1, _BYTES),
-        channel,
-    )
+    identifiers = np.frombuffer(array("q", [frame[0] for frame in frames]), np.int64)
+    data = b"".join([frame[1] for frame in frames]).hex().upper().encode()
+    return _columns(seconds, micro, identifiers, np.frombuffer(data, np.uint8), channel)
 
 
-def _columns(
-    time_us: NDArray[np.int64],
-    width: int,
-    identifiers: NDArray[np.int64],
-    data: NDArray[np.uint8],
-    channel: str,
-) -> bytes:
-    """Lines of one length. width: digits of `time_us` (n,). data: (n, 8)."""
-    template = f"({'0' * (width - 6)}.000000) {channel} 000#{'00' * _BYTES}\n".encode()
-    lines = np.tile(np.frombuffer(template, np.uint8), (len(data), 1))
-    digits = time_us[:, None] // 10 ** np.arange(width - 1, -1, -1) % 10 + _ZERO
-    lines[:, 1 : width - 5] = digits[:, : width - 6]
-    lines[:, width - 4 : width + 2] = digits[:, width - 6 :]
+def _columns(seconds: Whole, micro: Whole, identifiers: Whole, data: Text, channel: str) -> bytes:
+    """Lines of one length. seconds: all of as many digits. data: 16 hexadecimal digits per frame."""
+    start = str(seconds[0])
+    width = len(start)
+    template = f"({start}.000000) {channel} 000#{'00' * _BYTES}\n".encode()
+    lines = np.tile(np.frombuffer(template, np.uint8), (len(seconds), 1))
+    if seconds[0] != seconds[-1] or np.ptp(seconds):
+        for second in np.unique(seconds).tolist():
+            lines[seconds == second, 1 : width + 1] = np.frombuffer(str(second).encode(), np.uint8)
+    lines[:, width + 2 : width + 5] = _DECIMAL[micro // 1000]
+    lines[:, width + 5 : width + 8] = _DECIMAL[micro % 1000]
     body = len(template) - 1 - 2 * _BYTES
-    lines[:, body:-1:2] = _HEX[data >> 4]
-    lines[:, body + 1 : -1 : 2] = _HEX[data & 15]
-    lines[:, body - 4 : body - 1] = _HEX[identifiers[:, None] >> np.array([8, 4, 0]) & 15]
+    lines[:, body:-1] = data.reshape(-1, 2 * _BYTES)
+    lines[:, body - 4 : body - 1] = _HEXADECIMAL[identifiers]
     return lines.tobytes()
 
 

@@ -1,20 +1,21 @@
 """Error counters by ISO 11898-1 (fault confinement): what every outcome adds and takes."""
 
 from collections.abc import Iterable
+from typing import Final
 
 from bus.can.port import Port
 
-BUS_OFF_ABOVE = 255
-PASSIVE_ABOVE = 127
-RECOVERY_RUNS = 128
+BUS_OFF_ABOVE: Final = 255
+PASSIVE_ABOVE: Final = 127
+RECOVERY_RUNS: Final = 128
 """Bus-off recovery: this many runs of eleven recessive bits."""
-RECOVERY_RUN_BITS = 11
-SUSPEND_BITS = 8
+RECOVERY_RUN_BITS: Final = 11
+SUSPEND_BITS: Final = 8
 """A passive node waits this long after its own frame before it may send again."""
-_REC_AFTER_PASSIVE_OK = 127
+_REC_AFTER_PASSIVE_OK: Final = 127
 """A good reception takes a passive REC back to 119..127; the standard leaves the choice (ASSUMPTION: 127).
 """
-_REC_MAX = 255
+_REC_MAX: Final = 255
 """REC registers are 8 bits wide and do not wrap (MCP2515 register 1Dh)."""
 
 

@@ -1,10 +1,10 @@
 """A CAN 2.0 frame as the nodes see it."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-MAX_STANDARD = 0x7FF
-MAX_EXTENDED = 0x1FFF_FFFF
-MAX_DATA_BYTES = 8
+MAX_STANDARD: Final = 0x7FF
+MAX_EXTENDED: Final = 0x1FFF_FFFF
+MAX_DATA_BYTES: Final = 8
 
 
 class FrameError(ValueError):

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bus.can.bits import CRC15_POLYNOMIAL, TAIL_BITS, crc15, header_bits, number_bits
-from bus.can.frame import Frame, check
+from bus.can.frame import MAX_STANDARD, Frame, check
 
 _STATES: Final = 9
 _START: Final = 0
 """State 0 is never reached by a bit: state = 1 + 4 * last + (run - 1), run 1..4, gives 1..8; 0 is
 "nothing yet"."""
-_words: Callable[[bytes], tuple[int, int, int, int]] = Struct(">4H").unpack
+_words: Final[Callable[[bytes], tuple[int, int, int, int]]] = Struct(">4H").unpack
 
 
 def _step(state: int, bit: int) -> tuple[int, int]:
@@ -61,11 +61,29 @@ def _shares() -> "list[array[int]]":
 
 _STUFF_WORD: Final = _machine(16).tobytes()
 _STUFF_CRC: Final = _machine(15).tobytes()
-_CRC0, _CRC1, _CRC2, _CRC3 = _shares()
+_SHARES: Final = _shares()
+_CRC0: Final = _SHARES[0]
+_CRC1: Final = _SHARES[1]
+_CRC2: Final = _SHARES[2]
+_CRC3: Final = _SHARES[3]
 """Rows follow one another: entry of state s and value v at s << 16 | v, or s << 15 | v for the CRC."""
 
 
-_headers: dict[int, tuple[int, int, int]] = {}
+_BYTES: Final = [[int(share[k << shift]) for k in range(256)] for share in _SHARES for shift in (8, 0)]
+"""CRC-15 share of each of the eight bytes."""
+_BYTE0: Final = _BYTES[0]
+_BYTE1: Final = _BYTES[1]
+_BYTE2: Final = _BYTES[2]
+_BYTE3: Final = _BYTES[3]
+_BYTE4: Final = _BYTES[4]
+_BYTE5: Final = _BYTES[5]
+_BYTE6: Final = _BYTES[6]
+_BYTE7: Final = _BYTES[7]
+_COMPILED: Final = not hasattr(_step, "__code__")
+
+_packed: Final = [0] * (MAX_STANDARD + 1)
+"""The same in one number: CRC share, state << 16, bits << 24; 0: not found yet."""
+_headers: Final[dict[int, tuple[int, int, int]]] = {}
 """What `_header` found, per standard identifier."""
 
 
@@ -97,6 +115,8 @@ def frame_bits(frame: Frame) -> int:
 
 def plain_bits(identifier: int, data: bytes) -> int:
     """The same for the frames that there are most of: standard identifier, eight bytes."""
+    if _COMPILED:
+        return typed_bits(identifier, data)
     crc, state, bits = _headers.get(identifier) or _header(identifier)
     a, b, c, d = _words(data)
     table = _STUFF_WORD
@@ -107,6 +127,26 @@ def plain_bits(identifier: int, data: bytes) -> int:
     h = table[(g & 15) << 16 | d]
     i = _STUFF_CRC[(h & 15) << 15 | crc]
     return bits + (e >> 4) + (f >> 4) + (g >> 4) + (h >> 4) + (i >> 4)
+
+
+def typed_bits(identifier: int, data: bytes) -> int:
+    """The same without an object in between: ten times quicker compiled, and slower when it is not."""
+    head = _packed[identifier] if 0 <= identifier <= MAX_STANDARD else 0
+    if not head:
+        share, state, bits = _header(identifier)
+        head = _packed[identifier] = bits << 24 | state | share
+    p, q, r, s, t, u, v, w = (
+        data[0], data[1], data[2], data[3], data[4], data[5], data[6], data[7],
+    )  # fmt: skip
+    crc = head & 0x7FFF
+    crc ^= _BYTE0[p] ^ _BYTE1[q] ^ _BYTE2[r] ^ _BYTE3[s] ^ _BYTE4[t] ^ _BYTE5[u] ^ _BYTE6[v] ^ _BYTE7[w]
+    table = _STUFF_WORD
+    e = table[head & 0xF_0000 | p << 8 | q]
+    f = table[(e & 15) << 16 | r << 8 | s]
+    g = table[(f & 15) << 16 | t << 8 | u]
+    h = table[(g & 15) << 16 | v << 8 | w]
+    i = _STUFF_CRC[(h & 15) << 15 | crc]
+    return (head >> 24) + (e >> 4) + (f >> 4) + (g >> 4) + (h >> 4) + (i >> 4)
 
 
 def _any_bits(frame: Frame) -> int:

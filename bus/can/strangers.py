@@ -1,6 +1,6 @@
 """Nodes of different bit rates on one wire: who understands whom, and who destroys what."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from bus.can.bits import INTERMISSION_BITS, wire_bits
 from bus.can.port import Offer, Port
@@ -9,7 +9,7 @@ from bus.can.sampling import BitTiming, error_ns
 if TYPE_CHECKING:
     from bus.can.wire import Wire
 
-_ACK_FROM_END = 9
+_ACK_FROM_END: Final = 9
 """The ACK slot's place counted from the end of EOF: delimiter 1, EOF 7, and itself."""
 
 

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from bus.can.wire import Wire
 
 _NEVER: Final = 1 << 61
-_RECESSIVE_TAIL_BITS = 1 + 7
+_RECESSIVE_TAIL_BITS: Final = 1 + 7
 """ACK delimiter and EOF: already recessive when a frame ends."""
-_OVERLOAD_BITS = OVERLOAD_FLAG_BITS + 1 + OVERLOAD_DELIMITER_BITS
+_OVERLOAD_BITS: Final = OVERLOAD_FLAG_BITS + 1 + OVERLOAD_DELIMITER_BITS
 """One receiver begins its overload flag in the first bit of intermission; the others see that bit and begin
 theirs one bit later."""
 
@@ -64,7 +64,7 @@ class Trouble:
         near = bool(
             self.disturb
             or self._twins
-            or (wire._sending is None and wire._end_ns != _NEVER)  # an error frame is on the wire
+            or (not wire._busy and wire._end_ns != _NEVER)  # an error frame is on the wire
             or len(live) < 2
             or self._recovery.pending
             or any(port.tec or port.rec for port in live)
@@ -295,8 +295,8 @@ class Trouble:
     def cut(self, t_ns: int) -> None:
         """The sender went off in the middle of its frame: six recessive bits later everyone else objects."""
         wire = self._wire
-        assert wire._sending is not None
-        offer, wire._sending = Offer(*wire._sending), None
+        assert wire._busy
+        offer, wire._busy = Offer(*wire._sending), False
         planned = offer.bits + (_OVERLOAD_BITS if self._overload else 0)
         self._overload = False
         begun_ns = wire._free_ns - planned * wire.bit_ns

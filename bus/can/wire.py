@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
-from typing import Final
+from typing import Any, Final
 
 from bus.can.bits import INTERMISSION_BITS
 from bus.can.disturbance import Flip
@@ -47,7 +47,9 @@ class Wire:
         self._free_ns = 0
         self._decide_ns = _NEVER
         self._end_ns = _NEVER
-        self._sending: Entry | None = None
+        self._sending: Entry
+        self._busy = False
+        """Whether `_sending` is meant: as a tuple or None it would be an object in compiled code."""
         self._eof_ns = INTERMISSION_BITS * self.bit_ns
         self._near = True
         """Whether anything but plain sailing is possible; kept by `Trouble`, read for every frame."""
@@ -55,8 +57,6 @@ class Wire:
         """When the first bit of what is being sent is over; until then it is a plan."""
         self._idle_ns = 0
         """When the bus falls free before what is being sent."""
-        self._push = queue.push
-        self._ticket = queue.ticket
         self._decide_call = self._decide
         self._deliver_call = self._deliver
         self._trouble = Trouble(self)
@@ -104,16 +104,15 @@ class Wire:
             ready_ns = now
         self._tickets = ticket = self._tickets + 1
         offer = (key, ticket, ready_ns, port, frame, bits)
-        plan = self._sending
         if self._near or self._decide_ns != _NEVER:
             heappush(self._waiting, offer)
             self._call_decide(ready_ns if ready_ns > self._free_ns else self._free_ns)
-        elif plan is None:
+        elif not self._busy:
             self._begin(offer, ready_ns if ready_ns > self._free_ns else self._free_ns)
         else:
             heappush(self._waiting, offer)
             decided_ns = self._decided_ns
-            if ready_ns <= decided_ns and (key <= plan[0] or ready_ns < decided_ns - self.bit_ns):
+            if ready_ns <= decided_ns and (key <= self._sending[0] or ready_ns < decided_ns - self.bit_ns):
                 self._unplan()
                 self._plan()
 
@@ -146,11 +145,10 @@ class Wire:
 
     def _unplan(self) -> bool:
         """Put a plan back whose first bit is not over yet; False: there is none."""
-        plan = self._sending
-        if plan is None or self.queue.now_ns > self._decided_ns:
+        if not self._busy or self.queue.now_ns > self._decided_ns:
             return False
-        heappush(self._waiting, plan)
-        self._sending = None
+        heappush(self._waiting, self._sending)
+        self._busy = False
         self._end_ns = _NEVER
         self._free_ns = self._idle_ns
         return True
@@ -197,19 +195,20 @@ class Wire:
 
     def _begin(self, winner: Entry, sof_ns: int) -> None:
         self._sending = winner
+        self._busy = True
         bit_ns = self.bit_ns
         self._decided_ns = sof_ns + bit_ns
         self._idle_ns = self._free_ns
         self._free_ns = free_ns = sof_ns + winner[5] * bit_ns
         self._end_ns = end_ns = free_ns - self._eof_ns
-        self._push((end_ns, self._ticket(), self._deliver_call))
+        self.queue.at(end_ns, self._deliver_call)
 
     def _deliver(self, t_ns: int) -> None:
-        offer = self._sending
-        if t_ns != self._end_ns or offer is None:
+        if t_ns != self._end_ns or not self._busy:
             return  # another plan, or the sender went off in the middle
+        offer = self._sending
         self._end_ns = _NEVER
-        self._sending = None
+        self._busy = False
         key, _, _, port, frame, bits = offer
         self.frames += 1
         self.bits += bits
@@ -222,17 +221,18 @@ class Wire:
                 self._plan()
         if near:
             calls = self._trouble.delivered(offer, t_ns)
-        elif key in port._routes:
-            calls = port._routes[key]
         else:
-            # Found once and kept until filters or nodes change.
-            calls = port._routes[key] = self._calls(self._trouble.listeners(port), frame)
+            found = port._routes.get(key)
+            if found is None:  # once, and kept until filters or nodes change
+                found = port._routes[key] = self._calls(self._trouble.listeners(port), frame)
+            calls = found
+        now: Any = t_ns  # compiled code makes an object of it once, not for every call
         for tap in self._taps:
-            tap(t_ns, frame, port.name)
+            tap(now, frame, port.name)
         for call in calls:
-            call(t_ns, frame)
+            call(now, frame)
         if port.on_sent is not None:
-            port.on_sent(t_ns, frame)
+            port.on_sent(now, frame)
 
     def _calls(self, listeners: list[Port], frame: Frame) -> tuple[Receive, ...]:
         """Receivers of one identifier among `listeners`."""
@@ -251,7 +251,7 @@ class Wire:
         unplanned = self._unplan()
         self._waiting = [offer for offer in self._waiting if offer[3] is not port]
         heapify(self._waiting)
-        if self._sending is not None and self._sending[3] is port:
+        if self._busy and self._sending[3] is port:
             self._trouble.cut(self.queue.now_ns)
         port._free = TX_BUFFERS if port.online else 0
         self._trouble.restart(port)

@@ -2,6 +2,7 @@
 below."""
 
 from struct import Struct, error
+from typing import Final
 
 from bus.protocol.names import Device, Opcode
 
@@ -27,9 +28,9 @@ LAYOUTS: dict[int, tuple[Struct, tuple[str, ...]]] = {
 """Opcode -> layout of bytes 2..7 and the names of its arguments. Units: rate Q16 counts per 5 ms, target
 and offset steps of the position encoder (half steps for the focus), effort 1/3000 of the supply."""
 
-_COMMON = (Opcode.PING, Opcode.GET_PARAMETER, Opcode.SET_PARAMETER)
-_AXIS = tuple(Opcode(number) for number in range(Opcode.POWER, Opcode.NUDGE + 1))
-_FOCUS = tuple(Opcode(number) for number in range(Opcode.FOCUS_STEP, Opcode.FOCUS_REFERENCE + 1))
+_COMMON: Final = (Opcode.PING, Opcode.GET_PARAMETER, Opcode.SET_PARAMETER)
+_AXIS: Final = tuple(Opcode(number) for number in range(Opcode.POWER, Opcode.NUDGE + 1))
+_FOCUS: Final = tuple(Opcode(number) for number in range(Opcode.FOCUS_STEP, Opcode.FOCUS_REFERENCE + 1))
 
 
 class CommandError(ValueError):

@@ -2,11 +2,11 @@
 
 from enum import IntFlag
 from struct import Struct, error
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.saturate import Clip, fitted, nobody
 
-_focus = Struct("<BBhhH")
+_focus: Final = Struct("<BBhhH")
 
 
 class FocusFlag(IntFlag):

@@ -1,11 +1,11 @@
 """HEARTBEAT: every board's sign of life, every second."""
 
 from struct import Struct
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.names import HEARTBEAT_KIND
 
-_heartbeat = Struct("<BBBHHB")
+_heartbeat: Final = Struct("<BBBHHB")
 
 
 class Heartbeat(NamedTuple):

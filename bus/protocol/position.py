@@ -2,13 +2,13 @@
 
 from enum import IntFlag
 from struct import Struct
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.names import SUMMARY_KIND
 
-_position = Struct("<BBIBB")
-_summary = Struct("<BBBIx")
-AGE_UNIT_NS = 4000
+_position: Final = Struct("<BBIBB")
+_summary: Final = Struct("<BBBIx")
+AGE_UNIT_NS: Final = 4000
 """Unit of the age, latch of the encoder to loading of the frame."""
 
 

@@ -1,9 +1,9 @@
 """REPLY: the one answer to each COMMAND."""
 
 from struct import Struct
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-_reply = Struct("<BBBBi")
+_reply: Final = Struct("<BBBBi")
 
 
 class Reply(NamedTuple):

@@ -7,10 +7,11 @@ it. Packing is tried first, so that what fits costs nothing.
 from collections.abc import Callable, Sequence
 from functools import cache
 from struct import Struct
+from typing import Final
 
 Clip = Callable[[], None]
 """Called once for a message in which a value was cut."""
-_BITS = {"b": 8, "h": 16, "i": 32, "B": 8, "H": 16, "I": 32}
+_BITS: Final = {"b": 8, "h": 16, "i": 32, "B": 8, "H": 16, "I": 32}
 
 
 def nobody() -> None:

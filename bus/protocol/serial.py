@@ -25,8 +25,8 @@ SAMPLES: Final = 25
 NO_SETPOINT: Final = -(1 << 31)
 """Set point of an axis in open loop: there is none."""
 _CRC_START: Final = 0xFFFF
-_head = Struct("<BBI")
-_crc = Struct("<H")
+_head: Final = Struct("<BBI")
+_crc: Final = Struct("<H")
 
 
 class AxisSample(NamedTuple):

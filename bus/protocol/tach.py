@@ -1,12 +1,12 @@
 """TACH: a motor velocity board's measurement frame, every 10 ms."""
 
 from struct import Struct, error
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.saturate import fitted
 
-_tach = Struct("<BBih")
-tach_fields = _tach.unpack
+_tach: Final = Struct("<BBih")
+tach_fields: Final = _tach.unpack
 """The signals of eight bytes as a plain tuple, for receivers that take thousands."""
 
 

@@ -1,12 +1,12 @@
 """TARGET: what an axis board is heading for, every 250 ms."""
 
 from struct import Struct, error
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.names import SUMMARY_KIND
 from bus.protocol.saturate import Clip, fitted, nobody
 
-_target = Struct("<BBBix")
+_target: Final = Struct("<BBBix")
 
 
 class Target(NamedTuple):
