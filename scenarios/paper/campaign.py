@@ -3,10 +3,10 @@ simulation."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from functools import partial
 
 from plant.parts import PlantModel
+from scenarios.campaign.executor import each
 from scenarios.paper.emulator import EmulatorBench
 from scenarios.paper.experiments import EXPERIMENTS, Experiment, Figures
 from scenarios.paper.rows import Row
@@ -29,8 +29,9 @@ def measure(
         return {}, str(error)
 
 
-def _job(name: str, make: MakeBench, plants: Mapping[str, PlantModel], start: Start) -> Outcome:
+def _job(make: MakeBench, plants: Mapping[str, PlantModel], job: tuple[str, Start]) -> Outcome:
     """What a process does: experiments are found by name, functions of modules travel badly."""
+    name, start = job
     return measure(next(row for row in EXPERIMENTS if row.id == name), make, plants, start)
 
 
@@ -41,26 +42,28 @@ def rows(
     experiments: Sequence[Experiment] = EXPERIMENTS,
     starts: Sequence[Start] = STARTS,
     workers: int | None = None,
+    scheduler: str | None = None,
     progress: Progress = lambda text: None,
 ) -> list[Row]:
-    """Return the rows. workers: processes; 1: none but this one. progress: told after every job what it
-    was."""
+    """Return the rows. workers: processes; 1: none but this one. scheduler: address of a Dask cluster
+    instead. progress: told after every job what it was."""
     jobs = [(experiment, start) for experiment in _ordered(experiments) for start in starts]
     found: dict[tuple[str, Start], Outcome] = {}
     count = min(workers or os.cpu_count() or 1, len(jobs))
-    if count == 1:
+    if count == 1 and scheduler is None:
         for experiment, start in jobs:
             found[experiment.id, start] = measure(experiment, make, plants, start)
             progress(experiment.id)
     else:
-        with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-            running: dict[Future[Outcome], tuple[str, Start]] = {
-                pool.submit(_job, experiment.id, make, plants, start): (experiment.id, start)
-                for experiment, start in jobs
-            }
-            for done in as_completed(running):
-                found[running[done]] = done.result()
-                progress(running[done][0])
+        named = {
+            f"{experiment.id} {place}": (experiment.id, start)
+            for place, (experiment, start) in enumerate(jobs)
+        }
+        for done in each(partial(_job, make, plants), named.items(), jobs=count, scheduler=scheduler):
+            if done.value is None:
+                raise RuntimeError(f"{done.key}: {done.error}")
+            found[named[done.key]] = done.value
+            progress(named[done.key][0])
     return [_row(experiment, starts, found) for experiment in experiments]
 
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from bus.can import Frame, FrameError
 from bus.can.bits import crc15, header_bits, number_bits, stuff, stuffed_field, wire_bits
 from bus.can.frame import arbitration_key
-from bus.can.length import frame_bits
+from bus.can.length import frame_bits, typed_bits
 
 # Identifier, data, CRC-15, stuff bits, bits with intermission; found apart from this code (hardware.md 3.3).
 VECTORS = [
@@ -99,3 +99,14 @@ def test_L1_what_can_cannot_carry_is_refused(frame: Frame) -> None:
 )
 def test_headers_bit_by_bit(frame: Frame, bits: str) -> None:
     assert header_bits(frame) == [int(bit) for bit in bits.replace(" ", "")]
+
+
+@given(st.integers(0, 0x7FF), st.binary(min_size=8, max_size=8))
+def test_the_way_that_compiled_code_takes_finds_the_same_length(identifier: int, data: bytes) -> None:
+    assert typed_bits(identifier, data) == len(wire_bits(Frame(identifier, data))) + 3
+
+
+def test_the_way_that_compiled_code_takes_refuses_the_same_identifiers() -> None:
+    for identifier in (-1, 0x800):
+        with pytest.raises(FrameError):
+            typed_bits(identifier, bytes(8))
