@@ -12,7 +12,7 @@ from typing import Any
 import click
 from rich.console import Console
 
-from scenarios.bench import counters, history, interleaved, network, profile, startup
+from scenarios.bench import counters, history, interleaved, network, profile, serving, startup
 from scenarios.bench.show import headline, show
 from scenarios.native.build import BuildError, build
 
@@ -37,6 +37,8 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         profiled = profile.measure(max(5, seconds // 5))
     with say.status("start-up, compiling from nothing"):
         start = startup.startup()
+    with say.status("ticks of a served network"):
+        served = serving.punctuality(15 if quick else 120, native)
     return {
         "begun": begun,
         "machine": {"name": history.machine(), "cores": os.cpu_count(), "load": os.getloadavg()},
@@ -46,6 +48,7 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         "nodes": sizes,
         "memory": memory,
         "startup": start,
+        "served": served,
         "rooms": profiled["rooms"],
         "profile": profiled["functions"],
     }

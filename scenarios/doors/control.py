@@ -13,6 +13,7 @@ import os
 import secrets
 from collections.abc import Callable
 
+from bus.punctual import Punctuality
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.served import Served
@@ -25,6 +26,18 @@ TOKEN_VARIABLE = "SCHMIDT_TOKEN"
 
 class ControlError(ValueError):
     """A command that cannot be carried out; one line."""
+
+
+def _ticks(punctual: Punctuality) -> dict[str, float | None]:
+    """Of the 5 ms ticks so far: share within 1 ms of due, and how late 99.9 % and all of them were at most."""
+    if not punctual.ticks:
+        return {"ticks": 0, "on_time": None, "late_999_ms": None, "worst_ms": None}
+    return {
+        "ticks": punctual.ticks,
+        "on_time": punctual.on_time,
+        "late_999_ms": punctual.quantile_s(0.999) * 1e3,
+        "worst_ms": punctual.worst_s * 1e3,
+    }
 
 
 class ControlDoor:
@@ -109,7 +122,7 @@ class ControlDoor:
                 "paused": pacer.paused,
                 "late_ms": pacer.lateness_s * 1e3,
                 "slips": pacer.slips,
-                "on_time": served.punctual.on_time if served.punctual.ticks else None,
+                **_ticks(served.punctual),
                 "bus_load": wire.load,
                 "frames": wire.frames,
                 "boards": {name: board.on for name, board in served.network.boards.items()},

@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import pytest
+
 from plant.model import load
 from plant.plant import Plant
-from scenarios.bench import history
+from scenarios.bench import history, serving, show
 from scenarios.bench.bare import BareLoop
 
 
@@ -44,3 +46,17 @@ def test_benches_of_another_machine_are_left_out(tmp_path: Path) -> None:
     history.add(path, {"speed": 1.0}, {})
     path.write_text(path.read_text().replace(history.machine(), "another"))
     assert history.read(path) == []
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_the_ticks_of_a_served_network_are_measured_beside_a_loop_that_only_sleeps() -> None:
+    found = serving.punctuality(2, native=False)
+    assert {"a loop that only sleeps", "plain"} <= set(found)
+    for each in found.values():
+        assert 0.0 <= each["on_time"] <= 1.0
+        assert each["late_999_ms"] <= each["worst_ms"] + 1e-9
+        assert each["ticks"] > 0
+    rows = show._served(found)
+    assert rows[0][2] == "" and rows[2][2] == "≥ 99.9 %"
+    assert not any("inf" in text or "nan" in text for row in rows for text in row)
