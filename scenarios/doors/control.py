@@ -29,7 +29,7 @@ class ControlError(ValueError):
 
 
 def _ticks(punctual: Punctuality) -> dict[str, float | None]:
-    """Of the 5 ms ticks so far: share within 1 ms of due, and how late 99.9 % and all of them were at most."""
+    """Of the 5 ms ticks so far: share within 1 ms of due, and how late 99.9 % and all were at most."""
     if not punctual.ticks:
         return {"ticks": 0, "on_time": None, "late_999_ms": None, "worst_ms": None}
     return {
