@@ -9,11 +9,13 @@ from bus.protocol import (
     Device,
     FocusFlag,
     Health,
+    Motion,
     MotionFlag,
     State,
     unpack_tach,
     unpack_target,
 )
+from host.auxiliary import Auxiliary, auxiliary
 from host.client import SILENCE_NS, Client
 from host.rates import CURRENT_A_PER_COUNT, EFFORT_FULL, rate_arcsec_s
 from host.sky.mount import STEP_ARCSEC
@@ -43,6 +45,8 @@ class AxisState(NamedTuple):
     currents_a: tuple[float, float]
     motor_turns_s: tuple[float | None, float | None]
     to_go_arcsec: float
+    auxiliary: Auxiliary | None = None
+    """The auxiliary encoder at `latched_s`; None: no board, or nothing of it yet."""
 
 
 class FocusState(NamedTuple):
@@ -110,14 +114,21 @@ def axis_state(client: Client, name: str) -> AxisState:
         moving=bool(flags & MotionFlag.MOVING),
         soft_limit=bool(flags & MotionFlag.SOFT_LIMIT),
         fault=bool(flags & MotionFlag.FAULT),
-        rate_arcsec_s=rate_arcsec_s(motion.velocity) if motion else 0.0,
+        rate_arcsec_s=_rate(motion),
         effort=motion.effort / EFFORT_FULL if motion else 0.0,
         currents_a=(
             (motion.adc_a * CURRENT_A_PER_COUNT, motion.adc_b * CURRENT_A_PER_COUNT) if motion else (0.0, 0.0)
         ),
         motor_turns_s=(turns[0], turns[1]),
         to_go_arcsec=unpack_target(summary).distance * STEP_ARCSEC if summary else 0.0,
+        auxiliary=auxiliary(
+            client.link, name, reading.position if reading else None, latched_s, _rate(motion)
+        ),
     )
+
+
+def _rate(motion: Motion | None) -> float:
+    return rate_arcsec_s(motion.velocity) if motion else 0.0
 
 
 def focus_state(client: Client) -> FocusState | None:

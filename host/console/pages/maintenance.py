@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from host.console.combine import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
+from host.auxiliary import ABSOLUTE_ARCSEC, APART, AUXILIARY_ARCSEC, combine
 from host.console.figures import number
 from host.console.live import RATIO
 from host.console.plots import plots
@@ -64,14 +64,16 @@ def _encoders(shell: Shell) -> None:
         ui.label(
             "Combined: the mean weighted by inverse variances, the best linear unbiased estimate of two"
             f" independent readings; σ {ABSOLUTE_ARCSEC:.2f}″ on the shaft,"
-            f" {AUXILIARY_ARCSEC:.2f}″ auxiliary."
+            f" {AUXILIARY_ARCSEC:.2f}″ auxiliary at rest, more while moving: they are read milliseconds"
+            f" apart. Beyond {APART:g} σ of their difference the one on the shaft stands alone."
         ).classes("small")
 
     def refresh() -> None:
         now = shell.desk.now
         rows = []
         for name, state in (("RA", now.ra), ("Dec", now.dec)):
-            found = combine(state.steps, None)
+            other = state.auxiliary
+            found = combine(state.steps, *(other if other is not None else (None,)))
             rows.append(
                 (
                     name,
@@ -80,7 +82,8 @@ def _encoders(shell: Shell) -> None:
                     if found.auxiliary_arcsec is not None
                     else "no board",
                     number(found.difference_arcsec, "+.2f"),
-                    number(found.estimate_arcsec, ".2f", f" ± {found.sigma_arcsec:.2f}"),
+                    number(found.estimate_arcsec, ".2f", f" ± {found.sigma_arcsec:.2f}")
+                    + ("" if found.agree else " (they disagree)"),
                 )
             )
         fill(rows)

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from host.console.combine import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
+from host.auxiliary import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
 from host.console.figures import hours
 from host.console.guard import COOKIE, Guard
 from host.console.skymap import boundary, svg
@@ -47,7 +47,7 @@ def test_the_combined_encoder_is_the_best_linear_unbiased_estimate() -> None:
 
 def test_one_encoder_alone_keeps_its_own_deviation_and_none_says_nothing() -> None:
     assert combine(1000, None).sigma_arcsec == ABSOLUTE_ARCSEC
-    assert combine(None, 5.0) == (None, 5.0, None, 5.0, AUXILIARY_ARCSEC)
+    assert combine(None, 5.0) == (None, 5.0, None, 5.0, AUXILIARY_ARCSEC, True)
     assert combine(None, None).estimate_arcsec is None
 
 
