@@ -354,10 +354,17 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
     help="Of the mean period of a message, relative.",
 )
 @click.option(
-    "--motion/--no-motion",
-    default=None,
-    help="Send commands that move the telescope, too. Default: in this process only.",
+    "--stamps",
+    type=Number(min=0),
+    default=0.001,
+    show_default=True,
+    help="Uncertainty of the tester's time stamps, seconds (in process: 0).",
 )
+@click.option("--board", "boards", multiple=True, metavar="TYPE:ID", help="Check this one only (repeatable).")
+@click.option(
+    "--motion/--no-motion", help="Send commands that move the telescope, too; it is stopped at the end."
+)
+@click.option("--flood", is_flag=True, help="Fill the bus, too: boards will report what they had to drop.")
 def conformance(
     scenario: Path | None,
     network: str | None,
@@ -365,12 +372,17 @@ def conformance(
     json_file: Path | None,
     speed: float,
     tolerance: float,
-    motion: bool | None,
+    stamps: float,
+    boards: tuple[str, ...],
+    motion: bool,
+    flood: bool,
 ) -> None:
     """Check boards, emulated or real, against the protocol; SCENARIO or --network says which boards."""
+    from bus.conformance import Settings
     from scenarios.conformance import command
 
-    sys.exit(command(channel, json_file, speed, motion, tolerance, scenario, network))
+    settings = Settings(period_tolerance=tolerance, stamps_s=stamps, speed=speed, motion=motion, flood=flood)
+    sys.exit(command(channel, json_file, boards, settings, scenario, network))
 
 
 @cli.command()

@@ -4,8 +4,9 @@ fits."""
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from bus.conformance.boards import Board
 from bus.conformance.link import Link
-from bus.conformance.result import CheckResult, Level
+from bus.conformance.result import CheckResult, Level, judged, told
 from bus.protocol import Device, Health, Opcode, Reply, Result, SpeedClass
 from bus.protocol.nodes import arguments_of, kind_of
 
@@ -72,7 +73,7 @@ def judge(
     expected = "one reply: " + " or ".join(Result(result).name for result in results)
     observed = ", ".join(_text(reply, device) for reply in replies) or "no reply"
     passed = len(replies) == 1 and replies[0].device == device and replies[0].result in results
-    return CheckResult(check, subject, Level.MUST, passed, expected, observed, duration_s)
+    return judged(check, subject, passed, expected, observed, duration_s)
 
 
 def _text(reply: Reply, device: int) -> str:
@@ -81,9 +82,9 @@ def _text(reply: Reply, device: int) -> str:
     return name + value + ("" if reply.device == device else f" from device type {reply.device:#04x}")
 
 
-def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
-    """Every command `device` knows; those that move something only when the settings allow it."""
-    name = device.name
+def check_commands(link: Link, board: Board) -> Iterator[CheckResult]:
+    """Every command `board` knows; those that move something only when the settings allow it."""
+    name, device = board.name, board.device
     start = link.now()
     replies = link.ask(device, Opcode.PING)
     yield judge("command", f"{name} PING", replies, device, _OK, link.now() - start)
@@ -91,9 +92,10 @@ def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
     # foreign frames are this program's own: its checks of other boards have sent some
     well = health is not None and health & ~Health.FOREIGN == 0
     observed = "no reply" if health is None else f"{health:#x}"
-    yield CheckResult("health", name, Level.SHOULD, well, "0", observed, 0.0)
-    yield from _parameters(link, device)
-    for case in _FAMILIES.get(name.partition("_")[0]) or declared_cases(device):
+    yield judged("health", name, well, "0", observed, otherwise=Level.ISSUE)
+    yield from _parameters(link, board)
+    cases = _FAMILIES.get(board.family) or declared_cases(board.model)
+    for case in cases:
         if case.moves and not link.settings.motion:
             continue
         start = link.now()
@@ -101,21 +103,36 @@ def check_commands(link: Link, device: Device) -> Iterator[CheckResult]:
         arguments = "".join(f" {argument}" for argument in case.arguments)
         subject = f"{name} {case.opcode.name}{arguments}"
         yield judge("command", subject, replies, device, case.results, link.now() - start)
+    left = 0 if link.settings.motion else sum(case.moves for case in cases)
+    if left:
+        yield told("motion", name, f"{left} commands that may move something not sent; --motion sends them")
 
 
-def _parameters(link: Link, device: Device) -> Iterator[CheckResult]:
+def check_answers(link: Link, board: Board) -> Iterator[CheckResult]:
+    """How long the answers to all commands so far took."""
+    took = [each * link.settings.speed for each in link.took_s.get(board.device, ())]
+    if not took:
+        return
+    allowed = link.settings.answer_s + link.settings.stamps_s * link.settings.speed
+    observed = f"{min(took) * 1e3:.3f}..{max(took) * 1e3:.3f} ms, {len(took)} answers"
+    yield judged(
+        "response time", board.name, max(took) <= allowed, f"within {allowed * 1e3:.3f} ms", observed,
+        otherwise=Level.ISSUE,
+    )  # fmt: skip
+
+
+def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
     """Read a parameter and write the same value back."""
-    kind = kind_of(device)
-    has_parameters = device.name.startswith("AXIS_") or (kind is not None and bool(kind.parameters))
+    name, device = board.name, board.device
+    kind = kind_of(board.model)
+    has_parameters = board.family == "AXIS" or (kind is not None and bool(kind.parameters))
     results = _OK if has_parameters else _EXISTS_OR_NOT
     start = link.now()
     replies = link.ask(device, Opcode.GET_PARAMETER, _PARAMETER)
-    yield judge(
-        "command", f"{device.name} GET_PARAMETER {_PARAMETER}", replies, device, results, link.now() - start
-    )
+    subject = f"{name} GET_PARAMETER {_PARAMETER}"
+    yield judge("command", subject, replies, device, results, link.now() - start)
     value = replies[0].value if replies else 0
     start = link.now()
     replies = link.ask(device, Opcode.SET_PARAMETER, _PARAMETER, value)
-    yield judge(
-        "command", f"{device.name} SET_PARAMETER {_PARAMETER}", replies, device, results, link.now() - start
-    )
+    subject = f"{name} SET_PARAMETER {_PARAMETER}"
+    yield judge("command", subject, replies, device, results, link.now() - start)

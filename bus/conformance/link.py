@@ -6,8 +6,12 @@ from time import monotonic
 import can
 
 from bus.conformance.settings import Settings
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Reply, pack_command, unpack_reply
+from bus.protocol import COMMAND_BASE, FRAME_BYTES, REPLY_BASE, Reply, pack_command, unpack_reply
 from bus.pythoncan import SchmidtBus
+
+_ROOM_S = 0.0005
+"""Commands come before all else in arbitration: a tester that never pauses starves the boards' own frames
+until their transmit buffers are full. Time for some of them after each pair of command and answer."""
 
 
 def clock_of(bus: can.BusABC) -> Callable[[], float]:
@@ -24,6 +28,9 @@ class Link:
     def __init__(self, bus: can.BusABC, settings: Settings) -> None:
         self.settings = settings
         self.now = clock_of(bus)
+        self.took_s: dict[int, list[float]] = {}
+        """Per device type, what its first answers took, seconds on the bus's clock."""
+        self._sent_s = 0.0
         self._bus = bus
 
     def listen(self, seconds: float) -> list[can.Message]:
@@ -38,6 +45,7 @@ class Link:
 
     def send(self, identifier: int, data: bytes, *, extended: bool = False, remote: bool = False) -> None:
         """Put one frame on the bus."""
+        self._sent_s = self.now()
         self._bus.send(
             can.Message(
                 arbitration_id=identifier,
@@ -48,22 +56,39 @@ class Link:
             )
         )
 
+    def reply(self, device: int, within_s: float) -> Reply | None:
+        """The next answer of `device`; None when there is none in time."""
+        end = self.now() + within_s
+        while (left := end - self.now()) > 0:
+            message = self._bus.recv(timeout=left)
+            if message is None or message.arbitration_id != REPLY_BASE + device or message.is_extended_id:
+                continue
+            if len(message.data) == FRAME_BYTES and not message.is_remote_frame:
+                return unpack_reply(bytes(message.data))
+        return None
+
     def replies(self, device: int, opcode: int | None) -> list[Reply]:
         """Answers of `device` to `opcode` (None: to anything): the first within reply_s, then any within
         quiet_s."""
         found: list[Reply] = []
         end = self.now() + self.settings.reply_s
-        while (left := end - self.now()) > 0:
-            message = self._bus.recv(timeout=left)
-            if message is None or message.arbitration_id != REPLY_BASE + device or message.is_extended_id:
-                continue
-            if len(message.data) != 8:
-                continue
-            reply = unpack_reply(bytes(message.data))
+        while (reply := self.reply(device, end - self.now())) is not None:
             if opcode is None or reply.opcode == opcode:
+                if not found:
+                    self.took_s.setdefault(device, []).append(self.now() - self._sent_s)
                 found.append(reply)
                 end = self.now() + self.settings.quiet_s
         return found
+
+    def first(self, device: int, opcode: int, *arguments: int) -> Reply | None:
+        """The answer to a command, without waiting for a second one; then the bus is left to others."""
+        self.send(COMMAND_BASE + device, pack_command(device, opcode, *arguments))
+        end = self.now() + self.settings.reply_s
+        while (reply := self.reply(device, end - self.now())) is not None:
+            if reply.opcode == opcode:
+                self.listen(_ROOM_S)
+                return reply
+        return None
 
     def silent(self, device: int) -> bool:
         """Whether `device` says nothing of the kind for quiet_s and a bit."""

@@ -3,10 +3,11 @@
 import struct
 from collections.abc import Iterator
 
+from bus.conformance.boards import Board
 from bus.conformance.commands import judge
 from bus.conformance.link import Link
-from bus.conformance.result import CheckResult, Level
-from bus.protocol import COMMAND_BASE, LAYOUTS, Device, Opcode, Result, pack_command
+from bus.conformance.result import CheckResult, judged
+from bus.protocol import COMMAND_BASE, LAYOUTS, REPLY_BASE, Device, Opcode, Result, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
@@ -29,32 +30,33 @@ _UNKNOWN_IDENTIFIERS = (0x07F, 0x0FF, 0x6AA, 0x7FE)
 """Nobody has the device types 0x7f and 0x7e; 0x6aa is in no range; 0x07f is below them all."""
 
 
-def check_misuse(link: Link, device: Device) -> Iterator[CheckResult]:
+def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
     """Wrong length, wrong device type, unknown opcode, out of range."""
+    name, device = board.name, board.device
     ping = pack_command(device, Opcode.PING)
-    other = next(each for each in Device if each is not device)
+    other = next(each for each in Device if each != device)
     for length in (0, 1, 2, 7):
         # Without byte 1 the answer cannot name an opcode: it says 0.
         opcode = int(Opcode.PING) if length > 1 else 0
-        subject = f"{device.name} PING of {length} bytes"
+        subject = f"{name} PING of {length} bytes"
         yield _one(link, device, "wrong length", subject, ping[:length], opcode, Result.WRONG_LENGTH)
     data = pack_command(other, Opcode.PING)
     yield _one(
-        link, device, "wrong device type", f"{device.name} PING for {other.name}", data, Opcode.PING,
+        link, device, "wrong device type", f"{name} PING for {other.name}", data, Opcode.PING,
         Result.WRONG_DEVICE_TYPE,
     )  # fmt: skip
     for opcode in _UNKNOWN_OPCODES:
         data = bytes([device, opcode, 0, 0, 0, 0, 0, 0])
-        subject = f"{device.name} opcode {opcode:#04x}"
+        subject = f"{name} opcode {opcode:#04x}"
         yield _one(link, device, "unknown opcode", subject, data, opcode, Result.UNKNOWN_OPCODE)
     wrong: list[tuple[Opcode, tuple[int, ...]]] = [
         (Opcode.GET_PARAMETER, (_UNKNOWN_PARAMETER,)),
         (Opcode.SET_PARAMETER, (_UNKNOWN_PARAMETER, 0)),
     ]
-    wrong += _OUT_OF_RANGE.get(device.name.partition("_")[0], ()) or declared_misuse(device)
+    wrong += _OUT_OF_RANGE.get(board.family, ()) or declared_misuse(board.model)
     for known, arguments in wrong:
         data = pack_command(device, known, *arguments)
-        subject = f"{device.name} {known.name} {' '.join(map(str, arguments))}"
+        subject = f"{name} {known.name} {' '.join(map(str, arguments))}"
         yield _one(link, device, "out of range", subject, data, known, Result.OUT_OF_RANGE)
 
 
@@ -87,28 +89,35 @@ def _fits(opcode: Opcode, arguments: tuple[int, ...]) -> bool:
 
 
 def _one(
-    link: Link, device: Device, check: str, subject: str, data: bytes, opcode: int, result: Result
+    link: Link, device: int, check: str, subject: str, data: bytes, opcode: int, result: Result
 ) -> CheckResult:
     start = link.now()
     replies = link.ask_raw(device, data, opcode)
     return judge(check, subject, replies, device, (result,), link.now() - start)
 
 
-def check_unknown_identifier(link: Link, device: Device) -> Iterator[CheckResult]:
-    """Frames that are not for `device`, though their data would be: no answer, and it is still there
+def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
+    """Frames that are not for `board`, though their data would be: no answer, and it is still there
     afterwards."""
-    ping = pack_command(device, Opcode.PING)
+    command = COMMAND_BASE + board.device
     sends = [(f"identifier {number:#05x}", number, False, False) for number in _UNKNOWN_IDENTIFIERS]
-    sends.append((f"extended {COMMAND_BASE + device:#05x}", COMMAND_BASE + device, True, False))
-    sends.append((f"remote {COMMAND_BASE + device:#05x}", COMMAND_BASE + device, False, True))
+    sends += [
+        (f"extended {command:#05x}", command, True, False),
+        # the same eleven bits on the wire, then eighteen more
+        (f"extended {command << 18:#010x}", command << 18, True, False),
+        (f"remote {command:#05x}", command, False, True),
+        (f"extended remote {command << 18:#010x}", command << 18, True, True),
+        (f"remote {REPLY_BASE + board.device:#05x}", REPLY_BASE + board.device, False, True),
+    ]
+    ping = pack_command(board.device, Opcode.PING)
     for subject, identifier, extended, remote in sends:
         start = link.now()
         link.send(identifier, ping, extended=extended, remote=remote)
-        silent = link.silent(device)
+        silent = link.silent(board.device)
         took = link.now() - start
         observed = "no reply" if silent else "a reply"
-        name = f"{device.name}, {subject}"
-        yield CheckResult("unknown identifier", name, Level.MUST, silent, "no reply", observed, took)
+        check = "remote frame" if remote else "extended frame" if extended else "unknown identifier"
+        yield judged(check, f"{board.name}, {subject}", silent, "no reply", observed, took)
     start = link.now()
-    replies = link.ask(device, Opcode.PING)
-    yield judge("still there", device.name, replies, device, (Result.OK,), link.now() - start)
+    replies = link.ask(board.device, Opcode.PING)
+    yield judge("still there", board.name, replies, board.device, (Result.OK,), link.now() - start)

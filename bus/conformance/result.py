@@ -8,10 +8,13 @@ from typing import Any
 
 
 class Level(StrEnum):
-    """must: the protocol says so; should: a sound network does it."""
+    """ok: as it should be. info: told, not judged. issue: a sound network does better. error: against the
+    protocol."""
 
-    MUST = "must"
-    SHOULD = "should"
+    OK = "ok"
+    INFO = "info"
+    ISSUE = "issue"
+    ERROR = "error"
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,20 +25,41 @@ class CheckResult:
     check: str
     subject: str
     level: Level
-    passed: bool
     expected: str
     observed: str
-    duration_s: float
+    duration_s: float = 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is wrong."""
+        return self.level in (Level.OK, Level.INFO)
+
+
+def judged(
+    check: str,
+    subject: str,
+    passed: bool,
+    expected: str,
+    observed: str,
+    duration_s: float = 0.0,
+    otherwise: Level = Level.ERROR,
+) -> CheckResult:
+    """A check that passed, or is `otherwise`."""
+    return CheckResult(check, subject, Level.OK if passed else otherwise, expected, observed, duration_s)
+
+
+def told(check: str, subject: str, observed: str) -> CheckResult:
+    """Something worth knowing that is neither right nor wrong."""
+    return CheckResult(check, subject, Level.INFO, "", observed)
 
 
 def summary(results: Sequence[CheckResult]) -> dict[str, Any]:
-    """Machine-readable: counts, the verdict (every `must` holds), and all results."""
-    failed = Counter(str(result.level) for result in results if not result.passed)
+    """Machine-readable: counts per level, the verdict (no `error`), and all results."""
+    counts = Counter(result.level for result in results)
     return {
-        "format": "schmidt-conformance 1",
-        "passed": not failed[Level.MUST],
+        "format": "schmidt-conformance 2",
+        "passed": not counts[Level.ERROR],
         "checks": len(results),
-        "failed_must": failed[Level.MUST],
-        "failed_should": failed[Level.SHOULD],
+        **{str(level): counts[level] for level in Level},
         "results": [asdict(result) for result in results],
     }

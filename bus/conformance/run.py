@@ -5,11 +5,16 @@ from typing import TYPE_CHECKING
 
 import can
 
-from bus.conformance.commands import check_commands
+from bus.conformance.boards import Board, board_of
+from bus.conformance.commands import check_answers, check_commands
+from bus.conformance.flood import check_flood
+from bus.conformance.halt import halted
+from bus.conformance.limits import check_limits
 from bus.conformance.link import Link
 from bus.conformance.misuse import check_misuse, check_unknown_identifier
-from bus.conformance.result import CheckResult, Level
+from bus.conformance.result import CheckResult, judged
 from bus.conformance.settings import Settings
+from bus.conformance.states import check_states
 from bus.conformance.telemetry import check_telemetry
 from bus.protocol import Device, Opcode
 from bus.protocol.nodes import documented
@@ -21,31 +26,38 @@ if TYPE_CHECKING:
 def run(
     bus: can.BusABC,
     dbc: "Database | None" = None,
-    devices: Sequence[Device] = tuple(Device),
+    devices: Sequence[Device | Board] = tuple(Device),
     settings: Settings | None = None,
 ) -> list[CheckResult]:
     """Check every one of `devices` on `bus` against `dbc` (None: the project's own).
 
     Never raises for what boards do or fail to do; a bus that breaks raises can.CanError. Nobody else
-    should be sending commands meanwhile.
+    should be sending commands meanwhile. With `settings.motion` everything is stopped at the end, however
+    it ends.
     """
     settings = settings or Settings()
+    boards = [each if isinstance(each, Board) else board_of(each) for each in devices]
+    link = Link(bus, settings)
     results = []
-    for result in _checks(Link(bus, settings), dbc or documented(devices), devices):
-        settings.each(result)
-        results.append(result)
+    with halted(link, boards):
+        for result in _checks(link, dbc or documented([board.model for board in boards]), boards):
+            settings.each(result)
+            results.append(result)
     return results
 
 
-def _checks(link: Link, dbc: "Database", devices: Sequence[Device]) -> Iterator[CheckResult]:
-    yield from check_telemetry(link, dbc, {device.name for device in devices})
-    for device in devices:
-        if not (link.ask(device, Opcode.PING) or link.ask(device, Opcode.PING)):
+def _checks(link: Link, dbc: "Database", boards: Sequence[Board]) -> Iterator[CheckResult]:
+    yield from check_telemetry(link, dbc, boards)
+    for board in boards:
+        if not (link.ask(board.device, Opcode.PING) or link.ask(board.device, Opcode.PING)):
             # Once is enough: waiting for the answer to every command of a board that is not there takes
             # minutes.
-            subject = f"{device.name} PING"
-            yield CheckResult("answers", subject, Level.MUST, False, "a reply", "none, twice", 0.0)
+            yield judged("answers", f"{board.name} PING", False, "a reply", "none, twice")
             continue
-        yield from check_commands(link, device)
-        yield from check_misuse(link, device)
-        yield from check_unknown_identifier(link, device)
+        yield from check_commands(link, board)
+        yield from check_misuse(link, board)
+        yield from check_unknown_identifier(link, board)
+        yield from check_states(link, board)
+        yield from check_limits(link, board)
+        yield from check_answers(link, board)
+        yield from check_flood(link, board)

@@ -16,18 +16,26 @@ class Settings:
     unchecked.
 
     reply_s: how long an answer may take. quiet_s: how long to watch for a second answer.
+    answer_s: how long a sound board takes, seconds. ASSUMPTION: two periods of the 5 ms control loop, the
+        slowest a host can close a loop over the bus with.
     period_tolerance: of the mean period, relative. 2 %: crystals are within 0.01 %, the rest is for the
-    PC's clock.
+        PC's clock.
+    stamps_s: uncertainty of the tester's time stamps, seconds; 0 in process. 1 ms: a full-speed USB adapter
+        hands over frames once per USB frame (USB 2.0, 8.4.3).
     speed: simulated seconds per second of the bus's time stamps (`schmidt serve --speed`).
     motion: also send commands that power or move something. Off by default: the bus may be a real
-    telescope's.
+        telescope's. Everything is stopped at the end.
+    flood: also fill the bus. Off by default: a board rightly remembers, and reports, what it had to drop.
     each: called with every result as it is found.
     """
 
     listen_s: float = 4.2
     reply_s: float = 1.0
     quiet_s: float = 0.03
+    answer_s: float = 0.010
     period_tolerance: float = 0.02
+    stamps_s: float = 0.001
     speed: float = 1.0
     motion: bool = False
+    flood: bool = False
     each: Callable[[CheckResult], None] = _nobody

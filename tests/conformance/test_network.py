@@ -26,7 +26,7 @@ def in_process() -> Iterator[tuple[can.BusABC, Settings]]:
     with SchmidtBus(network().wire) as bus:
         # The wire's own time stamps: what is left of the tolerance is for the crystals (50 ppm) and the
         # arbitration.
-        yield bus, Settings(motion=True, period_tolerance=0.002)
+        yield bus, Settings(motion=True, period_tolerance=0.002, stamps_s=0.0)
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def served() -> Iterator[tuple[can.BusABC, Settings]]:
             assert bus.recv(timeout=_START_S) is not None, "the server never spoke"
             # A loaded machine delays whole slices of the server, not its crystals: generous, but it
             # tells 5 from 10 ms.
-            yield bus, Settings(motion=True, period_tolerance=0.2, reply_s=5.0)
+            yield bus, Settings(motion=True, period_tolerance=0.2, reply_s=5.0, stamps_s=60.0)
         finally:
             server.terminate()
             output, errors = server.communicate(timeout=30)
@@ -60,7 +60,7 @@ def test_L1_L2_B9_every_board_keeps_the_protocol(where: str, request: pytest.Fix
     checked = {(result.check, result.subject) for result in results}
     for message in database().messages:
         if message.cycle_time:
-            for check in ("identifier", "length", "device type", "contents", "period"):
+            for check in ("identifier", "length", "device type", "contents", "period", "jitter", "gap"):
                 assert (check, message.name) in checked
     for device in Device:
         for check in (
@@ -69,6 +69,10 @@ def test_L1_L2_B9_every_board_keeps_the_protocol(where: str, request: pytest.Fix
             "wrong device type",
             "unknown opcode",
             "out of range",
+            "extended frame",
+            "remote frame",
+            "response time",
+            "flooding",
             "still there",
         ):
             assert any(c == check and s.startswith(device.name) for c, s in checked), (check, device.name)

@@ -1,0 +1,70 @@
+"""More than a board is used to: commands in quick succession, and, asked for, a bus that is full of them."""
+
+from collections.abc import Iterator
+
+from bus.conformance.boards import Board
+from bus.conformance.commands import judge
+from bus.conformance.link import Link
+from bus.conformance.result import CheckResult, Level, judged, told
+from bus.protocol import COMMAND_BASE, Health, Opcode, Result, pack_command
+
+_COMMANDS = 64
+_PACE_S = 0.0005
+"""A command and its answer take half of that at 1 Mbit/s; the other half is left to the boards' own frames,
+which come after commands in arbitration."""
+
+
+def check_flood(link: Link, board: Board) -> Iterator[CheckResult]:
+    """Every command of a quick succession is answered once; a full bus does no lasting harm."""
+    start = link.now()
+    answers = _stream(link, board)
+    yield judged(
+        "flooding", board.name, answers == _COMMANDS, f"{_COMMANDS} answers, {_PACE_S * 1e3} ms apart",
+        f"{answers}", link.now() - start,
+    )  # fmt: skip
+    if link.settings.flood:
+        yield from _full(link, board)
+    start = link.now()
+    replies = link.ask(board.device, Opcode.PING)
+    yield judge(
+        "still there", f"{board.name}, flooded", replies, board.device, (Result.OK,), link.now() - start
+    )
+
+
+def _stream(link: Link, board: Board) -> int:
+    """Answers to a stream of PINGs that takes half of the bus."""
+    ping = pack_command(board.device, Opcode.PING)
+    answers = 0
+    for _ in range(_COMMANDS):
+        end = link.now() + _PACE_S
+        link.send(COMMAND_BASE + board.device, ping)
+        while link.now() < end:
+            answers += link.reply(board.device, end - link.now()) is not None
+    while link.reply(board.device, 3 * link.settings.quiet_s) is not None:
+        answers += 1
+    return answers
+
+
+def _full(link: Link, board: Board) -> Iterator[CheckResult]:
+    """Commands back to back: answers have less priority, so most cannot leave; the board has to say so."""
+    ping = pack_command(board.device, Opcode.PING)
+    start = link.now()
+    for _ in range(_COMMANDS):
+        link.send(COMMAND_BASE + board.device, ping)
+    answers = 0
+    while link.reply(board.device, 3 * link.settings.quiet_s) is not None:
+        answers += 1
+    took = link.now() - start
+    yield judged(
+        "full bus", board.name, answers <= _COMMANDS, f"at most {_COMMANDS} answers", f"{answers}", took
+    )
+    if answers == _COMMANDS:
+        yield told("full bus", board.name, "nothing was lost")
+        return
+    reply = link.first(board.device, Opcode.PING)
+    owns_up = reply is not None and bool(reply.value & Health.DROPPED)
+    observed = "no reply" if reply is None else f"health {reply.value:#x}"
+    expected = f"health bit {Health.DROPPED:#x}, as {_COMMANDS - answers} answers were lost"
+    yield judged(
+        "full bus", f"{board.name}, loss owned up to", owns_up, expected, observed, took, Level.ISSUE
+    )
