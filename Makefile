@@ -47,6 +47,7 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python -m bus.protocol.page --check
+	$(BIN)/python -m scenarios.faults.page --check
 
 paper: $(READY)
 	$(BIN)/schmidt paper --out out/paper --json out/paper/paper.json

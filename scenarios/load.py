@@ -16,6 +16,9 @@ from host.sky.observed import Clock
 from host.sky.site import NAINITAL, Site, standard_pressure_hpa
 from scenarios import model
 from scenarios.document import Document, ScenarioError, read
+from scenarios.faults.kind import FaultError
+from scenarios.faults.place import WORDS
+from scenarios.faults.table import BY_NAME
 from scenarios.units import parse
 from scenarios.validate import check, check_finite, nearest, schema
 
@@ -155,6 +158,10 @@ def _fault(document: Document, index: int, data: dict[str, Any]) -> model.Fault:
     probability = data[kind].get("probability", 1.0)
     if not 0.0 <= probability <= 1.0:
         raise ScenarioError(f"{where}: a probability lies between 0 % and 100 %, not at {probability:.0%}")
+    try:
+        BY_NAME[kind].arguments(data[kind], {"node": tuple(schema()["$defs"]["node"]["enum"]), **WORDS})
+    except FaultError as error:
+        raise ScenarioError(f"{where}: {error}") from None
     return model.Fault(kind, data[kind], where, at_s, until_s)
 
 

@@ -46,9 +46,8 @@ def serve(
         doors = make_doors(options, served)
         if recording is not None:
             recording.attach(served)
-        wire(scenario, model).run_until(
-            _WARM_NS
-        )  # another one, so that all is compiled before the clock starts
+        warm = wire(scenario, model)  # another one, so that all is compiled before the clock starts
+        warm.run_until(_WARM_NS)
         keepers = [Keeper(door, console.print) for door in doors]
         try:
             for keeper in keepers:

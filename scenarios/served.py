@@ -12,6 +12,7 @@ from scenarios.network import Network, build, config_from
 
 if TYPE_CHECKING:
     from plant.model import PlantModel
+    from scenarios.faults import Faults
 
 UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 """The lab network has no date: boards do not look at the sky, and a host takes today's."""
@@ -40,20 +41,25 @@ def chosen(
 
 
 def wire(scenario: Scenario, model: PlantModel) -> Network:
-    """Plant, boards and bus of a scenario, parked and powered up, with its faults.
+    """`wired`, for who wants no further faults."""
+    return wired(scenario, model)[0]
+
+
+def wired(scenario: Scenario, model: PlantModel) -> tuple[Network, Faults]:
+    """Plant, boards and bus of a scenario, parked and powered up, and its faults.
 
     Its steps are not run: whoever is on the bus commands.
     """
     from plant.plant import Plant
-    from scenarios import faults
+    from scenarios.faults import Faults
     from scenarios.session import soft_limits, start_steps
 
     pins = Plant(model, scenario.seed, start_steps(scenario))
-    faults.stick_sensors(pins, scenario.faults)
     config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
     made = build(config, pins, scenario.seed)
-    faults.apply(made, scenario.faults, scenario.seed)
-    return made
+    faults = Faults(made, scenario.seed)
+    faults.schedule(scenario.faults)
+    return made, faults
 
 
 def network(

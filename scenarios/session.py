@@ -15,8 +15,8 @@ from host.logs.sensors import readings
 from host.serial_link import SerialLink
 from plant.model import PlantModel
 from plant.plant import Plant
-from scenarios import faults
 from scenarios.cables import Cables
+from scenarios.faults import Faults
 from scenarios.model import Scenario
 from scenarios.network import Network, build, config_from
 from scenarios.programme import Programme
@@ -37,7 +37,6 @@ class Session:
         self.scenario = scenario
         self.plant = Plant(model, scenario.seed, start_steps(scenario))
         self.recorder = Recorder(folder, scenario, self.plant, log_headers(scenario, model))
-        faults.stick_sensors(self.plant, scenario.faults)
         config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
         self.network: Network = build(config, self.plant, scenario.seed)
         self.network.wire.tap(self.recorder.can.take)
@@ -45,7 +44,8 @@ class Session:
         self.client = Client(self.link, self.recorder.ascii, devices_on(self.network))
         self.serial = [self._serial(device) for device in SERIAL]
         self.programme = Programme(scenario, self.client, self.recorder.ascii)
-        faults.apply(self.network, scenario.faults, scenario.seed)
+        self.faults = Faults(self.network, scenario.seed)
+        self.faults.schedule(scenario.faults)
         self._status_ns = round(scenario.status_period_s * 1e9)
         self._next_status_ns = 0
         self._host_rows: list[tuple[float, ...]] = []

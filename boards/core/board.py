@@ -53,12 +53,14 @@ class Board:
 
     __slots__ = (
         "_before",
+        "_boot_ns",
         "_clipped_ns",
         "_command",
         "_dropped_ns",
         "_foreign_ns",
         "_last",
         "_late",
+        "boots",
         "can",
         "clipped",
         "commands",
@@ -111,6 +113,9 @@ class Board:
         self.clipped = 0
         self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO
         self.on = False
+        self.boots = 0
+        self._boot_ns = _LONG_AGO
+        """When the boot in progress ends."""
         self.epoch_ns = 0
         """True time less the board's own; kept by whoever has the timer."""
 
@@ -132,21 +137,31 @@ class Board:
     # --- power ------------------------------------------------------------------------------------
     def power_on(self, t_ns: int) -> None:
         """Supply comes up at `t_ns`: boot, then run."""
-        if not self.on:
-            self.queue.at(t_ns + BOOT_NS, self._boot)
+        if not self.on and self._boot_ns <= t_ns:  # it may be booting already
+            self._boot_ns = t_ns + BOOT_NS
+            self.queue.at(self._boot_ns, self._boot)
 
     def power_off(self, t_ns: int) -> None:
         """Supply fails at `t_ns`: the board falls silent; what it drove goes to its unpowered state."""
-        self.on = False
         self.port.online = False
+        self.hold_in_reset(t_ns)
+
+    def hold_in_reset(self, t_ns: int) -> None:
+        """The processor's reset is pulled at `t_ns`; its CAN controller, a chip of its own, goes on."""
+        self.on = False
+        self._boot_ns = _LONG_AGO
         self.unpowered(t_ns)
 
     def begin(self, t_ns: int = 0) -> None:
         """Run from `t_ns` on, without a boot: the state a simulation starts in."""
+        self._boot_ns = t_ns
         self._boot(t_ns)
 
     def _boot(self, t_ns: int) -> None:
+        if t_ns != self._boot_ns:
+            return  # the supply failed again
         self.on = True
+        self.boots += 1
         self.port.online = True
         self.epoch_ns = t_ns
         self._foreign_ns = self._clipped_ns = self._dropped_ns = _LONG_AGO

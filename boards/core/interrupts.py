@@ -129,6 +129,18 @@ class InterruptController:
         for line in self._running:
             line.end_ns += cost_ns
 
+    def halt(self, mask: Line) -> list[Line]:
+        """Put `mask` above everything: nothing starts any more. Returns what is running."""
+        running = list(self._running)
+        self._running.append(mask)
+        self.busy = True
+        return running
+
+    def resume(self, mask: Line) -> None:
+        """Take `mask` away again."""
+        self._running.remove(mask)
+        self.busy = bool(self._running)
+
     def dispatch(self, t_ns: int) -> None:
         """Start the most urgent pending line if it may run now."""
         running = self._running

@@ -38,6 +38,12 @@ class Timer:
         self._true_ns = self._oscillator.true_ns(self._local_ns)
         self.times.clear()
 
+    def retime(self) -> None:
+        """The crystal's rate has changed: work out again what has been worked out in advance."""
+        self._local_ns -= len(self.times) * self.period_ns
+        self._true_ns = self._oscillator.true_ns(self._local_ns)
+        self.times.clear()
+
     def next_ns(self) -> int:
         """True time at which the next routine starts."""
         if not self.times:

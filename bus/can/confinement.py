@@ -49,3 +49,15 @@ def receive_failed(ports: Iterable[Port], first: Port | None = None) -> None:
         if port.listen_only:
             continue
         port.rec = min(port.rec + (9 if port is first and port.state == "active" else 1), _REC_MAX)
+
+
+def still_dominant(ports: Iterable[Port]) -> None:
+    """Receivers see dominant bits where the error delimiter should be: 8 each time."""
+    for port in ports:
+        if not port.listen_only:
+            port.rec = min(port.rec + 8, _REC_MAX)
+
+
+def saturated(port: Port) -> bool:
+    """Whether a receiver's counter goes no higher."""
+    return port.listen_only or port.rec >= _REC_MAX

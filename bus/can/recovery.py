@@ -34,6 +34,12 @@ class Recovery:
         """`port` was switched on or off: no recovery is due."""
         self._back_at.pop(port, None)
 
+    def quiet(self, t_ns: int) -> None:
+        """The bus is recessive from `t_ns` on, after a time in which it was not."""
+        self.quiet_since_ns = t_ns
+        if self._back_at:
+            self._look_again()
+
     def frame_starts(self, sof_ns: int) -> None:
         """A quiet stretch ends at `sof_ns`."""
         self._runs += self._runs_until(sof_ns)

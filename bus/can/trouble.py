@@ -6,6 +6,7 @@ Kept apart from the wire so that a healthy bus pays one flag test per frame.
 
 from collections import Counter
 from collections.abc import Callable
+from heapq import heappush
 from typing import TYPE_CHECKING, Final
 
 from bus.can import confinement
@@ -56,6 +57,8 @@ class Trouble:
         self._recovery = Recovery(wire)
         self._overload = False
         """An overload frame follows what is being sent."""
+        self._blocked = False
+        """The bus is held dominant."""
 
     def check(self) -> None:
         """Look again whether trouble is near."""
@@ -63,6 +66,7 @@ class Trouble:
         live = [port for port in wire.ports if port.online and not port._bus_off]
         near = bool(
             self.disturb
+            or self._blocked
             or self._twins
             or (not wire._busy and wire._end_ns != _NEVER)  # an error frame is on the wire
             or len(live) < 2
@@ -142,7 +146,7 @@ class Trouble:
         if loser.port.state == "passive":
             # Its recessive flag disturbs nobody: the other frame goes on.
             self.errors["bit"] += 1
-            self._sender_failed(loser.port, "bit")
+            self.sender_failed(loser.port, "bit")
             if loser.port.watcher is not None:
                 loser.port.watcher.failed(sof_ns, sending=True)
             loser.port._quiet_ns = sof_ns + (winner.bits + confinement.SUSPEND_BITS) * self._wire.bit_ns
@@ -235,7 +239,7 @@ class Trouble:
             confinement.receive_failed(senders)
         elif verdict.sender == "transmits":
             for port in senders:
-                self._sender_failed(port, verdict.kind)
+                self.sender_failed(port, verdict.kind)
         for port in senders:
             if port.state == "passive":
                 port._quiet_ns = wire._free_ns + confinement.SUSPEND_BITS * wire.bit_ns
@@ -256,7 +260,8 @@ class Trouble:
             if port.watcher is not None:
                 port.watcher.failed(t_ns, sending=False)
 
-    def _sender_failed(self, port: Port, kind: ErrorKind) -> None:
+    def sender_failed(self, port: Port, kind: ErrorKind) -> None:
+        """A sender saw an error: it counts, and may go off the bus."""
         if port.online and confinement.send_failed(port, acknowledge=kind == "ack"):
             port._bus_off = True
             self._wire._forget_routes()
@@ -310,6 +315,44 @@ class Trouble:
         confinement.receive_failed(self.listeners(offer.port))
         self._twins, self._excluded = [], []
         wire._await_ready()
+
+    def block(self, t_ns: int) -> Port | None:
+        """The bus goes dominant at `t_ns` and stays so; returns who was sending. Its frame stays in its
+        buffer."""
+        wire = self._wire
+        wire._unplan()
+        self._recovery.frame_starts(t_ns)
+        self._recovery.quiet_since_ns = _NEVER
+        sender = None
+        if wire._busy:
+            sender = wire._sending[3]
+            begun_ns = wire._free_ns - wire._sending[5] * wire.bit_ns
+            wire.bits += max(0, t_ns - begun_ns) // wire.bit_ns
+            heappush(wire._waiting, wire._sending)
+        wire._busy = False
+        wire._end_ns = wire._decide_ns = wire._free_ns = _NEVER
+        self._twins, self._excluded, self._overload = [], [], False
+        self._blocked = True
+        self.check()
+        return sender
+
+    def unblock(self, t_ns: int, free_ns: int) -> None:
+        """The bus is recessive again at `t_ns`; a frame may start at `free_ns`."""
+        wire = self._wire
+        self._blocked = False
+        wire._free_ns = free_ns
+        self._recovery.quiet(t_ns)
+        self.check()
+        wire._await_ready()
+
+    def leaves(self, port: Port) -> None:
+        """`port` is not on this wire any more."""
+        self._twins = [twin for twin in self._twins if twin.port is not port]
+        self._recovery.drop(port)
+
+    def comes_off(self, port: Port) -> None:
+        """A node that is bus off joins this wire."""
+        self._recovery.add(port)
 
     def restart(self, port: Port) -> None:
         """`port` was switched: counters start from zero."""

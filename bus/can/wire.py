@@ -88,6 +88,15 @@ class Wire:
         self._trouble.check()
 
     @property
+    def disturbance(self) -> Disturb | None:
+        """What `disturb` was given last."""
+        return self._trouble.disturb
+
+    @disturbance.setter
+    def disturbance(self, call: Disturb | None) -> None:
+        self.disturb(call)
+
+    @property
     def load(self) -> float:
         """Share of the time so far in which the bus carried frames (intermission counted) or error
         frames, 0..1."""

@@ -40,6 +40,23 @@ class Oscillator:
         self._rate = _ONE + round(ppm * 1e-6 * _ONE)
         self._drift = round(drift_ppm_per_hour * 1e-6 / (2 * _NS_PER_HOUR) * (1 << _DRIFT_SHIFT))
 
+    @property
+    def ppm(self) -> float:
+        """Rate error at true time 0, parts per million."""
+        return (self._rate - _ONE) * 1e6 / _ONE
+
+    def pull(self, true_ns: int, ppm: float) -> None:
+        """Let the rate be `ppm` more from `true_ns` on; the reading does not jump.
+
+        `pull` by the negative takes the rate back exactly. Raises OscillatorError beyond the limit.
+        """
+        before = self.local_ns(true_ns)
+        rate = self._rate + round(ppm * 1e-6 * _ONE)
+        if not abs(rate - _ONE) <= _LIMIT_PPM * 1e-6 * _ONE:
+            raise OscillatorError(f"oscillator: pulled by {ppm} ppm, outside ±{_LIMIT_PPM:g} ppm")
+        self._rate = rate
+        self.phase_ns += before - self.local_ns(true_ns)
+
     def local_ns(self, true_ns: int) -> int:
         """What the local clock reads at true time `true_ns`, ns (rounded down)."""
         if self._drift:

@@ -42,6 +42,18 @@ class EventQueue:
         if t_ns > self.now_ns:
             self.now_ns = t_ns
 
+    def take_out(
+        self, which: Callable[[Callable[[int], None]], bool]
+    ) -> list[tuple[int, Callable[[int], None]]]:
+        """Remove the events whose call `which` picks; returns (time, call) in their order. For who stops a
+        clock."""
+        events = list(zip(self._times, self._calls, strict=True))
+        taken = [event for event in events if which(event[1])]
+        kept = [event for event in events if not which(event[1])]
+        self._times[:] = [t_ns for t_ns, _ in kept]  # in place: whoever runs the queue holds these lists
+        self._calls[:] = [call for _, call in kept]
+        return taken
+
     def next_ns(self) -> int | None:
         """Time of the earliest event, ns, or None when nothing is waiting."""
         return self._times[0] if self._times else None

@@ -1,6 +1,7 @@
 """`--control [HOST:]PORT`: speed, pause, state and end of a served network, one line of text each.
 
     status | speed X | pause | resume | power BOARD on|off | stop | help
+    fault list | fault kinds | fault start NAME argument=value ... | fault clear NUMBER
 
 A client of this machine just asks; any other must say `token WORD` first. Answers begin with `ok` or `error`.
 """
@@ -56,7 +57,7 @@ class ControlDoor:
         self.refused = 0
         self._commands: dict[str, Callable[[list[str]], str]] = {
             "status": self._status, "speed": self._speed, "pause": self._pause, "resume": self._resume,
-            "power": self._power, "stop": self._stop, "help": self._help,
+            "power": self._power, "fault": self._fault, "stop": self._stop, "help": self._help,
         }  # fmt: skip
 
     def open(self) -> None:
@@ -152,12 +153,30 @@ class ControlDoor:
         self._served.switch(words[0], words[1] == "on")
         return f"{words[0]} {words[1]}"
 
+    def _fault(self, words: list[str]) -> str:
+        faults = self._served.faults
+        match words:
+            case ["list"]:
+                return json.dumps([vars(each) for each in faults.running])
+            case ["kinds"]:
+                return ", ".join(kind.name for kind in faults.kinds())
+            case ["start", name, *pairs]:
+                given = dict(pair.partition("=")[::2] for pair in pairs)
+                return f"fault {self._served.start_fault(name, **given)}"
+            case ["clear", number] if number.isdecimal():
+                self._served.clear_fault(int(number))
+                return f"fault {number} cleared"
+        raise ControlError("fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER")
+
     def _stop(self, _words: list[str]) -> str:
         self._served.stop()
         return "ending"
 
     def _help(self, _words: list[str]) -> str:
-        return "status | speed X | pause | resume | power BOARD on|off | stop"
+        return (
+            "status | speed X | pause | resume | power BOARD on|off | stop | "
+            "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER"
+        )
 
     def _forget(self, client: Client) -> None:
         self._rest.pop(client, None)

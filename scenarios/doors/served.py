@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 from bus.pacer import Pacer
 from bus.punctual import Punctuality
 from plant.model import PlantModel
@@ -9,12 +12,14 @@ from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
 from scenarios.doors.usb import Usb
 from scenarios.model import Scenario
-from scenarios.served import wire
+from scenarios.served import wired
 
 BOARD = "board"
 """Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""
 DEBUG = "debug"
 """Kind of entry of a debug port: `NAME ` and the bytes."""
+FAULT = "fault"
+"""Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
 
 
 class Served:
@@ -29,7 +34,7 @@ class Served:
     ) -> None:
         self.scenario = scenario
         self.model = model
-        self.network = wire(scenario, model)
+        self.network, self.faults = wired(scenario, model)
         self.entry = Entry(self.network.queue, journal)
         self.usb = Usb(self.network.queue, self.network.hid, self.entry)
         self.lines = Lines(self.network.uarts)
@@ -38,6 +43,7 @@ class Served:
         self.ending = False
         self.entry.register(BOARD, self._switch)
         self.entry.register(DEBUG, self._debug)
+        self.entry.register(FAULT, self._fault)
 
     @property
     def now_ns(self) -> int:
@@ -65,6 +71,26 @@ class Served:
     def _debug(self, data: bytes) -> None:
         name, _, text = data.partition(b" ")
         self.network.debug[name.decode()].write(self.now_ns, text)
+
+    def start_fault(self, name: str, **arguments: Any) -> int:
+        """Start a fault now (`scenarios.faults`); returns its number. Raises FaultError."""
+        values = self.faults.check(name, arguments)
+        self.entry.enter(FAULT, f"start {name} {json.dumps(values)}".encode())
+        return self.faults.running[-1].number
+
+    def clear_fault(self, number: int) -> None:
+        """End a fault now; raises FaultError when it is not on."""
+        if all(each.number != number for each in self.faults.running):
+            self.faults.clear(number)  # says what is on
+        self.entry.enter(FAULT, f"clear {number}".encode())
+
+    def _fault(self, data: bytes) -> None:
+        word, _, rest = data.decode().partition(" ")
+        if word == "clear":
+            self.faults.clear(int(rest))
+            return
+        name, _, arguments = rest.partition(" ")
+        self.faults.start(name, **json.loads(arguments))
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`, as fast as it goes."""

@@ -1,0 +1,1 @@
+"""Faults: what each does while it is on, and what is left when it is over."""
