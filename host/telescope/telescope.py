@@ -19,6 +19,7 @@ from host.procedures.manual import AXIS
 from host.telescope.boards import Boards
 from host.telescope.drive import Drive
 from host.telescope.focuser import Focuser
+from host.telescope.house import House
 from host.telescope.jobs import Activity, Job, Side
 from host.telescope.observatory import Observatory
 from host.telescope.paddle import Paddle
@@ -44,6 +45,7 @@ class Telescope:
         self.paddle = Paddle(self.drive, self.side)
         self.focuser = Focuser(client, journal)
         self.boards = Boards(client, observatory, self.side)
+        self.house = House(client, self.side)
         self.locked = False
         self.urgent = False
         """Somebody asked for a stop: whoever ticks does it now instead of at the next one due."""

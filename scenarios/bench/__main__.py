@@ -12,7 +12,7 @@ from typing import Any
 import click
 from rich.console import Console
 
-from scenarios.bench import counters, history, interleaved, network, profile, serving, startup
+from scenarios.bench import counters, history, interleaved, named, network, profile, serving, startup
 from scenarios.bench.show import headline, show
 from scenarios.native.build import BuildError, build
 
@@ -31,6 +31,8 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         instructions = counters.instructions(native)
     with say.status("cost per node"):
         sizes = network.nodes(SIZES, max(5, seconds // 20))
+    with say.status("named networks in turn"):
+        by_name = named.measure(max(2, seconds // 10), 3 if quick else named.ROUNDS)
     with say.status("memory"):
         memory = network.memory(max(200, seconds * 4))  # shorter, the first row groups look like growth
     with say.status("profile"):
@@ -46,6 +48,7 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         "turns": turns,
         "instructions": instructions,
         "nodes": sizes,
+        "networks": by_name,
         "memory": memory,
         "startup": start,
         "served": served,

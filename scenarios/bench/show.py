@@ -7,6 +7,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from scenarios.bench import named
+
 _WAYS = ("plain", "compiled")
 
 
@@ -59,7 +61,7 @@ def rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
         ("  a whole short run with its report", f"{start['short_run_with_report_s']:.1f} s", "≤ 2 s"),
         ("  schmidt --version", f"{start['version_s']:.2f} s", ""),
     ]
-    return found + _served(figures["served"])
+    return found + named.lines(figures["networks"]) + _served(figures["served"])
 
 
 def _served(ways: dict[str, dict[str, float]]) -> list[tuple[str, str, str]]:

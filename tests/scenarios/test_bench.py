@@ -6,7 +6,7 @@ import pytest
 
 from plant.model import load
 from plant.plant import Plant
-from scenarios.bench import history, serving, show
+from scenarios.bench import history, named, serving, show
 from scenarios.bench.bare import BareLoop
 
 
@@ -60,3 +60,13 @@ def test_the_ticks_of_a_served_network_are_measured_beside_a_loop_that_only_slee
     rows = show._served(found)
     assert rows[0][2] == "" and rows[2][2] == "≥ 99.9 %"
     assert not any("inf" in text or "nan" in text for row in rows for text in row)
+
+
+def test_B8_the_factor_of_every_named_network_is_printed() -> None:
+    found = named.measure(1, rounds=1)
+    assert [each["boards"] for each in found.values()] == [11, 5, 18]
+    assert found["lab"]["of_lab"] == 1.0
+    assert all(each["factor"] > 0 for each in found.values())
+    assert [line[0].split(",")[0] for line in named.lines(found)] == [
+        "network lab", "network serial", "network final",
+    ]  # fmt: skip

@@ -1,19 +1,98 @@
-"""Dome and weather consoles (H7), as far as boards exist."""
+"""Dome and weather consoles (H7), and the power boards, as far as the network has them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from nicegui import ui
 
-from host.console.shell import Shell, box
+from bus.protocol.nodes import DOME, POWER, WEATHER
+from host.console.figures import number
+from host.console.shell import Shell, box, button, table
 
 
 def dome(shell: Shell) -> None:
     """The page."""
     with shell.page("/dome", "Dome and weather"), ui.element("div").classes("boxes"):
-        for name in ("dome", "weather"):
-            with box(name.capitalize()):
-                boards = [b for b in shell.desk.now.boards if b.device.name.startswith(name.upper())]
-                if not boards:
-                    ui.label(f"No {name} board on this network.").classes("mid")
-                for board in boards:
-                    ui.label(f"{board.device.name}: {'alive' if board.alive else 'silent'}").classes("mid")
+        _dome(shell)
+        _weather(shell)
+        _power(shell)
+
+
+def _dome(shell: Shell) -> None:
+    house = shell.telescope.house
+    with box("Dome"):
+        state = ui.label("–").classes("mid")
+        with ui.row().classes("items-center"):
+            place = shell.control(
+                ui.number("Azimuth, °", value=0, min=0, max=359.9, format="%.1f").props("outlined dense")
+            )
+
+            async def go() -> None:
+                wanted = float(place.value or 0)
+                await shell.attempt(shell.desk.do(lambda t: t.house.turn(wanted)))
+
+            shell.control(button("Turn", on_click=go))
+        with ui.row():
+            shell.control(button("Open shutter", on_click=shell.doing(lambda t: t.house.shutter(True))))
+            shell.control(button("Close shutter", on_click=shell.doing(lambda t: t.house.shutter(False))))
+            button("Stop dome", on_click=shell.doing(lambda t: t.house.stop()))
+
+    def refresh() -> None:
+        found = house.reading("DOME") if house.boards(DOME) else None
+        state.set_text("No dome board on this network." if found is None else dome_text(found))
+
+    shell.each(refresh)
+
+
+def dome_text(found: Mapping[str, float]) -> str:
+    """One line of what the dome board says."""
+    words = [f"azimuth {found['Azimuth']:.1f}°"]
+    if found["Moving"]:
+        words.append(f"turning to {found['Target']:.1f}°")
+    ends = "open" if found["Opened"] else "closed" if found["Closed"] else f"{found['Shutter']:.0f} % open"
+    words.append(f"shutter {ends}" + (", moving" if found["ShutterMoving"] else ""))
+    if found["BadWeather"]:
+        words.append("bad weather")
+    return "; ".join(words)
+
+
+def _weather(shell: Shell) -> None:
+    house = shell.telescope.house
+    with box("Weather"):
+        fill = table(("station", "air, °C", "humid, %", "wind, m/s", "rain", ""))
+
+    def refresh() -> None:
+        rows = []
+        for name in house.boards(WEATHER):
+            found = house.reading(name) or {}
+            rows.append(
+                (
+                    name.removeprefix("WEATHER_").lower(),
+                    number(found["Temperature"], ".1f"),
+                    number(found["Humidity"], ".0f"),
+                    number(found["Wind"], ".1f"),
+                    "yes" if found["Rain"] else "no",
+                    "unsafe" if found["Unsafe"] else "safe",
+                )
+            )
+        fill(rows or [("No weather board on this network.", "", "", "", "", "")])
+
+    shell.each(refresh)
+
+
+def _power(shell: Shell) -> None:
+    house = shell.telescope.house
+    with box("Power"):
+        fill = table(("board", "supply, V", "current, A", "relays off"))
+
+    def refresh() -> None:
+        rows = []
+        for name in house.boards(POWER):
+            found = house.reading(name) or {}
+            off = [str(k + 1) for k in range(8) if not int(found["Relays"]) >> k & 1]
+            supply = number(found["Voltage"], ".2f"), number(found["Current"], ".2f")
+            rows.append((name, *supply, ", ".join(off) or "none"))
+        fill(rows or [("No power board on this network.", "", "", "")])
+
+    shell.each(refresh)

@@ -26,8 +26,8 @@ START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
 class Rig:
     """Boards, plant and telescope client on one queue."""
 
-    def __init__(self, logs: Path | None = None, start: dt.datetime = START) -> None:
-        self.scenario = Scenario(Path("rig"), "rig", "", Clock(start), ())
+    def __init__(self, logs: Path | None = None, start: dt.datetime = START, network: str = "lab") -> None:
+        self.scenario = Scenario(Path("rig"), "rig", "", Clock(start), (), network={"name": network})
         self.served = Served(self.scenario, plant_model({"file": DEFAULT_PLANT}, Path()))
         self.network = self.served.network
         self.host = HostDoor(self.served, logs)
