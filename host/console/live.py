@@ -51,7 +51,7 @@ class Live:
         now = self.telescope.snapshot
         if self.samples and now.t_s <= self.samples[-1].t_s:
             return
-        errors = now.errors_arcsec
+        errors = None if now.slewing else now.errors_arcsec  # degrees to go hide arcseconds
         self.samples.append(
             Sample(
                 now.t_s,

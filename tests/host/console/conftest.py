@@ -1,0 +1,118 @@
+"""A served network with consoles, a Chromium, and what the tests do on a page."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.doors.process import ROOT, Serving, free_port
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+PATHS = ("/", "/focus", "/alignment", "/maintenance", "/dome", "/bus", "/calibrate")
+SHOTS = ROOT / "out" / "consoles"
+LONG_MS = 90_000
+_CONTROLS = "button, [role=combobox], [role=radio], [role=switch], [role=checkbox], input, a[href]"
+_WATCH = """
+window.schmidtLabel = element => {
+  const at = element.closest('[role=radio], [role=switch], [role=checkbox]') || element;
+  const said = at.getAttribute("aria-label") || at.innerText || at.placeholder || "?";
+  return said.trim().replace(/\\s+/g, ' ');
+};
+for (const kind of ['mousedown', 'input']) document.addEventListener(kind, event => {
+  const at = event.target.closest('CONTROLS');
+  const inside = event.target.closest('label') && event.target.closest('label').querySelector('input');
+  if (at || inside) window.schmidtUsed(window.schmidtLabel(at || inside));
+}, true);
+""".replace("CONTROLS", _CONTROLS)
+
+
+class Consoles(Serving):
+    """`schmidt serve` with consoles, as a user starts it."""
+
+    def __init__(self, folder: Path, speed: float, scenario: str = "observing-night", *words: str) -> None:
+        self.folder = folder
+        self.port = free_port()
+        self.url = f"http://127.0.0.1:{self.port}"
+        super().__init__(
+            folder, f"scenarios/{scenario}.yaml", "--console", str(self.port), "--speed", str(speed),
+            "--runs", str(folder / "runs"), "--record", str(folder / "record"), *words,
+        )  # fmt: skip
+
+
+class Used:
+    """What of a page's controls somebody has used, by label."""
+
+    def __init__(self) -> None:
+        self.labels: set[str] = set()
+
+    def untouched(self, page: Any, within: str = "body") -> set[str]:
+        """Labels of the visible controls within an element that nobody has used."""
+        found = page.evaluate(
+            "([within, controls]) => [...document.querySelectorAll(controls)]"
+            ".filter(each => each.closest(within) && each.offsetParent).map(window.schmidtLabel)",
+            [within, _CONTROLS],
+        )
+        return set(found) - self.labels
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed: the consoles cannot be looked at")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as p:
+        made = p.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Consoles]:
+    with Consoles(tmp_path_factory.mktemp("consoles"), 5.0) as made:
+        yield made
+
+
+def opened(browser: Any, served: Consoles, path: str, used: Used | None = None) -> Any:
+    """A page that is connected and shows the telescope's state."""
+    page = browser.new_page(viewport={"width": 1400, "height": 1000})
+    page.set_default_timeout(LONG_MS)
+    if used is not None:
+        page.expose_function("schmidtUsed", lambda label: used.labels.add(label))
+        page.add_init_script(_WATCH)
+    page.goto(served.url + path)
+    page.get_by_role("status").first.wait_for()
+    page.wait_for_function("document.querySelector('[role=status]').textContent !== ''")
+    return page
+
+
+def state(page: Any, pattern: str) -> None:
+    """Wait until the state line says this."""
+    page.wait_for_function(
+        "text => new RegExp(text).test(document.querySelector('[role=status]').textContent)", arg=pattern
+    )
+
+
+def choose(page: Any, label: str, name: str) -> None:
+    """Pick from a list."""
+    page.get_by_label(label, exact=True).click()
+    page.get_by_role("option", name=name, exact=True).click()
+
+
+def press(page: Any, name: str) -> None:
+    """Click a button."""
+    page.get_by_role("button", name=name, exact=True).click()
+
+
+def shot(page: Any, name: str) -> None:
+    """Keep a picture of the page."""
+    SHOTS.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=str(SHOTS / f"{name}.png"), full_page=True)
