@@ -37,6 +37,8 @@ READINGS = {
 }
 """Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
 per unit of the table, the plant files whose declared numbers stay, and those that are written."""
+BRIDGE = "{}_preload_bridge"
+"""Plant files of the reading "motor" with freewheel diodes."""
 SEARCHED = STARTS[::2]
 """Starts of a point: four of the eight that decide."""
 WORSE = 1e6
@@ -208,6 +210,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--leave-out", default="", metavar="E1,E2,...", help="rows that nothing can meet: not looked at"
     )
+    parser.add_argument("--all-starts", action="store_true", help="every point from eight starts, not four")
     chosen = parser.parse_args(arguments)
     begin = monotonic()
     for number in (signal.SIGINT, signal.SIGTERM):  # ends the search, and what was found is written
@@ -217,7 +220,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(text, flush=True)
 
     left_out = [name for name in chosen.leave_out.upper().split(",") if name]
-    objective = Objective(chosen.reading, not chosen.no_diode, SEARCHED, chosen.points, tell, left_out)
+    starts = STARTS if chosen.all_starts else SEARCHED
+    objective = Objective(chosen.reading, not chosen.no_diode, starts, chosen.points, tell, left_out)
     known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
     seeds = tuple(chosen.seeds)
     with suppress(KeyboardInterrupt):
@@ -229,8 +233,9 @@ def main(arguments: list[str] | None = None) -> int:
     chosen.out.mkdir(parents=True, exist_ok=True)
     (chosen.out / "search.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     source = f"fitted to rows E1 to E15 by scenarios.paper.search, seeds {seeds}"
+    pattern = BRIDGE if objective.diode and chosen.reading == "motor" else READINGS[chosen.reading][2]
     for preload, plant in objective.plants(objective.best_x, source).items():
-        name = READINGS[chosen.reading][2].format(preload)
+        name = pattern.format(preload)
         write(dataclasses.replace(plant, name=name), chosen.out / f"{name}.yaml")
     print(f"cost {objective.best:.3f} after {objective.tried} points; plant files in {chosen.out}")
     return 0

@@ -6,7 +6,7 @@ import pytest
 
 from plant.model import load
 from plant.plant import Plant
-from scenarios.bench import history, named, serving, show
+from scenarios.bench import dither, history, named, serving, show
 from scenarios.bench.bare import BareLoop
 
 
@@ -70,3 +70,22 @@ def test_B8_the_factor_of_every_named_network_is_printed() -> None:
     assert [line[0].split(",")[0] for line in named.lines(found)] == [
         "network lab", "network serial", "network final",
     ]  # fmt: skip
+
+
+def test_ratios_are_taken_turn_by_turn() -> None:
+    """A machine that slows down tenfold meanwhile does not change a ratio of 1.03."""
+    slower = [10.0 * 1.1**k for k in range(24)]
+    middle, error = dither.ratio([1.03 * each for each in slower], slower)
+    assert middle == pytest.approx(1.03)
+    assert error < 1e-12
+    shaken = [each * (1.13 if k % 2 else 0.93) for k, each in enumerate(slower)]
+    middle, error = dither.ratio(shaken, slower)
+    assert middle == pytest.approx(1.03)
+    assert error > 0.02
+
+
+@pytest.mark.slow
+def test_a_turn_runs_the_paper_s_and_the_proposed_firmware() -> None:
+    found = dither.measure(1, None)
+    assert set(found) == {"off", "spread", "fine"}
+    assert all(len(turns) == 1 and turns[0] > 0.0 for turns in found.values())

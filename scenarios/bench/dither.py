@@ -1,0 +1,103 @@
+"""`python -m scenarios.bench.dither [--before FOLDER]`: what the spread duty costs the emulator.
+
+The main scenario in processes that take turns, every few simulated seconds: the paper's firmware, the spread
+duty alone, the proposed firmware; with `--before`, the paper's firmware of another checkout too. CPU time,
+plain Python; ratios are taken turn by turn, so both sides saw the same machine.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+ROOT = Path(__file__).parents[2]
+SECONDS = 4
+"""Simulated seconds of a turn."""
+WAYS = {"off": "", "spread": "spread", "fine": "fine"}
+_PROGRAM = """
+import sys, tempfile, time
+from pathlib import Path
+from scenarios import run
+from scenarios.bench.network import SCENARIO
+from scenarios.session import Session
+name = sys.argv[1]
+if name == "spread":
+    from scenarios import firmware
+    firmware.FIRMWARES["fine"] = dict(list(firmware.FIRMWARES["fine"].items())[:1])
+scenario, model = run.prepare(SCENARIO, **({"firmware": "fine"} if name else {}))
+with tempfile.TemporaryDirectory() as folder:
+    made = Session(scenario, model, Path(folder))
+    made.advance(40 * 10**9)  # by then the telescope tracks
+    print("ready", flush=True)
+    for line in sys.stdin:
+        begin = time.process_time()
+        made.advance(made.network.queue.now_ns + int(line) * 10**9)
+        print(time.process_time() - begin, flush=True)
+    made.recorder.close()
+"""
+
+
+def _process(root: Path, name: str) -> subprocess.Popen[str]:
+    environment = {**os.environ, "SCHMIDT_PURE": "1", "PYTHONPATH": str(root)}
+    return subprocess.Popen(
+        [sys.executable, "-c", _PROGRAM, name], cwd=root, env=environment,
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def _turn(process: subprocess.Popen[str]) -> float:
+    """CPU ms per simulated second."""
+    assert process.stdin is not None and process.stdout is not None
+    process.stdin.write(f"{SECONDS}\n")
+    process.stdin.flush()
+    return 1e3 * float(process.stdout.readline()) / SECONDS
+
+
+def measure(rounds: int, before: Path | None) -> dict[str, list[float]]:
+    """CPU ms per simulated second, by way and turn."""
+    places = {name: (ROOT, firmware) for name, firmware in WAYS.items()}
+    if before is not None:
+        places["before"] = (before.resolve(), "")
+    found: dict[str, list[float]] = {name: [] for name in places}
+    with ExitStack() as stack:
+        running = {name: stack.enter_context(_process(*place)) for name, place in places.items()}
+        for process in running.values():
+            assert process.stdout is not None
+            if process.stdout.readline() != "ready\n":
+                raise click.ClickException("a process of the bench has died")
+        for turn in range(rounds):
+            order = list(running) if turn % 2 else list(reversed(running))
+            for name in order:
+                found[name].append(_turn(running[name]))
+    return found
+
+
+def ratio(one: list[float], other: list[float]) -> tuple[float, float]:
+    """Median of the ratios turn by turn, and its standard error (from the quartiles)."""
+    ratios = [a / b for a, b in zip(one, other, strict=True)]
+    low, middle, high = statistics.quantiles(ratios, n=4)
+    return middle, 1.2533 * (high - low) / 1.349 / len(ratios) ** 0.5
+
+
+@click.command()
+@click.option("--before", type=click.Path(exists=True, file_okay=False, path_type=Path), help="A checkout.")
+@click.option("--rounds", default=40, show_default=True)
+def main(before: Path | None, rounds: int) -> None:
+    """Measure and print."""
+    found = measure(rounds, before)
+    for name, values in found.items():
+        click.echo(f"{name:8s} {statistics.median(values):7.2f} ms of CPU per simulated second")
+    pairs = [("spread", "off"), ("fine", "off")] + [("off", "before")] * (before is not None)
+    for one, other in pairs:
+        middle, error = ratio(found[one], found[other])
+        click.echo(f"{one} over {other}: {middle:.3f} ± {error:.3f}")
+
+
+if __name__ == "__main__":
+    main()
