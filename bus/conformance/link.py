@@ -95,7 +95,9 @@ class Link:
         end = self.now() + 3 * self.settings.quiet_s
         while (left := end - self.now()) > 0:
             message = self._bus.recv(timeout=left)
-            if message is not None and message.arbitration_id == REPLY_BASE + device:
+            if message is None or message.is_remote_frame:  # a bus may hand back the tester's own
+                continue
+            if message.arbitration_id == REPLY_BASE + device:
                 return False
         return True
 

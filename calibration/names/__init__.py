@@ -35,4 +35,4 @@ FILES: tuple[str, ...] = (
     "viscous_change",
 )
 
-NAMES: dict[str, Name] = {n: import_module(f"calibration.names.{n}").NAME for n in FILES}
+NAMES: dict[str, Name] = {n: import_module(f"{__name__}.{n}").NAME for n in FILES}

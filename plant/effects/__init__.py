@@ -48,4 +48,4 @@ NAMES: tuple[str, ...] = (
     "unknown",
 )
 
-REGISTRY: dict[str, Effect] = {name: import_module(f"plant.effects.{name}").EFFECT for name in NAMES}
+REGISTRY: dict[str, Effect] = {name: import_module(f"{__name__}.{name}").EFFECT for name in NAMES}

@@ -51,7 +51,7 @@ class Way:
 def _way(pure: bool) -> Iterator[Way]:
     environment = {**os.environ, "SCHMIDT_PURE": "1" if pure else "0", "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(
-        [sys.executable, "-m", "scenarios.bench.worker"],
+        [sys.executable, "-m", f"{__package__}.worker"],
         env=environment,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,

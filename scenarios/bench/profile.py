@@ -26,7 +26,7 @@ _TICK = "routine"
 def measure(seconds: int) -> dict[str, Any]:
     """Profile a plain run; `functions` by own time, `rooms` with calls per frame and per tick."""
     environment = {**os.environ, "SCHMIDT_PURE": "1", "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "scenarios.bench.profile", str(seconds)]
+    command = [sys.executable, "-m", f"{__package__}.profile", str(seconds)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     found: dict[str, Any] = json.loads(done.stdout)
     return found

@@ -16,9 +16,10 @@ from pathlib import Path
 
 from scenarios.native import stamp
 from scenarios.native.derived import derived_from
-from scenarios.native.modules import ROOT, module_name, selected
+from scenarios.native.modules import PACKAGE, ROOT, module_name, selected
 
-_REFUSED = re.compile(r"^(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
+_PREFIX = PACKAGE.replace(".", "/")
+_REFUSED = re.compile(rf"^{_PREFIX}(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
 _ROUNDS = 5
 """A round costs some twenty seconds; when five have not been enough, something else is wrong."""
 Say = Callable[[str], None]
@@ -68,7 +69,12 @@ def _compile(folder: Path, say: Say, root: Path) -> Path:
         for file, why in sorted(refused.items()):
             say(f"{file} stays plain: {why}")
         files = [file for file in files if file not in refused]
-        command = ["-m", "scenarios.native.compile", str(folder), *files]
+        command = [
+            "-m",
+            f"{PACKAGE}scenarios.native.compile",
+            str(folder),
+            *(_PREFIX + file for file in files),
+        ]
         done = _python(command, root, pure="1")
         if not done.returncode:
             return folder / "library"
@@ -84,16 +90,17 @@ def _compile(folder: Path, say: Say, root: Path) -> Path:
 
 def _python(arguments: list[str], root: Path, pure: str) -> subprocess.CompletedProcess[str]:
     """Another Python on the sources under `root`; an isolated build's own packages stay on its path."""
-    path = os.pathsep.join([str(root), *filter(None, [os.environ.get("PYTHONPATH")])])
+    above = root.parent if PACKAGE else root
+    path = os.pathsep.join([str(above), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = {**os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": path}
     command = [sys.executable, *arguments]
-    return subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=False)
+    return subprocess.run(command, cwd=above, env=environment, capture_output=True, text=True, check=False)
 
 
 def _modules(made: Path) -> dict[str, str]:
     """Module names and their files in the library; the shared part goes under its own name."""
     files = sorted(path.relative_to(made).as_posix() for path in made.rglob(f"*{stamp.suffix()}"))
-    return {module_name(file.removesuffix(stamp.suffix())): file for file in files}
+    return {module_name(file.removesuffix(stamp.suffix()).removeprefix(_PREFIX)): file for file in files}
 
 
 def _check(made: Path, root: Path) -> None:
@@ -101,8 +108,8 @@ def _check(made: Path, root: Path) -> None:
     library."""
     if importlib.util.find_spec("numba") is None:
         return  # an isolated build has nothing but the compiler
-    plain = _python(["-m", "scenarios.probe"], root, pure="1")
-    native = _python(["-m", "scenarios.probe", str(made)], root, pure="")
+    plain = _python(["-m", f"{PACKAGE}scenarios.probe"], root, pure="1")
+    native = _python(["-m", f"{PACKAGE}scenarios.probe", str(made)], root, pure="")
     if native.returncode:
         raise BuildError(f"it cannot be used: {(native.stderr.strip().splitlines() or ['?'])[-1]}")
     if plain.stdout != native.stdout:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 """Where the rooms lie: the checkout, or site-packages."""
+PACKAGE = __name__.removesuffix("scenarios.native.modules")
+"""What stands before the rooms' names: nothing in a checkout, `schmidt.` in a wheel."""
 FOLDERS = ("bus/time", "bus/can", "bus/protocol", "boards")
 """Everything in these, and below."""
 FILES = (
@@ -33,5 +35,5 @@ def selected(root: Path = ROOT) -> list[str]:
 
 
 def module_name(path: str) -> str:
-    """`bus/can/wire.py` as `bus.can.wire`."""
-    return path.removesuffix(".py").replace("/", ".")
+    """`bus/can/wire.py` as `bus.can.wire`, in a wheel as `schmidt.bus.can.wire`."""
+    return PACKAGE + path.removesuffix(".py").replace("/", ".")

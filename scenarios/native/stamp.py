@@ -12,7 +12,7 @@ import json
 import sysconfig
 from pathlib import Path
 
-from scenarios.native.modules import ROOT, selected
+from scenarios.native.modules import PACKAGE, ROOT, selected
 
 LIBRARY = Path(__file__).with_name("library")
 STAMP = "stamp.json"
@@ -81,7 +81,7 @@ def _imported(root: Path, path: str) -> set[str]:
             names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        for name in names:
+        for name in (each.removeprefix(PACKAGE) for each in names):
             if name.split(".")[0] in _ROOMS:
                 place = name.replace(".", "/")
                 found |= {each for each in (f"{place}.py", f"{place}/__init__.py") if (root / each).is_file()}
