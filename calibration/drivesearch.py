@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.decide.select import Selection, select
@@ -81,7 +82,7 @@ def _search(
         if kind in n.channels and n.name not in lines and not (n.name == "channel_delay" and kind == FORCE)
         for c in n.columns(scene)
     ]
-    found: list[object] = []
+    found: list[Candidate] = []
     s: Selection | None = None
     extra = np.zeros((len(problem.y), 0))
     for k in range(ROUNDS):
@@ -97,8 +98,7 @@ def _search(
         if s is not None and not fresh:
             break
         found += fresh
-        candidates = [*named, *found]
-        s = select(problem, candidates, rng, most=MOST, margin=MARGIN)  # type: ignore[arg-type]
+        s = _select(problem, named, found, rng)
         extra = np.hstack([np.zeros((len(problem.y), 0)), *[x.candidate.columns for x in s.chosen]])
         if not any(x.candidate.name in lines for x in s.chosen) and k > 0:
             break
@@ -106,12 +106,25 @@ def _search(
     return sound(prune(within_bounds(s, view.resolved))), scene
 
 
-def _known(c: object, found: list[object], scene: Scene) -> bool:
+def _select(
+    problem: Problem, named: list[Candidate], found: list[Candidate], rng: np.random.Generator
+) -> Selection:
+    """A lightly damped mode rings along with any fixed frequency: it is offered only where no disturbance of
+    one is taken."""
+    if any(c.name == "command_disturbance" for c in found):
+        without = [c for c in named if c.name != "structural_mode"]
+        s = select(problem, [*without, *found], rng, most=MOST, margin=MARGIN)
+        if any(x.candidate.name == "command_disturbance" for x in s.chosen):
+            return s
+    return select(problem, [*named, *found], rng, most=MOST, margin=MARGIN)
+
+
+def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:
     """A line that is on the list already."""
     for f in found:
         for name in ("order", "frequency"):
             a, b = getattr(c, name), getattr(f, name)
             reach = 1.0 / max(scene.span if name == "order" else float(scene.view.t.max()), 1e-12)
-            if a is not None and b is not None and abs(a - b) < reach and c.columns.shape == f.columns.shape:  # type: ignore[attr-defined]
+            if a is not None and b is not None and abs(a - b) < reach and c.columns.shape == f.columns.shape:
                 return True
     return False
