@@ -8,6 +8,7 @@ import can
 
 from bus.can.frame import Frame, FrameError, check
 from bus.can.wire import Wire
+from bus.errorframes import ErrorFrames
 from bus.messages import to_frame, to_message
 from bus.node import OutsideNode
 from bus.overflow import kernel_drops, overflow_message
@@ -35,7 +36,8 @@ class Door:
 
     Frames from outside are stamped with the simulated time of the `poll()` that found them and
     arbitrated like any other. Frames from the wire go out once; none that came in goes back out. When the
-    node's memory is full, a frame is refused, counted, and an error frame "receive overflow" goes out.
+    node's memory is full, a frame is refused, counted, and an error frame "receive overflow" goes out. So do
+    the error frames of the node's controller (`bus.errorframes`): bus off, passive, missing acknowledge.
 
     enter: what to do with a frame that comes in; by default it arrives at the node.
     frames_in, frames_out; refused: the wire could not carry more; rejected: no CAN 2.0 frame; lost_out: the
@@ -62,6 +64,7 @@ class Door:
         self._next_error_s = 0.0
         self._queue = queue
         self._node.port.on_receive = self._out
+        self._errors = ErrorFrames(self._node.port, self._tell)
 
     def poll(self) -> None:
         """Bring in what has arrived outside; call it between slices of simulated time.
@@ -99,6 +102,13 @@ class Door:
             return
         self._enter(frame)
         self.frames_in += 1
+
+    def _tell(self, message: can.Message) -> None:
+        """An error frame of the node's controller, for whoever listens outside."""
+        try:
+            self._bus.send(message)
+        except can.CanError:
+            self.lost_out += 1
 
     def _complain(self) -> None:
         """Say what a full controller says, a few times a second."""
@@ -140,6 +150,7 @@ class Door:
     def close(self) -> None:
         """Nothing goes out any more; the external bus stays the caller's, the node on the wire."""
         self._node.port.on_receive = None
+        self._errors.close()
 
 
 def is_broken(error: can.CanError) -> bool:

@@ -7,9 +7,8 @@ from contextlib import suppress
 
 import can
 
-_CAN_ERR_CRTL = 0x004
-_CAN_ERR_CRTL_RX_OVERFLOW = 0x01
-"""Linux' classes of error frames (include/uapi/linux/can/error.h): controller, and in byte 1 what of it."""
+from bus.errorframes import CAN_ERR_CRTL, CRTL_RX_OVERFLOW, error_message
+
 _SO_MEMINFO = 55
 _DROPS = 8
 """Index of the drop counter among the nine numbers (SK_MEMINFO_DROPS, include/uapi/linux/sock_diag.h)."""
@@ -17,15 +16,7 @@ _DROPS = 8
 
 def overflow_message(t_ns: int) -> can.Message:
     """The error frame "receive buffer overflow", as SocketCAN drivers send it."""
-    data = bytes((0, _CAN_ERR_CRTL_RX_OVERFLOW, 0, 0, 0, 0, 0, 0))
-    return can.Message(
-        timestamp=t_ns * 1e-9,
-        arbitration_id=_CAN_ERR_CRTL,
-        is_error_frame=True,
-        is_extended_id=False,
-        dlc=len(data),
-        data=data,
-    )
+    return error_message(t_ns, CAN_ERR_CRTL, bytes((0, CRTL_RX_OVERFLOW, 0, 0, 0, 0, 0, 0)))
 
 
 def kernel_drops(bus: can.BusABC) -> int:

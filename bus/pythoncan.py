@@ -11,6 +11,7 @@ from can.typechecking import CanFilters
 
 from bus.can.frame import Frame, FrameError
 from bus.can.wire import MAX_BITRATE, Wire
+from bus.errorframes import ErrorFrames
 from bus.messages import to_frame, to_message
 from bus.registry import named
 
@@ -31,8 +32,9 @@ class SchmidtBus(can.BusABC):
         simulated second
     go by, and returns as soon as a frame is there; nothing happens between calls. Time stamps are
     simulated seconds. drive=False: somebody else runs the event queue (a Pacer); recv then returns
-    what has arrived and never waits. bitrate counts only for the first bus that opens a name. A node
-    alone on its wire gets no acknowledge, as on the real bus: its frames stay unsent.
+    what has arrived and never waits. bitrate counts only for the first bus that opens a name. error_frames:
+    whether error frames are received (`bus.errorframes`), as a SocketCAN socket does; no filter applies
+    to them. A node alone on its wire gets no acknowledge, as on the real bus: its frames stay unsent.
     Not thread-safe: `can.Notifier` and `send_periodic` are threads on wall time and have no business here.
     """
 
@@ -43,6 +45,7 @@ class SchmidtBus(can.BusABC):
         bitrate: int = MAX_BITRATE,
         receive_own_messages: bool = False,
         drive: bool = True,
+        error_frames: bool = True,
         **kwargs: Any,
     ) -> None:
         self.wire = channel if isinstance(channel, Wire) else named(channel, int(bitrate))
@@ -56,6 +59,7 @@ class SchmidtBus(can.BusABC):
         self.port.on_receive = self._take
         if receive_own_messages:
             self.port.on_sent = self._take_own
+        self._errors = ErrorFrames(self.port, self._received.append, name) if error_frames else None
         super().__init__(channel=name, can_filters=can_filters, **kwargs)
 
     def _take(self, t_ns: int, frame: Frame) -> None:
@@ -121,4 +125,6 @@ class SchmidtBus(can.BusABC):
     def shutdown(self) -> None:
         """Leave the wire; it lives on under its name."""
         super().shutdown()
+        if self._errors is not None:
+            self._errors.close()
         self.wire.detach(self.port)

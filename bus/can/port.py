@@ -32,6 +32,14 @@ class Offer(NamedTuple):
     bits: int
 
 
+class BusError(NamedTuple):
+    """What a node hears of trouble: an error's kind ("": only counters have changed), and whether it was the
+    one that sent."""
+
+    kind: str
+    sending: bool = False
+
+
 class Watcher(Protocol):
     """A controller that wants to know what befalls its node, not only what is sent and received.
 
@@ -78,6 +86,7 @@ class Port:
         "_watcher",
         "_wire",
         "name",
+        "on_error",
         "on_sent",
         "rec",
         "tec",
@@ -88,6 +97,8 @@ class Port:
         self.tec = 0
         self.rec = 0
         self.on_sent: Receive | None = None
+        self.on_error: Callable[[int, BusError], None] | None = None
+        """Called as `(t_ns, error)` when an error or a change of counters befalls the node."""
         self._wire = wire
         self._online = True
         self._bus_off = False

@@ -67,6 +67,7 @@ class Recovery:
             port.tec = port.rec = 0
             if port.watcher is not None:
                 port.watcher.counted(t_ns)
+        wire._trouble.report(t_ns, "", back)
         if back:
             wire._forget_routes()
             wire._trouble.check()

@@ -1,5 +1,6 @@
 """A bus held dominant: nobody starts, error counters run up (ISO 11898-1, fault confinement)."""
 
+from collections.abc import Sequence
 from typing import Final
 
 from bus.can import confinement
@@ -35,8 +36,9 @@ class StuckDominant:
             return
         self._wire._trouble.errors["stuff" if self._sender is None else "bit"] += 1
         confinement.receive_failed(self._receivers())
+        sender = self._sender
         self._send_failed()
-        self._tell(t_ns)
+        self._tell(t_ns, "bit" if sender is not None else "stuff", [sender] if sender is not None else [])
         self._wire.queue.at(t_ns + (ERROR_FLAG_BITS + 1) * self._wire.bit_ns, self._flagged)
 
     def _flagged(self, t_ns: int) -> None:
@@ -67,7 +69,8 @@ class StuckDominant:
             if sender._bus_off or not sender.online:
                 self._sender = None
 
-    def _tell(self, t_ns: int) -> None:
+    def _tell(self, t_ns: int, kind: str = "", senders: Sequence[Port] = ()) -> None:
+        self._wire._trouble.report(t_ns, kind, self._wire.ports, senders)
         for port in self._wire.ports:
             if port.watcher is not None:
                 port.watcher.counted(t_ns)

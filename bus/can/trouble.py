@@ -5,7 +5,7 @@ Kept apart from the wire so that a healthy bus pays one flag test per frame.
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from heapq import heappush
 from typing import TYPE_CHECKING, Final
 
@@ -25,7 +25,7 @@ from bus.can.disturbance import (
     seen_by_receiver,
 )
 from bus.can.frame import Frame
-from bus.can.port import Entry, Offer, Port, Receive
+from bus.can.port import BusError, Entry, Offer, Port, Receive
 from bus.can.recovery import Recovery
 from bus.can.strangers import Strangers
 
@@ -147,6 +147,7 @@ class Trouble:
             # Its recessive flag disturbs nobody: the other frame goes on.
             self.errors["bit"] += 1
             self.sender_failed(loser.port, "bit")
+            self.report(sof_ns, "bit", [loser.port], [loser.port])
             if loser.port.watcher is not None:
                 loser.port.watcher.failed(sof_ns, sending=True)
             loser.port._quiet_ns = sof_ns + (winner.bits + confinement.SUSPEND_BITS) * self._wire.bit_ns
@@ -170,6 +171,7 @@ class Trouble:
                 confinement.receive_failed([first])
                 self._excluded.append(first)
                 self._tell_failed([first], sof_ns)
+                self.report(sof_ns, verdict.kind, [first])
                 verdict = None
             if verdict is not None:
                 self._fail(offer, verdict, sof_ns, first=first)
@@ -181,6 +183,7 @@ class Trouble:
             self._excluded.append(port)
             confinement.receive_failed([port])
             self._tell_failed([port], sof_ns)
+            self.report(sof_ns, "stuff", [port])
         if heard.error_bit is not None:
             self._fail(offer, Verdict("bit", heard.error_bit), sof_ns, first=heard.first)
             return
@@ -247,11 +250,19 @@ class Trouble:
             if port.watcher is not None:
                 port.watcher.failed(t_ns, sending=True)
         self._tell_failed(receivers, t_ns)
+        self.report(t_ns, verdict.kind, [*senders, *receivers], senders)
         self.check()
         wire._await_ready()
         if verdict.received:
             for call in wire._calls(receivers, offer.frame):
                 call(t_ns, offer.frame)
+
+    @staticmethod
+    def report(t_ns: int, kind: str, ports: Iterable[Port], senders: Sequence[Port] = ()) -> None:
+        """Tell nodes of an error, or (kind "") of counters that have changed, when they listen for it."""
+        for port in ports:
+            if port.on_error is not None:
+                port.on_error(t_ns, BusError(kind, port in senders))
 
     @staticmethod
     def _tell_failed(ports: list[Port], t_ns: int) -> None:
@@ -293,6 +304,7 @@ class Trouble:
         for port in (*senders, *listeners):
             if port.watcher is not None:
                 port.watcher.counted(t_ns)
+        self.report(t_ns, "", [*senders, *listeners])
         self._twins, self._excluded = [], []
         self.check()
         return wire._calls(listeners, offer.frame)
@@ -312,7 +324,9 @@ class Trouble:
         wire._decide_ns = _NEVER
         self._recovery.quiet_since_ns = wire._free_ns
         self.errors["stuff"] += 1
-        confinement.receive_failed(self.listeners(offer.port))
+        listeners = self.listeners(offer.port)
+        confinement.receive_failed(listeners)
+        self.report(t_ns, "stuff", listeners)
         self._twins, self._excluded = [], []
         wire._await_ready()
 

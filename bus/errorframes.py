@@ -1,0 +1,113 @@
+"""Error frames as SocketCAN drivers send them (`linux/can/error.h`), for one node of a wire."""
+
+from collections.abc import Callable
+from typing import Final
+
+import can
+
+from bus.can.port import BusError, Port
+
+# Classes, in the identifier (include/uapi/linux/can/error.h).
+CAN_ERR_CRTL: Final = 0x004
+CAN_ERR_PROT: Final = 0x008
+CAN_ERR_ACK: Final = 0x020
+CAN_ERR_BUSOFF: Final = 0x040
+CAN_ERR_BUSERROR: Final = 0x080
+CAN_ERR_RESTARTED: Final = 0x100
+CAN_ERR_CNT: Final = 0x200
+# Byte 1: the controller.
+CRTL_RX_OVERFLOW: Final = 0x01
+CRTL_RX_WARNING: Final = 0x04
+CRTL_TX_WARNING: Final = 0x08
+CRTL_RX_PASSIVE: Final = 0x10
+CRTL_TX_PASSIVE: Final = 0x20
+CRTL_ACTIVE: Final = 0x40
+# Byte 2: the kind of a protocol violation, byte 3: where.
+PROT_TX: Final = 0x80
+PROT_KINDS: Final = {"bit": 0x01, "form": 0x02, "stuff": 0x04, "crc": 0x00, "ack": 0x00}
+PROT_PLACES: Final = {"crc": 0x08, "ack": 0x19}
+WARNING: Final = 96
+"""Counts from which a controller warns (ISO 11898-1; MCP2515 EFLG.EWARN)."""
+_QUIET_NS: Final = 10_000_000
+"""Simulated time between two messages of single errors: a driver that reported each would flood its reader.
+ASSUMPTION; changes of state are always told."""
+_LEVELS: Final = ("active", "warning", "passive", "bus_off")
+
+
+def error_message(t_ns: int, classes: int, data: bytes, channel: str | None = None) -> can.Message:
+    """An error frame: classes in its identifier, eight bytes of details."""
+    return can.Message(
+        timestamp=t_ns * 1e-9,
+        arbitration_id=classes,
+        is_error_frame=True,
+        is_extended_id=False,
+        dlc=len(data),
+        data=data,
+        channel=channel,
+    )
+
+
+class ErrorFrames:
+    """Tells `emit` what befalls `port`: single errors (some of them), and every change of the error state.
+
+    TEC and REC are in bytes 6 and 7.
+    """
+
+    def __init__(self, port: Port, emit: Callable[[can.Message], None], channel: str | None = None) -> None:
+        self._port = port
+        self._emit = emit
+        self._channel = channel
+        self._level = self._now()
+        self._next_ns = 0
+        port.on_error = self.take
+
+    def _now(self) -> int:
+        port = self._port
+        if port.state != "active":
+            return _LEVELS.index(port.state)
+        return int(max(port.tec, port.rec) >= WARNING)
+
+    def take(self, t_ns: int, error: BusError) -> None:
+        """Called by the wire."""
+        if error.kind and t_ns >= self._next_ns:
+            self._next_ns = t_ns + _QUIET_NS
+            self._single(t_ns, error)
+        before, self._level = self._level, self._now()
+        if self._level != before:
+            self._changed(t_ns, before)
+
+    def _single(self, t_ns: int, error: BusError) -> None:
+        if error.kind == "ack" and error.sending:
+            self._send(t_ns, CAN_ERR_ACK)
+        else:
+            kind = PROT_KINDS[error.kind] | (PROT_TX if error.sending else 0)
+            place = PROT_PLACES.get(error.kind, 0)
+            self._send(t_ns, CAN_ERR_PROT | CAN_ERR_BUSERROR, kind=kind, place=place)
+
+    def _changed(self, t_ns: int, before: int) -> None:
+        level = _LEVELS[self._level]
+        if level == "bus_off":
+            self._send(t_ns, CAN_ERR_BUSOFF)
+        elif _LEVELS[before] == "bus_off":
+            self._send(t_ns, CAN_ERR_RESTARTED | CAN_ERR_CRTL, CRTL_ACTIVE)
+        else:
+            self._send(t_ns, CAN_ERR_CRTL, self._controller(level))
+
+    def _controller(self, level: str) -> int:
+        if level == "active":
+            return CRTL_ACTIVE
+        tec, rec = self._port.tec, self._port.rec
+        limit = WARNING if level == "warning" else 128
+        sending, receiving = (
+            (CRTL_TX_WARNING, CRTL_RX_WARNING) if level == "warning" else (CRTL_TX_PASSIVE, CRTL_RX_PASSIVE)
+        )
+        return (sending if tec >= limit else 0) | (receiving if rec >= limit else 0)
+
+    def _send(self, t_ns: int, classes: int, controller: int = 0, kind: int = 0, place: int = 0) -> None:
+        tec, rec = min(self._port.tec, 255), min(self._port.rec, 255)
+        data = bytes((0, controller, kind, place, 0, 0, tec, rec))
+        self._emit(error_message(t_ns, classes | CAN_ERR_CNT, data, self._channel))
+
+    def close(self) -> None:
+        """Nobody listens any more."""
+        self._port.on_error = None
