@@ -88,9 +88,13 @@ class Twin(Guest):
         self.load(Frame(REPLY_BASE + self._device, answer), t_ns + self._answer_ns)
 
     def _tick(self, t_ns: int) -> None:
-        if not self.leaving:
-            self.load(self._measurement, t_ns)
-            self.queue.at(t_ns + self._period_ns, self._tick)
+        self.load(self._measurement, t_ns)
+        self.queue.at(t_ns + self._period_ns, self._tick)
+
+    def clear(self, t_ns: int) -> None:
+        """No more of it."""
+        self.queue.take_out([self._tick].__contains__)
+        super().clear(t_ns)
 
 
 class Cut:

@@ -1,0 +1,146 @@
+"""`take` and `restore`: the whole graph of a network, from the queue's calls to the plant's arrays.
+
+What lies outside (the host, its files, taps) has names: it is not taken, and is put in its place again.
+"""
+
+from __future__ import annotations
+
+import io
+import pickle
+from collections.abc import Mapping
+from hashlib import sha256
+from pathlib import Path
+from types import CellType, FunctionType
+from typing import Any
+
+import numpy as np
+
+from scenarios.native.finder import compiled
+from scenarios.snapshot import code
+
+_ROOT = Path(__file__).parents[2]
+ROOMS = ("bus", "boards", "plant", "host", "scenarios")
+_ALLOWED = {
+    "builtins": {"getattr", "set", "frozenset", "bytearray", "complex", "range", "slice"},
+    "collections": {"deque", "Counter", "OrderedDict", "defaultdict"},
+    "functools": {"partial"},
+    "pathlib": {"PosixPath", "WindowsPath", "Path"},
+    "datetime": {"datetime", "timezone", "timedelta"},
+    "copyreg": {"__newobj__", "_reconstructor"},
+    "_codecs": {"encode"},
+}
+"""What of the standard library a snapshot is made of."""
+_PLAIN = "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
+_MAGIC = b"schmidt snapshot 1\n"
+
+
+class SnapshotError(ValueError):
+    """A snapshot that cannot be taken or used; one line."""
+
+
+def source_digest() -> str:
+    """SHA-256 over the rooms' sources: functions and fields are found by their place in them."""
+    digest = sha256()
+    for room in ROOMS:
+        for path in sorted((_ROOT / room).rglob("*.py")):
+            digest.update(path.relative_to(_ROOT).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def _view(array: np.ndarray[Any, Any]) -> Any:
+    """The plant's view of its world: flat, of floats, on the same memory."""
+    return memoryview(array.reshape(-1).data).cast("B").cast("d")
+
+
+class _Pickler(pickle.Pickler):
+    def __init__(self, file: io.BytesIO, outside: Mapping[str, Any]) -> None:
+        super().__init__(file, protocol=5)
+        self._names = {id(value): name for name, value in outside.items()}
+
+    def persistent_id(self, value: Any) -> str | None:
+        return self._names.get(id(value))
+
+    def reducer_override(self, value: Any) -> Any:
+        if isinstance(value, FunctionType):
+            return NotImplemented if code.importable(value) else self._function(value)
+        if isinstance(value, CellType):
+            try:
+                contents = value.cell_contents
+            except ValueError:
+                return code.cell, ()
+            return code.cell, (), contents, None, None, code.fill
+        if isinstance(value, memoryview):
+            whole: Any = value.obj
+            return _view, (whole if whole.base is None else whole.base,)
+        return NotImplemented
+
+    @staticmethod
+    def _function(value: FunctionType) -> Any:
+        try:
+            module, number = code.place(value)
+        except ValueError:
+            name = f"{value.__module__}.{value.__qualname__}"
+            raise SnapshotError(f"{name} was made outside the sources: no snapshot can hold it") from None
+        state = (value.__defaults__, value.__kwdefaults__, dict(value.__dict__), value.__qualname__)
+        return code.function, (module, number, value.__closure__ or ()), state, None, None, code.finish
+
+
+class _Unpickler(pickle.Unpickler):
+    def __init__(self, file: io.BytesIO, outside: Mapping[str, Any], refused: tuple[str, ...]) -> None:
+        super().__init__(file)
+        self._outside = outside
+        self._refused = refused
+
+    def persistent_load(self, name: Any) -> Any:
+        if name not in self._outside:
+            raise SnapshotError(f"snapshot: it wants {name!r}, which is not here")
+        return self._outside[name]
+
+    def find_class(self, module: str, name: str) -> Any:
+        room = module.partition(".")[0]
+        if module.startswith(self._refused):
+            raise SnapshotError(f"snapshot: {module}.{name} is in it")
+        if room not in (*ROOMS, "numpy", "cantools") and name not in _ALLOWED.get(module, ()):
+            raise SnapshotError(f"snapshot: {module}.{name} has no business in one")
+        return super().find_class(module, name)
+
+
+def take(what: Any, outside: Mapping[str, Any] | None = None) -> bytes:
+    """Everything that can be reached from `what`, between two slices of simulated time.
+
+    outside: what is not taken, by name. Raises SnapshotError, also when the compiled library is in use: its
+    instances cannot be taken apart (SCHMIDT_PURE=1 runs the same source plain, to the same bits).
+    """
+    if compiled():
+        raise SnapshotError(
+            "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
+        )
+    file = io.BytesIO()
+    try:
+        _Pickler(file, outside or {}).dump(what)
+    except (TypeError, AttributeError, pickle.PicklingError) as error:
+        raise SnapshotError(f"snapshot: {error}") from None
+    return _MAGIC + source_digest().encode() + b"\n" + file.getvalue()
+
+
+def restore(data: bytes, outside: Mapping[str, Any] | None = None, refused: tuple[str, ...] = ()) -> Any:
+    """What was taken, on its own.
+
+    refused: modules that must not be in it. Raises SnapshotError for bytes that are no snapshot, or one of
+    other sources.
+    """
+    if not data.startswith(_MAGIC):
+        raise SnapshotError("this is no snapshot of schmidt's")
+    digest, _, body = data[len(_MAGIC) :].partition(b"\n")
+    if digest.decode(errors="replace") != source_digest():
+        raise SnapshotError("snapshot: made by other sources than these; run the scenario again instead")
+    if compiled():
+        raise SnapshotError(
+            "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
+        )
+    try:
+        return _Unpickler(io.BytesIO(body), outside or {}, refused).load()
+    except SnapshotError:
+        raise
+    except Exception as error:  # a pickle that was cut or changed raises nearly anything
+        raise SnapshotError(f"snapshot: damaged: {' '.join(str(error).split())}") from None

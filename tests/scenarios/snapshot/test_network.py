@@ -1,0 +1,137 @@
+"""Restore-then-continue equals continue, at random instants; what is refused."""
+
+import gc
+import pickle
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bus.can.candump import CandumpWriter
+from bus.protocol import Device, Opcode
+from scenarios.faults import KINDS
+from scenarios.network import Network
+from scenarios.snapshot import SnapshotError, restore, take
+from tests.scenarios.faults.lab import EXAMPLES, Lab
+
+AHEAD_NS = 300_000_000
+INSTANTS = st.integers(0, 700_000_000)
+
+
+def fate(network: Network, ahead_ns: int = AHEAD_NS) -> tuple[Any, ...]:
+    """All that can be seen of a network's future: bus, serial lines, USB, plant, counters."""
+    log = CandumpWriter(None)
+    others: list[tuple[Any, ...]] = []
+    network.wire._taps[:] = [log.take]
+    network.hid.to_host = lambda t_ns, report: others.append((t_ns, report))
+    for name, uart in network.uarts.items():
+        uart.sink = lambda t_ns, packet, name=name: others.append((t_ns, name, packet))  # type: ignore[misc]
+    network.run_until(network.queue.now_ns + ahead_ns)
+    network.plant.advance(network.queue.now_ns)
+    ports = [(port.name, port.tec, port.rec, port.state, port.free_buffers) for port in network.wire.ports]
+    return (
+        log.hexdigest(), others, network.plant.world.tobytes(), network.wire.errors, ports, network.overruns,
+        network.dropped, len(network.queue), network.queue.next_ns(),
+    )  # fmt: skip
+
+
+def both(lab: Lab, refused: tuple[str, ...] = ()) -> None:
+    network = lab.network
+    network.wire._taps.clear()
+    network.hid.to_host = None
+    again = restore(take(network), refused=refused)
+    assert again is not network
+    assert fate(again) == fate(network)
+
+
+@pytest.mark.slow
+@settings(max_examples=20, deadline=None)
+@given(INSTANTS)
+def test_restore_then_continue_equals_continue(t_ns: int) -> None:
+    """Motors on, commands under way, the focus stepping, a node lost and booting: at any nanosecond."""
+    lab = Lab().pull()
+    lab.command(Device.FOCUS, Opcode.FOCUS_REFERENCE)
+    lab.network.boards["DISPLAY"].power_off(lab.now_ns)
+    lab.network.boards["DISPLAY"].power_on(lab.now_ns)
+    for _ in range(6):
+        lab.command(Device.AXIS_DEC, Opcode.PING)
+    lab.network.run_until(lab.now_ns + t_ns)
+    both(lab)
+
+
+@pytest.mark.slow
+@settings(max_examples=20, deadline=None)
+@given(INSTANTS, st.sampled_from(("bit_errors", "duplicate_node", "babbler", "partition", "stuck_dominant")))
+def test_a_bus_in_trouble_is_taken_with_its_trouble(t_ns: int, kind: str) -> None:
+    """Error frames, collisions, counters, bus off: the fault is taken too and goes on."""
+    lab = Lab().run(0.05)
+    lab.faults.start(kind, **EXAMPLES[kind])
+    lab.network.run_until(lab.now_ns + t_ns)
+    both(lab)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_a_fault_that_is_over_leaves_nothing_of_its_machinery(kind: Any) -> None:
+    """From the state at clearing, a network that has never heard of faults goes on alike, bit by bit."""
+    lab = Lab().pull()
+    number = lab.faults.start(kind.name, **EXAMPLES[kind.name])
+    lab.run(0.0873)
+    lab.faults.clear(number)
+    lab.run(0.001)  # what a guest had on the bus is through
+    both(lab, refused=("scenarios.faults", "bus.can.stuck", "bus.can.partition", "boards.core.halt"))
+
+
+NOTHING_LEFT = [kind.name for kind in KINDS if kind.cleared == "nothing"]
+
+
+@pytest.mark.parametrize("name", NOTHING_LEFT)
+def test_where_nothing_is_left_the_bus_is_that_of_an_undisturbed_run(name: str) -> None:
+    """Motors off, so that nothing moves: soon the log is that of a run without the fault."""
+    fates = []
+    for faulty in (True, False):
+        lab = Lab().run(0.1)
+        if faulty:
+            number = lab.faults.start(name, **EXAMPLES[name])
+        lab.run(0.25)
+        if faulty:
+            lab.faults.clear(number)
+        lab.run(0.35)  # a serial packet and a summary hold a quarter of a second
+        fates.append(fate(lab.network))
+    assert fates[0] == fates[1]
+
+
+def test_a_snapshot_may_be_restored_often() -> None:
+    lab = Lab().run(0.1)
+    lab.network.wire._taps.clear()
+    data = take(lab.network)
+    assert fate(restore(data)) == fate(restore(data))
+    gc.collect()
+    assert take(restore(data)) is not None
+
+
+def test_what_is_no_snapshot_is_refused_in_one_line() -> None:
+    class Evil:
+        def __reduce__(self) -> Any:
+            return print, ("run by a file",)
+
+    lab = Lab()
+    lab.network.wire._taps.clear()
+    data = take(lab.network)
+    head = data[: data.index(b"\n", 20) + 1]
+    for wrong, reason in (
+        (b"PK\x03\x04", "no snapshot"),
+        (data.replace(b"1\n", b"2\n", 1), "no snapshot"),
+        (data[:19] + b"0" * 64 + data[83:], "other sources"),
+        (data[:5000], "damaged"),
+        (head + pickle.dumps(Evil()), "no business"),
+    ):
+        with pytest.raises(SnapshotError, match=reason) as caught:
+            restore(wrong)
+        assert "\n" not in str(caught.value)
+
+
+def test_what_no_snapshot_can_hold_is_said() -> None:
+    lab = Lab()
+    with pytest.raises(SnapshotError, match="outside the sources"):
+        take(lambda: lab)
