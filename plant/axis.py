@@ -67,7 +67,9 @@ class AxisPort:
         def now(t_ns: int) -> int:
             if t_ns >= plant.next_ns:
                 plant.advance(t_ns)
-            return floor(view[place] + view[slope] * (t_ns - plant.now_ns)) & mask
+            count: float = view[place]
+            rate: float = view[slope]
+            return floor(count + rate * (t_ns - plant.now_ns)) & mask
 
         def late(t_ns: int) -> int:
             plant.advance(t_ns)

@@ -8,6 +8,7 @@ from bus.protocol.names import SUMMARY_KIND
 
 _position: Final = Struct("<BBIBB")
 _summary: Final = Struct("<BBBIx")
+_tuple: Final = tuple.__new__
 AGE_UNIT_NS: Final = 4000
 """Unit of the age, latch of the encoder to loading of the frame."""
 
@@ -47,7 +48,7 @@ def pack_position(device: int, flags: int, position: int, age: int, sequence: in
 
 def unpack_position(data: bytes) -> Position:
     """The signals of eight bytes of POSITION."""
-    return Position._make(_position.unpack(data))
+    return _tuple(Position, _position.unpack(data))
 
 
 def pack_summary(device: int, flags: int, position: int) -> bytes:

@@ -10,6 +10,7 @@ quantities (row L3).
 
 from binascii import crc_hqx
 from collections.abc import Sequence
+from functools import partial
 from itertools import starmap
 from struct import Struct, error
 from typing import Final, NamedTuple
@@ -27,6 +28,7 @@ NO_SETPOINT: Final = -(1 << 31)
 _CRC_START: Final = 0xFFFF
 _head: Final = Struct("<BBI")
 _crc: Final = Struct("<H")
+_tuple: Final = tuple.__new__
 
 
 class AxisSample(NamedTuple):
@@ -189,4 +191,4 @@ def _decode(body: bytes) -> Packet:
     device, sequence, stamp = _head.unpack_from(body)
     layout, kind = _known(device)
     rows = layout.iter_unpack(body[_head.size :])
-    return Packet(device, sequence, stamp, tuple(map(kind._make, rows)))
+    return Packet(device, sequence, stamp, tuple(map(partial(_tuple, kind), rows)))

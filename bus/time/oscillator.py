@@ -60,8 +60,8 @@ class Oscillator:
     def local_ns(self, true_ns: int) -> int:
         """What the local clock reads at true time `true_ns`, ns (rounded down)."""
         if self._drift:
-            fine = (true_ns * self._rate << (_DRIFT_SHIFT - _SHIFT)) + true_ns * true_ns * self._drift
-            return self.phase_ns + (fine >> _DRIFT_SHIFT)
+            ageing = true_ns * true_ns * self._drift >> (_DRIFT_SHIFT - _SHIFT)
+            return self.phase_ns + (true_ns * self._rate + ageing >> _SHIFT)
         return self.phase_ns + (true_ns * self._rate >> _SHIFT)
 
     def true_ns(self, local_ns: int) -> int:
@@ -79,8 +79,9 @@ class Oscillator:
             if not error:
                 break
             guess -= error
-        while self.local_ns(guess) < local_ns:
-            guess += 1
+        else:
+            while self.local_ns(guess) < local_ns:
+                guess += 1
         while self.local_ns(guess - 1) >= local_ns:
             guess -= 1
         return guess
