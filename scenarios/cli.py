@@ -131,6 +131,8 @@ def _compared(loaded: Scenario, model: PlantModel, folder: Path, file: Path) -> 
 @click.option("--rows", metavar="E1,E2,...", help="These rows only.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
+@click.option("--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core).")
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
 def paper(
     json_file: Path | None,
     out: Path,
@@ -140,12 +142,17 @@ def paper(
     rows: str | None,
     quick: bool,
     every: bool,
+    jobs: int | None,
+    scheduler: str | None,
 ) -> None:
     """Repeat the paper's experiments from eight starts: published against emulated (exit 1 when a row is
     missed)."""
     from scenarios.paper.command import paper as command
 
-    sys.exit(command(json_file, out, plant, plant_high, markdown, names=rows, quick=quick, every=every))
+    where: dict[str, Any] = {"jobs": jobs, "scheduler": scheduler}
+    sys.exit(
+        command(json_file, out, plant, plant_high, markdown, names=rows, quick=quick, every=every, **where)
+    )
 
 
 @cli.command()

@@ -58,6 +58,7 @@ def convert(document: Document) -> model.Scenario:
         network=data.get("network", {}),
         plant={"file": plant} if isinstance(plant, str) else plant,
         site=site,
+        start_rad={axis: angle / ARCSEC_PER_RAD for axis, angle in data.get("start", {}).items()},
         seed=data.get("seed", 1),
         speed=None if speed == "max" else float(speed),
         time_limit_s=data.get("time_limit", 12 * 3600.0),
@@ -243,6 +244,11 @@ def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, An
         mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
     except ValueError as error:
         raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
+    for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):
+        angle = scenario.start_rad.get(axis)
+        if angle is not None and not scale.within(angle):
+            where = document.where(("start", axis))
+            raise ScenarioError(f"{where}: start.{axis}: {math.degrees(angle):g}° is beyond the soft limits")
     return dataclasses.replace(
         scenario,
         mount=mount,

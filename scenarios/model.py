@@ -77,6 +77,8 @@ class Scenario:
             HOUR_ANGLE_LIMIT_RAD, DECLINATION_LOW_RAD, DECLINATION_HIGH_RAD, NAINITAL.latitude_rad
         )
     )
+    start_rad: dict[str, float] = field(default_factory=dict)
+    """Where the telescope stands at first, `hour_angle` and `declination`; what is missing is parked."""
     horizon_rad: float = HORIZON_RAD
     seed: int = 1
     speed: float | None = None

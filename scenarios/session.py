@@ -122,12 +122,13 @@ def devices_on(network: Network) -> tuple[Device, ...]:
 
 
 def start_steps(scenario: Scenario) -> dict[str, float]:
-    """Where the telescope stands at first: parked, and the focus somewhere near the middle, by the seed."""
+    """Where the telescope stands at first: parked unless the scenario says where, and the focus somewhere
+    near the middle, by the seed."""
     mount = scenario.mount
     periods = int(generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1))
     return {
-        "ra": mount.ra.steps(mount.park_hour_angle_rad),
-        "dec": mount.dec.steps(mount.park_declination_rad),
+        "ra": mount.ra.steps(scenario.start_rad.get("hour_angle", mount.park_hour_angle_rad)),
+        "dec": mount.dec.steps(scenario.start_rad.get("declination", mount.park_declination_rad)),
         "focus": float(periods * _HALF_STEPS_PER_PERIOD),
     }
 

@@ -37,11 +37,13 @@ TRIES = 5
 
 @dataclass(frozen=True)
 class Done(Generic[Output]):
-    """A finished task: its value, or the error as one line."""
+    """A finished task: its value, or the error as one line. died: the workers died, and the task never
+    ended."""
 
     key: str
     value: Output | None
     error: str = ""
+    died: bool = False
 
 
 def each(
@@ -88,7 +90,7 @@ def each(
                         if not _lost(error):
                             yield Done(key, None, _line(error))
                         elif tried >= TRIES:
-                            yield Done(key, None, f"the worker died {tried} times: {_line(error)}")
+                            yield Done(key, None, f"the worker died {tried} times: {_line(error)}", died=True)
                         else:
                             lost.append((key, given, tried + 1))
                             broken = broken or isinstance(error, BrokenExecutor)

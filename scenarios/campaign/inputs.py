@@ -128,6 +128,16 @@ def _seed(_given: Any, where: str, base: Document) -> Put:
     return put, "seed", lambda: _none(where, "a seed")
 
 
+def _start(axis: Any, where: str, base: Document) -> Put:
+    """Where an axis of the telescope stands at first, degrees."""
+
+    def put(document: Document, value: Any) -> None:
+        start = document.setdefault("start", {})
+        start[axis] = f"{float(value)!r} deg"
+
+    return put, f"start, {str(axis).replace('_', ' ')}", lambda: _none(where, "a start")
+
+
 def _fault(_given: Any, where: str, base: Document) -> Put:
     """One of a list of faults as scenarios have them; `none` is one, too."""
 
@@ -163,6 +173,7 @@ _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
     "plant": _plant,
     "parameter": _parameter,
     "seed": _seed,
+    "start": _start,
     "fault": _fault,
     "field": _field,
 }

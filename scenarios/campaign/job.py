@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import platform
 import shutil
 import tempfile
@@ -56,6 +58,23 @@ def run(job: Job) -> Row:
 
 
 def _made(job: Job, folder: Path) -> Row:
+    """What this kind of run makes of its document."""
+    from scenarios.campaign.calibration import FIELD
+
+    return _calibrated(job, folder) if FIELD in job.document else _simulated(job, folder)
+
+
+def _calibrated(job: Job, folder: Path) -> Row:
+    from scenarios.campaign.calibration import row as calibrate
+
+    found = calibrate(job.document, Path(job.beside), folder)
+    figures = found.pop("figures")
+    row: Row = {"passed": True, "missed": "", **found}
+    row["digest"] = hashlib.sha256(json.dumps([found, figures], sort_keys=True).encode()).hexdigest()
+    return row | _figures(job.metrics, figures, figures)
+
+
+def _simulated(job: Job, folder: Path) -> Row:
     from scenarios import run as runner
     from scenarios.document import Document
 
@@ -71,14 +90,19 @@ def _made(job: Job, folder: Path) -> Row:
         "digest": summary["trace_digest"],
         "simulated_s": summary["simulated_s"],
     }
-    named = {verdict.name: verdict.value for verdict in result.verdicts}
-    for metric in job.metrics:
+    return row | _figures(job.metrics, {verdict.name: verdict.value for verdict in result.verdicts}, summary)
+
+
+def _figures(metrics: tuple[str, ...], named: dict[str, Any], others: dict[str, Any]) -> Row:
+    """Columns of the metrics asked for. named: those that `expectations` means."""
+    row: Row = {}
+    for metric in metrics:
         if metric == _EXPECTATIONS:
             row |= {f"metric: {name}": value for name, value in named.items()}
         elif metric in named:
             row[f"metric: {metric}"] = named[metric]
-        elif isinstance(summary.get(metric), int | float):
-            row[f"metric: {metric}"] = summary[metric]
+        elif isinstance(others.get(metric), int | float):
+            row[f"metric: {metric}"] = others[metric]
         else:
             raise ValueError(f"the run has no figure {metric!r}")
     return row

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from scenarios.campaign import figures, table
+from scenarios.campaign.calibration import FIELD
 from scenarios.campaign.figures import Columns, numbers
 from scenarios.campaign.plan import Plan
-from scenarios.campaign.sensitivity import Influence, influence, share
+from scenarios.campaign.sensitivity import Indices, Influence, influence, share, sobol
 from scenarios.document import Document
 from scenarios.load import convert
 
@@ -25,18 +26,19 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     import jinja2
 
     columns = table.read(folder / table.TABLE)
-    limits = {e.name: (e.limit, e.upper) for e in convert(_document(plan, plan.base)).expectations}
+    limits = {} if plan.calibrates else _limits(plan)
     metrics = [name for name in columns if name.startswith("metric: ")]
     found = _influences(plan, columns, metrics)
     groups = _groups(plan, columns)
     drawn = {
         "distributions": figures.distributions(columns, metrics, limits),
         "influences": figures.influences(found, [f"input: {each.name}" for each in plan.inputs]),
+        "indices": figures.indices(_indices(plan, columns, metrics), [each.name for each in plan.inputs]),
         "failures": figures.failures(columns, groups),
     }
     pictures = [_save(figure, folder / f"{name}.png") for name, figure in drawn.items() if figure is not None]
     worst = _worst(plan, columns, limits)
-    if worst:
+    if worst and not plan.calibrates:
         _write_worst(plan, worst["index"], folder / WORST)
     passed = sum(map(bool, columns["passed"]))
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True)
@@ -47,11 +49,32 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         metrics=[_summary(columns, name, limits) for name in metrics],
         pictures=pictures,
         worst=worst,
-        repeat=f"schmidt run {folder / WORST}",
+        repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
         failures=_failures(columns),
         speed=_speed(columns, wall_s, made),
     )
     (folder / "report.html").write_text(text, encoding="utf-8")
+
+
+def _limits(plan: Plan) -> dict[str, tuple[float, bool]]:
+    return {e.name: (e.limit, e.upper) for e in convert(_document(plan, plan.base)).expectations}
+
+
+def _again(plan: Plan) -> str:
+    """The calibration alone, as it is declared; the run's own numbers stand above it."""
+    given = plan.base[FIELD]
+    return " ".join(
+        ["schmidt calibrate", *(str(plan.file.parent / log) for log in given["logs"]), "--out", "again"]
+    )
+
+
+def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
+    """Sobol indices of the metrics that every run of a `saltelli` sample has."""
+    if not plan.saltelli or len(columns["key"]) < plan.count:
+        return []
+    order = np.argsort(np.array(columns["index"]))
+    found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
+    return [each for each in found if each is not None]
 
 
 def _document(plan: Plan, data: dict[str, Any]) -> Document:

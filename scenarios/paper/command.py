@@ -90,13 +90,16 @@ def paper(
     names: str | None = None,
     quick: bool = False,
     every: bool = False,
+    jobs: int | None = None,
+    scheduler: str | None = None,
 ) -> int:
     """Run the paper's experiments.
 
     json_path: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
     plant_high: plant files for low and high preload instead of the project's own. names: rows,
-    comma-separated. quick: two starts only, for a look; every: all 24 combinations of angle and seed. Returns
-    0 when every row is met at every start, 1 when one is missed. Raises ValueError for a file that cannot be
+    comma-separated. quick: two starts only, for a look; every: all 24 combinations of angle and seed. jobs:
+    processes (None: one per core); scheduler: a Dask scheduler instead. Returns 0 when every row is met at
+    every start, 1 when one is missed. Raises ValueError for a file that cannot be
     used.
     """
     console = console or Console()
@@ -117,7 +120,9 @@ def paper(
         def report(text: str) -> None:
             bar.update(task, description=text, advance=1)
 
-        found = run_rows(plants, experiments=chosen, starts=starts, progress=report)
+        found = run_rows(
+            plants, experiments=chosen, starts=starts, workers=jobs, scheduler=scheduler, progress=report
+        )
     seconds = monotonic() - begin
     show(found, console)
     document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"

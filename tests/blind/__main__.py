@@ -19,6 +19,7 @@ SCORED_SEED = (
 @click.option("--only", default="", help="only cases whose key contains this")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/blind"), show_default=True)
 @click.option("--jobs", default=min(2, os.cpu_count() or 1), show_default=True)
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="a Dask scheduler instead of processes here")
 @click.option(
     "--finder",
     "command",
@@ -26,12 +27,12 @@ SCORED_SEED = (
     show_default=True,
     help="module:function of the command line",
 )
-def main(seed: int, name: str, only: str, out: Path, jobs: int, command: str) -> None:
+def main(seed: int, name: str, only: str, out: Path, jobs: int, scheduler: str | None, command: str) -> None:
     """Seal cases, let the finder answer, open the seals, score, write the table. Resumes where it stopped."""
     orders = [order for order in SETS[name]() if only in order.key]
     if not orders:
         raise click.ClickException(f"--only {only}: no case of the set {name} has this in its key")
-    harness.run(orders, seed, out / str(seed), jobs, command)
+    harness.run(orders, seed, out / str(seed), jobs, command, scheduler)
     click.echo((out / str(seed) / "table.md").read_text())
     click.echo(f"every case: {out / str(seed) / 'results.json'}")
 

@@ -7,8 +7,9 @@ import os
 import subprocess
 import time
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from scenarios.campaign.executor import each
 from tests.blind import finder, score, table
 from tests.blind.sealer.case import Order, seal
 
@@ -40,8 +42,16 @@ def find_one(order: Order, command: str, out: Path) -> None:
     finder.find(out / "logs" / order.key, out / "answers" / order.key, command)
 
 
-def in_parallel(what: str, work: Callable[..., None], orders: list[Order], jobs: int, *args: object) -> None:
-    """All orders over `jobs` processes with a progress bar."""
+def in_parallel(
+    what: str,
+    work: Callable[..., None],
+    orders: list[Order],
+    jobs: int,
+    *args: object,
+    scheduler: str | None = None,
+) -> None:
+    """All orders through the campaigns' executor with a progress bar: `jobs` processes here, or a Dask
+    scheduler whose workers see the output folder. An order whose worker keeps dying is left without."""
     columns = (
         TextColumn("{task.description:8}"),
         BarColumn(),
@@ -51,16 +61,20 @@ def in_parallel(what: str, work: Callable[..., None], orders: list[Order], jobs:
     )
     with Progress(*columns) as bar:
         task = bar.add_task(what, total=len(orders))
-        if jobs == 1:
+        if jobs == 1 and scheduler is None:
             for order in orders:
                 work(order, *args)
                 bar.advance(task)
             return
-        with ProcessPoolExecutor(jobs) as pool:
-            waiting = [pool.submit(work, order, *args) for order in orders]
-            for done in as_completed(waiting):
-                done.result()
-                bar.advance(task)
+        named = {order.key: order for order in orders}
+        for done in each(partial(_work, work, args), named.items(), jobs=jobs, scheduler=scheduler):
+            if done.error and not done.died:
+                raise RuntimeError(f"{what} {done.key}: {done.error}")
+            bar.advance(task)
+
+
+def _work(work: Callable[..., None], args: tuple[object, ...], order: Order) -> None:
+    work(order, *args)
 
 
 def find_alone(orders: list[Order], command: str, out: Path) -> None:
@@ -115,7 +129,12 @@ def judged(order: Order, out: Path) -> dict[str, Any]:
 
 
 def run(
-    orders: list[Order], seed: int, out: Path, jobs: int, command: str = finder.COMMAND
+    orders: list[Order],
+    seed: int,
+    out: Path,
+    jobs: int,
+    command: str = finder.COMMAND,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """The whole test; answers what `results.json` holds. Wall time adds up over resumed runs."""
     begin = time.monotonic()
@@ -125,13 +144,11 @@ def run(
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
-        in_parallel("seal", seal_one, orders, jobs, seed, out)
+        in_parallel("seal", seal_one, orders, jobs, seed, out, scheduler=scheduler)
         seals = {o.key: (out / "logs" / o.key / "SEAL").read_text().strip() for o in orders}
         (out / "seals.json").write_text(json.dumps(seals, indent=1))
-        try:
-            in_parallel("find", find_one, orders, jobs, command, out)
-        except BrokenProcessPool:  # a worker died (out of memory, a crash below Python)
-            find_alone(orders, command, out)
+        in_parallel("find", find_one, orders, jobs, command, out, scheduler=scheduler)
+        find_alone(orders, command, out)  # those whose worker died (out of memory, a crash below Python)
     finally:
         clock.write_text(f"{spent + time.monotonic() - begin:.1f}")
     rows = [judged(order, out) for order in orders]
