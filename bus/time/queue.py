@@ -54,10 +54,10 @@ class EventQueue:
     ) -> list[tuple[int, Callable[[int], None]]]:
         """Remove the events whose call `which` picks; returns (time, call) in their order. For who stops a
         clock."""
-        events = list(zip(self._times, self._calls, strict=True))
-        taken = [event for event in events if which(event[1])]
+        events = list(zip(self._before, self._calls, strict=True))
+        taken = [(-before, call) for before, call in reversed(events) if which(call)]
         kept = [event for event in events if not which(event[1])]
-        self._times[:] = [t_ns for t_ns, _ in kept]  # in place: whoever runs the queue holds these lists
+        self._before[:] = [before for before, _ in kept]  # in place: whoever runs the queue holds these lists
         self._calls[:] = [call for _, call in kept]
         return taken
 
