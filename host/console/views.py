@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -26,6 +27,17 @@ class SeenFrame(NamedTuple):
     text: str
 
 
+class FaultKind(NamedTuple):
+    """A fault that can be made: its level (bus, board …), what happens, the arguments it needs as
+    `name=` words, and all of its arguments with units and bounds."""
+
+    name: str
+    level: str
+    text: str
+    needed: str
+    arguments: str
+
+
 class BusView(Protocol):
     """The bus as its own emulator or adapter sees it; safe to call from the consoles' thread."""
 
@@ -46,6 +58,19 @@ class BusView(Protocol):
 
     def switch(self, board: str, on: bool) -> None:
         """Cut or give back the supply of a board; in force with the next slice of time."""
+
+    def fault_kinds(self) -> list[FaultKind]:
+        """Faults that can be made; empty on a real bus."""
+
+    def running(self) -> list[tuple[int, str]]:
+        """Faults that are on: number, and a line of words."""
+
+    def start_fault(self, name: str, arguments: str) -> Future[str]:
+        """Start one with `name=value` words; the next slice does it. ValueError with one line: it cannot
+        be."""
+
+    def clear_fault(self, number: int) -> Future[str]:
+        """End one; the same."""
 
 
 class Runs(Protocol):

@@ -8,16 +8,14 @@ import sys
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from bus.can.frame import Frame
 from bus.protocol import Device
 from host.console.server import Consoles
-from host.console.views import Node, SeenFrame
 from host.logs.axis import AxisLog
 from host.outside import Service
 from host.serial_link import SerialLink
 from scenarios.doors.address import address, is_local, listen
+from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.control import TOKEN_VARIABLE
 from scenarios.doors.door import DoorError
 from scenarios.doors.host import HostDoor
@@ -25,71 +23,7 @@ from scenarios.doors.lines import Feed
 from scenarios.doors.served import Served
 from scenarios.session import log_headers
 
-KEPT = 200
 AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
-
-
-class EmulatedBus:
-    """The wire as the bus page shows it. `poll` does what the page asked for, between two slices."""
-
-    def __init__(self, served: Served) -> None:
-        self._served = served
-        self._frames: deque[tuple[int, Frame, str]] = deque(maxlen=KEPT)
-        self._wanted: deque[tuple[str, bool]] = deque()
-        served.network.wire.tap(self._tap)
-
-    def _tap(self, t_ns: int, frame: Frame, sender: str) -> None:
-        self._frames.append((t_ns, frame, sender))
-
-    def nodes(self) -> list[Node]:
-        """Boards and whoever else is attached."""
-        boards = self._served.network.boards
-        found = []
-        for port in self._served.network.wire.ports:
-            on = boards[port.name].on if port.name in boards else port.online
-            found.append(Node(port.name, on, port.state, port.tec, port.rec))
-        return found
-
-    def load(self) -> float:
-        """Busy share so far."""
-        return self._served.network.wire.load
-
-    def errors(self) -> dict[str, int]:
-        """By cause."""
-        return dict(self._served.network.wire.errors)
-
-    def frames(self, most: int) -> list[SeenFrame]:
-        """The last ones, decoded by the DBC."""
-        return [_seen(*each) for each in list(self._frames)[-most:]]
-
-    def faults(self) -> tuple[str, ...]:
-        """Every board's supply can be cut."""
-        return tuple(self._served.network.boards)
-
-    def switch(self, board: str, on: bool) -> None:
-        """Asked for by a page; done by `poll`."""
-        self._wanted.append((board, on))
-
-    def poll(self) -> None:
-        """On the ticking thread."""
-        while self._wanted:
-            self._served.switch(*self._wanted.popleft())
-
-
-def _seen(t_ns: int, frame: Frame, sender: str) -> SeenFrame:
-    from bus.protocol.database import database
-
-    try:
-        said = database().decode_message(frame.identifier, frame.data)
-        text = _words(said) if isinstance(said, dict) else ""
-    except Exception:  # whatever anybody put on the bus is shown as it is
-        text = "not in the protocol"
-    return SeenFrame(t_ns * 1e-9, sender, frame.identifier, frame.data, text)
-
-
-def _words(said: dict[str, Any]) -> str:
-    """Signals of a frame; its device is the sender's column already."""
-    return ", ".join(f"{name} {value}" for name, value in said.items() if name != "Device")
 
 
 class RecordedRuns:

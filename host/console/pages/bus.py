@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
+from concurrent.futures import Future
+
 from nicegui import ui
 
 from host.console.shell import Shell, box, button, table
 from host.console.views import BusView
 
 FRAMES = 25
+ANSWER_S = 5.0
+"""Wall time until the next slice must have come. ASSUMPTION: slices are a millisecond."""
 
 
 def bus(shell: Shell, view: BusView) -> None:
@@ -18,6 +23,8 @@ def bus(shell: Shell, view: BusView) -> None:
             errors = ui.label("–").classes("small")
         with box("Nodes"):
             nodes = table(("node", "supply", "state", "TEC", "REC"))
+        with box("Supply of the boards"):
+            _supply(shell, view)
         with box("Faults"):
             _faults(shell, view)
         with box("Frames", wide=True):
@@ -40,7 +47,7 @@ def bus(shell: Shell, view: BusView) -> None:
     shell.each(refresh)
 
 
-def _faults(shell: Shell, view: BusView) -> None:
+def _supply(shell: Shell, view: BusView) -> None:
     names = view.faults()
     if not names:
         ui.label("This is no emulated bus: nothing can be broken from here.").classes("mid")
@@ -49,3 +56,53 @@ def _faults(shell: Shell, view: BusView) -> None:
     with ui.row():
         for text, on in (("Cut its supply", False), ("Give it back", True)):
             shell.control(button(text, on_click=lambda state=on: view.switch(chosen.value, state)))
+
+
+def _faults(shell: Shell, view: BusView) -> None:
+    """Any fault of the table, with its arguments; what is on, and its end."""
+    kinds = {kind.name: kind for kind in view.fault_kinds()}
+    if not kinds:
+        return
+    first = next(iter(kinds.values()))
+    names = {name: f"{kind.level}: {name}" for name, kind in kinds.items()}
+    chosen = shell.control(
+        ui.select(names, value=first.name, label="Fault").classes("w-full").props("outlined dense")
+    )
+    text = ui.label(first.text).classes("small")
+    given = shell.control(
+        ui.input("Arguments, name=value", value=first.needed).classes("w-full").props("outlined dense")
+    )
+    hint = ui.label(first.arguments).classes("small")
+
+    def show() -> None:
+        kind = kinds[chosen.value]
+        text.set_text(kind.text)
+        given.set_value(kind.needed)
+        hint.set_text(kind.arguments)
+
+    chosen.on_value_change(show)
+
+    async def start() -> None:
+        await _tell(view.start_fault(chosen.value, given.value or ""))
+
+    shell.control(button("Start it", on_click=start))
+    fill = table(("number", "on"))
+    with ui.row().classes("items-center"):
+        number = shell.control(
+            ui.number("Number", value=0, min=0, format="%d").props("outlined dense").classes("w-24")
+        )
+
+        async def clear() -> None:
+            await _tell(view.clear_fault(int(number.value or 0)))
+
+        shell.control(button("Clear it", on_click=clear))
+    shell.each(lambda: fill([(str(each), words) for each, words in view.running()]))
+
+
+async def _tell(future: Future[str]) -> None:
+    try:
+        ui.notify(await asyncio.wait_for(asyncio.wrap_future(future), ANSWER_S), position="top")
+    except ValueError as error:
+        ui.notify(str(error), type="negative", position="top")
+    except TimeoutError:
+        ui.notify("no slice of time has come; is it paused?", type="negative", position="top")

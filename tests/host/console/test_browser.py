@@ -196,9 +196,27 @@ def test_the_bus_shows_a_board_that_loses_its_supply(browser: Any, served: Conso
     press(page, "Give it back")
     row.get_by_text("on", exact=True).wait_for()
     page.get_by_label("Follow the frames").click()
+    _bit_errors(page)
     left = used.untouched(page, "section")
     page.close()
     assert left == set()
+
+
+def _bit_errors(page: Any) -> None:
+    """A fault of the bus, wrong at first, then on, then cleared."""
+    choose(page, "Fault", "bus: bit_errors")
+    arguments = page.get_by_label("Arguments, name=value")
+    arguments.fill("probability=200_%")
+    press(page, "Start it")
+    page.get_by_text(re.compile("out of range")).first.wait_for()
+    arguments.fill("probability=5_%")
+    press(page, "Start it")
+    page.get_by_role("cell", name=re.compile("^bit_errors, probability=0.05")).wait_for()
+    page.get_by_text(re.compile("(bit|crc|stuff|form) [1-9]")).first.wait_for()
+    shot(page, "bus-bit-errors")
+    page.get_by_role("spinbutton", name="Number").fill("0")
+    press(page, "Clear it")
+    page.get_by_role("cell", name=re.compile("^bit_errors")).wait_for(state="detached")
 
 
 def test_a_recorded_run_goes_to_the_finder_and_its_report_is_shown(browser: Any, served: Consoles) -> None:
