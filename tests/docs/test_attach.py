@@ -1,0 +1,176 @@
+"""README, "Attach your host": its commands are run as they stand there, door by door."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shlex
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import can
+import pytest
+import serial
+from alpaca.telescope import Telescope
+
+from tests.doors.process import PROGRAM, ROOT
+
+GUEST = ("--can socketcan:vcan0", "--hid uhid")
+"""Doors that need a kernel of their own: `make guest` runs them."""
+WAIT_S = 60.0
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(300),
+    pytest.mark.filterwarnings("ignore:setDaemon"),  # in pyserial
+]
+
+
+class Row(NamedTuple):
+    """A door: the option of `serve`, and the first code in the column beside it."""
+
+    door: str
+    option: str
+    code: str
+
+
+def section() -> str:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    return text[text.index("## Attach your host") : text.index("![Main console]")]
+
+
+def rows() -> list[Row]:
+    found = re.findall(r"^\| ([^|]+) \| `(--[^`|]+)` \| (?:[^`|]*?)`([^`|]+)`", section(), re.M)
+    return [Row(*each) for each in found]
+
+
+def command() -> list[str]:
+    """The one line that opens all doors which need no kernel of their own."""
+    line = next(line for line in section().splitlines() if line.startswith("    schmidt serve"))
+    return shlex.split(line)[1:]
+
+
+def schmidt(words: list[str], folder: Path) -> dict[str, Any]:
+    """Arguments of Popen: the command as a user in `folder` gives it."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    return {"args": [sys.executable, "-c", PROGRAM, *words], "cwd": folder, "env": environment}
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    folder = tmp_path_factory.mktemp("attach")
+    for port in sorted({int(number) for number in re.findall(r"\b(?:7501|7511|4030|8080|11111|7411)\b",
+                                                             " ".join(command()))}):  # fmt: skip
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                pytest.skip(f"port {port} of the README is in use on this machine")
+    with (folder / "said").open("w") as said, subprocess.Popen(
+        **schmidt(command(), folder), stdout=said, stderr=subprocess.STDOUT
+    ) as process:  # fmt: skip
+        end = time.monotonic() + 180
+        while "serving" not in (folder / "said").read_text():
+            assert process.poll() is None and time.monotonic() < end, (folder / "said").read_text()
+            time.sleep(0.1)
+        yield folder
+        subprocess.run(**schmidt(["control", "stop"], folder), check=True, stdout=subprocess.DEVNULL)
+        assert process.wait(60) == 0
+
+
+def hears_frames(code: str) -> bool:
+    with eval(code, {"can": can}) as bus:
+        return bus.recv(WAIT_S) is not None
+
+
+def hears_bytes(code: str) -> bool:
+    with contextlib.closing(eval(code, {"serial": serial})) as port:
+        port.timeout = WAIT_S
+        return len(port.read(4)) == 4
+
+
+def hears_reports(code: str) -> bool:
+    names: dict[str, Any] = {"socket": socket}
+    exec(code, names)
+    with names["s"] as s:
+        s.settimeout(WAIT_S)
+        return len(s.recv(64)) == 64
+
+
+def lx200(connection: Any, send: Callable[[bytes], Any], read: Callable[[int], bytes]) -> bool:
+    with contextlib.closing(connection):
+        send(b":GR#")
+        said = b""
+        while not said.endswith(b"#"):
+            got = read(1)
+            assert got, "no answer to :GR#"
+            said += got
+    return re.fullmatch(rb"\d\d:\d\d(:\d\d|\.\d)#", said) is not None
+
+
+def lx200_tcp(code: str) -> bool:
+    connection = eval(code, {"socket": socket})
+    connection.settimeout(WAIT_S)
+    return lx200(connection, connection.sendall, connection.recv)
+
+
+def lx200_serial(code: str) -> bool:
+    port = eval(code, {"serial": serial})
+    port.timeout = WAIT_S
+    return lx200(port, port.write, port.read)
+
+
+def alpaca(code: str) -> bool:
+    telescope = eval(code, {"Telescope": Telescope})
+    telescope.Connected = True
+    return 0 <= telescope.RightAscension < 24
+
+
+def page(code: str) -> bool:
+    with urllib.request.urlopen(code, timeout=WAIT_S) as answer:
+        return answer.status == 200 and b"Schmidt telescope" in answer.read()
+
+
+def status(code: str) -> bool:
+    words = shlex.split(code)
+    done = subprocess.run(**schmidt(words[1:], ROOT), capture_output=True, text=True, check=True)
+    return words[0] == "schmidt" and "boards" in done.stdout
+
+
+CHECKS: dict[str, Callable[[str], bool]] = {
+    "--can udp_multicast:239.74.163.2": hears_frames,
+    "--serial pty:out/ports": hears_bytes,
+    "--serial tcp:7501": hears_bytes,
+    "--serial rfc2217:7511": hears_bytes,
+    "--hid unix:out/gateway.sock": hears_reports,
+    "--lx200 4030": lx200_tcp,
+    "--lx200 pty:out/lx200": lx200_serial,
+    "--console 8080": page,
+    "--alpaca 11111": alpaca,
+    "--control 7411": status,
+}
+
+
+def test_every_door_of_the_readme_is_run_here_or_in_the_guest() -> None:
+    assert {row.option for row in rows()} == {*CHECKS, *GUEST}
+    said = " ".join(command())
+    assert all(option in said for option in CHECKS)
+    guest = "\n".join(path.read_text() for path in (ROOT / "tests" / "guest").iterdir() if path.is_file())
+    assert all(option in guest for option in GUEST)
+
+
+@pytest.mark.parametrize("row", rows(), ids=lambda row: row.option.replace("--", "").replace(" ", "-"))
+def test_a_door_is_attached_to_as_the_readme_says(
+    row: Row, served: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if row.option in GUEST:
+        pytest.skip("needs a kernel with vcan and uhid: make guest")
+    monkeypatch.chdir(served)
+    assert CHECKS[row.option](row.code), row
