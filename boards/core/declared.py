@@ -7,6 +7,8 @@ follow from the kind's DBC (`bus/protocol/nodes/`); wiring and schema from the p
 from collections.abc import Callable, Mapping
 from typing import ClassVar, NamedTuple
 
+from mypy_extensions import mypyc_attr
+
 from boards.core.board import Board
 from boards.core.commands import Handler
 from boards.core.interrupts import Source
@@ -72,6 +74,7 @@ class Command:
         return getattr(self.board, self.method)(t_ns, *values) or OK
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class DeclaredBoard(PeriodicBoard):
     """Subclasses name KIND, TABLE, PINS and write `measure(t_ns)`; for an opcode X of their own a method
     `x(t_ns, arguments as on the wire)` that returns an Answer, or None for OK."""

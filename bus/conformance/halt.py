@@ -8,15 +8,25 @@ import can
 from bus.conformance.boards import Board
 from bus.conformance.link import Link
 from bus.protocol import COMMAND_BASE, Opcode, pack_command
+from bus.protocol.nodes import arguments_of, kind_of
 
 _HALT: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
     "AXIS": ((Opcode.STOP, ()), (Opcode.POWER, (0,))),
     "FOCUS": ((Opcode.FOCUS_HOLD, ()),),
 }
+_STOP = "_STOP"
+"""What an opcode that stops a declared board is called at its end."""
 _TIMES = 2
 """Each is sent twice: a frame can be lost."""
 _SETTLE_S = 0.05
 """Until the boards have taken the last one, and their answers are through."""
+
+
+def declared_halt(board: Board) -> tuple[tuple[Opcode, tuple[int, ...]], ...]:
+    """Of a declared board: opcodes without arguments whose name ends in _STOP."""
+    kind = kind_of(board.model)
+    own = arguments_of(kind) if kind is not None else {}
+    return tuple((opcode, ()) for opcode, words in own.items() if not words and opcode.name.endswith(_STOP))
 
 
 @contextmanager
@@ -44,7 +54,7 @@ def halt(link: Link, boards: Sequence[Board]) -> None:
     broken: can.CanError | None = None
     for _ in range(_TIMES):
         for board in boards:
-            for opcode, arguments in _HALT.get(board.family, ()):
+            for opcode, arguments in _HALT.get(board.family) or declared_halt(board):
                 data = pack_command(board.device, opcode, *arguments)
                 try:
                     link.send(COMMAND_BASE + board.device, data)

@@ -17,6 +17,7 @@ from bus.conformance.settings import Settings
 from bus.conformance.states import check_states
 from bus.conformance.telemetry import check_telemetry
 from bus.protocol import Device, Opcode
+from bus.protocol.names import DECLARED
 from bus.protocol.nodes import documented
 
 if TYPE_CHECKING:
@@ -40,7 +41,9 @@ def run(
     link = Link(bus, settings)
     results = []
     with halted(link, boards):
-        for result in _checks(link, dbc or documented([board.model for board in boards]), boards):
+        for result in _checks(
+            link, dbc or documented([*(board.model for board in boards), *DECLARED.values()]), boards
+        ):
             settings.each(result)
             results.append(result)
     return results

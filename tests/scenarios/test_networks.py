@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from boards.core.declared import DeclaredBoard
+from boards.dome import DomeBoard
 from bus.can import Frame
 from bus.conformance import Settings, run
 from bus.protocol import Device, Health, Opcode, Result, State, pack_command, unpack_heartbeat, unpack_reply
@@ -71,6 +72,10 @@ def test_B8_conformance_passes_on_what_the_lab_does_not_have(name: str) -> None:
         results = run(bus, devices=devices, settings=Settings(motion=True, period_tolerance=0.002))
     assert [result for result in results if not result.passed] == []
     assert not sum(network.overruns.values()) and not sum(network.dropped.values())
+    if name == "final":  # motion was asked for: the dome was sent round, and is stopped at the end
+        dome = network.board("DOME")
+        assert isinstance(dome, DomeBoard)
+        assert dome.target != 0 and not dome.seeking and not dome.direction and not dome.sliding
 
 
 def test_P13_the_stations_measure_what_the_scenario_says_and_hold_unsafe() -> None:
