@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from calibration.decide.finding import Parameter
 from calibration.decide.parameters import interval
 from calibration.decide.select import CLOSEST, Selection
 from calibration.decide.verdict import Verdict
+from calibration.finding import Parameter
 from calibration.readers.run import Array, Run
 
 Answer = tuple[Verdict, list[dict[str, str]], str]

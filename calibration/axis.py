@@ -33,13 +33,13 @@ from calibration.channels.motion import Motion, motion_of
 from calibration.channels.torque import WIDTH, Transmission
 from calibration.decide.broadband import pick_up, unexplained_volts
 from calibration.decide.delays import delay_findings
-from calibration.decide.finding import Finding, middle
 from calibration.decide.holdout import choose_held_out
 from calibration.decide.merge import merge
 from calibration.decide.select import fitted, select
 from calibration.decide.sizes import largest_amplitude
 from calibration.decide.tolerance import compliance_change
 from calibration.declaredplant import declared_numbers
+from calibration.finding import Finding, middle
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run
 from calibration.statistics.regression import gls

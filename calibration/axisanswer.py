@@ -16,7 +16,6 @@ from calibration.axislacks import absent_columns, lacks
 from calibration.axisresult import AxisResult
 from calibration.corrected.making import Facts
 from calibration.decide.controls import controls
-from calibration.decide.finding import Finding
 from calibration.decide.merge import merge
 from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.passive import sound
@@ -24,6 +23,7 @@ from calibration.decide.select import Selection
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import Verdict, judge
 from calibration.decide.withdraw import withdraw
+from calibration.finding import Finding
 from calibration.plantfile import declared_model, write_plant
 from calibration.readers.drive import ARCSEC, STAGES
 from calibration.readers.run import Run

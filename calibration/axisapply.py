@@ -14,9 +14,9 @@ from calibration.axisresult import AxisResult
 from calibration.candidates.kinematic import lag_in_gap
 from calibration.channels.frame import fill
 from calibration.decide.delays import ELECTRICAL_S, WINDOW_DELAY_S
-from calibration.decide.finding import Finding
 from calibration.decide.heldout import predict_residual
 from calibration.decide.select import Refusal, Selection
+from calibration.finding import Finding
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run
 from calibration.statistics.regression import gls

@@ -9,10 +9,10 @@ from calibration.channels.frame import Frame
 from calibration.channels.kinematic import Kinematic
 from calibration.channels.motion import Motion
 from calibration.channels.torque import Torque
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection
 from calibration.declaredplant import Declared
+from calibration.finding import Finding, Parameter
 from calibration.statistics.whitening import Mask
 
 

@@ -14,10 +14,10 @@ from calibration.channels.level import level_of
 from calibration.channels.torque import Torque, Transmission, torque_problem
 from calibration.decide.accept import FEWEST_BLOCKS
 from calibration.decide.broadband import wind
-from calibration.decide.finding import Finding
 from calibration.decide.select import Selection, design, select
 from calibration.decide.sizes import white_noise
 from calibration.decide.tolerance import seen_speeds, telling, torque_changes
+from calibration.finding import Finding
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.whitening import Mask

@@ -12,13 +12,13 @@ from calibration.channels.balance import problem_of
 from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection, design, select
 from calibration.drivedelay import Found, left_by_the_declared, timed
 from calibration.drivenames import as_told
 from calibration.drivesearch import find
 from calibration.errors import CalibrationInputError
+from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.record import Record

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
-from calibration.decide.finding import Finding
 from calibration.decide.verdict import Verdict, judge
 from calibration.drive import Balance, DriveResult
 from calibration.drivecontrols import drive_controls
+from calibration.finding import Finding
 from calibration.names import NAMES
 
 STRONG = 6.0  # -log10 p of a refused candidate that is told as having been close

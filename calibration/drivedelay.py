@@ -10,9 +10,9 @@ import numpy as np
 from calibration.channels.balance import problem_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
-from calibration.decide.finding import Finding
 from calibration.decide.select import Selection
 from calibration.drivesearch import scene_of
+from calibration.finding import Finding
 from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene

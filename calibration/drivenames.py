@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 from calibration.names.scene import Scene
 
 LINES = ("gear_eccentricity", "gear_mesh", "motor_cogging", "bearing_pass")

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.parameters import amplitude_interval, finding_of, interval
 from calibration.decide.select import Selection
+from calibration.finding import Finding, Parameter
 
 FEW = 6  # harmonics that are all told, because the evidence is theirs together
 CLEAR = 3.0  # standard errors of an amplitude that is told among more

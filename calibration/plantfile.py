@@ -8,8 +8,8 @@ import numpy as np
 
 from calibration.corrected.convert import convert
 from calibration.corrected.making import Facts
-from calibration.decide.finding import Finding, Parameter
 from calibration.declaredplant import OWN
+from calibration.finding import Finding, Parameter
 from plant.gears import RATIO
 from plant.model import (
     ModelError,

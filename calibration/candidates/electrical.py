@@ -10,7 +10,7 @@ import numpy as np
 from calibration.candidates.candidate import Candidate, ramp
 from calibration.channels.electrical import Electrical
 from calibration.channels.recursions import lowpass
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 from calibration.readers.run import Array
 
 FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1

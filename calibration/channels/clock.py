@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.channels.frame import Frame
-from calibration.decide.finding import Finding, Parameter
+from calibration.finding import Finding, Parameter
 from calibration.readers.run import Array, Run
 from calibration.statistics.tails import share_log10, variance_log10
 from calibration.statistics.whitening import Mask

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.channels.problem import Problem
+from calibration.channels.repeats import repeat_lag
 from calibration.channels.view import View
-from calibration.names.repeats import repeat_lag
 from calibration.readers.run import Array
 
 FEWEST = 50  # rows that have a partner

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from calibration.corrected import lines, recorded, scalars
 from calibration.corrected.making import Facts, Made
 from calibration.corrected.unnamed import unnamed
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 
 Converter = Callable[[Finding, Facts], Made]
 CONVERTERS: dict[str, Converter] = {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.candidates.context import Context
-from calibration.decide.finding import Curve
 from calibration.decide.select import Selection
+from calibration.finding import Curve
 from calibration.readers.run import Array
 from calibration.statistics.tails import student_reach
 from plant.effects.evaluate import evaluate_function

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.corrected.making import Facts, Made, motor_of, value
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 from plant.gears import ORDERS
 
 TURN = np.pi / 2

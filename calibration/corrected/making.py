@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 from plant.effects import REGISTRY
 from plant.parts import EffectModel, Function, Number
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from calibration.corrected.making import Facts, Made, value
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 
 #: number of a log column in a plant file, by how findings call it
 COLUMNS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.corrected.making import Facts, Made, motor_of, value
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 
 #: effect -> {plant parameter: (finding parameter, factor)}, where nothing else is to be known
 PLAIN: dict[str, dict[str, tuple[str, float]]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.corrected.making import Facts, Made, motor_of, value
-from calibration.decide.finding import Curve, Finding
+from calibration.finding import Curve, Finding
 from plant.effects.unknown import KNOTS
 
 #: radii in rad of the sum of loops, in the order of its parameters (candidates/axis_unknown.py)

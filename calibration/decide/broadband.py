@@ -8,9 +8,9 @@ import numpy as np
 from calibration.channels.frame import Frame, fill
 from calibration.channels.problem import Problem
 from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.finding import Finding, Parameter
-from calibration.decide.finding import middle as middle_of
 from calibration.decide.sizes import quiet_noise
+from calibration.finding import Finding, Parameter
+from calibration.finding import middle as middle_of
 from calibration.readers.run import Array
 from calibration.statistics.tails import rms_interval, variance_log10
 from calibration.statistics.whitening import autocovariance

@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.select import Selection, design
 from calibration.declaredplant import Declared
+from calibration.finding import Finding, Parameter
 from calibration.statistics.regression import gls
 from calibration.statistics.tails import student_reach
 

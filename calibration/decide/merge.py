@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 from calibration.readers.drive import STAGES
 
 #: a finding of the key's name (in that channel) explains away findings of these names

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.special import chndtrix
 
 from calibration.candidates.candidate import Candidate
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.refine import slopes
 from calibration.decide.scan import Contender
 from calibration.decide.select import Selection
+from calibration.finding import Finding, Parameter
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.tails import student_reach

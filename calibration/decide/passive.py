@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from calibration.decide.finding import Finding
 from calibration.decide.select import Selection
 from calibration.decide.withdraw import Refused
+from calibration.finding import Finding
 
 #: numbers of the declared model that are positive in every drive, by channel
 POSITIVE = {"T": ("inertia", "viscous", "coulomb"), "E": ("resistance", "torque_constant")}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from calibration.decide.finding import Finding
 from calibration.decide.thresholds import STILL_MISSING, Earned
+from calibration.finding import Finding
 
 #: channel of an effect -> the row of the error table it is judged by
 ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}

@@ -16,9 +16,9 @@ from calibration.channels.declared import Friction
 from calibration.channels.problem import Problem
 from calibration.channels.torque import Torque
 from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.select import Selection
 from calibration.declaredplant import Declared
+from calibration.finding import Finding, Parameter
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
 from calibration.statistics.tails import student_reach

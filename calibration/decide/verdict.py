@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from calibration.decide.experiments import experiment
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.probability import probability
 from calibration.decide.thresholds import Earned
+from calibration.finding import Finding, Parameter
 
 PHASES = (
     "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from calibration.decide.finding import Finding
+from calibration.finding import Finding
 
 #: (channel, what, why) as in the report's `refused`
 Refused = tuple[str, str, str]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calibration.decide.finding import Finding, Parameter
+from calibration.finding import Finding, Parameter
 from calibration.inputs.record import Record
 
 #: kind of repair -> name of the catalogue

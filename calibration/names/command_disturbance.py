@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.channels.repeats import repeat_frequency
 from calibration.names.name import FORCE, Name
-from calibration.names.repeats import repeat_frequency
 from calibration.names.scene import Scene
 from calibration.names.sines import peaks
 from calibration.readers.run import Array

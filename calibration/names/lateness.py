@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.decide.finding import Finding, Parameter
+from calibration.finding import Finding, Parameter
 from calibration.names import stribeck_change
 from calibration.names.scene import Scene
 from calibration.names.unknown import any_friction_curve, plain

@@ -11,9 +11,9 @@ from calibration.axisresult import AxisResult
 from calibration.candidates.axis_torque import start_clock
 from calibration.corrected.curves import curve_of
 from calibration.corrected.making import Facts
-from calibration.decide.finding import Finding
 from calibration.decide.parameters import parameters_of
 from calibration.decide.verdict import Verdict
+from calibration.finding import Finding
 from calibration.plantfile import calibrate_model, declared_model, write_plant
 from calibration.replay.before import before_numbers, with_declared_lines
 from calibration.replay.held import Replay, replay

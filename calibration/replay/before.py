@@ -8,9 +8,9 @@ import numpy as np
 
 from calibration.axisresult import AxisResult
 from calibration.corrected.making import wrapped
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
 from calibration.declaredplant import PERIODIC
+from calibration.finding import Finding, Parameter
 from calibration.statistics.regression import Fit
 from plant.effects import REGISTRY
 from plant.model import PlantModel, with_effects

@@ -18,9 +18,9 @@ from calibration.corrected.convert import CONVERTERS, convert
 from calibration.corrected.curves import curve_of
 from calibration.corrected.lines import nearest_place
 from calibration.corrected.making import Facts
-from calibration.decide.finding import Curve, Finding, Parameter
 from calibration.decide.select import select
 from calibration.declaredplant import declared_numbers
+from calibration.finding import Curve, Finding, Parameter
 from calibration.plantfile import correct, declared_model
 from calibration.readers.axis import read_axis_log
 from plant.effects import NAMES

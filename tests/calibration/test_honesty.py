@@ -14,7 +14,6 @@ from calibration.candidates.axis_lines import _between
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.kinematic import lag_in_gap
 from calibration.channels.problem import Problem
-from calibration.decide.finding import Finding, Parameter, middle
 from calibration.decide.heldout import HeldOut
 from calibration.decide.missing import above_floor
 from calibration.decide.passive import sound
@@ -23,6 +22,7 @@ from calibration.decide.select import select
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import Verdict, as_dict, judge
 from calibration.decide.withdraw import withdraw
+from calibration.finding import Finding, Parameter, middle
 
 
 def row(after: float, floor: float | None) -> dict[str, dict[str, Any]]:

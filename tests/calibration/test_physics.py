@@ -20,9 +20,9 @@ from calibration.channels.motion import Motion, motion_of, rate_response
 from calibration.channels.problem import Problem
 from calibration.channels.recursions import lowpass
 from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
-from calibration.decide.finding import Finding, Parameter
 from calibration.decide.heldout import predict_residual
 from calibration.decide.merge import merge
+from calibration.finding import Finding, Parameter
 from calibration.readers.drive import STAGES
 
 DT = 0.01
