@@ -16,7 +16,7 @@ ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 SAME = 1e-6  # of a turn
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
-TOGETHER = 12  # harmonics of a stage that are also looked for as one
+TOGETHER = 24  # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple
 STANDS_OUT = 12.0  # times the spectrum around it, in power
 HIGHEST = 4000  # cycles within the travel that are searched
 
@@ -35,8 +35,6 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
             continue
         for h in range(1, stage.harmonics + 1):
             rate = h / stage.period
-            if s.force and s.view.turn and abs(rate * s.view.turn - 1) < SAME:
-                continue  # once per turn of an angle: gravity_imbalance has the same columns
             if (s.span * rate < ENOUGH and stage.harmonics < 3) or s.span * rate < 0.5 or not seen(s, rate):
                 continue
             out += over_place(
@@ -53,8 +51,14 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
                 ),
                 rate,
             )
-        out += as_one([c for c in out if c.stage == stage.name])
+        mine = [c for c in out if c.stage == stage.name]
+        out = [c for c in out if not _is_weight(s, c)] + as_one(mine)
     return out
+
+
+def _is_weight(s: Scene, c: Candidate) -> bool:
+    """Once per turn of an angle: gravity_imbalance has the same columns."""
+    return s.force and s.view.turn is not None and abs((c.order or 0.0) - 1) < SAME and not c.per_run
 
 
 def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = None) -> list[Candidate]:
