@@ -28,8 +28,8 @@ from scenarios.paper.starts import ALL, QUICK, STARTS, Benches, Start
 from scenarios.paper.table import markdown, show
 
 DEFAULTS = {"low": "low_preload_bridge", "high": "high_preload_bridge"}
-"""The pair of plant files that meets most rows together (docs/paper.md); the pair as printed is
-`low_preload`, `high_preload`."""
+"""The pair of plant files that is fitted to the rows with freewheel diodes: what it meets and misses is in
+docs/paper.md. The pair as printed is `low_preload`, `high_preload`."""
 
 
 def pair(low: Path | None, high: Path | None) -> dict[str, str]:
