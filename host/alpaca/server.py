@@ -57,7 +57,7 @@ class Alpaca:
         if member is None or (member.put if put else member.get) is None:
             return PlainTextResponse(f"no {request.method} of {where['member'][:40]}", 400)
         try:
-            given = Parameters(await _body(request) if put else request.url.query, exact=put)
+            given = Parameters(await _body(request) if put else _query(request), exact=put)
             given.identifier("ClientID")
             transaction = given.identifier("ClientTransactionID")
         except Malformed as error:
@@ -85,7 +85,7 @@ class Alpaca:
     def _manage(self, request: Request, value: object) -> Response:
         try:
             return self._answer(
-                Parameters(request.url.query, exact=False).identifier("ClientTransactionID"), value
+                Parameters(_query(request), exact=False).identifier("ClientTransactionID"), value
             )
         except Malformed as error:
             return PlainTextResponse(str(error), 400)
@@ -118,13 +118,21 @@ class Alpaca:
         return Response("<!doctype html><title>schmidt</title><p>Nothing to set up.", media_type="text/html")
 
 
+def _query(request: Request) -> str:
+    return _text(request.scope["query_string"])
+
+
 async def _body(request: Request) -> str:
     body = b""
     async for chunk in request.stream():
         body += chunk
         if len(body) > _BODY_BYTES:
             raise Malformed(f"more than {_BODY_BYTES} bytes of parameters")
+    return _text(body)
+
+
+def _text(said: bytes) -> str:
     try:
-        return body.decode()
+        return said.decode()
     except UnicodeDecodeError:
         raise Malformed("parameters are no UTF-8") from None

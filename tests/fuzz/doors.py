@@ -29,6 +29,7 @@ from scenarios.doors.serial_tcp import Rfc2217Door
 from scenarios.load import load
 from scenarios.served import chosen
 from tests.fuzz import inputs
+from tests.fuzz.hosted import alpaca, lx200
 
 MS = 1_000_000
 _LOOK = 1000
@@ -51,7 +52,8 @@ def ticking(served: Served) -> None:
         raise Wedged(", ".join(still))
 
 
-def _attack(served: Served, count: int, one: Callable[[int], None]) -> None:
+def rounds(served: Served, count: int, one: Callable[[int], None]) -> None:
+    """So many inputs, time going on between them, and a look at the boards after every thousand."""
     for number in range(count):
         one(number)
         if number % 16 == 0:
@@ -105,7 +107,7 @@ def _can(served: Served, count: int, random: Random, datagrams: bool) -> dict[st
                 )  # fmt: skip
             fence.poll()
 
-        _attack(served, count, one)
+        rounds(served, count, one)
         return {"accepted": fence.frames_in, "refused": fence.refused, "rejected": fence.rejected}
 
 
@@ -132,7 +134,7 @@ def hid(served: Served, count: int, random: Random) -> dict[str, int]:
         plug.write(served.now_ns, report)
         found["accepted"] += 1
 
-    _attack(served, count, one)
+    rounds(served, count, one)
     return found
 
 
@@ -153,7 +155,7 @@ def control(served: Served, count: int, random: Random) -> dict[str, int]:
             for name in served.network.boards:
                 served.switch(name, True)
 
-    _attack(served, count, one)
+    rounds(served, count, one)
     client.close()
     theirs.close()
     return found
@@ -179,7 +181,7 @@ def telnet(served: Served, count: int, random: Random) -> dict[str, int]:
         with suppress(BlockingIOError):
             theirs.recv(1 << 16)
 
-    _attack(served, count, one)
+    rounds(served, count, one)
     client.close()
     theirs.close()
     return found
@@ -202,7 +204,7 @@ def scenarios(served: Served, count: int, random: Random) -> dict[str, int]:
 
 DOORS: dict[str, Callable[[Served, int, Random], dict[str, int]]] = {
     "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "telnet": telnet,
-    "scenarios": scenarios,
+    "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
 }  # fmt: skip
 
 

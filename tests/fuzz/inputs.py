@@ -107,3 +107,49 @@ def scenario(random: Random) -> str:
         elif lines:
             del lines[random.randrange(len(lines))]
     return "\n".join(lines) + "\n"
+
+
+_ARGUMENTS = (
+    "12:34:56", "23:59.9", "24:00:00", "+45*30:00", "-91*00:00", "+99\xdf59", "02/10/26", "5.5", "-0",
+    "9" * 30,
+    "", " ", "+", ":", "1e5", "nan", "\xdf", "00:00:00", "079*27", "n2000", "s99999", "ns", "\0",
+)  # fmt: skip
+
+
+def lx200(random: Random, letters: list[str]) -> bytes:
+    """One to three commands, now and then torn or with rubbish in them."""
+    said = b""
+    for _ in range(random.randrange(1, 4)):
+        text = random.choice(letters) if random.random() < 0.8 else random.choice(_ARGUMENTS)
+        text += random.choice(_ARGUMENTS) if random.random() < 0.6 else ""
+        command = b":" + text.encode("latin-1", "replace") + b"#"
+        if random.random() < 0.1:
+            command = command[: random.randrange(len(command))] + data(random, 6)
+        said += command
+    return said
+
+
+_NAMES = (
+    "RightAscension", "Declination", "Azimuth", "Altitude", "Axis", "Rate", "Direction", "Duration",
+    "Connected", "Tracking", "TargetRightAscension", "TargetDeclination", "Position", "Action", "Parameters",
+    "TrackingRate", "UTCDate", "SiteLatitude", "ClientID", "ClientTransactionID", "clientid", "",
+)  # fmt: skip
+_VALUES = (
+    "0", "1", "-1", "5.5", "12", "45", "1e400", "nan", "inf", "True", "false", "", "9" * 400, "0x10",
+    "PowerOn",     "2026-02-10T14:00:00Z", "%00", "%ff%fe", "+", "a&b", "null", "800", "-800", "4294967296",
+)  # fmt: skip
+
+
+def alpaca(random: Random, members: list[tuple[str, str]]) -> tuple[str, str, bytes, bytes]:
+    """Method, path, query and body of a request."""
+    kind, name = random.choice(members)
+    if random.random() < 0.1:
+        kind, name = random.choice((("dome", "Azimuth"), (kind, name.swapcase()), (kind, "\u2028"), ("", "")))
+    number = "0" if random.random() < 0.95 else random.choice(("1", "-1", "x", "9" * 30))
+    pairs = [f"{random.choice(_NAMES)}={random.choice(_VALUES)}" for _ in range(random.randrange(6))]
+    given = "&".join(pairs).encode()
+    if random.random() < 0.1:
+        given = data(random, 60)
+    method = random.choice(("GET", "PUT", "PUT", "POST"))
+    path = f"/api/v1/{kind}/{number}/{name.lower() if random.random() < 0.97 else name}"
+    return (method, path, given, b"") if method == "GET" else (method, path, b"", given)
