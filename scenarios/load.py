@@ -43,7 +43,7 @@ def convert(document: Document) -> model.Scenario:
     _check_names(document, steps)
     plant = data.get("plant", DEFAULT_PLANT)
     speed = data.get("speed", "max")
-    logs = _logs(document, data.get("logs", {}))
+    logs = _logs(document, {word: each for word, each in data.get("logs", {}).items() if word in _PERIODS})
     site = _site(document, data.get("site", {}))
     scenario = model.Scenario(
         file=document.file,
@@ -64,6 +64,7 @@ def convert(document: Document) -> model.Scenario:
         time_limit_s=data.get("time_limit", 12 * 3600.0),
         status_period_s=logs.get("status", 0.25),
         trace_period_s=logs.get("traces", 0.01),
+        can_log=data.get("logs", {}).get("can", "text"),
     )
     scenario = _with_mount(document, scenario, data)
     _check_windows(document, scenario)

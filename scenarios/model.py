@@ -86,5 +86,7 @@ class Scenario:
     time_limit_s: float = 12 * 3600.0
     status_period_s: float = 0.25
     """Period of the status and sensor logs; the paper's consoles refresh every 250 ms."""
+    can_log: str = "text"
+    """`text` (can.log) or `zstd` (can.log.zst, the same text packed; the digest is that of the text)."""
     trace_period_s: float = 0.01
     """Period of the Parquet traces; the boards log at 10 ms."""

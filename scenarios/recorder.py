@@ -16,6 +16,7 @@ from bus.time import generator
 from host.logs import distort
 from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog, Distortion
+from host.logs.compressed import ZstdFile
 from host.logs.files import BlockFile, LogError
 from host.logs.space import check as check_space
 from host.logs.traces import Trace
@@ -49,7 +50,9 @@ class Recorder:
             )
             for name in AXES
         }
-        self._can_file = BlockFile(folder / "can.log")
+        packed = scenario.can_log == "zstd"
+        (folder / ("can.log" if packed else "can.log.zst")).unlink(missing_ok=True)  # an earlier run's
+        self._can_file = ZstdFile(folder / "can.log.zst") if packed else BlockFile(folder / "can.log")
         self.can = CandumpWriter(cast(BinaryIO, self._can_file))
         self._can_digest = ""
         from plant.plant import TRUTH_COLUMNS

@@ -17,12 +17,13 @@ class LogError(ValueError):
 class BlockFile:
     """Blocks of whole lines to a file, unbuffered.
 
-    When the disk fills up in the middle of a line, the file is cut back to its last whole line. After a
-    failure it takes nothing more.
+    When the disk fills up in the middle of a line, the file is cut back to its last whole line, or, where
+    blocks are not lines, to its last whole block. After a failure it takes nothing more.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, lines: bool = True) -> None:
         self.path = path
+        self._lines = lines
         self._whole = 0  # bytes up to the last whole line on disk
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
@@ -51,7 +52,8 @@ class BlockFile:
             self._descriptor = -1
 
     def _cut_back(self, partial: bytes) -> None:
-        self._whole += partial.rfind(b"\n") + 1
+        if self._lines:
+            self._whole += partial.rfind(b"\n") + 1
         try:
             os.ftruncate(self._descriptor, self._whole)
         except OSError:
