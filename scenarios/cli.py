@@ -46,7 +46,7 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("scenario", type=click.Path(path_type=Path))
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<scenario>).")
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Another plant file, or the name of one that comes with schmidt.")
@@ -64,8 +64,11 @@ def cli() -> None:
     help="Load this table, and run without it and with it wrong as well.",
 )
 @click.option("--no-report", is_flag=True, help="Logs and summary.json only, no figures: ends sooner.")
+@click.option("--snapshot-at", type=SECONDS, metavar="SECONDS", help="Take a snapshot then.")
+@click.option("--snapshot", type=click.Path(path_type=Path), help="Where to (default: OUT/snapshot).")
+@click.option("--from", "begun", type=click.Path(path_type=Path), help="Go on from a snapshot; no SCENARIO.")
 def run(
-    scenario: Path,
+    scenario: Path | None,
     out: Path | None,
     seed: int | None,
     plant: str | None,
@@ -75,20 +78,48 @@ def run(
     firmware: str | None,
     compensation: Path | None,
     no_report: bool,
+    snapshot_at: float | None,
+    snapshot: Path | None,
+    begun: Path | None,
 ) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
+    whole = order = None
+    if begun is not None or snapshot_at is not None:
+        from scenarios.native.finder import plain
+
+        plain()  # compiled instances cannot be taken apart; the source gives the same bits
+    if begun is not None:
+        from scenarios.snapshot.run import parts, read
+
+        if scenario or seed is not None or plant or network or firmware or compensation or log_rate:
+            raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
+        whole = read(begun)
+        scenario = parts(whole)[0].file
+    elif scenario is None:
+        raise click.UsageError("Missing argument 'SCENARIO'.")
     from scenarios import run as runner
 
     folder = out if out is not None else Path("out") / scenario.stem
+    if snapshot_at is not None:
+        from scenarios.snapshot.run import Order
+
+        order = Order(round(snapshot_at * 1e9), snapshot or folder / "snapshot")
     if compensation is not None:
         firmware = firmware or "fine"  # a table in fractions of a step wants a duty in fractions of a step
     period_s = 1.0 / log_rate if log_rate else None
-    loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware, network)
+    if whole is not None:
+        loaded, model = parts(whole)
+    else:
+        loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware, network)
     if compensation is not None:
+        if order is not None:
+            raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
         result = _compared(loaded, model, folder, compensation)
     else:
         with runner.bar(loaded, sys.stderr.isatty()) as progress:
-            result = runner.run(loaded, model, folder, progress, not no_report)
+            result = runner.run(loaded, model, folder, progress, not no_report, order, whole)
+        if order is not None and not order.done:
+            _fail(f"the run ended before {snapshot_at:g} s: no snapshot", UNUSABLE)
     for verdict in result.verdicts:
         sign, limit = ("≤" if verdict.upper else "≥"), f"{verdict.limit:g}"
         value = "no value" if verdict.value is None else f"{verdict.value:.4g}"

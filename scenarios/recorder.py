@@ -63,9 +63,14 @@ class Recorder:
         self.focus = Trace(folder / "focus.parquet", FOCUS_COLUMNS, {"t_s": "s"})
         self._truth_digest = {name: hashlib.sha256() for name in AXES}
         self._plant = plant
-        plant.record(self._take_truth, round(scenario.trace_period_s * 1e9))
+        plant.record(self.take_truth, round(scenario.trace_period_s * 1e9))
 
-    def _take_truth(self, axis: str, rows: npt.NDArray[np.float64]) -> None:
+    def adopt(self, plant: Plant) -> None:
+        """The truth comes from another plant from now on; it has this recorder's sink already."""
+        self._plant = plant
+
+    def take_truth(self, axis: str, rows: npt.NDArray[np.float64]) -> None:
+        """Rows of an axis' truth."""
         self._truth_digest[axis].update(np.ascontiguousarray(rows).tobytes())
         self.truth[axis].append(rows)
 

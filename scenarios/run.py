@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from scenarios.evaluate import Verdict
     from scenarios.outcome import Outcome
     from scenarios.session import Session
+    from scenarios.snapshot.run import Order, Progress
 
 _PIECE_NS = 1_000_000_000
 """Between two pieces of simulated time files are flushed, the disk is asked for room, the bar moves."""
@@ -87,27 +88,36 @@ def run(
     folder: Path,
     progress: Callable[[str, float, float], None],
     report: bool = True,
+    snapshot: Order | None = None,
+    begun: dict[str, Any] | None = None,
 ) -> Result:
     """Run a scenario into a folder. progress: `(step, simulated s, times real time)`, once a second of it.
     report: draw the figures and write the page; the logs and `summary.json` come in any case.
+    snapshot: taken on the way. begun: a snapshot that was read, to go on from.
 
     An interruption (KeyboardInterrupt) ends the run early with readable logs; a disk that is full raises
     `LogError` after everything that could be closed was closed.
     """
     from scenarios.session import Session
+    from scenarios.snapshot.run import Progress, resume
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise LogError(f"{folder}: cannot be made: {error.strerror}") from None
     progress("starting", 0.0, 0.0)
-    session = Session(scenario, model, folder)
-    bus: list[tuple[float, float, int]] = []
+    if begun is None:
+        session = Session(scenario, model, folder)
+        state = Progress(0, 0, round(scenario.time_limit_s * 1e9))
+    else:
+        session, state = resume(begun, folder), begun["progress"]
+    if snapshot is not None:
+        snapshot.begin(session, begun)
     wall_s = time.perf_counter()
     interrupted = False
     gc.freeze()  # what is there now stays to the end: the collector need not look through it again and again
     try:
-        _loop(session, bus, progress)
+        _loop(session, state, progress, snapshot)
     except KeyboardInterrupt:
         interrupted = True
     except BaseException:
@@ -121,18 +131,24 @@ def run(
     failures = session.recorder.close()
     if failures:
         raise LogError(failures[0])
-    return _conclude(session, bus, wall_s, interrupted, report)
+    return _conclude(session, state.bus, wall_s, interrupted, report)
 
 
 def _loop(
-    session: Session, bus: list[tuple[float, float, int]], progress: Callable[[str, float, float], None]
+    session: Session,
+    state: Progress,
+    progress: Callable[[str, float, float], None],
+    snapshot: Order | None = None,
 ) -> None:
     scenario, wire = session.scenario, session.network.wire
     limit_ns = round(scenario.time_limit_s * 1e9)
     start = time.perf_counter()
-    t_ns, bits, end_ns = 0, 0, limit_ns
+    t_ns, bits, end_ns, bus = state.t_ns, state.bits, state.end_ns, state.bus
     while t_ns < end_ns:
-        t_ns = min(t_ns + _PIECE_NS, end_ns)
+        before_ns, t_ns = t_ns, min(t_ns + _PIECE_NS, end_ns)
+        if snapshot is not None and snapshot.due(t_ns):
+            session.advance(snapshot.at_ns)
+            snapshot.take(session, dataclasses.replace(state, t_ns=before_ns, bits=bits, end_ns=end_ns))
         session.advance(t_ns)
         bus.append((t_ns * 1e-9, (wire.bits - bits) * wire.bit_ns / _PIECE_NS, wire.frames))
         bits = wire.bits

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,11 @@ class Session:
         self.programme = Programme(scenario, self.client, self.recorder.ascii)
         self.faults = Faults(self.network, scenario.seed)
         self.faults.schedule(scenario.faults)
+        self.ticked: Callable[[int], None] | None = None
+        """Told of every tick, for who records what the host hears."""
+        self.host_rows: list[tuple[float, ...]] = []
+        self.focus_rows: list[tuple[float, ...]] = []
+        """All rows so far, while somebody records."""
         self._status_ns = round(scenario.status_period_s * 1e9)
         self._next_status_ns = 0
         self._host_rows: list[tuple[float, ...]] = []
@@ -62,6 +68,9 @@ class Session:
         if self._host_rows:
             self.recorder.host.append(np.array(self._host_rows))
             self.recorder.focus.append(np.array(self._focus_rows))
+            if self.ticked is not None:
+                self.host_rows += self._host_rows
+                self.focus_rows += self._focus_rows
             self._host_rows.clear()
             self._focus_rows.clear()
 
@@ -72,7 +81,25 @@ class Session:
         self.network.uarts[device.name].sink = link.receive
         return link
 
+    def adopt(self, network: Network) -> None:
+        """Go on with another network, one that has been where this host is."""
+        self.network, self.plant = network, network.plant
+        self.recorder.adopt(network.plant)
+        self.link._send = network.hid.write
+
+    def forget_rows(self) -> None:
+        """The traces of the host begin afresh."""
+        self._host_rows.clear()
+        self._focus_rows.clear()
+
     def _tick(self, t_ns: int) -> None:
+        if self.ticked is not None:
+            self.ticked(t_ns)
+        self.work(t_ns)
+        self.network.queue.at(t_ns + TICK_NS, self._tick)
+
+    def work(self, t_ns: int) -> None:
+        """What the host does every 50 ms."""
         self.client.now_ns = t_ns
         self.programme.tick(t_ns)
         self.client.tick(t_ns)
@@ -82,7 +109,6 @@ class Session:
             self.recorder.ascii.sensors(t_ns, readings(self.client, self.scenario.mount))
             for link in self.serial:
                 link.watch(t_ns)
-        self.network.queue.at(t_ns + TICK_NS, self._tick)
 
     def _record(self, t_ns: int) -> None:
         client = self.client

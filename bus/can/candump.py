@@ -104,6 +104,13 @@ class CandumpWriter:
         self._times_ns.clear()
         self._waiting.clear()
 
+    def resume(self, text: bytes) -> None:
+        """Begin with whole lines that were written before."""
+        self._digest.update(text)
+        if self._file is not None:
+            self._file.write(text)
+        self.frames += text.count(b"\n")
+
     def flush(self) -> None:
         """Write what has been taken so far through to the file."""
         self._write()

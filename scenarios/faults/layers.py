@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 
@@ -15,46 +16,82 @@ class Layer(Protocol):
         """In the place of `below`."""
 
 
-def _get(owner: Any, name: str) -> Any:
-    """A pin: an attribute, or an entry of a declared board's pins."""
-    return owner[name] if isinstance(owner, dict) else getattr(owner, name)
+@dataclass
+class _Stack:
+    """What lies on one attribute. Found by identity, not by `id`: a snapshot's objects have others."""
+
+    owner: Any
+    name: str
+    base: Any
+    items: list[Any]
 
 
-class Layers:
-    """Stacks of layers on attributes; with the last layer gone the attribute is what it was."""
+class _Stacks:
+    """Attributes that are not what they were."""
 
     def __init__(self) -> None:
-        self._stacks: dict[tuple[int, str], tuple[Any, Any, list[Layer]]] = {}
+        self._stacks: list[_Stack] = []
+
+    def find(self, owner: Any, name: str) -> _Stack:
+        """The stack on an attribute; a new one when there is none."""
+        for stack in self._stacks:
+            if stack.owner is owner and stack.name == name:
+                return stack
+        base = owner[name] if isinstance(owner, dict) else getattr(owner, name)
+        stack = _Stack(owner, name, base, [])
+        self._stacks.append(stack)
+        return stack
+
+    def put(self, stack: _Stack, value: Any) -> None:
+        """Let the attribute be `value`; a stack that is empty is forgotten."""
+        if isinstance(stack.owner, dict):
+            stack.owner[stack.name] = value
+        else:
+            setattr(stack.owner, stack.name, value)
+        if not stack.items:
+            self._stacks = [each for each in self._stacks if each is not stack]
+
+
+class Layers(_Stacks):
+    """Stacks of layers on attributes; with the last layer gone the attribute is what it was.
+
+    An attribute is a pin of a chip, or an entry of a declared board's pins.
+    """
 
     def add(self, owner: Any, name: str, layer: Layer) -> None:
         """Put `layer` on top of the attribute."""
-        key = id(owner), name
-        if key not in self._stacks:
-            self._stacks[key] = (owner, _get(owner, name), [])
-        self._stacks[key][2].append(layer)
-        self._join(key)
+        stack = self.find(owner, name)
+        stack.items.append(layer)
+        self._join(stack)
 
     def remove(self, owner: Any, name: str, layer: Layer) -> None:
         """Take `layer` away, wherever it lies."""
-        key = id(owner), name
-        layers = self._stacks[key][2]
-        layers.remove(layer)
-        self._join(key)
-        if not layers:
-            del self._stacks[key]
+        stack = self.find(owner, name)
+        stack.items = [each for each in stack.items if each is not layer]
+        self._join(stack)
 
-    def _join(self, key: tuple[int, str]) -> None:
-        owner, call, layers = self._stacks[key]
-        for layer in layers:
+    def _join(self, stack: _Stack) -> None:
+        call = stack.base
+        for layer in stack.items:
             layer.below = call
             call = layer
-        if isinstance(owner, dict):
-            owner[key[1]] = call
-        else:
-            setattr(owner, key[1], call)
+        self.put(stack, call)
 
-    def __len__(self) -> int:
-        return len(self._stacks)
+
+class Values(_Stacks):
+    """Other values of attributes: the last one given counts; with the last gone, the one of before."""
+
+    def add(self, owner: Any, name: str, key: object, value: Any) -> None:
+        """Let the attribute be `value`, on behalf of `key`."""
+        stack = self.find(owner, name)
+        stack.items.append((key, value))
+        self.put(stack, value)
+
+    def remove(self, owner: Any, name: str, key: object) -> None:
+        """Take back what `key` gave."""
+        stack = self.find(owner, name)
+        stack.items = [each for each in stack.items if each[0] is not key]
+        self.put(stack, stack.items[-1][1] if stack.items else stack.base)
 
 
 class Dials:
@@ -82,27 +119,3 @@ class Dials:
         for turn in turns:
             base = turn(base)
         view[place] = base
-
-
-class Values:
-    """Other values of attributes: the last one given counts; with the last gone, the one of before."""
-
-    def __init__(self) -> None:
-        self._given: dict[tuple[int, str], tuple[Any, Any, list[tuple[object, Any]]]] = {}
-
-    def add(self, owner: Any, name: str, key: object, value: Any) -> None:
-        """Let the attribute be `value`, on behalf of `key`."""
-        place = id(owner), name
-        if place not in self._given:
-            self._given[place] = (owner, getattr(owner, name), [])
-        self._given[place][2].append((key, value))
-        setattr(owner, name, value)
-
-    def remove(self, owner: Any, name: str, key: object) -> None:
-        """Take back what `key` gave."""
-        place = id(owner), name
-        _, base, given = self._given[place]
-        given[:] = [each for each in given if each[0] is not key]
-        setattr(owner, name, given[-1][1] if given else base)
-        if not given:
-            del self._given[place]

@@ -36,6 +36,14 @@ def compiled() -> bool:
     return any(isinstance(finder, Finder) for finder in sys.meta_path)
 
 
+def plain() -> bool:
+    """Run plain in this process after all, if nothing compiled has been imported yet; whether it does."""
+    for finder in [each for each in sys.meta_path if isinstance(each, Finder)]:
+        if finder.files.keys().isdisjoint(sys.modules):
+            sys.meta_path.remove(finder)
+    return not compiled()
+
+
 def use(library: Path = LIBRARY) -> None:
     """Let imports from now on find the library, when there is one and it fits; otherwise one line at most.
 

@@ -52,6 +52,13 @@ def _view(array: np.ndarray[Any, Any]) -> Any:
     return memoryview(array.reshape(-1).data).cast("B").cast("d")
 
 
+def _array(shape: tuple[int, ...], kind: str, data: bytes) -> np.ndarray[Any, Any]:
+    """An array that owns its memory, so that a view names it as its base (numpy's own makes a view)."""
+    made = np.empty(shape, kind)
+    made.reshape(-1)[:] = np.frombuffer(data, kind)
+    return made
+
+
 class _Pickler(pickle.Pickler):
     def __init__(self, file: io.BytesIO, outside: Mapping[str, Any]) -> None:
         super().__init__(file, protocol=5)
@@ -69,6 +76,8 @@ class _Pickler(pickle.Pickler):
             except ValueError:
                 return code.cell, ()
             return code.cell, (), contents, None, None, code.fill
+        if type(value) is np.ndarray and not value.dtype.hasobject and value.dtype.names is None:
+            return _array, (value.shape, value.dtype.str, value.tobytes())
         if isinstance(value, memoryview):
             whole: Any = value.obj
             return _view, (whole if whole.base is None else whole.base,)

@@ -4,6 +4,7 @@ import gc
 import pickle
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -108,6 +109,16 @@ def test_a_snapshot_may_be_restored_often() -> None:
     assert fate(restore(data)) == fate(restore(data))
     gc.collect()
     assert take(restore(data)) is not None
+
+
+def test_a_snapshot_of_what_was_restored() -> None:
+    lab = Lab().pull()
+    lab.network.wire._taps.clear()
+    once = restore(take(lab.network))
+    twice = restore(take(once))
+    plant = twice.plant
+    assert np.shares_memory(np.asarray(plant.view), plant.world)
+    assert fate(once) == fate(twice) == fate(lab.network)
 
 
 def test_what_is_no_snapshot_is_refused_in_one_line() -> None:

@@ -1,0 +1,119 @@
+"""A run in a file, and on from it: `schmidt run --snapshot-at T`, `schmidt run --from FILE`."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bus.protocol import Device
+from host.logs.files import LogError
+from plant.model import PlantModel
+from scenarios.model import Scenario
+from scenarios.session import Session
+from scenarios.snapshot.freeze import SnapshotError, restore, take
+from scenarios.snapshot.tape import Tape, listeners
+
+
+@dataclass
+class Progress:
+    """How far the runner is: time, bits on the bus, when it ends (ns), load per piece."""
+
+    t_ns: int
+    bits: int
+    end_ns: int
+    bus: list[tuple[float, float, int]] = field(default_factory=list)
+
+
+@dataclass
+class Order:
+    """Take a snapshot of a run at a time, into a file."""
+
+    at_ns: int
+    file: Path
+    tape: Tape | None = None
+    done: bool = False
+
+    def begin(self, session: Session, begun: dict[str, Any] | None = None) -> None:
+        """From the start (or from a snapshot of it): what the host hears is kept."""
+        if Device.GATEWAY.name not in session.network.boards:
+            raise SnapshotError("snapshots of a run need a network with a gateway")
+        self.tape = Tape(session, [] if begun is None else begun["heard"])
+        if begun is not None:
+            session.host_rows, session.focus_rows = begun["rows"]
+
+    def due(self, until_ns: int) -> bool:
+        """Whether its time lies before `until_ns`."""
+        return not self.done and self.at_ns <= until_ns
+
+    def take(self, session: Session, progress: Progress) -> None:
+        """Now; raises LogError when the file cannot be written, SnapshotError."""
+        assert self.tape is not None
+        self.done = True
+        session.flush_traces()
+        session.recorder.can.flush()
+        outside: dict[str, Any] = {**self.tape.ears, **_outside(session)}
+        whole = {
+            "scenario": session.scenario,
+            "model": session.plant.model,
+            "progress": progress,
+            "heard": self.tape.heard,
+            "can": (session.recorder.folder / "can.log").read_bytes(),
+            "rows": (session.host_rows, session.focus_rows),
+            "network": take((session.network, session.faults), outside),
+        }
+        data = zlib.compress(take(whole), 1)
+        try:
+            self.file.parent.mkdir(parents=True, exist_ok=True)
+            self.file.write_bytes(data)
+        except OSError as error:
+            raise LogError(f"{self.file}: cannot be written: {error.strerror}") from None
+
+
+def _outside(session: Session) -> dict[str, Any]:
+    return {"session": session, "can": session.recorder.can, "recorder": session.recorder}
+
+
+def read(file: Path) -> dict[str, Any]:
+    """What stands in a file; raises SnapshotError with one line."""
+    try:
+        data = zlib.decompress(file.read_bytes())
+    except OSError as error:
+        raise SnapshotError(f"{file}: {error.strerror}") from None
+    except zlib.error:
+        raise SnapshotError(f"{file}: this is no snapshot of schmidt's") from None
+    try:
+        whole: dict[str, Any] = restore(data)
+    except SnapshotError as error:
+        raise SnapshotError(f"{file}: {error}") from None
+    return whole
+
+
+def parts(whole: dict[str, Any]) -> tuple[Scenario, PlantModel]:
+    """Scenario and plant."""
+    return whole["scenario"], whole["model"]
+
+
+def resume(whole: dict[str, Any], folder: Path) -> Session:
+    """A session in a new folder as it was, its files written again up to then."""
+    scenario, model = parts(whole)
+    session = Session(scenario, model, folder)
+    session.link._send = _nobody
+    calls = listeners(session) | {"tick": session.work}
+    for kind, arguments in whole["heard"]:
+        calls[kind](*arguments)
+    session.forget_rows()
+    for trace, rows in zip((session.recorder.host, session.recorder.focus), whole["rows"], strict=True):
+        if rows:
+            trace.append(np.array(rows))
+    session.recorder.can.resume(whole["can"])
+    network, session.faults = restore(whole["network"], {**listeners(session), **_outside(session)})
+    session.adopt(network)
+    return session
+
+
+def _nobody(_t_ns: int, _report: bytes) -> None:
+    """What the host says while it lives again has been said."""
