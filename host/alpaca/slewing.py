@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Coroutine
+from typing import TYPE_CHECKING, Any
 
 from host.alpaca.device import Member, missing_put
 from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_NOT_SET, AlpacaError, within
@@ -14,6 +15,9 @@ from host.telescope.paddle import FASTEST_ARCSEC_S
 
 if TYPE_CHECKING:
     from host.alpaca.telescope import TelescopeDevice
+
+    Where = Callable[[TelescopeDevice, Parameters], Star]
+    Put = Callable[[TelescopeDevice, Parameters], Coroutine[Any, Any, None]]
 
 FASTEST_DEG_S = FASTEST_ARCSEC_S / 3600
 _AXES = ("ra", "dec")
@@ -58,28 +62,18 @@ def _must_track(device: TelescopeDevice, on: bool) -> None:
         raise AlpacaError(INVALID_OPERATION, f"tracking has to be {'on' if on else 'off'} for this")
 
 
-async def _slew_coordinates(device: TelescopeDevice, given: Parameters) -> None:
-    star = _coordinates(device, given)
-    _must_track(device, True)
-    await device.do(lambda t: t.drive.goto(star))
+def _slew(where: Where, wait: bool) -> Put:
+    """To a place in the sky; wait: answered when the telescope is there."""
 
+    async def put(device: TelescopeDevice, given: Parameters) -> None:
+        star = where(device, given)
+        _must_track(device, True)
+        if wait:
+            await device.run(lambda t: t.drive.goto(star))
+        else:
+            await device.do(lambda t: t.drive.goto(star))
 
-async def _slew_coordinates_wait(device: TelescopeDevice, given: Parameters) -> None:
-    star = _coordinates(device, given)
-    _must_track(device, True)
-    await device.run(lambda t: t.drive.goto(star))
-
-
-async def _slew_target(device: TelescopeDevice, given: Parameters) -> None:
-    star = _target(device, given)
-    _must_track(device, True)
-    await device.do(lambda t: t.drive.goto(star))
-
-
-async def _slew_target_wait(device: TelescopeDevice, given: Parameters) -> None:
-    star = _target(device, given)
-    _must_track(device, True)
-    await device.run(lambda t: t.drive.goto(star))
+    return put
 
 
 def _ground(given: Parameters) -> tuple[float, float]:
@@ -88,28 +82,29 @@ def _ground(given: Parameters) -> tuple[float, float]:
     return math.radians(azimuth), math.radians(altitude)
 
 
-async def _slew_ground(device: TelescopeDevice, given: Parameters) -> None:
-    azimuth, altitude = _ground(given)
-    _must_track(device, False)
-    await device.do(lambda t: t.drive.goto_altaz(azimuth, altitude))
+def _slew_ground(wait: bool) -> Put:
+    """To a place over the ground."""
+
+    async def put(device: TelescopeDevice, given: Parameters) -> None:
+        azimuth, altitude = _ground(given)
+        _must_track(device, False)
+        if wait:
+            await device.run(lambda t: t.drive.goto_altaz(azimuth, altitude))
+        else:
+            await device.do(lambda t: t.drive.goto_altaz(azimuth, altitude))
+
+    return put
 
 
-async def _slew_ground_wait(device: TelescopeDevice, given: Parameters) -> None:
-    azimuth, altitude = _ground(given)
-    _must_track(device, False)
-    await device.run(lambda t: t.drive.goto_altaz(azimuth, altitude))
+def _sync(where: Where) -> Put:
+    """The telescope points there."""
 
+    async def put(device: TelescopeDevice, given: Parameters) -> None:
+        star = where(device, given)
+        _must_track(device, True)
+        await device.do(lambda t: t.drive.sync(star))
 
-async def _sync_coordinates(device: TelescopeDevice, given: Parameters) -> None:
-    star = _coordinates(device, given)
-    _must_track(device, True)
-    await device.do(lambda t: t.drive.sync(star))
-
-
-async def _sync_target(device: TelescopeDevice, given: Parameters) -> None:
-    star = _target(device, given)
-    _must_track(device, True)
-    await device.do(lambda t: t.drive.sync(star))
+    return put
 
 
 async def _abort(device: TelescopeDevice, _: Parameters) -> None:
@@ -158,14 +153,14 @@ MEMBERS = (
     Member("Park", put=_park),
     Member("PulseGuide", put=_pulse),
     Member("SetPark", put=_set_park),
-    Member("SlewToAltAz", put=_slew_ground_wait),
-    Member("SlewToAltAzAsync", put=_slew_ground),
-    Member("SlewToCoordinates", put=_slew_coordinates_wait),
-    Member("SlewToCoordinatesAsync", put=_slew_coordinates),
-    Member("SlewToTarget", put=_slew_target_wait),
-    Member("SlewToTargetAsync", put=_slew_target),
+    Member("SlewToAltAz", put=_slew_ground(wait=True)),
+    Member("SlewToAltAzAsync", put=_slew_ground(wait=False)),
+    Member("SlewToCoordinates", put=_slew(_coordinates, wait=True)),
+    Member("SlewToCoordinatesAsync", put=_slew(_coordinates, wait=False)),
+    Member("SlewToTarget", put=_slew(_target, wait=True)),
+    Member("SlewToTargetAsync", put=_slew(_target, wait=False)),
     Member("SyncToAltAz", put=missing_put("SyncToAltAz")),
-    Member("SyncToCoordinates", put=_sync_coordinates),
-    Member("SyncToTarget", put=_sync_target),
+    Member("SyncToCoordinates", put=_sync(_coordinates)),
+    Member("SyncToTarget", put=_sync(_target)),
     Member("Unpark", put=_unpark),
 )

@@ -19,6 +19,7 @@ FLAGS = [
 PATHS = ("/", "/focus", "/alignment", "/maintenance", "/dome", "/bus", "/calibrate")
 SHOTS = ROOT / "out" / "consoles"
 LONG_MS = 90_000
+NIGHT = "scenarios/observing-night.yaml"
 _CONTROLS = "button, [role=combobox], [role=radio], [role=switch], [role=checkbox], input, a[href]"
 _WATCH = """
 window.schmidtLabel = element => {
@@ -37,12 +38,12 @@ for (const kind of ['mousedown', 'input']) document.addEventListener(kind, event
 class Consoles(Serving):
     """`schmidt serve` with consoles, as a user starts it."""
 
-    def __init__(self, folder: Path, speed: float, scenario: str = "observing-night", *words: str) -> None:
+    def __init__(self, folder: Path, speed: float, scenario: str = NIGHT, *words: str) -> None:
         self.folder = folder
         self.port = free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         super().__init__(
-            folder, f"scenarios/{scenario}.yaml", "--console", str(self.port), "--speed", str(speed),
+            folder, scenario, "--console", str(self.port), "--speed", str(speed),
             "--runs", str(folder / "runs"), "--record", str(folder / "record"), *words,
         )  # fmt: skip
 

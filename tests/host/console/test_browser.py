@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -251,3 +252,29 @@ def test_a_browser_that_vanishes_lets_go_of_the_paddle(browser: Any, served: Con
     other = opened(browser, served, "/")
     state(other, "^(idle|tracking|stopping)")
     other.close()
+
+
+def test_dome_and_weather_on_the_network_that_has_them(browser: Any, tmp_path: Path) -> None:
+    scenario = tmp_path / "final.yaml"
+    scenario.write_text(
+        "name: All nodes\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: final}\n"
+        "steps:\n  - wait: {for: 1 s}\n"
+    )
+    used = Used()
+    with Consoles(tmp_path, 5.0, str(scenario)) as served:
+        page = opened(browser, served, "/dome", used)
+        page.get_by_text(re.compile(r"azimuth \d")).first.wait_for()
+        page.get_by_text("mast", exact=True).wait_for()
+        page.get_by_label("Azimuth, °").fill("90")
+        press(page, "Turn")
+        page.get_by_text(re.compile("turning to 90.0°")).first.wait_for()
+        press(page, "Stop dome")
+        page.get_by_text(re.compile(r"azimuth \d+\.\d°; shutter")).first.wait_for()
+        press(page, "Open shutter")
+        page.get_by_text(re.compile("shutter .*(moving|open)")).first.wait_for()
+        press(page, "Close shutter")
+        page.get_by_text(re.compile("shutter closed")).first.wait_for()
+        shot(page, "dome-final")
+        left = used.untouched(page, "section")
+        page.close()
+    assert left == set()
