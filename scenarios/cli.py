@@ -424,6 +424,16 @@ def conformance(
 
 
 @cli.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+def eds(folder: Path) -> None:
+    """Write a CANopen data sheet (EDS) per type of board into FOLDER."""
+    from scenarios.canopen import write_eds
+
+    for file in write_eds(folder):
+        click.echo(file)
+
+
+@cli.command()
 def protocol() -> None:
     """Print the protocol page, made from the DBC."""
     from bus.protocol.page import page

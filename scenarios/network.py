@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from boards.axis import AxisBoard, AxisPins
 from boards.axis.config import STEPS_PER_TURN
@@ -26,6 +26,9 @@ from plant.plant import Plant
 from scenarios.drive import axis_config
 from scenarios.networks import FINAL, NETWORKS
 from scenarios.nodes import BOARDS, Site, load_board, pins_of
+
+if TYPE_CHECKING:
+    from boards.canopen import Voice
 
 CRYSTAL_PPM = 50.0
 """Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
@@ -57,6 +60,7 @@ class NetworkConfig:
     in steps by axis.
 
     name: which network (`scenarios/networks.py`). extra: declared boards beside it.
+    canopen: every board speaks CANopen, too (`boards/canopen/`); a master has to start it.
     size: number of boards, None: those of the network. Fewer leaves out boards from its end, more adds motor
         velocity boards of unassigned device types (for scaling measurements).
     """
@@ -67,6 +71,7 @@ class NetworkConfig:
     size: int | None = None
     name: str = "lab"
     extra: tuple[type[DeclaredBoard], ...] = ()
+    canopen: bool = False
 
 
 SPARE_TYPES = tuple(
@@ -86,6 +91,7 @@ class Network:
     hid: HidEndpoint
     uarts: dict[str, Uart]
     debug: dict[str, DebugPort] = field(default_factory=dict)
+    voices: dict[str, "Voice"] = field(default_factory=dict)
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`."""
@@ -251,7 +257,12 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
         board.begin()
         _set_parameters(board, config.nodes.get(name, NodeConfig()))
     debug = {name: DebugPort(board, wiring.wire) for name, board in boards.items()}
-    return Network(wiring.queue, wiring.wire, boards, plant, hid, uarts, debug)
+    voices: dict[str, Any] = {}
+    if config.canopen:
+        from boards.canopen import Voice  # the package takes its time
+
+        voices = {name: Voice(board) for name, board in boards.items()}
+    return Network(wiring.queue, wiring.wire, boards, plant, hid, uarts, debug, voices)
 
 
 def _set_parameters(board: Board, settings: NodeConfig) -> None:
@@ -280,4 +291,6 @@ def config_from(
     }
     extra = tuple(load_board(folder / file) for file in network.get("boards", ()))
     bitrate = round(network.get("bitrate", 1_000_000))
-    return NetworkConfig(bitrate, nodes, dict(limits), name=network.get("name", "lab"), extra=extra)
+    canopen = bool(network.get("canopen", False))
+    name = network.get("name", "lab")
+    return NetworkConfig(bitrate, nodes, dict(limits), name=name, extra=extra, canopen=canopen)

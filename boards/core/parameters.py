@@ -28,6 +28,10 @@ class ParameterTable:
     def __init__(self, rows: Iterable[Parameter] = ()) -> None:
         self._rows = {row.number: row for row in rows}
 
+    def rows(self) -> tuple[Parameter, ...]:
+        """All of them, by number."""
+        return tuple(self._rows[number] for number in sorted(self._rows))
+
     def get(self, number: int) -> Answer:
         """The value, or out of range when there is no such parameter."""
         row = self._rows.get(number)

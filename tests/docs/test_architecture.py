@@ -25,8 +25,8 @@ WITHOUT_IMPORT = {
     "pytest-xdist", "pytest-timeout", "mypy", "ruff", "import-linter", "types-PyYAML", "types-jsonschema",
 }  # fmt: skip
 """Tools of the tests: run, not imported."""
-AT_WILL = {"pysindy", "distributed", "dask-jobqueue", "mypy", "setuptools"}
-"""Imported by what says in one line that it is not there: a peer, a cluster, a compiler."""
+AT_WILL = {"pysindy", "distributed", "dask-jobqueue", "mypy", "setuptools", "pytest"}
+"""Imported by what says in one line that it is not there: a peer, a cluster, a compiler; by pytest itself."""
 
 
 def module(path: str) -> Any:

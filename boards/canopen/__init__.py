@@ -1,0 +1,6 @@
+"""The boards' CANopen voice, an option of a network; the documented frames stay what they are."""
+
+from boards.canopen.dictionary import dictionary
+from boards.canopen.voice import Voice
+
+__all__ = ["Voice", "dictionary"]
