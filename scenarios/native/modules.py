@@ -20,8 +20,8 @@ FILES = (
 )
 """And these: what is called for every tick and frame."""
 PLAIN = ("boards/silicon/ecan/chip.py", "boards/canopen/")
-"""What mypyc refuses (an error of its own that is a KeyError), said beforehand: finding out costs a round; and
-what derives from classes of a package that is not compiled."""
+"""What mypyc refuses (an error of its own that is a KeyError), said beforehand: finding out costs a round;
+and what derives from classes of a package that is not compiled."""
 _PLACE = "__file__"
 """A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
 
