@@ -33,8 +33,9 @@ class CanDoor:
         entry.register(self.kind, self._arrive)
         self._bus: can.BusABC | None = None
         self.fence: Fence | None = None
-        self._before = [0, 0, 0, 0, 0]
-        """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out."""
+        self._before = [0, 0, 0, 0, 0, 0]
+        """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out, and dropped
+        by the system."""
 
     def _arrive(self, data: bytes) -> None:
         self.node.arrive(unpack_frame(data))
@@ -70,13 +71,15 @@ class CanDoor:
     def _counts(self, fence: Fence | None) -> list[int]:
         if fence is None:
             return self._before
-        now = (fence.frames_in, fence.frames_out, fence.refused, fence.rejected, fence.lost_out)
+        now = (
+            fence.frames_in, fence.frames_out, fence.refused, fence.rejected, fence.lost_out,
+            fence.system_lost,
+        )  # fmt: skip
         return [before + each for before, each in zip(self._before, now, strict=True)]
 
     def state(self) -> str:
         """Frames in and out, and what was not carried."""
-        frames_in, frames_out, refused, rejected, lost = self._counts(self.fence)
-        dropped = self.fence.system_lost if self.fence is not None else 0
+        frames_in, frames_out, refused, rejected, lost, dropped = self._counts(self.fence)
         words = [f"{frames_in} frames in, {frames_out} out"]
         if refused:
             words.append(f"{refused} refused (the bus was full)")
