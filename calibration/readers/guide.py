@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.errors import CalibrationInputError
-from calibration.readers.run import Run
+from calibration.readers.run import Array, Run
 
 _SCALE = re.compile(r"[Pp]ixel scale\s*=\s*([0-9.,+-]+)\s*arc-sec/px")
 _BEGIN = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
@@ -127,72 +127,26 @@ def _close(
         return set()
     text = "\n".join(head)
     scale = _SCALE.search(text)
-    factor = _scale(path, rows[0][0], scale.group(1)) if scale else 1.0
-    where = {c: k for k, c in enumerate(columns)}
-    marks = {
-        "off": [n for n, e in events if "Settling started" in e],
-        "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e],
-    }
-    moves = _moves(text, events)
-    t, ra, dec, segment, dithered = [], [], [], [], []
-    total = total_dec = 0.0
-    drops = 0
-    other: set[str] = set()
-    before = -np.inf
+    track = _Track(
+        path,
+        columns,
+        events,
+        _moves(text, events),
+        _scale(path, rows[0][0], scale.group(1)) if scale else 1.0,
+    )
     for line, fields in rows:
-        if len(fields) <= where["RAGuideDistance"]:
-            raise CalibrationInputError(
-                path, f"{len(fields)} fields, the header row has {len(columns)}", line
-            )
-        mark = fields[where["mount"]].strip().strip('"')
-        if mark not in MARKS:
-            raise CalibrationInputError(
-                path, f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)", line, "mount"
-            )
-        if mark != "Mount":
-            drops += mark == "DROP"
-            other.add(mark)
-            continue
-        if len(fields) > len(columns) + 1:
-            raise CalibrationInputError(
-                path,
-                f"{len(fields)} fields, the header row has {len(columns)}: decimal commas? write points",
-                line,
-            )
-        v = {c: _number(path, line, c, fields[where[c]]) for c in _NEEDED}
-        if not np.isfinite(v["Time"]):
-            raise CalibrationInputError(path, "is no time in s", line, "Time")
-        if v["Time"] < before:
-            raise CalibrationInputError(
-                path, f"time goes backwards from {before:g} s to {v['Time']:g} s", line, "Time"
-            )
-        before = v["Time"]
-        d = (
-            _number(path, line, "DECRawDistance", fields[where["DECRawDistance"]])
-            if "DECRawDistance" in where
-            else 0.0
-        )
-        g = (
-            _number(path, line, "DECGuideDistance", fields[where["DECGuideDistance"]])
-            if "DECGuideDistance" in where
-            else 0.0
-        )
-        if np.isfinite(v["RARawDistance"]) and not _settling(line, marks):
-            by_ra, by_dec, new = moves.before(line)
-            t.append(v["Time"])
-            ra.append((v["RARawDistance"] + total + by_ra) * factor)
-            dec.append((d + total_dec + by_dec) * factor)
-            segment.append(new)
-            dithered.append(by_ra * factor)
-        total += (
-            v["RAGuideDistance"]
-            if np.isfinite(v["RAGuideDistance"]) and _sent(fields, where.get("RADuration"))
-            else 0.0
-        )
-        total_dec += g if np.isfinite(g) and _sent(fields, where.get("DECDuration")) else 0.0
-    if not t:
-        return other
-    header = {"unit": "arcsec" if scale else "px", "pixel_scale": f"{factor:g}", "drops": str(drops)}
+        track.take(line, fields)
+    if track.rows:
+        name = path.stem if not runs else f"{path.stem}#{len(runs) + 1}"
+        notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
+        header = _header(text, "arcsec" if scale else "px", track)
+        runs.append(Run(name, path, name, track.columns_of_run(), header=header, notes=notes))
+    return track.other
+
+
+def _header(text: str, unit: str, track: _Track) -> dict[str, str]:
+    """What a section's head tells of the mount, and how its distances were read."""
+    header = {"unit": unit, "pixel_scale": f"{track.factor:g}", "drops": str(track.drops)}
     for key, pattern in (("mount", _MOUNT), ("declination_deg", _DEC), ("pier_side", _SIDE)):
         found = pattern.search(text)
         if found:
@@ -200,25 +154,78 @@ def _close(
     began = _BEGIN.search(text)
     if began:
         header["start_local"] = began.group(1)
-    notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
-    name = path.stem if not runs else f"{path.stem}#{len(runs) + 1}"
-    runs.append(
-        Run(
-            name,
-            path,
-            name,
-            {
-                "t": np.array(t),
-                "ra": np.array(ra),
-                "dec": np.array(dec),
-                "segment": np.array(segment, dtype=float),
-                "dither": np.array(dithered),
-            },
-            header=header,
-            notes=notes,
-        )
-    )
-    return other
+    return header
+
+
+class _Track:
+    """The error of one section, summed up frame by frame; `rows` are t s, ra, dec, segment, dither."""
+
+    def __init__(
+        self, path: Path, columns: list[str], events: list[tuple[int, str]], moves: _Moves, factor: float
+    ) -> None:
+        self.path, self.width, self.moves, self.factor = path, len(columns), moves, factor
+        self.where = {c: k for k, c in enumerate(columns)}
+        self.marks = {
+            "off": [n for n, e in events if "Settling started" in e],
+            "on": [n for n, e in events if "Settling complete" in e or "Settling failed" in e],
+        }
+        self.rows: list[tuple[float, float, float, float, float]] = []
+        self.other: set[str] = set()
+        self.drops = 0
+        self._sum_ra = self._sum_dec = 0.0  # px, of the corrections so far
+        self._before = -np.inf
+
+    def take(self, line: int, fields: list[str]) -> None:
+        """One row of the table."""
+        mark = self._mark(line, fields)
+        if mark != "Mount":
+            self.drops += mark == "DROP"
+            self.other.add(mark)
+            return
+        if len(fields) > self.width + 1:
+            what = f"{len(fields)} fields, the header row has {self.width}: decimal commas? write points"
+            raise CalibrationInputError(self.path, what, line)
+        t, raw, guided = (_number(self.path, line, c, fields[self.where[c]]) for c in _NEEDED)
+        self._check_time(line, t)
+        raw_dec, guided_dec = (self._optional(line, fields, f"DEC{c}Distance") for c in ("Raw", "Guide"))
+        if np.isfinite(raw) and not _settling(line, self.marks):
+            by_ra, by_dec, new = self.moves.before(line)
+            ra, dec = raw + self._sum_ra + by_ra, raw_dec + self._sum_dec + by_dec
+            self.rows.append((t, ra * self.factor, dec * self.factor, float(new), by_ra * self.factor))
+        self._sum_ra += self._correction(fields, "RADuration", guided)
+        self._sum_dec += self._correction(fields, "DECDuration", guided_dec)
+
+    def columns_of_run(self) -> dict[str, Array]:
+        """The run's columns (n,)."""
+        table = np.array(self.rows)
+        return {c: table[:, k].copy() for k, c in enumerate(("t", "ra", "dec", "segment", "dither"))}
+
+    def _mark(self, line: int, fields: list[str]) -> str:
+        if len(fields) <= self.where["RAGuideDistance"]:
+            raise CalibrationInputError(
+                self.path, f"{len(fields)} fields, the header row has {self.width}", line
+            )
+        mark = fields[self.where["mount"]].strip().strip('"')
+        if mark not in MARKS:
+            what = f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)"
+            raise CalibrationInputError(self.path, what, line, "mount")
+        return mark
+
+    def _check_time(self, line: int, t: float) -> None:
+        if not np.isfinite(t):
+            raise CalibrationInputError(self.path, "is no time in s", line, "Time")
+        if t < self._before:
+            what = f"time goes backwards from {self._before:g} s to {t:g} s"
+            raise CalibrationInputError(self.path, what, line, "Time")
+        self._before = t
+
+    def _optional(self, line: int, fields: list[str], column: str) -> float:
+        at = self.where.get(column)
+        return 0.0 if at is None else _number(self.path, line, column, fields[at])
+
+    def _correction(self, fields: list[str], duration: str, guided: float) -> float:
+        """px that a pulse moved the mount by; 0 when none was sent."""
+        return guided if np.isfinite(guided) and _sent(fields, self.where.get(duration)) else 0.0
 
 
 @dataclass(frozen=True)
