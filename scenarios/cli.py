@@ -64,6 +64,8 @@ def cli() -> None:
     help="Load this table, and run without it and with it wrong as well.",
 )
 @click.option("--no-report", is_flag=True, help="Logs and summary.json only, no figures: ends sooner.")
+@click.option("--mute", metavar="BOARD", help="This board's frames come from a log.")
+@click.option("--feed", type=click.Path(path_type=Path), metavar="LOG", help="The log (candump -L).")
 @click.option("--snapshot-at", type=SECONDS, metavar="SECONDS", help="Take a snapshot then.")
 @click.option("--snapshot", type=click.Path(path_type=Path), help="Where to (default: OUT/snapshot).")
 @click.option("--from", "begun", type=click.Path(path_type=Path), help="Go on from a snapshot; no SCENARIO.")
@@ -78,12 +80,17 @@ def run(
     firmware: str | None,
     compensation: Path | None,
     no_report: bool,
+    mute: str | None,
+    feed: Path | None,
     snapshot_at: float | None,
     snapshot: Path | None,
     begun: Path | None,
 ) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
     whole = order = None
+    if (mute is None) != (feed is None):
+        raise click.UsageError("--mute BOARD and --feed LOG go together")
+    muted = None if mute is None or feed is None else (mute, feed)
     if begun is not None or snapshot_at is not None:
         from scenarios.native.finder import plain
 
@@ -117,7 +124,7 @@ def run(
         result = _compared(loaded, model, folder, compensation)
     else:
         with runner.bar(loaded, sys.stderr.isatty()) as progress:
-            result = runner.run(loaded, model, folder, progress, not no_report, order, whole)
+            result = runner.run(loaded, model, folder, progress, not no_report, order, whole, muted)
         if order is not None and not order.done:
             _fail(f"the run ended before {snapshot_at:g} s: no snapshot", UNUSABLE)
     for verdict in result.verdicts:
@@ -134,6 +141,11 @@ def run(
         f"digest {summary['trace_digest'][:16]}, "
         + (f"logs in {folder}" if no_report else f"report {folder / 'report.html'}")
     )
+    if muted is not None:
+        from bus.protocol import device_named
+        from scenarios.muted import compare
+
+        click.echo(compare(muted[1], folder / "can.log", int(device_named(muted[0]))).text())
     if result.interrupted:
         _fail(f"interrupted, logs up to t={summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
     sys.exit(0 if result.passed else 1)

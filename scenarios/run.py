@@ -90,10 +90,12 @@ def run(
     report: bool = True,
     snapshot: Order | None = None,
     begun: dict[str, Any] | None = None,
+    mute: tuple[str, Path] | None = None,
 ) -> Result:
     """Run a scenario into a folder. progress: `(step, simulated s, times real time)`, once a second of it.
     report: draw the figures and write the page; the logs and `summary.json` come in any case.
-    snapshot: taken on the way. begun: a snapshot that was read, to go on from.
+    snapshot: taken on the way. begun: a snapshot that was read, to go on from. mute: a board and the candump
+    log its frames come from.
 
     An interruption (KeyboardInterrupt) ends the run early with readable logs; a disk that is full raises
     `LogError` after everything that could be closed was closed.
@@ -111,6 +113,14 @@ def run(
         state = Progress(0, 0, round(scenario.time_limit_s * 1e9))
     else:
         session, state = resume(begun, folder), begun["progress"]
+    if mute is not None:
+        from scenarios.muted import Feed
+
+        try:
+            Feed(session.network, *mute)
+        except ValueError:
+            session.recorder.close()
+            raise
     if snapshot is not None:
         snapshot.begin(session, begun)
     wall_s = time.perf_counter()

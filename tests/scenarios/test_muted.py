@@ -1,0 +1,61 @@
+"""A board muted, its frames fed from a log: the rest of the network goes on as if it were there."""
+
+from pathlib import Path
+
+import pytest
+
+from bus.protocol import Device
+from scenarios.muted import FeedError, compare, read
+from tests.scenarios.conftest import Command
+
+
+@pytest.fixture
+def log(schmidt: Command, short: Path, tmp_path: Path) -> Path:
+    assert schmidt("run", short, "--out", tmp_path / "one", "--no-report").returncode == 0
+    return tmp_path / "one/can.log"
+
+
+@pytest.mark.parametrize("board", ["POSITION_RA", "AXIS_RA"])
+def test_the_rest_is_as_in_the_log(
+    board: str, log: Path, schmidt: Command, short: Path, tmp_path: Path
+) -> None:
+    done = schmidt("run", short, "--out", tmp_path / "two", "--no-report", "--mute", board, "--feed", log)
+    assert done.returncode == 0, done.stderr
+    rest = compare(log, tmp_path / "two/can.log", Device[board])
+    assert rest.logged == rest.heard > 1000
+    assert rest.same == rest.logged
+    assert rest.late_us <= 2.0  # candump's times are cut to microseconds, one at either end
+    assert rest.text() in done.stdout
+
+
+def test_other_frames_show_in_the_comparison(log: Path, tmp_path: Path) -> None:
+    lines = log.read_text().splitlines(keepends=True)
+    place = next(k for k, line in enumerate(lines) if " 211#" in line)
+    lines[place] = lines[place][:-3] + ("00\n" if lines[place][-3:-1] != "00" else "01\n")
+    (tmp_path / "other.log").write_text("".join(lines))
+    rest = compare(log, tmp_path / "other.log", Device.POSITION_RA)
+    assert rest.same == rest.logged - 1
+
+
+@pytest.mark.parametrize(
+    ("text", "board", "reason"),
+    [
+        ("(0.1) can0 221#00\n", "POSITION_RA", "not a line"),
+        ("(0.100000) can0 222#00\n", "POSITION_RA", "no frame of POSITION_RA"),
+        ("(0.100000) can0 221#00\n", "POSITION_XX", "no such board"),
+    ],
+)
+def test_what_cannot_be_fed_is_said(
+    text: str, board: str, reason: str, schmidt: Command, short: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.log"
+    file.write_text(text)
+    done = schmidt("run", short, "--no-report", "--mute", board, "--feed", file)
+    assert done.returncode == 2
+    assert reason in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_log_that_is_not_there_is_said(tmp_path: Path) -> None:
+    with pytest.raises(FeedError, match="No such file"):
+        list(read(tmp_path / "a.log"))
