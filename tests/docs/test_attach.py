@@ -166,6 +166,7 @@ def test_every_door_of_the_readme_is_run_here_or_in_the_guest() -> None:
     assert all(option in guest for option in GUEST)
 
 
+@pytest.mark.filterwarnings("ignore:set:DeprecationWarning")  # pyserial's own RFC 2217 client
 @pytest.mark.parametrize("row", rows(), ids=lambda row: row.option.replace("--", "").replace(" ", "-"))
 def test_a_door_is_attached_to_as_the_readme_says(
     row: Row, served: Path, monkeypatch: pytest.MonkeyPatch
