@@ -1,11 +1,18 @@
-"""Instructions per simulated second, where they can be counted: what no neighbour on the machine disturbs."""
+"""Instructions per simulated second, where they can be counted: what no neighbour on the machine disturbs.
+
+By `perf` where the machine lets it count, else by valgrind, which has no vector instructions beyond AVX2:
+kernels are then compiled for a plain processor and SHA-256 has no instruction of its own, so the two are not
+to be compared with each other.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -20,9 +27,53 @@ with tempfile.TemporaryDirectory() as folder:
     made.recorder.close()
 """
 
+_UNDER_VALGRIND_S = 5
+_MARKED = """
+import os, subprocess, sys, tempfile
+from pathlib import Path
+from scenarios.bench.network import session
+def count(word):
+    command = ["callgrind_control", "-i", word, str(os.getpid())]
+    if len(sys.argv) > 2:
+        subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+with tempfile.TemporaryDirectory() as folder:
+    made = session(Path(folder))
+    count("on")
+    made.advance(made.network.queue.now_ns + int(sys.argv[1]) * 10**9)
+    count("off")
+    made.recorder.close()
+"""
+
 
 def instructions(native: bool) -> dict[str, float]:
-    """Million instructions per simulated second by way; empty where `perf` is not there or may not count."""
+    """Million instructions per simulated second by way; empty where nothing here may count."""
+    return _by_perf(native) or _by_valgrind(native)
+
+
+def _by_valgrind(native: bool) -> dict[str, float]:
+    if shutil.which("valgrind") is None:
+        return {}
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, pure in (("plain", "1"), ("compiled", "0"))[: 1 + native]:
+            environment = {
+                **os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1",
+                "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "SCHMIDT_CACHE_DIR": folder,
+            }  # fmt: skip
+            program = [sys.executable, "-c", _MARKED, str(_UNDER_VALGRIND_S)]
+            counted = ["valgrind", "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null"]
+            subprocess.run(program, env=environment, capture_output=True, check=False)  # fills the cache
+            done = subprocess.run(
+                [*counted, *program, "x"], env=environment, capture_output=True, text=True, check=False
+            )
+            refs = re.search(r"I +refs: +([\d,]+)", done.stderr)
+            if done.returncode or refs is None:
+                return {}
+            found[name] = int(refs[1].replace(",", "")) / _UNDER_VALGRIND_S / 1e6
+    return found
+
+
+def _by_perf(native: bool) -> dict[str, float]:
     if shutil.which("perf") is None:
         return {}
     found = {}

@@ -50,7 +50,7 @@ def rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
     if "plain over compiled night" in turns:
         found.append(("plain night over compiled night", _spread(turns["plain over compiled night"], ""), ""))
     if not figures["instructions"]:
-        found.append(("instructions", "no counter that perf could read here", ""))
+        found.append(("instructions", "neither perf nor valgrind can count here", ""))
     cost = " ".join(f"{row['nodes']}: {row['ms_per_node_and_s']:.2f}" for row in figures["nodes"])
     found += [
         ("cost per node, ms a simulated second, this way", cost, "flat"),
