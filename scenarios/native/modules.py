@@ -19,9 +19,17 @@ FILES = (
     "plant/plant.py",
 )
 """And these: what is called for every tick and frame."""
-PLAIN = ("boards/silicon/ecan/chip.py", "boards/canopen/")
+PLAIN = (
+    "boards/silicon/ecan/chip.py",
+    "boards/canopen/",
+    "boards/auxiliary/firmware.py",
+    "boards/dome/firmware.py",
+    "boards/power/firmware.py",
+    "boards/weather/firmware.py",
+)
 """What mypyc refuses (an error of its own that is a KeyError), said beforehand: finding out costs a round;
-and what derives from classes of a package that is not compiled."""
+what derives from classes of a package that is not compiled; and what inherits the constructor of
+`DeclaredBoard`: mypyc calls it twice for such a class (two ports on the wire), plain Python once."""
 _PLACE = "__file__"
 """A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
 

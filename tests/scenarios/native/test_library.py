@@ -151,3 +151,12 @@ def test_what_plain_code_derives_from_stays_plain(tree: Path) -> None:
     assert derived_from(tree, selected(tree)) == {}
     plain.write_text("from bus.can.wire import Wire as Bus\n\n\nclass Mine(Bus):\n    pass\n")
     assert derived_from(tree, selected(tree)) == {"bus/can/wire.py": "scenarios/plain.py derives from Wire"}
+
+
+def test_declared_boards_that_inherit_their_constructor_stay_plain() -> None:
+    """Compiled, mypyc's would run twice: two ports of one board on the wire."""
+    firmware = {path for path in selected() if path.endswith("/firmware.py")}
+    assert "boards/axis/firmware.py" in firmware
+    for path in sorted((ROOT / "boards").glob("*/firmware.py")):
+        if "(DeclaredBoard)" in path.read_text(encoding="utf-8"):
+            assert path.relative_to(ROOT).as_posix() not in firmware, path
