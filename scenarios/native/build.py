@@ -16,7 +16,7 @@ from pathlib import Path
 
 from scenarios.native import stamp
 from scenarios.native.derived import derived_from
-from scenarios.native.modules import PACKAGE, ROOT, module_name, selected
+from scenarios.native.modules import PACKAGE, ROOT, selected
 
 _PREFIX = PACKAGE.replace(".", "/")
 _REFUSED = re.compile(rf"^{_PREFIX}(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
@@ -100,7 +100,7 @@ def _python(arguments: list[str], root: Path, pure: str) -> subprocess.Completed
 def _modules(made: Path) -> dict[str, str]:
     """Module names and their files in the library; the shared part goes under its own name."""
     files = sorted(path.relative_to(made).as_posix() for path in made.rglob(f"*{stamp.suffix()}"))
-    return {module_name(file.removesuffix(stamp.suffix()).removeprefix(_PREFIX)): file for file in files}
+    return {file.removesuffix(stamp.suffix()).replace("/", "."): file for file in files}
 
 
 def _check(made: Path, root: Path) -> None:

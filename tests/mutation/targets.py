@@ -9,7 +9,8 @@ _CHIP = (
     "tests/boards/silicon/mcp2515/test_timing.py",
 )
 _ENDAT = ("tests/boards/silicon/test_endat.py", "tests/boards/silicon/test_endat_clocked.py")
-_PROTOCOL = ("tests/bus/protocol", "tests/conformance/test_decoding.py")
+_CODECS = "tests/bus/protocol"
+_PROTOCOL = tuple(f"{_CODECS}/test_{name}.py" for name in ("codecs", "flags", "serial"))
 
 TARGETS: dict[str, tuple[str, ...]] = {
     "boards/silicon/endat/crc.py": _ENDAT,

@@ -1,0 +1,31 @@
+"""Flags lie where the DBC has them, and what does not fit its field is told of; mutants of the codecs showed
+that nothing looked."""
+
+from enum import IntFlag
+
+import pytest
+
+from bus import protocol as p
+from bus.protocol.database import database
+
+FLAGS: list[tuple[str, type[IntFlag], int]] = [
+    ("AXIS_RA_MOTION", p.MotionFlag, 12),
+    ("POSITION_RA_POSITION", p.PositionFlag, 8),
+    ("FOCUS_FOCUS", p.FocusFlag, 8),
+]
+"""Frame, flags, bit of the first (the flags' field; docs/protocol.md)."""
+
+
+@pytest.mark.parametrize(("frame", "kind", "first"), FLAGS, ids=[each[0] for each in FLAGS])
+def test_every_flag_is_at_its_bit_of_the_dbc(frame: str, kind: type[IntFlag], first: int) -> None:
+    starts = {s.name.lower(): s.start for s in database().get_message_by_name(frame).signals}
+    for name, flag in kind.__members__.items():  # going through the class leaves out what is no single bit
+        assert 1 << (starts[name.lower().replace("_", "")] - first) == flag
+
+
+def test_what_does_not_fit_is_cut_and_told_of_once() -> None:
+    told: list[str] = []
+    data = p.pack_focus(0x41, 0, 40_000, -40_000, 2000, lambda: told.append("focus"))
+    assert (p.unpack_focus(data).position, p.unpack_focus(data).encoder) == (32_767, -32_768)
+    assert told == ["focus"]
+    assert p.pack_focus(0x41, 0, 1, 2, 3, lambda: told.append("again")) and told == ["focus"]
