@@ -11,6 +11,7 @@ from calibration.candidates import axis_lines, axis_torque, axis_unknown, modes,
 from calibration.candidates.candidate import Candidate
 from calibration.channels.frame import fill
 from calibration.channels.level import level_of
+from calibration.channels.motion import Motion
 from calibration.channels.torque import Torque, Transmission, torque_problem
 from calibration.decide.accept import FEWEST_BLOCKS
 from calibration.decide.broadband import wind
@@ -18,9 +19,12 @@ from calibration.decide.select import Selection, design, select
 from calibration.decide.sizes import white_noise
 from calibration.decide.tolerance import seen_speeds, telling, torque_changes
 from calibration.finding import Finding
+from calibration.names import NAMES
+from calibration.names.own import own_candidates
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.whitening import Mask
+from plant.effects.signals import ANGLE, RATE, TIME
 
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
 REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away
@@ -115,6 +119,7 @@ def _pass(
         *axis_lines.gear_lines(c, m.period_s),
         *axis_lines.motor_lines(c, motors, null.residual, p.train),
         *modes.structural_modes(m, frame.run),
+        *_by_formula(m, clock),
     ]
     candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
@@ -126,6 +131,14 @@ def _pass(
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
     return select(p, candidates, rng), whole, moving
+
+
+def _by_formula(m: Motion, clock: Array) -> list[Candidate]:
+    """Effects that are found by their own formula alone; `clock` (n,) at full rate, s."""
+    along = {TIME: clock, ANGLE: m.theta, RATE: m.rate}
+    return [
+        c for n in NAMES.values() if n.own is not None for c in own_candidates(n.name, n.own, along, m.at)
+    ]
 
 
 def believed(f: Finding) -> bool:

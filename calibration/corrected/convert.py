@@ -8,6 +8,7 @@ from calibration.corrected import lines, recorded, scalars
 from calibration.corrected.making import Facts, Made
 from calibration.corrected.unnamed import unnamed
 from calibration.finding import Finding
+from calibration.names import NAMES
 
 Converter = Callable[[Finding, Facts], Made]
 CONVERTERS: dict[str, Converter] = {
@@ -46,6 +47,10 @@ CONVERTERS: dict[str, Converter] = {
 
 def convert(f: Finding, facts: Facts) -> Made:
     """What `f` becomes in the plant file."""
+    if f.name in NAMES and NAMES[f.name].own is not None:  # its parameters are the plant's
+        made = Made()
+        made.add(f.name, facts, {name: p.value for name, p in f.parameters.items()})
+        return made
     if f.name not in CONVERTERS:
         return Made(remarks=[f"{f.name}: described in the report, not a number of the plant file"])
     return CONVERTERS[f.name](f, facts)

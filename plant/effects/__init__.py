@@ -1,10 +1,14 @@
-"""The effects a drive shows and the declared model lacks: one file each, names of the catalogue."""
+"""The effects a drive shows and the declared model lacks: one file each in this folder."""
 
 from importlib import import_module
+from pkgutil import iter_modules
 
 from plant.effects.base import Effect
 
-NAMES: tuple[str, ...] = (
+#: what an effect is made of, and no effect itself
+SHARED = ("base", "dispatch", "evaluate", "rows", "signals", "targets")
+#: names of the catalogue, in its order
+CATALOGUE: tuple[str, ...] = (
     "stribeck_change",
     "presliding",
     "viscous_change",
@@ -46,6 +50,11 @@ NAMES: tuple[str, ...] = (
     "log_wrap",
     "command_disturbance",
     "unknown",
+)
+#: all effects: those of the catalogue, then every other file of this folder
+NAMES: tuple[str, ...] = (
+    *CATALOGUE,
+    *sorted({m.name for m in iter_modules(__path__)} - {*CATALOGUE, *SHARED}),
 )
 
 REGISTRY: dict[str, Effect] = {name: import_module(f"{__name__}.{name}").EFFECT for name in NAMES}

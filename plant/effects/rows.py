@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant.effects import REGISTRY
-from plant.effects.base import Effect, Formula
+from plant.effects.base import Effect
+from plant.effects.dispatch import KINDS as KINDS
 from plant.effects.signals import MOTOR_HOOKS, Hook
 from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import CHOICE, COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD
@@ -21,18 +22,6 @@ from plant.units import to_si
 FIRST_PARAMETER = ROW_MEMORY + MEMORY_SIZE
 ENCODERS = (Hook.INCREMENTAL, Hook.ABSOLUTE, Hook.AUXILIARY)
 STAGE_ENCODER = {"axis": Hook.ABSOLUTE, "roller": Hook.INCREMENTAL, "aux": Hook.AUXILIARY}
-
-
-def kinds() -> dict[Formula, int]:
-    """Return the kind of every formula: terms counted in the order of the registry (see dispatch.py)."""
-    found: dict[Formula, int] = {}
-    for effect in REGISTRY.values():
-        for term in effect.terms:
-            found[term.formula] = len(found)
-    return found
-
-
-KINDS = kinds()
 
 
 def number_from(seed: int, name: str) -> float:

@@ -21,6 +21,7 @@ from calibration.corrected.making import Facts
 from calibration.decide.select import select
 from calibration.declaredplant import declared_numbers
 from calibration.finding import Curve, Finding, Parameter
+from calibration.names import NAMES as FOUND
 from calibration.plantfile import correct, declared_model
 from calibration.readers.axis import read_axis_log
 from plant.effects import NAMES
@@ -132,7 +133,8 @@ FORMS: list[tuple[Finding, str | None]] = [
 
 
 def test_every_name_of_the_catalogue_has_a_form() -> None:
-    assert {f.name for f, _ in FORMS} == set(NAMES) == set(CONVERTERS)
+    own = {n.name for n in FOUND.values() if n.own is not None}
+    assert {f.name for f, _ in FORMS} | own == set(NAMES) == set(CONVERTERS) | own
 
 
 @pytest.mark.parametrize("found, written", FORMS, ids=lambda x: getattr(x, "name", None))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant import model
-from plant.effects import NAMES, REGISTRY
+from plant.effects import CATALOGUE, NAMES, REGISTRY
 from plant.effects.base import STAGES
 from plant.effects.dispatch import update, value
 from plant.effects.rows import KINDS
@@ -113,7 +113,7 @@ def test_names_are_those_of_the_catalogue() -> None:
         pytest.skip("../shared is not there: the catalogue cannot be compared")
     rows = [line for line in SHARED.read_text().split("\n") if line.startswith("| `")]
     listed = {word for row in rows for word in re.findall(r"`(\w+)`", row.split("|")[1])}
-    assert listed | {"unknown"} == set(NAMES)
+    assert listed | {"unknown"} == set(CATALOGUE)
 
 
 def test_every_effect_carries_its_own_name_bounds_units_and_sources() -> None:
