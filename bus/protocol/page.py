@@ -12,11 +12,11 @@ from bus.protocol.nodes import KINDS, documented
 PAGE_PATH = Path(__file__).parents[2] / "docs" / "protocol.md"
 DBC_PATH = Path(__file__).with_name("final.dbc")
 """All boards in one file, for other people's tools; written beside the page."""
-PLANNED = tuple(Device(number) for kind in KINDS for number in kind.nodes.values())
+OTHERS = tuple(Device(number) for kind in KINDS for number in kind.nodes.values())
 _INTRO = f"""# The protocol
 
-Made from `bus/protocol/schmidt.dbc` and, for the planned nodes, `bus/protocol/nodes/*.dbc` by
-`python -m bus.protocol.page`; change the DBC, not this page.
+Made from `bus/protocol/schmidt.dbc` and, for the boards that only the network `final` has,
+`bus/protocol/nodes/*.dbc`, by `python -m bus.protocol.page`; change the DBC, not this page.
 `bus/protocol/final.dbc`, written with it, has all boards in one file.
 
 CAN 2.0A, standard identifiers, 1 Mbit/s unless a scenario says otherwise; every frame has eight bytes,
@@ -30,7 +30,7 @@ acknowledged and ignored.
 
 
 def _everything() -> Any:
-    return documented((*Device, *PLANNED))
+    return documented((*Device, *OTHERS))
 
 
 def _family(name: str) -> str:
@@ -44,7 +44,7 @@ def _suffix(name: str) -> str:
 def _devices() -> Iterator[str]:
     yield "\n## Devices\n"
     yield "| device | type | frames |\n|---|---|---|"
-    for device in (*Device, *PLANNED):
+    for device in (*Device, *OTHERS):
         names = [
             message.name for message in _everything().messages if message.name.startswith(f"{device.name}_")
         ]

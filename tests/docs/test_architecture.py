@@ -68,7 +68,7 @@ def test_signatures_of_the_contract_are_those_of_the_code() -> None:
 
 def test_device_types_opcodes_and_periods_are_those_of_the_protocol() -> None:
     section = PAGE.split("\n## The protocol")[1].split("\n## ")[0]
-    devices = section.split("Device types: ")[1].split("(Reserved")[0]
+    devices = section.split("Device types: ")[1].split("(The network `final` adds")[0]
     assert {name: int(number, 16) for name, number in re.findall(r"(\w+) (0x\d+)", devices)} == {
         device.name: device.value for device in Device
     }

@@ -1,5 +1,5 @@
-"""The planned nodes of the final network (B8, P10, P13). Everything here is an ASSUMPTION: the paper names
-the boards and nothing more.
+"""The boards that only the network `final` has (B8, P10, P13). Everything here is an ASSUMPTION: the paper
+names the boards and nothing more.
 
 Device types 0x23, 0x24 and 0x71..0x73 were reserved for them. That weather and power come twice makes the
 network the paper's "over sixteen".
