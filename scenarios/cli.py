@@ -45,7 +45,7 @@ def cli() -> None:
     """Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."""
 
 
-@cli.command()
+@cli.command(short_help="Run a scenario and judge it.")
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<scenario>).")
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
@@ -56,19 +56,31 @@ def cli() -> None:
     help="Times real time (default: as fast as it goes).",
 )
 @click.option("--log-rate", type=Number(0.01, 20), help="Lines per second of the status and sensor logs.")
-@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
-@click.option("--firmware", type=click.Choice(["paper", "fine"]), help="What the axis boards run.")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.option(
+    "--firmware",
+    type=click.Choice(["paper", "fine"]),
+    help="Firmware of the axis boards: the paper's, or docs/one-arcsecond.md's.",
+)
 @click.option(
     "--compensation",
     type=click.Path(path_type=Path),
-    help="Load this table, and run without it and with it wrong as well.",
+    help="Load this table of schmidt calibrate; runs three times: without it, with it wrong, with it.",
 )
 @click.option("--no-report", is_flag=True, help="Logs and summary.json only, no figures: ends sooner.")
-@click.option("--mute", metavar="BOARD", help="This board's frames come from a log.")
-@click.option("--feed", type=click.Path(path_type=Path), metavar="LOG", help="The log (candump -L).")
-@click.option("--snapshot-at", type=SECONDS, metavar="SECONDS", help="Take a snapshot then.")
-@click.option("--snapshot", type=click.Path(path_type=Path), help="Where to (default: OUT/snapshot).")
-@click.option("--from", "begun", type=click.Path(path_type=Path), help="Go on from a snapshot; no SCENARIO.")
+@click.option("--mute", metavar="BOARD", help="This board sends nothing; its frames come from --feed.")
+@click.option(
+    "--feed", type=click.Path(path_type=Path), metavar="LOG", help="Log to take them from (candump -L)."
+)
+@click.option(
+    "--snapshot-at", type=SECONDS, metavar="SECONDS", help="Take a snapshot at this simulated time."
+)
+@click.option(
+    "--snapshot", type=click.Path(path_type=Path), help="File of the snapshot (default: OUT/snapshot)."
+)
+@click.option(
+    "--from", "begun", type=click.Path(path_type=Path), help="Go on from this snapshot; takes no SCENARIO."
+)
 def run(
     scenario: Path | None,
     out: Path | None,
@@ -165,13 +177,13 @@ def _compared(loaded: Scenario, model: PlantModel, folder: Path, file: Path) -> 
     return result
 
 
-@cli.command()
+@cli.command(short_help="Repeat the paper's experiments.")
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the rows to this file.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/paper"), show_default=True)
 @click.option("--plant", type=click.Path(path_type=Path), help="Plant file with low preload.")
 @click.option("--plant-high", type=click.Path(path_type=Path), help="Plant file with high preload.")
 @click.option("--markdown", type=click.Path(path_type=Path), help="Write the table to this file.")
-@click.option("--rows", metavar="E1,E2,...", help="These rows only.")
+@click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core).")
@@ -198,15 +210,35 @@ def paper(
     )
 
 
-@cli.command()
+@cli.command(short_help="Hold 15 arcsec/s from many starts and measure the rate.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/objective"), show_default=True)
-@click.option("--plant", default="low_preload_motor_units", show_default=True, help="Low preload.")
-@click.option("--plant-high", default="high_preload_motor_units", show_default=True, help="High preload.")
-@click.option("--compensation", type=click.Path(path_type=Path), help="What schmidt calibrate wrote.")
-@click.option("--starts", type=click.IntRange(1, 64), default=8, show_default=True, help="Start angles.")
-@click.option("--seeds", type=click.IntRange(1, 16), default=3, show_default=True)
-@click.option("--shift", type=float, default=0.0, show_default=True, help="Degrees, of all start angles.")
-@click.option("--seconds", type=click.FloatRange(min=1), default=600.0, show_default=True)
+@click.option(
+    "--plant",
+    default="low_preload_motor_units",
+    show_default=True,
+    help="Plant with low preload: a file or a name.",
+)
+@click.option(
+    "--plant-high",
+    default="high_preload_motor_units",
+    show_default=True,
+    help="Plant with high preload: a file or a name.",
+)
+@click.option(
+    "--compensation", type=click.Path(path_type=Path), help="A compensation.yaml of schmidt calibrate."
+)
+@click.option(
+    "--starts", type=click.IntRange(1, 64), default=8, show_default=True, help="Number of start angles."
+)
+@click.option(
+    "--seeds", type=click.IntRange(1, 16), default=3, show_default=True, help="Seeds, taken in turn."
+)
+@click.option(
+    "--shift", type=float, default=0.0, show_default=True, help="Added to all start angles, degrees."
+)
+@click.option(
+    "--seconds", type=click.FloatRange(min=1), default=600.0, show_default=True, help="Length of each run."
+)
 @click.option("--only", help="Only rows whose name contains this.")
 @click.option("--steps", is_flag=True, help="The firmware's changes one after the other instead.")
 def objective(
@@ -227,10 +259,13 @@ def objective(
     sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only, steps))
 
 
-@cli.command()
+@cli.command(short_help="Run the boards in real time and open doors to them.")
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option(
-    "--can", multiple=True, metavar="INTERFACE:CHANNEL", help="Such as socketcan:vcan0; repeatable."
+    "--can",
+    multiple=True,
+    metavar="INTERFACE:CHANNEL",
+    help="The CAN bus, such as socketcan:vcan0; repeatable.",
 )
 @click.option(
     "--serial",
@@ -242,7 +277,10 @@ def objective(
     "--hid", multiple=True, metavar="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket."
 )
 @click.option(
-    "--lx200", multiple=True, metavar="[HOST:]PORT|pty:NAME", help="For Stellarium and INDI; repeatable."
+    "--lx200",
+    multiple=True,
+    metavar="[HOST:]PORT|pty:NAME",
+    help="LX200, for Stellarium and INDI; repeatable.",
 )
 @click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
 @click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
@@ -261,7 +299,7 @@ def objective(
 @click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
 @click.option("--debug", metavar="DIR", help="Every board's debug port as a pseudo-terminal in DIR (slcan).")
-@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
     scenario: Path | None,
@@ -291,14 +329,17 @@ def serve(
     sys.exit(command(scenario, options, speed, seed, plant, duration, record, network))
 
 
-@cli.command()
+@cli.command(short_help="The host program alone, on the boards' cables.")
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option("--usb", required=True, metavar="/dev/hidrawN|unix:PATH|can:SPEC", help="Where the gateway is.")
 @click.option(
     "--serial", multiple=True, metavar="BOARD=PORT", help="RS232 of a board, such as AXIS_RA=/dev/ttyS0."
 )
 @click.option(
-    "--lx200", multiple=True, metavar="[HOST:]PORT|pty:NAME", help="For Stellarium and INDI; repeatable."
+    "--lx200",
+    multiple=True,
+    metavar="[HOST:]PORT|pty:NAME",
+    help="LX200, for Stellarium and INDI; repeatable.",
 )
 @click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")
@@ -320,7 +361,7 @@ def host(
     sys.exit(command(scenario, usb, serial, options, duration))
 
 
-@cli.command()
+@cli.command(short_help="Repeat a session that serve --record has left.")
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: FOLDER-replayed).")
 def replay(folder: Path, out: Path | None) -> None:
@@ -333,18 +374,26 @@ def replay(folder: Path, out: Path | None) -> None:
     sys.exit(0 if before in (None, again) else 1)
 
 
-@cli.command()
+@cli.command(short_help="Speed, pause, faults, supply, end of a served network.")
 @click.argument("command", nargs=-1, required=True)
-@click.option("--at", default="127.0.0.1:7411", show_default=True, metavar="[HOST:]PORT")
+@click.option(
+    "--at",
+    default="127.0.0.1:7411",
+    show_default=True,
+    metavar="[HOST:]PORT",
+    help="Where serve --control listens.",
+)
 @click.option("--token", help="The word serve has printed; for other machines.")
 def control(command: tuple[str, ...], at: str, token: str | None) -> None:
-    """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop."""
+    """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop,
+    fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/faults.md).
+    """
     from scenarios.doors.tell import tell
 
     click.echo(tell(" ".join(command), at, token))
 
 
-@cli.command()
+@cli.command(short_help="Run many variations of a scenario, with one report.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<campaign>).")
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core).")
@@ -359,11 +408,19 @@ def campaign(file: Path, out: Path | None, jobs: int | None, scheduler: str | No
     sys.exit(command(file, out if out is not None else Path("out") / file.stem, jobs, scheduler, resume))
 
 
-@cli.command()
+@cli.command(short_help="Name what the model lacks in measured logs.")
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--rig", type=click.Path(path_type=Path), help="Rig file of another drive.")
-@click.option("--hold-out", multiple=True, help="Run to hold out (repeatable).")
-@click.option("--plant", type=click.Path(path_type=Path), help="Plant file that is declared (axis logs).")
+@click.option(
+    "--rig", type=click.Path(path_type=Path), help="Rig file that describes another drive (docs/rigs.md)."
+)
+@click.option(
+    "--hold-out",
+    multiple=True,
+    help="Name of a run that is not fitted to, only tested on (repeatable; default: chosen).",
+)
+@click.option(
+    "--plant", type=click.Path(path_type=Path), help="Plant file that the drive is declared by (axis logs)."
+)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Output folder.")
 def calibrate(
     logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None, out: Path
@@ -374,7 +431,7 @@ def calibrate(
     sys.exit(command(list(logs), rig, list(hold_out), out, plant))
 
 
-@cli.command()
+@cli.command(short_help="Show what is understood of a rig file and its logs.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--plot", type=click.Path(path_type=Path), help="Write a PNG of all columns.")
@@ -385,9 +442,9 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
     click.echo(show_rig(file, list(logs), plot))
 
 
-@cli.command()
+@cli.command(short_help="Check boards, emulated or real, against the protocol.")
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
-@click.option("--network", type=NETWORK, help="Which boards: lab, serial or final.")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
 @click.option(
     "--can",
     "channel",
@@ -395,13 +452,13 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None) -> None:
     help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
 )
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
-@click.option("--speed", type=SPEED, default=1.0, help="Speed it is served at.")
+@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Speed the boards are served at.")
 @click.option(
     "--tolerance",
     type=Number(min=0, max=1, min_open=True),
     default=0.02,
     show_default=True,
-    help="Of the mean period of a message, relative.",
+    help="Allowed error of a message's mean period, relative.",
 )
 @click.option(
     "--stamps",
@@ -435,7 +492,7 @@ def conformance(
     sys.exit(command(channel, json_file, boards, settings, scenario, network))
 
 
-@cli.command()
+@cli.command(short_help="Write CANopen data sheets of the boards.")
 @click.argument("folder", type=click.Path(path_type=Path))
 def eds(folder: Path) -> None:
     """Write a CANopen data sheet (EDS) per type of board into FOLDER."""
