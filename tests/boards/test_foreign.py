@@ -124,13 +124,19 @@ def test_what_the_gateway_cannot_name_never_reaches_the_pc() -> None:
     assert bench.board.foreign == 2
 
 
-def test_what_found_no_room_is_said_for_ten_seconds_and_counted_for_good() -> None:
-    """A flood of the highest priority keeps the axis board's frames in its three buffers."""
+def flooded(identifier: int) -> Lab:
+    """A lab after 0.1 s whose PC sends this identifier without a pause, from three buffers."""
     lab = Lab()
     lab.run(0.1)
     lab.pc.on_sent = lambda t_ns, frame: lab.pc.send(frame, t_ns) and None
     for _ in range(3):
-        lab.pc.send(Frame(0, bytes(8)), lab.queue.now_ns)
+        lab.pc.send(Frame(identifier, bytes(8)), lab.queue.now_ns)
+    return lab
+
+
+def test_what_found_no_room_is_said_for_ten_seconds_and_counted_for_good() -> None:
+    """A flood of the highest priority keeps the axis board's frames in its three buffers."""
+    lab = flooded(0)
     lab.run(0.1)
     lab.pc.on_sent = None
     lab.run(0.01)
@@ -144,11 +150,7 @@ def test_what_found_no_room_is_said_for_ten_seconds_and_counted_for_good() -> No
 
 def test_a_bus_full_of_less_important_frames_costs_no_measurement() -> None:
     """Heartbeats lose against 0x6F0 for ever; the old ones must not fill the three transmit buffers."""
-    lab = Lab()
-    lab.run(0.1)
-    lab.pc.on_sent = lambda t_ns, frame: lab.pc.send(frame, t_ns) and None
-    for _ in range(3):
-        lab.pc.send(Frame(0x6F0, bytes(8)), lab.queue.now_ns)
+    lab = flooded(0x6F0)
     seen: dict[int, list[int]] = {}
     lab.wire.tap(lambda t_ns, frame, _sender: seen.setdefault(frame.identifier, []).append(t_ns))
     lab.run(5.0)
