@@ -37,7 +37,7 @@ def source() -> str:
     return "\n".join([*value, "    return 0.0", *update, "    return", ""])
 
 
-globals().update({name: import_module(f"plant.effects.{name}") for name, _ in TERMS})
+globals().update({name: import_module(f"{__package__}.{name}") for name, _ in TERMS})
 exec(compile(source(), __file__, "exec"), globals())
 
 #: (kind, x, p) -> value of a term in its hook's unit; friction terms change x in place
