@@ -60,7 +60,7 @@ def dome_text(found: Mapping[str, float]) -> str:
 def _weather(shell: Shell) -> None:
     house = shell.telescope.house
     with box("Weather"):
-        fill = table(("station", "air, °C", "humid, %", "wind, m/s", "rain", ""))
+        fill = table(("station", "air, °C", "humid, %", "wind, m/s", "rain", "verdict"))
 
     def refresh() -> None:
         rows = []
