@@ -17,7 +17,12 @@ from bus.protocol import COMMAND_BASE, REPLY_BASE
 if TYPE_CHECKING:
     from scenarios.network import Network
 
-_LINE = re.compile(r"^\((\d+)\.(\d{6})\) \S+ ([0-9A-F]{3}|[0-9A-F]{8})#(?:R(\d)|((?:[0-9A-F]{2}){0,8}))$")
+_LINE = re.compile(
+    r"\((\d{1,10})\.(\d{6})\) \S+ ([0-7][0-9A-F]{2}|[0-3][0-9A-F]{7})#(?:R([0-8]?)|((?:[0-9A-F]{2}){0,8}))"
+)
+"""candump writes a remote frame of no bytes as `R`."""
+_ERROR = 0x2000_0000
+"""CAN_ERR_FLAG (linux/can.h) in an eight-digit identifier."""
 
 
 class FeedError(ValueError):
@@ -32,15 +37,17 @@ class Logged(NamedTuple):
 
 
 def read(file: Path) -> Iterator[Logged]:
-    """Frames of a `candump -L` log; raises FeedError."""
+    """Frames of a `candump -L` log, its error frames left out; raises FeedError."""
     try:
         with file.open(encoding="ascii", errors="replace") as lines:
             for number, line in enumerate(lines, 1):
-                found = _LINE.match(line.rstrip("\n"))
+                found = _LINE.fullmatch(line.rstrip("\n"))
                 if found is None:
                     raise FeedError(f"{file}:{number}: not a line of candump -L: {line[:60]!r}")
                 seconds, micros, name, length, data = found.groups()
-                body = bytes(int(length)) if length is not None else bytes.fromhex(data)
+                if int(name, 16) & _ERROR:
+                    continue
+                body = bytes(int(length or 0)) if length is not None else bytes.fromhex(data)
                 frame = Frame(int(name, 16), body, len(name) == 8, length is not None)
                 yield Logged(int(seconds) * 1_000_000_000 + int(micros) * 1000, frame)
     except OSError as error:

@@ -5,6 +5,7 @@ is a frame. The board takes COMMANDs for itself from it, as if they had come by 
 it has put on the bus. ASSUMPTION: the paper says "serial debugging" and no more.
 """
 
+import re
 from typing import Final
 
 from boards.core.board import Board
@@ -20,6 +21,7 @@ _DONE, _WRONG = b"\r", b"\a"
 _VERSION: Final = b"V1013\r"
 _PLAIN: Final = frozenset(b"SsWmMZXF")
 """Set-up commands of LAWICEL adapters: there is nothing to set up, but drivers send them."""
+_FRAME: Final = re.compile(rb"t([0-7][0-9A-Fa-f]{2})([0-8])((?:[0-9A-Fa-f]{2})*)")
 
 
 def line_of(frame: Frame) -> bytes:
@@ -29,14 +31,11 @@ def line_of(frame: Frame) -> bytes:
 
 def frame_of(line: bytes) -> Frame | None:
     """The frame of a line (without its end), or None when it is none."""
-    text = line.decode("ascii", "replace")
-    try:
-        length = int(text[4:5], 16)
-        frame = Frame(int(text[1:4], 16), bytes.fromhex(text[5:]))
-    except ValueError:
+    found = _FRAME.fullmatch(line)
+    if found is None:
         return None
-    good = text[:1] == "t" and frame.identifier <= 0x7FF and length == len(frame.data) <= 8
-    return frame if good and len(text) == 5 + 2 * length else None
+    data = bytes.fromhex(found[3].decode())
+    return Frame(int(found[1], 16), data) if len(data) == int(found[2]) else None
 
 
 class DebugPort:
@@ -58,13 +57,13 @@ class DebugPort:
         self.partial = b""
 
     def write(self, t_ns: int, data: bytes) -> None:
-        """The PC sends bytes from `t_ns` on; the firmware reads them when the last is through."""
-        if sum(map(len, self.incoming)) + len(data) > BUFFER_BYTES:
-            self.lost += len(data)
-            return
-        self.incoming.append(data)
-        self.in_ns = max(self.in_ns, t_ns) + self._duration_ns(len(data))
-        self.board.queue.at(self.in_ns, self._read)
+        """The PC sends bytes from `t_ns` on; the firmware reads a line when its last byte is through."""
+        room = BUFFER_BYTES - sum(map(len, self.incoming))
+        self.lost += max(0, len(data) - room)
+        for piece in data[:room].splitlines(keepends=True):
+            self.incoming.append(piece)
+            self.in_ns = max(self.in_ns, t_ns) + self._duration_ns(len(piece))
+            self.board.queue.at(self.in_ns, self._read)
 
     def _duration_ns(self, length: int) -> int:
         return length * BITS_PER_BYTE * 1_000_000_000 // self.baud
@@ -75,7 +74,7 @@ class DebugPort:
             self.partial = b""
             return
         *lines, self.partial = (self.partial + data).split(_END)
-        self.partial = self.partial[-BUFFER_BYTES:]
+        self.partial = self.partial[:BUFFER_BYTES]  # its head: the end of a long line is no line
         for line in lines:
             self._say(t_ns, self._obey(line))
 

@@ -29,6 +29,7 @@ KNOWN = (
     "supply",
     "temperature",
 )
+_LONGEST_HEADER = 400  # lines, blank ones too
 REQUIRED = ("t", "effort", "position")
 #: what each counts column must be in, for the message when a header row names another unit
 UNITS = {
@@ -55,12 +56,14 @@ def is_axis_log(text: str) -> bool:
 def read_axis_log(path: Path, text: str | None = None) -> Run:
     """Read one axis log; raises CalibrationInputError naming file, line and column."""
     text = _load(path) if text is None else text
-    lines = text.split("\n", 400)
+    lines = text.split("\n", _LONGEST_HEADER)
     header, start = parse_header(path, [x.rstrip("\r") for x in lines])
     while start < len(lines) and not lines[start].strip():
         start += 1
     if start >= len(lines):
         raise CalibrationInputError(path, "the log ends after its header: no column row, no data", start)
+    if start == _LONGEST_HEADER:
+        raise CalibrationInputError(path, f"no column row in the first {start} lines", start + 1)
     names = [n.strip().strip('"') for n in lines[start].rstrip("\r").split(",")]
     if len(names) == 1 and any(mark in names[0] for mark in ";\t"):
         mark = "semicolons" if ";" in names[0] else "tabs"
@@ -107,11 +110,13 @@ def _check_time(path: Path, raw: dict[str, Array], period: float, first: int) ->
     t = raw["t"]
     bad = ~np.isfinite(t)
     if bad.any():
-        if bad[-1] and bad.sum() == 1:  # cut off while writing
+        if np.isnan(t[-1]) and bad.sum() == 1:  # cut off while writing
             raw = {k: v[:-1] for k, v in raw.items()}
             t = raw["t"]
         else:
-            raise CalibrationInputError(path, "is empty", first + int(np.argmax(bad)), "t")
+            k = int(np.argmax(bad))
+            what = "is empty" if np.isnan(t[k]) else "is infinite"
+            raise CalibrationInputError(path, what, first + k, "t")
     step = np.diff(t)
     if len(step) and step.min() < -0.5 * period:
         k = int(np.argmax(step < -0.5 * period))

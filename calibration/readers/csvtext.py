@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import numpy as np
 
 from calibration.errors import CalibrationInputError
 from calibration.readers.run import Array
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)
+"""What a field may hold: Python's `float` also takes 1_0 and digits of other scripts."""
+
+
+def plain(field: str) -> float | None:
+    """A field's number, infinite ones too; NaN for an empty one and for nan; None when it is none."""
+    if field in ("", "nan", "NaN"):
+        return float("nan")
+    return float(field) if _NUMBER.fullmatch(field) else None
 
 
 def read_numbers(
@@ -49,7 +60,7 @@ def _slowly(
     path: Path, body: str, names: list[str], first_line: int, delimiter: str, keep: set[str]
 ) -> dict[str, Array]:
     """Field by field: finds the line and the column that is wrong."""
-    rows = body.splitlines()
+    rows = [row.rstrip("\n") for row in io.StringIO(body, newline=None)]  # no other signs end a line
     out = {n: np.full(len(rows), np.nan) for n in names if n in keep}
     count = 0
     for offset, text in enumerate(rows):
@@ -70,12 +81,12 @@ def _slowly(
             )
         for name, value in zip(names, fields, strict=True):
             value = value.strip()
-            if name not in keep or value in ("", "nan", "NaN"):
+            if name not in keep:
                 continue
-            try:
-                out[name][count] = float(value)
-            except ValueError:
+            number = plain(value)
+            if number is None:
                 hint = ": decimal commas? write points" if value.replace(",", "", 1).isdigit() else ""
-                raise CalibrationInputError(path, f"'{value}' is not a number{hint}", line, name) from None
+                raise CalibrationInputError(path, f"'{value}' is not a number{hint}", line, name)
+            out[name][count] = number
         count += 1
     return {n: v[:count] for n, v in out.items()}

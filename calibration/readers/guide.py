@@ -17,21 +17,23 @@ import re
 from bisect import bisect_left
 from dataclasses import dataclass
 from datetime import datetime
-from math import hypot
+from math import hypot, isinf
 from pathlib import Path
 
 import numpy as np
 
 from calibration.errors import CalibrationInputError
+from calibration.readers.csvtext import plain
 from calibration.readers.run import Array, Run
 
+_PX = r"([+-]?(?:[0-9]{1,9}\.?[0-9]*|\.[0-9]+))(?![0-9.])"
 _SCALE = re.compile(r"[Pp]ixel scale\s*=\s*([0-9.,+-]+)\s*arc-sec/px")
 _BEGIN = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
 _MOUNT = re.compile(r"^Mount\s*=\s*([^,\r\n]+)", re.MULTILINE)
 _DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
 _SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
-_DITHER = re.compile(r"DITHER by ([+-]?[0-9.]+), ([+-]?[0-9.]+)")
-_LOCK = re.compile(r"[Ll]ock pos(?:ition)?\s*=\s*([+-]?[0-9.]+), ([+-]?[0-9.]+)")
+_DITHER = re.compile(rf"DITHER by {_PX}, {_PX}")
+_LOCK = re.compile(rf"[Ll]ock pos(?:ition)?\s*=\s*{_PX}, {_PX}")
 SAME_PX = 0.01  # a lock position that is written again, to PHD2's last digits
 COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
@@ -108,10 +110,10 @@ def _empty(text: str, other: set[str]) -> str:
 
 
 def _number(path: Path, line: int, name: str, value: str) -> float:
-    try:
-        return float(value) if value else float("nan")
-    except ValueError:
-        raise CalibrationInputError(path, f"'{value}' is not a number", line, name) from None
+    found = plain(value.strip())
+    if found is None or isinf(found):
+        raise CalibrationInputError(path, f"'{value[:40]}' is not a number", line, name)
+    return found
 
 
 def _close(
@@ -154,6 +156,11 @@ def _header(text: str, unit: str, track: _Track) -> dict[str, str]:
     began = _BEGIN.search(text)
     if began:
         header["start_local"] = began.group(1)
+        try:
+            _clock(began.group(1))
+        except ValueError:
+            what = f"'Guiding Begins at {began.group(1)}' is no date and time"
+            raise CalibrationInputError(track.path, what) from None
     return header
 
 
@@ -201,10 +208,8 @@ class _Track:
         return {c: table[:, k].copy() for k, c in enumerate(("t", "ra", "dec", "segment", "dither"))}
 
     def _mark(self, line: int, fields: list[str]) -> str:
-        if len(fields) <= self.where["RAGuideDistance"]:
-            raise CalibrationInputError(
-                self.path, f"{len(fields)} fields, the header row has {self.width}", line
-            )
+        if len(fields) <= max(self.where[c] for c in COLUMNS):
+            raise self._short(line, fields)
         mark = fields[self.where["mount"]].strip().strip('"')
         if mark not in MARKS:
             what = f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)"
@@ -221,7 +226,13 @@ class _Track:
 
     def _optional(self, line: int, fields: list[str], column: str) -> float:
         at = self.where.get(column)
+        if at is not None and at >= len(fields):
+            raise self._short(line, fields)
         return 0.0 if at is None else _number(self.path, line, column, fields[at])
+
+    def _short(self, line: int, fields: list[str]) -> CalibrationInputError:
+        what = f"{len(fields)} fields, the header row has {self.width}"
+        return CalibrationInputError(self.path, what, line)
 
     def _correction(self, fields: list[str], duration: str, guided: float) -> float:
         """px that a pulse moved the mount by; 0 when none was sent."""
@@ -292,7 +303,11 @@ def start_seconds(run: Run) -> float | None:
     text = run.header.get("start_local")
     if text is None:
         return None
-    return (datetime.strptime(text, "%Y-%m-%d %H:%M:%S") - datetime(2000, 1, 1)).total_seconds()
+    return (_clock(text) - datetime(2000, 1, 1)).total_seconds()
+
+
+def _clock(text: str) -> datetime:
+    return datetime.strptime(text, "%Y-%m-%d %H:%M:%S")
 
 
 def _settling(line: int, marks: dict[str, list[int]]) -> bool:

@@ -49,6 +49,10 @@ VOLTS = column(LOG, 2, lambda v: f"{int(v) / 3000 * 24:.4f}")
         (LOG.replace("\n0.05,15,20,", "\n0.05,15,9999,").encode(), ":17: column 'effort': is beyond full"),
         (DEGREES.encode(), ":12: column 'position': holds fractions"),
         (VOLTS.encode(), ":12: column 'effort': never exceeds 0.16"),
+        (LOG.replace("\n0.05,15,20,", "\n0.05,15,2_0,").encode(), ":17: column 'effort': '2_0' is not"),
+        (LOG.replace("\n2.99,", "\n1e999,").encode(), ":311: column 't': is infinite"),
+        (LOG.replace("\n2.98,", "\x852.98,").encode(), ":309: 17 fields"),
+        (LOG.replace("\nt,", "\n" * 400 + "t,").encode(), "no column row in the first 400 lines"),
         ((LOG + LOG).encode(), ":312: 1 fields.*one file holds one run"),
     ],
 )

@@ -28,7 +28,7 @@ from scenarios.doors.hid_report import out_report
 from scenarios.doors.serial_tcp import Rfc2217Door
 from scenarios.load import load
 from scenarios.served import chosen
-from tests.fuzz import inputs
+from tests.fuzz import chips, files, inputs, streams
 from tests.fuzz.hosted import alpaca, lx200
 
 MS = 1_000_000
@@ -208,6 +208,16 @@ DOORS: dict[str, Callable[[Served, int, Random], dict[str, int]]] = {
 }  # fmt: skip
 
 
+ALONE: dict[str, Callable[[int, Random], dict[str, int]]] = {
+    "packets": streams.packets, "debug": streams.debug, "slcan": streams.slcan, "spi": chips.spi,
+    "endat": chips.endat, "candump": files.candump, "axis-logs": files.axis_logs,
+    "guide-logs": files.guide_logs,
+}  # fmt: skip
+"""What is attacked without a network around it."""
+
+
 def attack(door: str, count: int, seed: int = 1) -> dict[str, int]:
-    """`count` inputs at one door of a fresh network; what became of them."""
+    """`count` inputs at one door, of a fresh network where it needs one; what became of them."""
+    if door in ALONE:
+        return ALONE[door](count, Random(seed))
     return DOORS[door](Served(*chosen()), count, Random(seed))

@@ -59,3 +59,17 @@ def test_what_cannot_be_fed_is_said(
 def test_a_log_that_is_not_there_is_said(tmp_path: Path) -> None:
     with pytest.raises(FeedError, match="No such file"):
         list(read(tmp_path / "a.log"))
+
+
+@pytest.mark.parametrize("body", ["211#R9", "FFF#00", "4FFFFFFF#00", "211#0", "211#00 R"])
+def test_frames_that_can_does_not_have_are_refused(body: str, tmp_path: Path) -> None:
+    (tmp_path / "a.log").write_text(f"(0.100000) can0 {body}\n")
+    with pytest.raises(FeedError, match=":1: not a line"):
+        list(read(tmp_path / "a.log"))
+
+
+def test_error_frames_are_left_out_and_an_empty_remote_frame_is_read(tmp_path: Path) -> None:
+    text = "(0.100000) can0 20000004#0004000000000000\n(0.200000) can0 211#R\n"
+    (tmp_path / "a.log").write_text(text)
+    (logged,) = read(tmp_path / "a.log")
+    assert logged.frame == (0x211, b"", False, True)

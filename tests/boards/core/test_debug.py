@@ -107,9 +107,22 @@ def test_bytes_take_their_time_and_a_board_without_supply_is_silent() -> None:
 
 def test_more_than_the_buffer_is_lost_and_counted() -> None:
     desk = Desk()
-    desk.say(b"V" * (BUFFER_BYTES + 1))
-    assert desk.port.lost == BUFFER_BYTES + 1
-    assert desk.say(b"V\r") == b"V1013\r"
+    desk.say(b"V" * (BUFFER_BYTES + 1), 40)
+    assert desk.port.lost == 1
+    assert desk.say(b"\rV\r") == b"\aV1013\r"
+
+
+def test_the_end_of_a_line_that_is_too_long_is_no_line() -> None:
+    desk = Desk()
+    for _ in range(2):
+        desk.say(b"x" * BUFFER_BYTES, 40)
+    assert desk.say(b"V" * BUFFER_BYTES + b"\r", 40) == b""
+    assert desk.say(b"\r") == b"\a"
+
+
+@pytest.mark.parametrize("line", [b"t+D10", b"t0_10", b"t D10", b"t0D1+", b"t8000", b"t0D19" + b"00" * 9])
+def test_digits_that_only_python_knows_are_none(line: bytes) -> None:
+    assert frame_of(line) is None
 
 
 def test_the_same_bytes_cut_anywhere_do_the_same() -> None:
