@@ -18,7 +18,7 @@ FLAGS = [
 ]  # fmt: skip
 PATHS = ("/", "/focus", "/alignment", "/maintenance", "/dome", "/bus", "/calibrate")
 SHOTS = ROOT / "out" / "consoles"
-LONG_MS = 90_000
+LONG_MS = 120_000
 NIGHT = "scenarios/observing-night.yaml"
 _CONTROLS = "button, [role=combobox], [role=radio], [role=switch], [role=checkbox], input, a[href]"
 _WATCH = """
