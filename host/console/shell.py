@@ -51,6 +51,7 @@ class Shell:
         self._controls: list[Any] = []
         self._refresh: list[Callable[[], object]] = []
         self._locked: bool | None = None
+        self._said: ui.label
         self._keys: list[Callable[[KeyEventArguments], None]] = []
 
     @property
@@ -76,8 +77,14 @@ class Shell:
         try:
             return await work
         except Refused as refusal:
-            ui.notify(str(refusal), type="negative", position="top")
+            self.say(str(refusal), bad=True)
             return None
+
+    def say(self, text: str, bad: bool = False) -> None:
+        """A line in the head of the page that stays until the next one: whoever looks up late still reads
+        it. bad: something was refused."""
+        self._said.set_text(f"{self.desk.now.t_s:.1f} s: {text}")
+        self._said.classes(add="bad" if bad else None, remove=None if bad else "bad")
 
     def doing(self, act: Callable[[Telescope], Any]) -> Callable[[], Awaitable[None]]:
         """A handler that has a command carried out."""
@@ -130,6 +137,7 @@ class Shell:
             button("Night / day", on_click=self._toggle_day)
             lock = button("Lock", on_click=self._lock)
             button("STOP  (space)", on_click=self.stop).classes("stop")
+            self._said = ui.label().classes("said").props('role="log" aria-label="Last answer"')
         with ui.element("div").classes("w-full"):
             yield
         self.each(lambda: state.set_text(summary(self.desk.now)))

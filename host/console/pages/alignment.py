@@ -25,9 +25,7 @@ def alignment(shell: Shell) -> None:
 
             async def align() -> None:
                 if not chosen.value:
-                    ui.notify(
-                        "choose the star that is in the middle of the field", type="negative", position="top"
-                    )
+                    shell.say("choose the star that is in the middle of the field", bad=True)
                     return
                 found = await shell.attempt(shell.desk.do(lambda t: t.drive.sync(star(chosen.value))))
                 if found is not None:

@@ -83,7 +83,7 @@ def _faults(shell: Shell, view: BusView) -> None:
     chosen.on_value_change(show)
 
     async def start() -> None:
-        await _tell(view.start_fault(chosen.value, given.value or ""))
+        await _tell(shell, view.start_fault(chosen.value, given.value or ""))
 
     shell.control(button("Start it", on_click=start))
     fill = table(("number", "on"))
@@ -93,16 +93,16 @@ def _faults(shell: Shell, view: BusView) -> None:
         )
 
         async def clear() -> None:
-            await _tell(view.clear_fault(int(number.value or 0)))
+            await _tell(shell, view.clear_fault(int(number.value or 0)))
 
         shell.control(button("Clear it", on_click=clear))
     shell.each(lambda: fill([(str(each), words) for each, words in view.running()]))
 
 
-async def _tell(future: Future[str]) -> None:
+async def _tell(shell: Shell, future: Future[str]) -> None:
     try:
-        ui.notify(await asyncio.wait_for(asyncio.wrap_future(future), ANSWER_S), position="top")
+        shell.say(await asyncio.wait_for(asyncio.wrap_future(future), ANSWER_S))
     except ValueError as error:
-        ui.notify(str(error), type="negative", position="top")
+        shell.say(str(error), bad=True)
     except TimeoutError:
-        ui.notify("no slice of time has come; is it paused?", type="negative", position="top")
+        shell.say("no slice of time has come; is it paused?", bad=True)

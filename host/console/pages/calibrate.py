@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 
 from nicegui import ui
 
@@ -19,8 +20,8 @@ def calibrate(shell: Shell, runs: Runs) -> None:
             ui.label("Both axes, as their boards send it over RS232, one file a run.").classes("small")
             state = ui.label().classes("mid").props('role="status"')
             with ui.row():
-                shell.control(button("Start a run", on_click=lambda: _tell(runs.start)))
-                shell.control(button("End the run", on_click=lambda: _tell(runs.stop)))
+                shell.control(button("Start a run", on_click=lambda: _tell(shell, runs.start)))
+                shell.control(button("End the run", on_click=lambda: _tell(shell, runs.stop)))
         with box("Ask the finder"):
             axis = shell.control(ui.radio(["ra", "dec"], value="ra").props('inline aria-label="Axis"'))
             said = ui.html(sanitize=False).props('role="log" aria-label="What the finder says"')
@@ -30,7 +31,7 @@ def calibrate(shell: Shell, runs: Runs) -> None:
             async def ask() -> None:
                 logs = runs.logs(axis.value)
                 if not logs:
-                    ui.notify("record a run first", type="negative", position="top")
+                    shell.say("record a run first", bad=True)
                     return
                 name = f"report-{axis.value}-{len(logs)}"
                 link.set_visibility(False)
@@ -50,11 +51,11 @@ def calibrate(shell: Shell, runs: Runs) -> None:
     shell.each(refresh)
 
 
-def _tell(act: object) -> None:
+def _tell(shell: Shell, act: Callable[[], None]) -> None:
     try:
-        act()  # type: ignore[operator]
+        act()
     except (OSError, ValueError) as error:
-        ui.notify(str(error), type="negative", position="top")
+        shell.say(str(error), bad=True)
 
 
 async def run(command: list[str]) -> tuple[str, int]:

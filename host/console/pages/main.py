@@ -149,7 +149,7 @@ def _target(shell: Shell) -> None:
             try:
                 wanted = _wanted(chosen.value, ra.value, dec.value)
             except ValueError as error:
-                ui.notify(str(error), type="negative", position="top")
+                shell.say(str(error), bad=True)
                 return
             await shell.attempt(shell.desk.do(lambda t: t.drive.goto(wanted, wake=True)))
 
@@ -251,7 +251,7 @@ def _parameters(shell: Shell) -> None:
             got = await shell.attempt(shell.desk.run(lambda t: t.boards.set(device, which, wanted)))
             if got is not None:
                 value.set_value(got)
-                ui.notify(f"{kind.value} is {got}", position="top")
+                shell.say(f"{board.value} {kind.value} is {got}")
 
         with ui.row():
             shell.control(button("Read", on_click=read))

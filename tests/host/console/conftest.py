@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -74,6 +75,19 @@ def browser() -> Iterator[Any]:
         made = p.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield made
         made.close()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
+    """What the browser showed when a test failed, with the failure and as pictures."""
+    report = yield
+    made = getattr(item, "funcargs", {}).get("browser")
+    if report.failed and made is not None:
+        for number, page in enumerate(p for context in made.contexts for p in context.pages):
+            with contextlib.suppress(Exception):  # a browser that died must not hide the failure itself
+                report.sections.append((f"page {number}", page.inner_text("body")))
+                shot(page, f"failed-{item.name}-{number}")
+    return report
 
 
 @pytest.fixture(scope="module")
