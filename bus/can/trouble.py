@@ -322,7 +322,8 @@ class Trouble:
         wire.bits += bits + (t_ns - begun_ns) // wire.bit_ns
         wire._end_ns = _NEVER
         wire._decide_ns = _NEVER
-        self._recovery.quiet_since_ns = wire._free_ns
+        delimiter = (ERROR_DELIMITER_BITS + INTERMISSION_BITS) * wire.bit_ns
+        self._recovery.quiet_since_ns = wire._free_ns - delimiter
         self.errors["stuff"] += 1
         listeners = self.listeners(offer.port)
         confinement.receive_failed(listeners)

@@ -31,6 +31,13 @@ WARM = (can, cantools, np)
 """Imported once, before the children are forked."""
 
 
+class FewExamples:
+    """A pytest plug-in: few and always the same examples, whatever a conftest file has chosen."""
+
+    def pytest_collection(self) -> None:
+        hypothesis.settings.load_profile("mutation")
+
+
 class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Gives one module other code than its file has."""
 
@@ -60,7 +67,7 @@ def survives(path: str, source: str, tests: tuple[str, ...]) -> bool:
             sys.meta_path.insert(0, Substitute(name, compile(source, path, "exec")))
             quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning", "--override-ini", "addopts="]
             arguments = ["-x", "-q", "-p", "no:cacheprovider", "-m", "not slow and not guest", *quiet]
-            code = int(pytest.main([*arguments, *tests]))
+            code = int(pytest.main([*arguments, *tests], plugins=[FewExamples()]))
         finally:
             os._exit(code)
     return os.waitpid(child, 0)[1] == 0
@@ -76,7 +83,6 @@ def main() -> None:
     hypothesis.settings.register_profile(
         "mutation", max_examples=30, deadline=None, database=None, derandomize=True
     )
-    hypothesis.settings.load_profile("mutation")
     lines: list[str] = []
 
     def tell(text: str) -> None:

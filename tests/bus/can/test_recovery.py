@@ -1,0 +1,189 @@
+"""Bus-off recovery, bit by bit: 128 occurrences of eleven consecutive recessive bits (ISO 11898-1)."""
+
+import pytest
+
+from bus.can import Flip, Frame, Wire
+from bus.can.bits import wire_bits
+from bus.can.port import BusError, Port
+from bus.can.stuck import StuckDominant
+from bus.time import EventQueue
+from tests.bus.can.test_wire import network
+
+BIT_NS = 1000
+RUNS_NS = 128 * 11 * BIT_NS
+BAD_BIT = 50
+FRAME = Frame(0x123, bytes.fromhex("0102030405060708"))
+LENGTH = len(wire_bits(FRAME)) + 3
+"""With intermission."""
+
+
+def off_in_one(queue: EventQueue, wire: Wire, node: int = 0) -> int:
+    """A node one error away from bus off sends a frame with one wrong bit; returns when the bus is recessive
+    again: the wrong bit, an error flag of six bits, and then the error delimiter counts."""
+    port = wire.ports[node]
+    port.tec = 248
+    starts: list[int] = []
+
+    def wrong(t_ns: int, _frame: Frame, sender: str) -> Flip | None:
+        if sender != port.name or starts:
+            return None
+        starts.append(t_ns)
+        return Flip(BAD_BIT)
+
+    wire.disturb(wrong)
+    port.send(FRAME, queue.now_ns)
+    while port.state != "bus_off":
+        queue.run_until(queue.now_ns + BIT_NS)
+    wire.disturb(None)
+    return starts[0] + (BAD_BIT + 1 + 6) * BIT_NS
+
+
+def back_ns(queue: EventQueue, port: Port, limit_ns: int = 10_000_000) -> int:
+    """When `port` returns, to one nanosecond before and at."""
+    while port.state == "bus_off":
+        assert queue.now_ns < limit_ns
+        queue.run_until(queue.now_ns + BIT_NS // 2)
+    return queue.now_ns
+
+
+@pytest.mark.parametrize("start_ns", [0, 777_000])
+def test_L1_on_a_quiet_bus_it_is_exactly_1408_bits(start_ns: int) -> None:
+    queue, wire = network(2)
+    queue.run_until(start_ns)
+    due = off_in_one(queue, wire) + RUNS_NS
+    queue.run_until(due - 1)
+    assert wire.ports[0].state == "bus_off"
+    queue.run_until(due)
+    assert (wire.ports[0].state, wire.ports[0].tec, wire.ports[0].rec) == ("active", 0, 0)
+    queue.run_until(due + LENGTH * BIT_NS)  # its frame was kept, and goes at once
+    assert wire.frames == 1
+
+
+def test_L1_on_a_busy_bus_every_frame_is_one_run() -> None:
+    """ACK delimiter, end of frame and intermission are eleven recessive bits, and so are the error delimiter
+    and intermission behind the fatal error: 127 frames are left to wait for."""
+    queue, wire = network(3)
+    busy = wire.ports[1]
+    off_in_one(queue, wire)
+    busy.on_sent = lambda t_ns, _frame: busy.send(Frame(1, bytes(8)), t_ns)
+    for _ in range(2):
+        busy.send(Frame(1, bytes(8)), queue.now_ns)
+    back_ns(queue, wire.ports[0], 20_000_000)
+    assert wire.frames == 127
+
+
+def test_L1_a_frame_in_between_costs_what_it_takes() -> None:
+    """Ten runs and a half, then a frame: its dominant bits end the half run, its tail begins a new one."""
+    queue, wire = network(2)
+    quiet = off_in_one(queue, wire)
+    wire.attach("third")
+    sof = quiet + (10 * 11 + 5) * BIT_NS
+    wire.ports[1].send(FRAME, sof)
+    tail = sof + (LENGTH - 11) * BIT_NS
+    due = tail + (128 - 10) * 11 * BIT_NS
+    queue.run_until(due - 1)
+    assert wire.ports[0].state == "bus_off"
+    queue.run_until(due)
+    assert wire.ports[0].state == "active"
+
+
+def test_L1_two_nodes_off_come_back_one_after_the_other() -> None:
+    queue, wire = network(3)
+    first = off_in_one(queue, wire)
+    queue.run_until(first + 40 * 11 * BIT_NS)
+    second = off_in_one(queue, wire, 1)
+    assert second > first + 40 * 11 * BIT_NS
+    back = [back_ns(queue, wire.ports[0]), back_ns(queue, wire.ports[1])]
+    # 40 of the first one's runs lie before the second one's flag; then its frame, which was kept, delays
+    # the second one by its bits but for its recessive tail.
+    assert back[0] == second + 88 * 11 * BIT_NS
+    assert back[1] == second + RUNS_NS + (LENGTH - 11) * BIT_NS
+
+
+def test_L1_a_node_switched_while_off_starts_anew_and_leaves_the_other_one_waiting() -> None:
+    queue, wire = network(3)
+    off_in_one(queue, wire)
+    second = off_in_one(queue, wire, 1)
+    queue.run_until(second + 5 * 11 * BIT_NS)
+    port = wire.ports[0]
+    port.online = False
+    port.online = True
+    assert (port.state, port.tec) == ("active", 0)
+    port.tec = 100
+    queue.run_until(second + 127 * 11 * BIT_NS)
+    assert (port.tec, wire.ports[1].state) == (100, "bus_off")  # no recovery takes its counter back
+    assert back_ns(queue, wire.ports[1]) == second + RUNS_NS
+
+
+def test_L1_dominant_bits_do_not_count_and_what_counted_stays() -> None:
+    queue, wire = network(2)
+    quiet = off_in_one(queue, wire)
+    held = quiet + (20 * 11 + 3) * BIT_NS
+    queue.run_until(held)
+    stuck = StuckDominant(wire, held)
+    queue.run_until(held + 5_000_000)
+    assert wire.ports[0].state == "bus_off"
+    stuck.release(queue.now_ns)
+    due = queue.now_ns + 108 * 11 * BIT_NS
+    queue.run_until(due - 1)
+    assert wire.ports[0].state == "bus_off"
+    queue.run_until(due)
+    assert wire.ports[0].state == "active"
+
+
+def test_L1_a_sender_cut_off_costs_its_flag_and_no_run() -> None:
+    """Six recessive bits after the cut, then the others' flag of six; the delimiter behind it counts."""
+    queue, wire = network(4)
+    quiet = off_in_one(queue, wire)
+    sof = quiet + 10 * 11 * BIT_NS
+    queue.run_until(sof - BIT_NS)
+    wire.ports[1].send(FRAME, sof)
+    queue.run_until(sof + 40 * BIT_NS)
+    wire.ports[1].online = False
+    again = sof + (40 + 6 + 6) * BIT_NS
+    assert back_ns(queue, wire.ports[0]) == again + 118 * 11 * BIT_NS
+
+
+def test_L1_who_comes_back_is_told_and_nobody_else() -> None:
+    class Watcher:
+        def __init__(self) -> None:
+            self.times: list[int] = []
+
+        def counted(self, t_ns: int) -> None:
+            self.times.append(t_ns)
+
+        def ignore(self, *_args: object, **_kinds: object) -> None:
+            """Of no interest here."""
+
+        began = lost = failed = activity = ignore
+
+    queue, wire = network(3)
+    due = off_in_one(queue, wire) + RUNS_NS
+    watchers, told = [Watcher(), Watcher()], []
+    for node, watcher in enumerate(watchers):
+        port = wire.ports[node]
+        port.watcher = watcher
+
+        def note(t_ns: int, error: BusError, name: str = port.name) -> None:
+            told.append((t_ns, error.kind, name))
+
+        port.on_error = note
+    queue.run_until(due)
+    assert told == [(due, "", "n0")]
+    assert (watchers[0].times, watchers[1].times) == ([due], [])
+
+
+def test_L1_the_bit_rate_is_the_wires() -> None:
+    queue, wire = network(2, 125_000)
+    port = wire.ports[0]
+    port.tec = 248
+    wire.disturb(lambda *_: Flip(BAD_BIT))
+    port.send(FRAME, 0)
+    while port.state != "bus_off":
+        queue.run_until(queue.now_ns + 1000)
+    wire.disturb(None)
+    due = (BAD_BIT + 1 + 6 + 128 * 11) * 8000
+    queue.run_until(due - 1)
+    assert port.state == "bus_off"
+    queue.run_until(due)
+    assert port.state == "active"
