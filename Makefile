@@ -64,7 +64,7 @@ fit: $(READY)
 	$(BIN)/python -m scenarios.paper.search --out out/fit
 
 clean:
-	rm -rf $(VENV) out build dist scenarios/native/library *.egg-info
+	rm -rf $(VENV) out build dist scenarios/native/library plant/library *.egg-info
 
 $(READY): pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit('schmidt needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Try: make PYTHON=python3.11') if sys.version_info < (3, 11) else None"

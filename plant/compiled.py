@@ -9,6 +9,9 @@ compiled code calls (compiled into their caller, so they cost nothing when the c
 `kernel` and `inner` work in the arrays they are given and allocate none: numba then leaves out the atomic
 reference counts of every row and slice, which were 62 % of the plant's time. `entry` may allocate; it is
 also called `njit`. SCHMIDT_CACHE_DIR moves the cache.
+
+Numba itself is loaded when the first function needs it: a network whose kernel was compiled beforehand
+(`ahead.py`) never does, which saves most of a second and half of the memory.
 """
 
 import atexit
@@ -17,32 +20,28 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from importlib.metadata import version
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from plant import ahead
 
 Floats = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
 ROOM = Path(__file__).parent
 BASE = "SCHMIDT_CACHE_DIR"
+KERNELS: dict[str, Callable[..., Any]] = {}
+"""Kernels as they were written, by name."""
 
 
 def _fingerprint() -> str:
     """Return a hash of the compiled sources and of the compiler's version."""
-    digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(ROOM.rglob("*.py")):
-        text = path.read_bytes()
-        if (
-            b"plant.compiled" in text
-            or b"plant.kernels" in text
-            or path.parent.name in ("kernels", "effects")
-        ):
-            digest.update(path.relative_to(ROOM).as_posix().encode() + b"\0" + text)
-    return digest.hexdigest()[:16]
+    return hashlib.sha256((version("numba") + ahead.fingerprint(ROOM)).encode()).hexdigest()[:16]
 
 
 def _writable(folder: Path) -> bool:
@@ -70,12 +69,35 @@ def cache_folder() -> Path:
     return folder
 
 
-numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+class Inner:
+    """A function that is compiled into its callers, once there is one: numba takes it for what it is by
+    `_numba_type_`. py_func: the function as it was written."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+
+    @cached_property
+    def compiled(self) -> Any:
+        """The function as numba has it."""
+        options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True, "_nrt": False}
+        return _njit(self.py_func, **options)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.compiled._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compile for these arguments and call; for tests, nothing else does."""
+        return self.compiled(*arguments)
 
 
 def kernel(function: F) -> F:
-    """Compile for calls from Python; works in the arrays it is given. The machine code is kept on disk."""
-    return _njit(function, cache=True, _nrt=False)
+    """Compile for calls from Python; works in the arrays it is given. The machine code is kept on disk, or
+    was made beforehand."""
+    KERNELS[function.__name__] = function
+    ready = ahead.find(function.__name__)
+    return cast(F, ready) if ready is not None else _njit(function, cache=True, _nrt=False)
 
 
 def entry(function: F) -> F:
@@ -85,11 +107,16 @@ def entry(function: F) -> F:
 
 def inner(function: F) -> F:
     """Compile into its callers, compiled code only; works in the arrays it is given."""
-    return _njit(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True, _nrt=False)
+    return cast(F, Inner(function))
 
 
 def _njit(function: F, **options: bool) -> F:
     """Compile. `_nrt` is private to numba: tests/plant/test_compiled.py tells when it changes its meaning."""
+    import numba
+
+    folder = str(cache_folder()) if options.get("cache") else ""
+    if folder:
+        numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
     compile_with: Any = numba.njit  # its stubs do not know all options
     compiled: F = compile_with(error_model="numpy", **options)(function)
     return compiled
