@@ -342,6 +342,7 @@ def serve(
     help="LX200, for Stellarium and INDI; repeatable.",
 )
 @click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
 def host(
@@ -350,6 +351,7 @@ def host(
     serial: tuple[str, ...],
     lx200: tuple[str, ...],
     alpaca: str | None,
+    network: str | None,
     logs: Path | None,
     duration: float | None,
 ) -> None:
@@ -358,7 +360,7 @@ def host(
     from scenarios.host import command
 
     options = DoorOptions(lx200=lx200, alpaca=alpaca, logs=logs)
-    sys.exit(command(scenario, usb, serial, options, duration))
+    sys.exit(command(scenario, usb, serial, options, duration, network))
 
 
 @cli.command(short_help="Repeat a session that serve --record has left.")

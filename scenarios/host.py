@@ -18,6 +18,8 @@ from host.serial_link import SerialLink
 from scenarios.doors import Keeper
 from scenarios.doors.options import DoorOptions, astronomy
 from scenarios.hosted import Hosted
+from scenarios.model import Scenario
+from scenarios.network import config_from, devices_of
 from scenarios.served import chosen
 
 SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
@@ -27,13 +29,19 @@ class HostProgram:
     """Links, telescope and doors on the PC's own clock."""
 
     def __init__(
-        self, scenario: Path | None, usb: str, serial: dict[str, str], options: DoorOptions, console: Console
+        self,
+        scenario: Path | None,
+        usb: str,
+        serial: dict[str, str],
+        options: DoorOptions,
+        console: Console,
+        network: str | None = None,
     ) -> None:
         self.inbox: SimpleQueue[tuple[str, bytes]] = SimpleQueue()
         said: SimpleQueue[str] = SimpleQueue()
         self._said, self._console = said, console
-        chosen_scenario, _ = chosen(scenario)
-        boards = [device.name for device in Device]
+        chosen_scenario, _ = chosen(scenario, network_name=network)
+        boards = boards_of(chosen_scenario)
         self.hosted = Hosted(chosen_scenario, self._send, boards, options.logs)
         self.outside = Outside()
         self.usb = LinkTask(usb, lambda: _port(usb), self.inbox, said.put)
@@ -102,6 +110,12 @@ class HostProgram:
         self.usb.write(report)
 
 
+def boards_of(scenario: Scenario) -> list[str]:
+    """Names of the boards that a scenario's network has: those that should live."""
+    config = config_from(scenario.network, {}, scenario.file.parent)
+    return [device.name for device in devices_of(config)]
+
+
 def _port(spec: str) -> HidrawPort | SocketPort | CanPort:
     kind, _, rest = spec.partition(":")
     if kind == "unix":
@@ -119,6 +133,7 @@ def command(
     serial: tuple[str, ...],
     options: DoorOptions,
     duration_s: float | None = None,
+    network: str | None = None,
 ) -> int:
     """Run the host; returns 0. Raises ValueError for what cannot be meant."""
     ports: dict[str, str] = {}
@@ -127,5 +142,5 @@ def command(
         if board not in SERIAL or not equals or not url:
             raise ValueError(f'--serial "{each}": expected BOARD=PORT, BOARD one of {", ".join(SERIAL)}')
         ports[board] = url
-    HostProgram(scenario, usb, ports, options, Console()).run(duration_s)
+    HostProgram(scenario, usb, ports, options, Console(), network).run(duration_s)
     return 0

@@ -19,7 +19,7 @@ from boards.silicon.hid import HidEndpoint
 from boards.silicon.uart import Uart
 from bus.can import Wire
 from bus.protocol import Device
-from bus.protocol.nodes import KindError, kind_of
+from bus.protocol.nodes import AUXILIARY, KindError, kind_of
 from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
 from plant.plant import Plant
@@ -132,8 +132,9 @@ def crystal(seed: int, name: str, settings: NodeConfig) -> Oscillator:
 class _Wiring:
     """The parts all boards share while they are being made."""
 
-    def __init__(self, config: NetworkConfig, plant: Plant, seed: int) -> None:
+    def __init__(self, config: NetworkConfig, plant: Plant, seed: int, devices: tuple[Device, ...]) -> None:
         self.config = config
+        self.devices = devices
         self.plant = plant
         self.seed = seed
         self.queue = EventQueue()
@@ -162,7 +163,11 @@ class _Wiring:
         motors = (int(Device[f"MOTOR_{side}_A"]), int(Device[f"MOTOR_{side}_B"]))
         position = int(Device[f"POSITION_{side}"])
         crystal = self.crystal(device.name)
-        return AxisBoard(*self.common(device.name, device), pins, crystal, settings, position, motors)
+        number = AUXILIARY.nodes[f"AUXILIARY_{side}"]
+        auxiliary = number if number in self.devices else None
+        return AxisBoard(
+            *self.common(device.name, device), pins, crystal, settings, position, motors, auxiliary
+        )
 
     def position(self, device: Device) -> Board:
         axis, port = self.port(device)
@@ -233,9 +238,9 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     size = len(devices) if config.size is None else config.size
     if not 1 <= size <= _MAXIMUM_NODES:
         raise NetworkError(f"network: size {size} is not within 1..{_MAXIMUM_NODES}")
-    wiring = _Wiring(config, plant, seed)
+    wiring = _Wiring(config, plant, seed, devices[:size])
     boards = wiring.boards
-    for device in devices[:size]:
+    for device in wiring.devices:
         if kind_of(device) is not None:
             boards[device.name] = wiring.declared(device)
             continue

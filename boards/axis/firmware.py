@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from boards.axis.auxiliary import RemoteAuxiliary
 from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import TICK_NS, AxisConfig
 from boards.axis.counter import CounterTorque
@@ -49,12 +50,12 @@ _POWERED, _MOVING, _LIMIT, _FAULT = map(
 class AxisBoard(PeriodicBoard):
     """dsPIC30F3011 + MCP2515, one per axis.
 
-    position_type, motor_types: device types of the boards it listens to: its EnDat board, its motors A
-        and B.
+    position_type, motor_types, auxiliary_type: device types of the boards it listens to: its EnDat board,
+        its motors A and B, its auxiliary encoder's (None: not on this network).
     """
 
     __slots__ = (
-        "_identifier", "adc", "config", "counter", "effort", "effort_command",
+        "_identifier", "adc", "auxiliary", "config", "counter", "effort", "effort_command",
         "fault", "fine", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
         "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
     )  # fmt: skip
@@ -70,6 +71,7 @@ class AxisBoard(PeriodicBoard):
         config: AxisConfig,
         position_type: int,
         motor_types: tuple[int, int],
+        auxiliary_type: int | None = None,
     ) -> None:
         super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
         self.config = config
@@ -93,12 +95,16 @@ class AxisBoard(PeriodicBoard):
         self.fault = False
         self.watch = EncoderWatch()
         self._identifier = MEASUREMENT_BASE + device_type
-        remote = (
+        self.auxiliary = RemoteAuxiliary(config.frame_ns)
+        remote = [
             MEASUREMENT_BASE + position_type,
             MEASUREMENT_BASE + motor_types[0],
             MEASUREMENT_BASE + motor_types[1],
-        )
-        calls = (self.motion.take_position, self.tach_a.take, self.tach_b.take)
+        ]
+        calls = [self.motion.take_position, self.tach_a.take, self.tach_b.take]
+        if auxiliary_type is not None:  # the last of the four filters that go with the second mask
+            remote.append(MEASUREMENT_BASE + auxiliary_type)
+            calls.append(self.auxiliary.take)
         self.mail.update(zip(remote, calls, strict=True))
         self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]), (FULL_MASK, remote))
         self.commands = self.common_commands() | axis_commands(self)
@@ -112,6 +118,7 @@ class AxisBoard(PeriodicBoard):
         self.motion.forget()
         self.tach_a.forget()
         self.tach_b.forget()
+        self.auxiliary.forget()
         self.pi.start(0, 0, 0)
         self.counter.register = 0
         self.effort = 0
@@ -201,7 +208,8 @@ class AxisBoard(PeriodicBoard):
         tach_a, tach_b = self.tach_a.sample(now), self.tach_b.sample(now)
         if not self.samples:
             self.stamp_ns = t_ns
-        self.samples.append((effort, position, velocity, adc_a, adc_b, tach_a, tach_b, 0, setpoint))
+        aux = self.auxiliary.sample(now)
+        self.samples.append((effort, position, velocity, adc_a, adc_b, tach_a, tach_b, aux, setpoint))
         if len(self.samples) == SAMPLES:
             self._packet(end_ns)
 

@@ -12,7 +12,7 @@ from bus.protocol.tach import tach_fields
 _TACH_NS: Final = 10_000_000
 _ROUTINE_NS: Final = 40_000
 """From the reading of the counter to the frame in the buffer of the motor board (its interrupt table)."""
-_MISSING_NS: Final = 25_000_000
+MISSING_NS: Final = 25_000_000
 """Older data than two frames are not carried on."""
 _RATE_SHIFT: Final = 8
 _UNIT: Final = _TACH_NS << _RATE_SHIFT
@@ -25,14 +25,14 @@ class RemoteTachometer:
 
     def __init__(self, frame_ns: int) -> None:
         self._age_ns = _ROUTINE_NS + frame_ns
-        self._latch_ns = -_MISSING_NS
+        self._latch_ns = -MISSING_NS
         self._count = 0
         self._rate_q8 = 0
         self._last: int | None = None
 
     def forget(self) -> None:
         """After power-up: nothing is known."""
-        self._latch_ns = -_MISSING_NS
+        self._latch_ns = -MISSING_NS
         self._last = None
         self._rate_q8 = 0
 
@@ -45,7 +45,7 @@ class RemoteTachometer:
     def sample(self, now_ns: int) -> int:
         """Counts since the last sample, 10 ms ago; 0 while there is nothing to go by."""
         age = now_ns - self._latch_ns
-        if age > _MISSING_NS:
+        if age > MISSING_NS:
             self._last = None
             return 0
         now = self._count + self._rate_q8 * age // _UNIT

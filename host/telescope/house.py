@@ -42,7 +42,8 @@ class House:
         return self._tell(DOME, DOME_BOARD, "DOME_SHUTTER", int(opened))
 
     def stop(self) -> Job[None]:
-        """Stop dome and shutter."""
+        """Stop dome and shutter; commands that still wait are given up, as a stop is not queued."""
+        self._client.forget(DOME_BOARD)
         return self._tell(DOME, DOME_BOARD, "DOME_STOP")
 
     def relay(self, board: str, channel: int, on: bool) -> Job[None]:

@@ -13,6 +13,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
 from bus.protocol import Device, Opcode
+from bus.protocol.nodes import DOME
 from host.client import Client
 from host.logs.journal import Journal
 from host.procedures.manual import AXIS
@@ -54,12 +55,15 @@ class Telescope:
         self.snapshot = self._look()
 
     def emergency_stop(self) -> Job[None]:
-        """Both axes and the focus stop; nothing that was on its way is sent after it."""
+        """Both axes, the focus and the dome, where there is one, stop; nothing that was on its way is sent
+        after it."""
         self.journal.command(self.client.now_ns, "HOST", "emergency stop", "sent")
         job = self.drive.stop()
         for device in AXIS.values():
             self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
         self.focuser.halt()
+        if self.house.boards(DOME):
+            self.house.stop()
         return job
 
     def set_horizon(self, altitude_rad: float) -> None:

@@ -17,7 +17,8 @@ from host.links.ports import CanPort
 from host.links.task import LinkTask, Port
 from scenarios.doors.hid_unix import UnixDoor
 from scenarios.doors.options import DoorOptions
-from scenarios.host import HostProgram
+from scenarios.host import HostProgram, boards_of
+from scenarios.served import chosen
 from tests.host.telescope.conftest import Rig
 
 
@@ -135,3 +136,9 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
         program.close()
     assert "broken" in text.getvalue()
     assert "POWER 1  ok" in (tmp_path / "logs" / "commands.log").read_text()
+
+
+@pytest.mark.parametrize(("network", "count"), [(None, 11), ("lab", 11), ("serial", 5), ("final", 18)])
+def test_the_host_expects_the_boards_of_the_network_it_is_told(network: str | None, count: int) -> None:
+    boards = boards_of(chosen(network_name=network)[0])
+    assert len(boards) == count and ("DOME" in boards) == (network == "final")

@@ -155,6 +155,39 @@ def test_P10_the_auxiliary_encoder_reads_10_8_turns_per_turn_of_the_axis() -> No
         assert abs(steps - getattr(plant, side).auxiliary(site.network.queue.now_ns)) <= 1
 
 
+@pytest.mark.parametrize("arcsec_s", [0.0, 600.0, -3600.0])
+def test_P10_the_axis_log_has_the_auxiliary_encoder_at_the_moment_of_the_shafts(arcsec_s: float) -> None:
+    """Both columns are the axis' angle: steps of 0.002414″ and, through 1:10.8, of 0.9155″ (hardware.md 1.3).
+    Between two frames of 10 ms the reading is carried on: two counts at 600″/s, six at a slew's 3600″/s with
+    its 33 a frame."""
+    site = Site()
+    site.run(0.5)
+    packets: list[bytes] = []
+    site.network.uarts["AXIS_RA"].sink = lambda _t, packet: packets.append(packet)
+    axis = Device.AXIS_RA
+    assert site.ask(axis, Opcode.POWER, 1) is Result.OK
+    assert site.ask(axis, Opcode.SET_RATE, round(arcsec_s * 0.005 / 0.0114827 * 65536)) is Result.OK
+    site.run(4.0)
+    samples = [sample for p in PacketDecoder().feed(b"".join(packets)) for sample in p.samples][-100:]
+    wrong = []
+    for sample in samples:
+        counts = sample.position * 1296000 / 2**29 / (1296000 / 10.8 / 2**17)
+        wrong.append((sample.aux - counts + 2**16) % 2**17 - 2**16)
+    assert max(map(abs, wrong)) <= (2 if abs(arcsec_s) < 1000 else 6), (min(wrong), max(wrong))
+    assert (len({sample.aux for sample in samples}) == 1) == (not arcsec_s)
+
+
+def test_P10_without_auxiliary_boards_the_column_is_zero() -> None:
+    site = Site()
+    for name in ("AUXILIARY_RA", "AUXILIARY_DEC"):
+        site.network.board(name).power_off(0)
+    packets: list[bytes] = []
+    site.network.uarts["AXIS_DEC"].sink = lambda _t, packet: packets.append(packet)
+    site.run(1.1)
+    found = [sample for p in PacketDecoder().feed(b"".join(packets)) for sample in p.samples]
+    assert found and not any(sample.aux for sample in found)
+
+
 def test_B9_declared_boards_send_rs232_packets() -> None:
     site = Site()
     packets: list[bytes] = []

@@ -22,8 +22,10 @@ FRAMES = [
     Frame(0x0AAAAAAA, b"\x5a", True),
     Frame(0x1FFFFFFF, b"\xff\x00", True, True),
     Frame(0x00000001, bytes(8), True),
+    Frame(0x0F0, b"\x0f"),
+    Frame(0x0AAAAAA0 | 1 << 4, b"\x0f", True),
 ]
-"""Base and extended, data and remote; runs of either level."""
+"""Base and extended, data and remote; runs of either level; the last two have a stuff bit behind RTR."""
 
 
 def remainder(bits: str) -> int:

@@ -40,6 +40,22 @@ def test_H7_the_dome_turns_opens_and_stops_by_the_host(house: Rig) -> None:
     assert stopped is not None and not stopped["ShutterMoving"] and 0 < stopped["Shutter"] < 100
 
 
+def test_H7_the_emergency_stop_stops_dome_and_shutter_and_what_was_on_its_way(house: Rig) -> None:
+    house.run(lambda t: t.house.turn(90.0))
+    house.run(lambda t: t.house.shutter(True))
+    house.advance(3.0)
+    held = [house.telescope.call(lambda t: t.house.turn(200.0)) for _ in range(2)]
+    house.do(lambda t: t.emergency_stop())
+    house.advance(1.0)
+    first = house.telescope.house.reading("DOME")
+    assert first is not None and not first["Moving"] and not first["ShutterMoving"]
+    house.advance(3.0)
+    later = house.telescope.house.reading("DOME")
+    assert later is not None and later["Azimuth"] == first["Azimuth"] > 0
+    assert 0 < later["Shutter"] == first["Shutter"] < 100
+    assert not any(future.result(0).running for future in held)
+
+
 def test_H7_weather_and_supplies_are_read_and_a_relay_is_switched(house: Rig) -> None:
     house.advance(1.5)
     about = house.telescope.house
