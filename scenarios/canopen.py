@@ -20,11 +20,17 @@ def eds(board: Board) -> str:
     return text.getvalue()
 
 
-def write_eds(folder: Path) -> list[Path]:
-    """One file per type of board of the lab network into `folder`, node numbers of the first of each; raises
-    OSError when it cannot be written."""
+def write_eds(folder: Path, scenario: Path | None = None, name: str | None = None) -> list[Path]:
+    """One file per type of board into `folder`, node numbers of the first of each, boards of one's own too.
+
+    scenario, name: whose network (neither: `lab`). Raises OSError when it cannot be written, ValueError
+    subclasses for a scenario that cannot be used.
+    """
+    from boards.canopen.dictionary import type_of
+
+    made = network(scenario, network_name=name)
     folder.mkdir(parents=True, exist_ok=True)
-    boards = {board.name.partition("_")[0].lower(): board for board in reversed(network().boards.values())}
+    boards = {type_of(board)[0].lower(): board for board in reversed(made.boards.values())}
     written = []
     for kind, board in sorted(boards.items()):
         file = folder / f"{kind}.eds"

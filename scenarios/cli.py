@@ -496,11 +496,14 @@ def conformance(
 
 @cli.command(short_help="Write CANopen data sheets of the boards.")
 @click.argument("folder", type=click.Path(path_type=Path))
-def eds(folder: Path) -> None:
-    """Write a CANopen data sheet (EDS) per type of board into FOLDER."""
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+def eds(folder: Path, scenario: Path | None, network: str | None) -> None:
+    """Write a CANopen data sheet (EDS) per type of board into FOLDER; SCENARIO or --network says which
+    boards, those of one's own too."""
     from scenarios.canopen import write_eds
 
-    for file in write_eds(folder):
+    for file in write_eds(folder, scenario, network):
         click.echo(file)
 
 

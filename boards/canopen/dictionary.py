@@ -8,6 +8,7 @@ from canopen.objectdictionary import ObjectDictionary, ODRecord, ODVariable, dat
 
 from boards.core import Board
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE, SUMMARY_BASE
+from bus.protocol.nodes import kind_of
 
 EMCY_BASE: Final = 0x180
 """CANopen's own choice, 0x080 + node, is where commands are; 0x1014 says where it is (CiA 301, 7.5.2.17)."""
@@ -30,6 +31,18 @@ _EVENT_DRIVEN = 0xFF
 _BITS = 64
 
 
+def type_of(board: Board) -> tuple[str, int]:
+    """Name and product code of a board's type, the same for all instances and no other type's.
+
+    ASSUMPTION: the upper half of the device type (1..6); for a declared board, whose numbers lie among
+    others', the first device type of its kind (from 0x10 on).
+    """
+    kind = kind_of(board.device_type)
+    if kind is None:
+        return board.name.partition("_")[0], board.device_type >> 4
+    return kind.name, min(kind.nodes.values())
+
+
 def dictionary(board: Board) -> ObjectDictionary:
     """The dictionary of `board`, whose node number is its device type."""
     found = ObjectDictionary()
@@ -38,8 +51,9 @@ def dictionary(board: Board) -> ObjectDictionary:
     information = found.device_information
     information.vendor_name = "schmidt"
     information.vendor_number = 0
-    information.product_name = board.name.partition("_")[0]
-    information.product_number = node >> 4
+    name, product = type_of(board)
+    information.product_name = name
+    information.product_number = product
     for word, count in (("nr_of_TXPDO", len(SENT)), ("nr_of_RXPDO", 1)):  # numbers, though typed as bool
         setattr(information, word, count)
     information.simple_boot_up_slave = True
@@ -48,10 +62,10 @@ def dictionary(board: Board) -> ObjectDictionary:
     found.add_object(_variable("Error register", 0x1001, 0, u8, 0))
     found.add_object(_variable("COB-ID EMCY", 0x1014, 0, u32, EMCY_BASE + node))
     found.add_object(_variable("Producer heartbeat time", 0x1017, 0, u16, HEARTBEAT_MS, "rw"))
-    # Vendor 0: none is registered with CiA. ASSUMPTION: product by type, serial number by device type.
+    # Vendor 0: none is registered with CiA. ASSUMPTION: serial number by device type.
     identity = (
         ("Vendor-ID", 0),
-        ("Product code", node >> 4),
+        ("Product code", product),
         ("Revision number", 1),
         ("Serial number", node),
     )

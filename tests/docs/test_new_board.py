@@ -54,6 +54,20 @@ def test_B8_the_new_board_passes_conformance(folder: Path) -> None:
     assert decoded == {"Device": "MIRROR", "Dew": 0, "Temperature": 8.5, "Heater": 100}
 
 
+def test_the_new_board_has_a_data_sheet(folder: Path) -> None:
+    from canopen import import_od
+
+    from scenarios.canopen import write_eds
+
+    sheets = {file.stem: file for file in write_eds(folder / "sheets", folder / "mirror.yaml")}
+    assert {"axis", "mirror"} <= set(sheets)
+    sheet = import_od(str(sheets["mirror"]))
+    assert [sheet["Identity object"][sub].default for sub in (2, 4)] == [0x76, 0x76]
+    row = sheet[0x2101]
+    assert (row.name, row.min, row.max, row.default) == ("dew_point_centidegrees", -4000, 6000, 500)
+    assert sheet[0x1801][1].default == 0x276  # the measurement frame
+
+
 @pytest.mark.slow
 def test_the_command_of_the_page(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from scenarios.conformance import command

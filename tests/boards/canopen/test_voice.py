@@ -168,3 +168,10 @@ def test_an_eds_per_board_type(tmp_path: Path) -> None:
 def test_a_network_without_it_is_as_it_was() -> None:
     made = build(NetworkConfig(), Plant(load("low_preload"), 1), 1)
     assert made.voices == {}
+
+
+def test_every_type_of_the_final_network_has_a_product_code_of_its_own(tmp_path: Path) -> None:
+    files = write_eds(tmp_path, name="final")
+    assert {"auxiliary", "dome", "weather", "power"} <= {file.stem for file in files}
+    codes = [canopen.import_od(str(file))[0x1018][2].default for file in files]
+    assert len(set(codes)) == len(codes) == 10

@@ -5,6 +5,7 @@ import pytest
 from bus import protocol as p
 from bus.protocol.database import database
 from bus.protocol.nodes import DOME
+from bus.protocol.position import AGE_UNIT_NS
 from bus.protocol.saturate import bounds
 from bus.protocol.serial import (
     NO_SETPOINT,
@@ -115,6 +116,12 @@ def test_the_complaint_names_the_arguments() -> None:
         p.pack_command(p.Device.AXIS_RA, p.Opcode.MOVE_TO, 1)
     with pytest.raises(p.CommandError, match="STOP takes no arguments"):
         p.pack_command(p.Device.AXIS_RA, p.Opcode.STOP, 1)
+
+
+def test_the_age_counts_4_us() -> None:
+    """schmidt.dbc, POSITION: Age in units of 4 us."""
+    age = database().get_message_by_name("POSITION_RA_POSITION").get_signal_by_name("Age")
+    assert (age.scale, age.unit, AGE_UNIT_NS) == (1, "4us", 4000)
 
 
 def test_a_packets_times_are_the_papers() -> None:
