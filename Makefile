@@ -61,7 +61,7 @@ blind: $(READY)
 	$(BIN)/python -m tests.blind --out out/blind
 
 fit: $(READY)
-	$(BIN)/python -m scenarios.paper.search --out out/fit
+	$(BIN)/python -m scenarios.paper.search --out out/fit --jobs $(WORKERS)
 
 clean:
 	rm -rf $(VENV) out build dist scenarios/native/library plant/library *.egg-info

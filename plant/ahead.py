@@ -77,9 +77,13 @@ def build() -> bool:
             made = _compile(Path(folder))
         except Exception as error:  # numba's, LLVM's and distutils' own kinds
             raise AheadError(" ".join(f"{type(error).__name__}: {error}".split())) from None
-        shutil.rmtree(LIBRARY, ignore_errors=True)
-        LIBRARY.mkdir(parents=True)
-        shutil.copy(made, target)
+        LIBRARY.mkdir(parents=True, exist_ok=True)
+        half = target.with_suffix(".new")
+        shutil.copy(made, half)
+        half.replace(target)  # at once: others may be looking for it
+        for old in LIBRARY.glob(f"{_NAME}-*"):
+            if old != target:
+                old.unlink(missing_ok=True)
     return True
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -21,8 +21,18 @@ _SAY_EVERY = 0.1
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
 
 
-def campaign(file: Path, out: Path, jobs: int | None, scheduler: str | None, resume: bool) -> int:
-    """Run a campaign into a folder; exit 0 when every planned run is there, 130 when it was interrupted."""
+def campaign(
+    file: Path,
+    out: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    task: Callable[[Job], Row] = run,
+) -> int:
+    """Run a campaign into a folder; exit 0 when every planned run is there, 130 when it was interrupted.
+
+    task: what makes a row of a planned run; the bench has one that does nothing.
+    """
     from scenarios.campaign.page import write
     from scenarios.probe import digest
 
@@ -46,7 +56,7 @@ def campaign(file: Path, out: Path, jobs: int | None, scheduler: str | None, res
     status = COMPLETE
     with _interruptible(), _progress(planned.count, before) as advance:
         try:
-            for done in each(run, waiting(), jobs=jobs, scheduler=scheduler):
+            for done in each(task, waiting(), jobs=jobs, scheduler=scheduler):
                 if done.value is None:
                     journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
                     status = INCOMPLETE

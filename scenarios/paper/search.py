@@ -3,9 +3,12 @@ reproducibly.
 
 Sobol points of the space of space.py that pass the statics, scipy's differential evolution on the compiled
 loop from several such populations, then short steps from the best of all, a third of the numbers at a time;
-with `--start` those steps alone, from a known point. Seeded, one process. Writes plant files with their
-sources, and what was tried. The emulator has the last word: `schmidt paper --plant ...
---plant-high ...`.
+with `--start` those steps alone, from a known point. Seeded. Writes plant files with their sources, and what
+was tried. The emulator has the last word: `schmidt paper --plant ... --plant-high ...`.
+
+One process, every point held against the last; with `--jobs` or `--scheduler` a generation, or BATCH short
+steps, at a time, all held against the best before them: another way through the space, and the same one
+whatever the number of workers.
 """
 
 import argparse
@@ -30,6 +33,7 @@ from scenarios.paper.plantfile import write
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.starts import STARTS, Benches, Start
 from scenarios.paper.statics import shortfalls_of
+from scenarios.paper.together import Point, Pricer, pricer
 
 READINGS = {
     "printed": (1.0, "{}_preload", "{}_preload_printed"),
@@ -54,6 +58,9 @@ STEP, MOVED, AGAIN = 0.08, 0.35, 0.3
 """Of a short step: spread (logarithmic), share of the numbers that move, how often the last step that helped
 is tried again."""
 
+BATCH = 8
+"""Short steps at a time, where points are run together."""
+
 
 class Enough(Exception):
     """The search may try no more points, or need not."""
@@ -70,12 +77,14 @@ class Objective:
         most: int,
         tell: Callable[[str], None],
         leave_out: Sequence[str] = (),
+        together: Pricer | None = None,
     ) -> None:
         self.scale, base, _ = READINGS[reading]
         self.bases = {preload: load(base.format(preload)) for preload in ("low", "high")}
         self.diode = diode
         self.starts = starts
         self.leave_out = leave_out
+        self.together = together
         self.tell = tell
         self.most = most
         self.best = WORSE
@@ -92,28 +101,52 @@ class Objective:
         """Return by how much statics say that a point cannot be."""
         return float(shortfalls_of(values(x), self.scale, self.diode))
 
-    def __call__(self, x: Array) -> float:
-        """Return the cost at `x`; outside the bounds it grows with the distance."""
+    def beyond(self, x: Array) -> float | None:
+        """Return the cost of a point that need not be run: outside the bounds it grows with the distance."""
         low, high = np.array(bounds()).T
         beyond = float(np.sum(np.maximum(0.0, low - x) + np.maximum(0.0, x - high)))
         if beyond > 0.0:
             return WORSE + beyond
         failing = self.shortfall(x)
-        if failing > 0.0:
-            return UNREACHABLE * (1.0 + failing)
+        return UNREACHABLE * (1.0 + failing) if failing > 0.0 else None
+
+    def __call__(self, x: Array) -> float:
+        """Return the cost at `x`."""
+        known = self.beyond(x)
+        if known is not None:
+            return known
         if self.tried >= self.most or self.best == 0.0:
             raise Enough
-        self.tried += 1
         plants = self.plants(x)
         benches = [Benches(CompiledBench, plants, start) for start in self.starts]
         found, terms = cost(benches, self.best + self.room, self.leave_out)
+        self._note(x, found, terms)
+        return found
+
+    def many(self, points: Array) -> Array:
+        """Return the costs of the columns of `points`, (numbers, points), run together; those that there are
+        no more points for cost WORSE."""
+        assert self.together is not None
+        known = [self.beyond(x) for x in points.T]
+        wanted = [place for place, each in enumerate(known) if each is None]
+        if wanted and (self.tried >= self.most or self.best == 0.0):
+            raise Enough
+        wanted = wanted[: self.most - self.tried]
+        stop_at, left_out = self.best + self.room, tuple(self.leave_out)
+        run = [Point(self.plants(points[:, k]), self.starts, stop_at, left_out) for k in wanted]
+        for k, (found, terms) in zip(wanted, self.together(run) if run else [], strict=True):
+            known[k] = found
+            self._note(points[:, k], found, terms)
+        return np.array([WORSE if each is None else each for each in known])
+
+    def _note(self, x: Array, found: float, terms: list[Term]) -> None:
+        self.tried += 1
         if found < self.best:
             self.best, self.best_x, self.best_terms = found, np.array(x), terms
             missed = [term for term in terms if term.excess > 0.0]
             self.tell(
                 f"{self.tried:5d} {found:7.3f}  {len(missed)} missed: " + ", ".join(t.words for t in missed)
             )
-        return found
 
 
 def population(objective: Objective, seed: int) -> Array:
@@ -140,8 +173,10 @@ def evolve(objective: Objective, seeds: tuple[int, ...]) -> None:
         objective.tell(f"      population {seed}")
         with suppress(Enough):
             differential_evolution(
-                objective, bounds(), init=start, maxiter=10_000, tol=0.0, polish=False,
-                rng=np.random.default_rng(seed), mutation=(0.4, 0.9), recombination=0.8,
+                objective.many if objective.together else objective, bounds(), init=start, maxiter=10_000,
+                tol=0.0, polish=False, rng=np.random.default_rng(seed), mutation=(0.4, 0.9),
+                recombination=0.8, vectorized=objective.together is not None,
+                updating="deferred" if objective.together else "immediate",
             )  # fmt: skip
 
 
@@ -151,18 +186,26 @@ def descend(objective: Objective, start: Array, seed: int) -> None:
     low, high = np.array(bounds()).T
     objective.room = 0.0
     helped: Array | None = None
+
+    def step() -> Array:
+        if helped is not None and random.random() < AGAIN:
+            return np.asarray(helped * random.uniform(0.3, 1.5))
+        return np.asarray(STEP * random.standard_normal(low.size) * (random.random(low.size) < MOVED))
+
     with suppress(Enough):
         if objective.best_x is None:
             objective(start)
         while True:
             best, before = objective.best, start if objective.best_x is None else objective.best_x
-            if helped is not None and random.random() < AGAIN:
-                step = helped * random.uniform(0.3, 1.5)
+            if objective.together is None:
+                taken = step()
+                objective(np.clip(before + taken, low, high))
             else:
-                step = STEP * random.standard_normal(low.size) * (random.random(low.size) < MOVED)
-            objective(np.clip(before + step, low, high))
+                steps = [step() for _ in range(BATCH)]
+                found = objective.many(np.array([np.clip(before + each, low, high) for each in steps]).T)
+                taken = steps[int(np.argmin(found))]
             if objective.best < best:
-                helped = step
+                helped = taken
 
 
 def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = None) -> None:
@@ -211,6 +254,8 @@ def main(arguments: list[str] | None = None) -> int:
         "--leave-out", default="", metavar="E1,E2,...", help="rows that nothing can meet: not looked at"
     )
     parser.add_argument("--all-starts", action="store_true", help="every point from eight starts, not four")
+    parser.add_argument("--jobs", type=int, help="points at a time in so many processes")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="points at a time on a Dask cluster")
     chosen = parser.parse_args(arguments)
     begin = monotonic()
     for number in (signal.SIGINT, signal.SIGTERM):  # ends the search, and what was found is written
@@ -221,7 +266,8 @@ def main(arguments: list[str] | None = None) -> int:
 
     left_out = [name for name in chosen.leave_out.upper().split(",") if name]
     starts = STARTS if chosen.all_starts else SEARCHED
-    objective = Objective(chosen.reading, not chosen.no_diode, starts, chosen.points, tell, left_out)
+    many = pricer(chosen.jobs, chosen.scheduler) if chosen.jobs or chosen.scheduler else None
+    objective = Objective(chosen.reading, not chosen.no_diode, starts, chosen.points, tell, left_out, many)
     known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
     seeds = tuple(chosen.seeds)
     with suppress(KeyboardInterrupt):

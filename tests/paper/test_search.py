@@ -7,7 +7,7 @@ from scenarios.paper.cost import Term, cost, worst
 from scenarios.paper.experiments import Limit
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.scales import GEAR_RATIO
-from scenarios.paper.search import Objective, population, search
+from scenarios.paper.search import BATCH, POPULATION, WORSE, Objective, population, search
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.starts import QUICK, Benches
 from scenarios.paper.statics import (
@@ -17,6 +17,7 @@ from scenarios.paper.statics import (
     shortfalls_of,
     stribeck_slope,
 )
+from scenarios.paper.together import Point, price, pricer
 
 BASES = {"low": load("low_preload"), "high": load("high_preload")}
 DRIVE = {
@@ -186,6 +187,46 @@ def test_short_steps_go_downhill_within_the_bounds_and_end_with_their_points(mon
     assert objective.tried == 600
     assert objective.best < 0.1 * np.sum((begin - goal) ** 2)
     assert (objective.best_x >= low).all() and (objective.best_x <= high).all()
+
+
+def distance(point):
+    """What `together.price` would make of a point, if its cost were how far it is from DRIVE."""
+    return float(np.sum((point.plants - vector(DRIVE)) ** 2)), []
+
+
+def test_points_run_together_go_downhill_too_whoever_runs_them(monkeypatch):
+    begin = np.log([0.5 * (free.low + free.high) for free in SPACE])
+    found = []
+    for known in (begin, begin, None):
+        batches = []
+
+        def run(points, batches=batches):
+            batches.append(len(points))
+            return [distance(point) for point in points]
+
+        objective = Objective("motor", True, QUICK, 600, lambda text: None, together=run)
+        monkeypatch.setattr(objective, "shortfall", lambda x: 0.0)
+        monkeypatch.setattr(objective, "plants", lambda x: x)
+        objective.best, objective.best_x = (WORSE, None) if known is None else (distance_of(begin), begin)
+        search(objective, (1,), known)
+        assert objective.tried == 600 == sum(batches)
+        assert objective.best < 0.5 * distance_of(begin)
+        found.append((objective.best, tuple(objective.best_x), max(batches)))
+    assert found[0] == found[1], "seeded"
+    assert found[0][2] == BATCH and found[2][2] == POPULATION
+
+
+def distance_of(x):
+    return float(np.sum((x - vector(DRIVE)) ** 2))
+
+
+def test_a_batch_gives_costs_in_its_order_and_says_which_point_failed():
+    plants = models(BASES, DRIVE | {"kp": 9.0, "ki": 1.0}, "test")
+    points = [Point(plants, QUICK[:1], stop_at, ()) for stop_at in (0.5, 1.0)]
+    assert [total for total, _ in pricer(2, None)(points)] == [price(point)[0] for point in points]
+    broken = Point({}, QUICK[:1], 1.0, ())
+    with pytest.raises(RuntimeError, match="point 0 of 1: KeyError"):
+        pricer(1, None)([broken])
 
 
 def test_every_free_number_has_bounds_and_a_reason():

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.campaign import table
+from scenarios.campaign import sensitivity, table
 from scenarios.campaign.sensitivity import influence, share
 from scenarios.document import ScenarioError
 
@@ -75,3 +75,26 @@ def test_shares_have_wilsons_interval() -> None:
     value, low, high = share(8, 10)
     assert value == 0.8
     assert (low, high) == pytest.approx((0.4902, 0.9433), abs=5e-4)
+
+
+def test_many_runs_have_the_interval_that_resampling_gives(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a correlation from 2000 runs; a resampled end scatters by about a twentieth of the width."""
+    random = np.random.default_rng(5)
+    x = random.standard_normal(2000)
+    y = 0.5 * x + random.standard_normal(2000)
+    resampled = influence("x", x, "y", y)
+    monkeypatch.setattr(sensitivity, "_MANY", 100)
+    formula = influence("x", x, "y", y)
+    assert resampled is not None and formula is not None
+    assert formula.value == resampled.value
+    width = resampled.high - resampled.low
+    assert abs(formula.low - resampled.low) < 0.15 * width
+    assert abs(formula.high - resampled.high) < 0.15 * width
+
+
+def test_blocks_of_resamples_are_one_draw(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = np.concatenate(list(sensitivity._resamples(30, 30, 3)))
+    monkeypatch.setattr(sensitivity, "_BLOCK", 30 * 7)
+    parts = list(sensitivity._resamples(30, 30, 3))
+    assert len(parts) > 100
+    assert np.array_equal(np.concatenate(parts), whole)
