@@ -57,7 +57,7 @@ class FrameLoss:
 
 
 class DeafController:
-    """A controller's receiver gives nothing to the processor and acknowledges nothing; it still sends."""
+    """A controller gives nothing of what it receives to the processor; it still acknowledges and sends."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
         self._layers, self._deaf = place.layers, Deaf()

@@ -28,6 +28,7 @@ from plant import loop, model
 from plant.effects import NAMES
 from plant.units import to_si
 from scenarios import model as scenario_model
+from scenarios.faults.table import KINDS
 from scenarios.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
 from scenarios.paper.published import INERTIA
 
@@ -135,3 +136,42 @@ def test_every_test_it_names_exists() -> None:
     named = set(re.findall(r"(?<![\w/])(test_\w+)(?!\w|\.py)", PAGE))
     assert len(named) > 50
     assert not named - known, f"FIDELITY.md names tests that do not exist: {', '.join(sorted(named - known))}"
+
+
+CHIPS = {
+    "adc": ("| B1 | axis: ADC |",),
+    "can": ("| B9 | all: CAN controller |",),
+    "dspic30f": ("| dsPIC30F QEI |", "| dsPIC30F PWM |", "| dsPIC30F ADC |"),
+    "ecan": ("| ECAN |",),
+    "endat": ("| EnDat 2.1/2.2 |", "| B3 | position: EnDat |"),
+    "hid": ("| B7 | gateway: USB |",),
+    "mcp2515": (
+        "| MCP2515 | SPI", "| MCP2515 | register map", "| MCP2515 | three transmit",
+        "| MCP2515 | two receive", "| MCP2515 | modes", "| MCP2515 | TEC", "| MCP2515 | errata",
+    ),
+    "microchip_can": ("| MCP2515 | CNF1", "| MCP2515 | a wrong bit rate"),
+    "pic18f4431": ("| PIC18F4431 QEI |", "| PIC18F4431 power PWM |"),
+    "pwm": ("| B1 | axis: PWM |",),
+    "qei": ("| B1 | axis: QEI |",),
+    "quadrature": ("| dsPIC30F QEI |", "| PIC18F4431 QEI |"),
+    "spread": ("| B1 | axis: spread duty",),
+    "stepper": ("| B5 | focus: stepper |", "| stepper |"),
+    "uart": ("| B9 | five: RS232 |",),
+    "uartline": ("| UART |",),
+    "usb": ("| USB HID |",),
+}  # fmt: skip
+"""Chip, file or package in `boards/silicon`, to the rows that say how it behaves."""
+
+
+def test_every_chip_has_its_rows() -> None:
+    there = {path.stem for path in (ROOT / "boards" / "silicon").iterdir() if path.stem[0] != "_"}
+    assert there == set(CHIPS)
+    missing = [begin for rows in CHIPS.values() for begin in rows if f"\n{begin}" not in PAGE]
+    assert missing == []
+
+
+def test_every_fault_has_a_row_that_says_what_is_simpler() -> None:
+    section = PAGE.partition("\n## Faults\n")[2].partition("\n## ")[0]
+    rows = [line.split(" | ") for line in section.splitlines() if line.startswith("| `")]
+    assert [cells[0].strip("|` ") for cells in rows] == [kind.name for kind in KINDS]
+    assert all(len(cells) == 3 and len(cells[2]) > 10 for cells in rows)
