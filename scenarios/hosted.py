@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from bus.protocol import Device
@@ -20,6 +21,13 @@ from scenarios.model import Scenario
 from scenarios.served import UNDATED
 
 
+def dated(scenario: Scenario) -> Scenario:
+    """The scenario, with today's sky when it has no date."""
+    if scenario.clock is not UNDATED:
+        return scenario
+    return replace(scenario, clock=Clock(dt.datetime.now(dt.UTC).replace(microsecond=0)))
+
+
 class Hosted:
     """send: takes (t_ns, report), 64-byte OUT reports. boards: names of the boards that should live.
     logs: folder of the four ASCII logs, or None.
@@ -34,8 +42,8 @@ class Hosted:
         boards: list[str],
         logs: Path | None = None,
     ) -> None:
-        today = dt.datetime.now(dt.UTC).replace(microsecond=0)
-        self.clock = Clock(today) if scenario.clock is UNDATED else scenario.clock
+        scenario = dated(scenario)
+        self.clock = scenario.clock
         if logs is not None:
             logs.mkdir(parents=True, exist_ok=True)
         self.files = None if logs is None else AsciiLogs(logs, self.clock.iso, rotating)

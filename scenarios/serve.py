@@ -43,13 +43,13 @@ def serve(
     with console.status("starting (the first time compiles)") as line:
         recording = Recording(record, scenario, model) if record is not None else None
         served = Served(scenario, model, speed, recording)
-        doors = make_doors(options, served)
+        doors = make_doors(options, served, console.print)
         if recording is not None:
             recording.attach(served)
-        warm = wire(scenario, model)  # another one, so that all is compiled before the clock starts
-        warm.run_until(_WARM_NS)
         keepers = [Keeper(door, console.print) for door in doors]
         try:
+            warm = wire(scenario, model)  # another one, so that all is compiled before the clock starts
+            warm.run_until(_WARM_NS)
             for keeper in keepers:
                 keeper.open()
             _say_hello(console, served, doors)

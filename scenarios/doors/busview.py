@@ -1,58 +1,53 @@
-"""The wire of a served network as the bus page of the consoles shows it."""
+"""The wire of a served network, for the bus page of a host's consoles: this is the emulator's side."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from typing import Any
 
 from bus.can.frame import Frame
-from host.console.views import FaultKind, Node, SeenFrame
+from host.console.views import FaultKind, Node
+from scenarios.doors.hostlink import BusState
 from scenarios.doors.served import Served
-from scenarios.faults import FaultError, Kind, Parameter, Running
+from scenarios.faults import FaultError, Kind, Parameter
 
-KEPT = 200
-"""Frames that a page may ask for."""
+KEPT = 25
+"""Frames that a page shows."""
+REFUSALS = (ValueError, TypeError)
+"""What a wish may be refused by: FaultError, NetworkError, arguments of another kind."""
 
 
 class EmulatedBus:
-    """The wire as the bus page shows it. `poll` does what the page asked for, between two slices."""
+    """The wire for a host elsewhere: `look` is what it shows, `wish` what it may ask for; `poll`, between two
+    slices, does it."""
 
     def __init__(self, served: Served) -> None:
         self._served = served
-        self._frames: deque[tuple[int, Frame, str]] = deque(maxlen=KEPT)
+        self._frames: deque[tuple[int, str, int, bytes]] = deque(maxlen=KEPT)
         self._wanted: deque[Callable[[], None]] = deque()
-        self._on: list[Running] = []
+        self._acts: dict[str, Callable[..., str]] = {
+            "start_fault": self._start_fault,
+            "clear_fault": self._clear_fault,
+            "switch": self._switch,
+        }
         served.network.wire.tap(self._tap)
 
     def _tap(self, t_ns: int, frame: Frame, sender: str) -> None:
-        self._frames.append((t_ns, frame, sender))
+        self._frames.append((t_ns, sender, frame.identifier, frame.data))
 
-    def nodes(self) -> list[Node]:
-        """Boards and whoever else is attached."""
+    def look(self) -> BusState:
+        """Everything at this moment."""
+        wire = self._served.network.wire
+        return BusState(self._nodes(), wire.load, dict(wire.errors), self._running(), list(self._frames))
+
+    def _nodes(self) -> list[Node]:
         boards = self._served.network.boards
         found = []
         for port in self._served.network.wire.ports:
             on = boards[port.name].on if port.name in boards else port.online
             found.append(Node(port.name, on, port.state, port.tec, port.rec))
         return found
-
-    def load(self) -> float:
-        """Busy share so far."""
-        return self._served.network.wire.load
-
-    def errors(self) -> dict[str, int]:
-        """By cause."""
-        return dict(self._served.network.wire.errors)
-
-    def frames(self, most: int) -> list[SeenFrame]:
-        """The last ones, decoded by the DBC."""
-        return [_seen(*each) for each in list(self._frames)[-most:]]
-
-    def faults(self) -> tuple[str, ...]:
-        """Every board's supply can be cut."""
-        return tuple(self._served.network.boards)
 
     def fault_kinds(self) -> list[FaultKind]:
         """The table of faults."""
@@ -63,67 +58,43 @@ class EmulatedBus:
             for kind in self._served.faults.kinds()
         ]
 
-    def running(self) -> list[tuple[int, str]]:
-        """What is on, by number."""
+    def _running(self) -> list[tuple[int, str]]:
         now_ns = self._served.now_ns
         return [
             (
                 each.number,
                 f"{each.name}, {_arguments(each.arguments)} for {(now_ns - each.since_ns) * 1e-9:.1f} s",
             )
-            for each in self._on
+            for each in self._served.faults.running
         ]
 
-    def start_fault(self, name: str, arguments: str) -> Future[str]:
-        """Asked for by a page; done by `poll`."""
-        return self._later(lambda: f"fault {self._served.start_fault(name, **_pairs(arguments))} is on")
+    def wish(self, name: str, arguments: tuple[Any, ...], answer: Callable[[str, bool], None]) -> None:
+        """Have `poll` do it and call answer(text, bad)."""
 
-    def clear_fault(self, number: int) -> Future[str]:
-        """Asked for by a page; done by `poll`."""
-
-        def clear() -> str:
-            self._served.clear_fault(number)
-            return f"fault {number} is cleared"
-
-        return self._later(clear)
-
-    def _later(self, act: Callable[[], str]) -> Future[str]:
-        future: Future[str] = Future()
-
-        def done() -> None:
+        def act() -> None:
             try:
-                future.set_result(act())
-            except ValueError as error:
-                future.set_exception(error)
+                text, bad = self._acts[name](*arguments), False
+            except REFUSALS as error:
+                text, bad = str(error), True
+            answer(text, bad)
 
-        self._wanted.append(done)
-        return future
-
-    def switch(self, board: str, on: bool) -> None:
-        """Asked for by a page; done by `poll`."""
-        self._wanted.append(lambda: self._served.switch(board, on))
+        self._wanted.append(act)
 
     def poll(self) -> None:
         """On the ticking thread."""
-        self._on = self._served.faults.running
         while self._wanted:
             self._wanted.popleft()()
 
+    def _start_fault(self, name: str, arguments: str) -> str:
+        return f"fault {self._served.start_fault(name, **_pairs(arguments))} is on"
 
-def _seen(t_ns: int, frame: Frame, sender: str) -> SeenFrame:
-    from bus.protocol.database import database
+    def _clear_fault(self, number: int) -> str:
+        self._served.clear_fault(number)
+        return f"fault {number} is cleared"
 
-    try:
-        said = database().decode_message(frame.identifier, frame.data)
-        text = _words(said) if isinstance(said, dict) else ""
-    except Exception:  # whatever anybody put on the bus is shown as it is
-        text = "not in the protocol"
-    return SeenFrame(t_ns * 1e-9, sender, frame.identifier, frame.data, text)
-
-
-def _words(said: dict[str, Any]) -> str:
-    """Signals of a frame; its device is the sender's column already."""
-    return ", ".join(f"{name} {value}" for name, value in said.items() if name != "Device")
+    def _switch(self, board: str, on: bool) -> str:
+        self._served.switch(board, on)
+        return f"{board} is switched {'on' if on else 'off'}"
 
 
 def _template(kind: Kind) -> str:

@@ -1,4 +1,7 @@
-"""The host program inside `schmidt serve`: a telescope client on the gateway's USB."""
+"""A host program within the emulator's own process: a telescope client on the gateway's USB.
+
+`schmidt serve` has its host in a process beside it (`hostprocess`); this one is for who owns the time, as
+tests do."""
 
 from __future__ import annotations
 

@@ -53,8 +53,9 @@ def _values(options: DoorOptions) -> list[object]:
     return list(vars(replace(options, token=None, logs=None, runs=DoorOptions.runs)).values())
 
 
-def make_doors(options: DoorOptions, served: Served) -> list[Door]:
-    """The doors, closed. Their nodes on the wire are there from now on, in this order."""
+def make_doors(options: DoorOptions, served: Served, say: Callable[[str], None] = print) -> list[Door]:
+    """The doors, closed. Their nodes on the wire are there from now on, in this order. say: takes lines for
+    the user."""
     from scenarios.doors.can import CanDoor
 
     doors: list[Door] = [
@@ -73,21 +74,23 @@ def make_doors(options: DoorOptions, served: Served) -> list[Door]:
     if options.lx200 or options.alpaca is not None or options.console is not None:
         if "GATEWAY" not in served.network.boards:
             raise OptionError("--lx200, --alpaca and --console need the gateway: take --network lab or final")
-        doors += _astronomy(options, served)
+        doors += _astronomy(options, served, say)
     return doors
 
 
-def _astronomy(options: DoorOptions, served: Served) -> list[Door]:
-    """The host first: what follows lives on it."""
-    from scenarios.doors.host import HostDoor
+def _astronomy(options: DoorOptions, served: Served, say: Callable[[str], None]) -> list[Door]:
+    """The host first, in a process of its own: what follows lives on it."""
+    from scenarios.doors.address import address
+    from scenarios.doors.hostprocess import HostedDoor, HostProcess
 
-    host = HostDoor(served, options.logs)
-    doors: list[Door] = [host, *astronomy(options, host)]
-    if options.console is not None:
-        from scenarios.doors.console import ConsoleDoor
-
-        doors.append(ConsoleDoor(options.console, options.token, options.runs, host, served))
-    return doors
+    wanted = [("--lx200", spec) for spec in options.lx200]
+    wanted += [("--alpaca", options.alpaca)] if options.alpaca is not None else []
+    wanted += [("--console", options.console)] if options.console is not None else []
+    for option, spec in wanted:
+        if not spec.startswith("pty:"):
+            address(spec, option)  # said before anything is started
+    host = HostProcess(served, options, say)
+    return [host, *(HostedDoor(host, k + 1, " ".join(each)) for k, each in enumerate(wanted))]
 
 
 def astronomy(options: DoorOptions, host: Host) -> list[Door]:

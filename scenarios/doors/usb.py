@@ -52,11 +52,9 @@ class UsbPlug:
         """Whether the next `write` will be taken."""
         return self._usb.room > 0
 
-    def reports(self) -> list[tuple[int, bytes]]:
-        """(t_ns, 64 bytes) of every IN report since the last call."""
-        found = list(self._reports)
-        self._reports.clear()
-        return found
+    def reports(self, most: int = IN_LIMIT) -> list[tuple[int, bytes]]:
+        """(t_ns, 64 bytes) of every IN report since the last call, the oldest `most` of them."""
+        return [self._reports.popleft() for _ in range(min(most, len(self._reports)))]
 
     def hear(self, t_ns: int, report: bytes) -> None:
         """The gateway has sent a report; called by `Usb`."""

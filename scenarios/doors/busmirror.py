@@ -1,0 +1,106 @@
+"""The bus page's view of a wire in another process: the last picture of it, and wishes that go there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from itertools import count
+from time import monotonic
+from typing import Any
+
+from host.console.views import FaultKind, Node, SeenFrame
+from scenarios.doors.hostlink import BusState, Done, Wish
+
+_LOOKED_S = 1.0
+"""Pages refresh four times a second; when nobody has asked for so long, nobody looks."""
+
+
+class BusMirror:
+    """A `BusView`. boards: whose supply can be switched. send: takes a `Wish`, from any thread."""
+
+    def __init__(self, boards: list[str], kinds: list[FaultKind], send: Callable[[Wish], None]) -> None:
+        self._boards = tuple(boards)
+        self._kinds = kinds
+        self._send = send
+        self._numbers = count()
+        self._open: dict[int, Future[str]] = {}
+        self._asked_s = float("-inf")
+        self.state = BusState([], 0.0, {}, [], [])
+
+    @property
+    def watching(self) -> bool:
+        """Whether somebody looks."""
+        return monotonic() - self._asked_s < _LOOKED_S
+
+    def nodes(self) -> list[Node]:
+        """Boards and whoever else is attached."""
+        return self.state.nodes
+
+    def load(self) -> float:
+        """Busy share so far."""
+        self._asked_s = monotonic()
+        return self.state.load
+
+    def errors(self) -> dict[str, int]:
+        """By cause."""
+        return self.state.errors
+
+    def frames(self, most: int) -> list[SeenFrame]:
+        """The last ones, decoded by the DBC."""
+        return [_seen(*each) for each in self.state.frames[-most:]]
+
+    def faults(self) -> tuple[str, ...]:
+        """Every board's supply can be cut."""
+        return self._boards
+
+    def fault_kinds(self) -> list[FaultKind]:
+        """The table of faults."""
+        return self._kinds
+
+    def running(self) -> list[tuple[int, str]]:
+        """What is on, by number."""
+        return self.state.running
+
+    def start_fault(self, name: str, arguments: str) -> Future[str]:
+        """Wished for; the next slice does it."""
+        return self._wish("start_fault", name, arguments)
+
+    def clear_fault(self, number: int) -> Future[str]:
+        """Wished for; the next slice does it."""
+        return self._wish("clear_fault", number)
+
+    def switch(self, board: str, on: bool) -> None:
+        """Wished for; the next slice does it."""
+        self._wish("switch", board, on)
+
+    def done(self, answer: Done) -> None:
+        """What became of a wish."""
+        future = self._open.pop(answer.number, None)
+        if future is None or not future.set_running_or_notify_cancel():
+            return  # whoever wished has gone
+        if answer.bad:
+            future.set_exception(ValueError(answer.text))
+        else:
+            future.set_result(answer.text)
+
+    def _wish(self, name: str, *arguments: Any) -> Future[str]:
+        number = next(self._numbers)
+        future = self._open[number] = Future()
+        self._send(Wish(number, name, arguments))
+        return future
+
+
+def _seen(t_ns: int, sender: str, identifier: int, data: bytes) -> SeenFrame:
+    from bus.protocol.database import database
+
+    try:
+        said = database().decode_message(identifier, data)
+        text = _words(said) if isinstance(said, dict) else ""
+    except Exception:  # whatever anybody put on the bus is shown as it is
+        text = "not in the protocol"
+    return SeenFrame(t_ns * 1e-9, sender, identifier, data, text)
+
+
+def _words(said: dict[str, Any]) -> str:
+    """Signals of a frame; its device is the sender's column already."""
+    return ", ".join(f"{name} {value}" for name, value in said.items() if name != "Device")

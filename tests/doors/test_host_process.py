@@ -1,0 +1,121 @@
+"""The host program in its process beside the emulator: what crosses the pipe, and how either one dies."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import time
+from pathlib import Path
+
+import pytest
+
+from bus.protocol import Device
+from scenarios.doors import Served
+from scenarios.doors.busmirror import BusMirror
+from scenarios.doors.busview import EmulatedBus
+from scenarios.doors.hostlink import Done, Wish
+from scenarios.served import chosen
+from tests.doors.process import Serving, free_port
+
+PATIENCE_S = 120.0
+
+
+class Both:
+    """Both ends of the bus page's view, with a pipe of plain lists between them."""
+
+    def __init__(self) -> None:
+        self.served = Served(*chosen())
+        self.bus = EmulatedBus(self.served)
+        self.wishes: list[Wish] = []
+        self.mirror = BusMirror(list(self.served.network.boards), self.bus.fault_kinds(), self.wishes.append)
+
+    def carry(self) -> None:
+        """A slice: wishes there, answers and a picture back."""
+        for wish in self.wishes:
+            self.bus.wish(
+                wish.name, wish.arguments, lambda t, b, n=wish.number: self.mirror.done(Done(n, t, b))
+            )
+        self.wishes.clear()
+        self.bus.poll()
+        self.served.run_until(self.served.now_ns + 50_000_000)
+        self.mirror.state = self.bus.look()
+
+
+def test_the_mirror_shows_the_bus_and_its_frames_in_words() -> None:
+    both = Both()
+    assert not both.mirror.watching
+    for _ in range(10):
+        both.carry()
+    assert {node.name for node in both.mirror.nodes()} >= set(both.mirror.faults())
+    assert 0.0 < both.mirror.load() < 1.0 and both.mirror.watching
+    frames = both.mirror.frames(25)
+    assert len(frames) == 25 and all(each.text and each.sender in Device.__members__ for each in frames)
+
+
+def test_a_wish_is_done_or_refused_with_its_reason() -> None:
+    both = Both()
+    on = both.mirror.start_fault("node_off", "node=FOCUS")
+    wrong = both.mirror.start_fault("nonsense", "")
+    torn = both.mirror.start_fault("node_off", "node")
+    both.carry()
+    assert "is on" in on.result(0) and both.mirror.running()
+    assert not both.served.network.boards["FOCUS"].on
+    for refused in (wrong, torn):
+        with pytest.raises(ValueError, match=r"\w"):
+            refused.result(0)
+    both.mirror.clear_fault(both.mirror.running()[0][0])
+    both.mirror.switch("DISPLAY", False)
+    for _ in range(40):  # it boots
+        both.carry()
+    assert both.served.network.boards["FOCUS"].on and not both.served.network.boards["DISPLAY"].on
+
+
+def host_of(emulator: int) -> int:
+    """Process id of the host beside a `schmidt serve`."""
+    (child,) = Path(f"/proc/{emulator}/task/{emulator}/children").read_text().split()
+    return int(child)
+
+
+def answered(port: int) -> bytes:
+    """What LX200's "which precision" says; nothing while nobody listens."""
+    try:
+        with socket.create_connection(("127.0.0.1", port), 60) as s:
+            s.sendall(b":GR#")
+            return s.recv(64)
+    except OSError:
+        return b""
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_host_that_dies_or_hangs_is_reported_and_comes_back(tmp_path: Path, number: int) -> None:
+    port = free_port()
+    with Serving(tmp_path, "--lx200", str(port)) as served:
+        assert answered(port).endswith(b"#")
+        before = served.status()
+        first = host_of(served.process.pid)
+        os.kill(first, number)
+        after = served.wait(before["simulated_s"] + 2.0)  # the emulation goes on without it
+        assert all(after["boards"].values())
+        end_s = time.monotonic() + PATIENCE_S
+        while "the host: open again" not in served.said or not answered(port).endswith(b"#"):
+            assert time.monotonic() < end_s, served.said
+            time.sleep(0.2)
+        assert host_of(served.process.pid) != first
+    assert "the host: broken" in served.said
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_an_emulator_that_is_killed_takes_its_host_along(tmp_path: Path) -> None:
+    served = Serving(tmp_path, "--lx200", str(free_port()))
+    with served:
+        host = host_of(served.process.pid)
+        served.process.kill()
+        served.process.wait()
+        end_s = time.monotonic() + PATIENCE_S
+        while Path(f"/proc/{host}/cmdline").exists() and Path(f"/proc/{host}/cmdline").read_bytes():
+            assert time.monotonic() < end_s
+            time.sleep(0.1)
