@@ -15,6 +15,7 @@ from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection, design, select
 from calibration.drivedelay import Found, left_by_the_declared, timed
+from calibration.driveleft import Left, left_over, settle
 from calibration.drivenames import as_told
 from calibration.drivesearch import find
 from calibration.errors import CalibrationInputError
@@ -46,6 +47,7 @@ class Balance:
     before: float | None = None  # held-out error before the delay was taken out
     lacks: list[str] = field(default_factory=list)
     bounds: list[str] = field(default_factory=list)
+    left: Left | None = None
 
 
 @dataclass
@@ -164,10 +166,23 @@ def _balance(
     if more.chosen:
         findings.append(finding_of(more, 0))
         together = _together(s, more)
+    findings = settle(findings, left_over(s, scene, floor), problem.channel)
     kind = FORCE if response.is_force else SENSORS
     lacks = [f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)]
     return Balance(
-        view, problem, scene, together, s, findings, floor, source, delay, before, lacks, [*notes, *bounds]
+        view,
+        problem,
+        scene,
+        together,
+        s,
+        findings,
+        floor,
+        source,
+        delay,
+        before,
+        lacks,
+        [*notes, *bounds],
+        left_over(together, scene, floor),
     )
 
 

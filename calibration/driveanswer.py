@@ -176,8 +176,8 @@ def _reasons(found: DriveResult) -> list[str]:
         out += _short(found)
         if not np.any(np.abs(b.view.direction) > 0.5):
             out.append("the position does not move")
-        held = b.selection.held
-        if b.floor and np.isfinite(held.after) and held.after > 2 * b.floor:
-            much = held.after / b.floor
-            out.append(f"{much:.1f} floors remain in {b.view.response.channel}: something is still missing")
+        if b.left is not None:
+            where = f"{b.left.where} ({100 * b.left.share:.0f} % of it)" if b.left.domain else b.left.where
+            much = f"{b.left.times:.1f} floors remain in {b.view.response.channel}"
+            out.append(f"{much}, {where}: something is still missing")
     return out

@@ -17,6 +17,7 @@ from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
+from calibration.prune import REMAINDER, dominant
 
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]
@@ -54,8 +55,12 @@ def timed(
     late = find(moved)
     now, was = late[0].held.after, found[0].held.after
     simpler = len(late[0].chosen) < len(found[0].chosen)
-    if now**2 < (1.0 if simpler else 1.0 - EARNS) * was**2:
-        return Timed(moved, late, delay, _held_rms(problem))
+    before = _held_rms(problem)
+    # beside a name that explains nearly everything a delay may be what its formula leaves
+    least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
+    telling = was**2 - now**2 > max(EARNS * was**2, least)
+    if telling or (simpler and now < was):
+        return Timed(moved, late, delay, before)
     return Timed(plain_loop, found)
 
 

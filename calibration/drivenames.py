@@ -33,16 +33,20 @@ def _line(f: Finding, scene: Scene) -> Finding:
 
 
 def _wide_loop(f: Finding, scene: Scene) -> Finding:
-    """A hysteresis over a good part of the stroke is a loop, but of what is not known."""
-    if f.name != "presliding" or "breakaway_travel" not in f.parameters:
+    """A hysteresis over a good part of the stroke is a loop, but of what is not known: gears have gaps of
+    minutes of arc."""
+    key = {"presliding": "breakaway_travel", "play": "gap"}.get(f.name)
+    if key is None or key not in f.parameters:
         return f
     v = scene.view
     stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
-    travel = f.parameters["breakaway_travel"].value
+    travel = f.parameters[key].value
     small = stroke <= BRISTLE.get(scene.angle_unit, 0.0)
     if travel > WIDEST * stroke and not small:
         f.name, f.equivalent = "unknown", []
-        f.note = f"a loop of {travel:.3g} {scene.angle_unit} after every reversal: too wide for bristles"
+        f.note = (
+            f"a loop of {travel:.3g} {scene.angle_unit} after every reversal: too wide for bristles or gears"
+        )
     return f
 
 

@@ -34,7 +34,8 @@ def findings_of(s: Selection, index: int) -> list[Finding]:
             pair = slice(first + 2 * k, first + 2 * k + 2)
             beta, cov = s.after.beta[pair], s.after.covariance[pair, pair]
             found.append((*amplitude_interval(beta, cov, blocks), beta, cov))
-        value, low, high, beta, cov = found[0]
+        # the phase is the section's that shows the line best: one that is held out shows none
+        value, low, high, beta, cov = max(found, key=lambda f: f[0])
         spread = float(np.sqrt(max(np.trace(cov) / 2, 0.0)))
         phase = float(np.arctan2(-beta[1], beta[0]))
         around = interval(phase, min(spread / max(value, 1e-300), 2.0), blocks, 0.0)

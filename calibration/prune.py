@@ -18,6 +18,12 @@ STICTION = 0.2  # a dip of friction near rest, likewise: less is how friction tu
 SEARCHED = ("bearing_pass", "command_disturbance")  # lines found among hundreds
 LINE = 0.04  # what such a line must add, likewise
 WORTH = 0.01  # of the final held-out mean square, that leaving an effect out must add
+# of the mean square that all effects take off, held-out: an effect of another name than the strongest's that
+# is worth less may be what the strongest one's formula (one sine, one time constant) leaves of it. A sixth in
+# amplitude; effects of ratio 1 beside 5 are worth 1/26 (development seed 1012, opened sample of 20261122)
+REMAINDER = 0.03
+# of the same, that the strongest effect takes alone: where it takes less, others are there for themselves
+DOMINANT = 0.95
 
 
 def prune(s: Selection) -> Selection:
@@ -38,6 +44,39 @@ def prune(s: Selection) -> Selection:
             break
         s = _without(s, k, "adds too little to what is left when it is left out")
     return s
+
+
+def remainders(s: Selection) -> Selection:
+    """Leave out effects of another name than the strongest's that are worth a few per cent of what all of
+    them take off: an imperfect model of the strongest effect leaves as much."""
+    while len(s.chosen) > 1:
+        strongest = dominant(s)
+        if not strongest:
+            break
+        chosen = [x.candidate for x in s.chosen]
+        nothing, now = _held(s, []), _held(s, chosen)
+        rise = {
+            k: _held(s, [x for j, x in enumerate(chosen) if j != k]) - now
+            for k, c in enumerate(chosen)
+            if c.name != strongest
+        }
+        k = min(rise, key=lambda j: rise[j], default=-1)
+        if k < 0 or rise[k] >= REMAINDER * (nothing - now):
+            break
+        part = 100 * max(rise[k], 0.0) / (nothing - now)
+        s = _without(s, k, f"worth {part:.1f} % of what is found: a remainder of {strongest} as well")
+    return s
+
+
+def dominant(s: Selection) -> str:
+    """The name whose effects alone take off nearly all that all of them do, or empty."""
+    if s.problem.test.sum() < 20 or not s.chosen:
+        return ""
+    chosen = [x.candidate for x in s.chosen]
+    nothing, now = _held(s, []), _held(s, chosen)
+    alone = {n: _held(s, [c for c in chosen if c.name == n]) for n in {c.name for c in chosen}}
+    name = min(alone, key=lambda n: alone[n])
+    return name if now < nothing and nothing - alone[name] >= DOMINANT * (nothing - now) else ""
 
 
 def sound(s: Selection) -> Selection:

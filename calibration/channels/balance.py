@@ -22,7 +22,7 @@ COVER = 0.02  # of its own quantile range that a held-out file may exceed the ot
 def problem_of(view: View, records: list[Record], hold_out: list[str], delay_s: float = 0.0) -> Problem:
     """The response and its declared terms on the fitted rows; the response's column is late by `delay_s`."""
     rig, response = view.rig, view.response
-    y, ok = _response(view, delay_s)
+    y, ok = response_of(view, delay_s)
     labels, base = _base(view)
     for name, value in rig.constants.items():
         y = y - value * _term(view, name)[:, 0]
@@ -58,7 +58,8 @@ def problem_of(view: View, records: list[Record], hold_out: list[str], delay_s: 
     return problem
 
 
-def _response(view: View, delay_s: float) -> tuple[Array, Mask]:
+def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:
+    """The response (n,) at full rate, its column late by `delay_s`, and the rows where it says anything."""
     r, ok = view.response, np.ones(len(view.t), dtype=bool)
     if r.channel == "acceleration":
         x = view.columns.get("acceleration")

@@ -24,14 +24,16 @@ def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
 def lives_in(s: Selection, domains: dict[str, Array]) -> str:
     """The domain whose bin means on training rows take most off the held-out residual, in words."""
     e, p = s.after.residual, s.problem
-    shares = {name: _share(e, x, p.train, p.test) for name, x in domains.items()}
+    shares = {name: domain_share(e, x, p.train, p.test) for name, x in domains.items()}
     name = max(shares, key=lambda k: shares[k], default="")
     if not name or shares[name] < LEAST_SHARE:
         return "in none of " + ", ".join(domains)
     return f"over {name} ({100 * shares[name]:.0f} % of its mean square)"
 
 
-def _share(e: Array, x: Array, train: Mask, test: Mask) -> float:
+def domain_share(e: Array, x: Array, train: Mask, test: Mask) -> float:
+    """Share of the mean square of `e` (n,) on `test` rows that its bin means over `x` (n,), made on `train`
+    rows, take away; 0 where the rows are too few."""
     if train.sum() < 10 * BINS or test.sum() < 10 * BINS or np.ptp(x[train]) == 0:
         return 0.0
     edges = np.unique(np.quantile(x[train], np.linspace(0, 1, BINS + 1)[1:-1]))

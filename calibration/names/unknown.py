@@ -10,6 +10,7 @@ from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
 KNOTS = 8
+SLOW = 4  # knots over time of a scale that moves
 RADII = (0.002, 0.01, 0.05, 0.2)  # of the usual stroke, of the loops in a flexible fit
 
 
@@ -44,7 +45,19 @@ def smooth_functions(s: Scene) -> list[Candidate]:
         if s.force and s.both and domain in ("axis_angle", "time"):
             odd = columns * s.view.direction[s.view.rows][:, None]
             out.append(Candidate("unknown", domain, odd, labels))
+    if not s.force:
+        out += _moving_scale(s)
     return out
+
+
+def _moving_scale(s: Scene) -> list[Candidate]:
+    """Two sensors whose ratio moves with time: thermal growth errs in proportion to the place (ISO 230-3)."""
+    knots = spline_columns(s.problem.t, SLOW)
+    if knots.shape[1] == 0:
+        return []
+    x = s.view.x[s.view.rows]
+    labels = tuple((f"scale_knot_{k}", f"{s.unit}/{s.angle_unit}") for k in range(knots.shape[1]))
+    return [Candidate("unknown", "time", knots * (x - x.mean())[:, None], labels)]
 
 
 def flexible(s: Scene) -> Array:

@@ -1,0 +1,78 @@
+"""What the sensors of any drive leave in its balance: each column's own noise, taken through the filter."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.channels.balance import response_of
+from calibration.channels.noise import rough
+from calibration.channels.problem import Problem
+from calibration.channels.recursions import stop_element
+from calibration.channels.view import View, position_noise
+from calibration.readers.run import Array
+
+# mean square of white noise through a Gaussian of s rows: 1 / (2 sqrt(pi) s); of its second difference:
+# 3 / (8 sqrt(pi) s^5)
+PASSED = 1.0 / (2.0 * np.sqrt(np.pi))
+CURVED = 3.0 / (8.0 * np.sqrt(np.pi))
+
+
+def sensors_floor(view: View, p: Problem) -> float | None:
+    """rms in the response's unit: noise of its column, of the position through the inertia, and the friction
+    in travel that the position does not resolve. None when the log is too short to tell."""
+    r = view.response
+    width = max(view.sigma, 1.0)
+    place = position_noise(view.x, view.file)
+    curved = place * float(np.sqrt(CURVED / width**5)) / view.period_s**2
+    if not r.is_force:
+        return _of_sensors(view, place, width)
+    declared = _declared(p)
+    if r.channel == "acceleration":
+        if "acceleration" in view.columns:
+            return _passed(view, view.columns["acceleration"] * r.gain, width)
+        return float(abs(r.gain) * curved)
+    own = _passed(view, response_of(view, 0.0)[0], width)
+    if own is None:
+        return None
+    inertia = abs(declared.get("inertia", 0.0)) * curved
+    return float(np.sqrt(own**2 + inertia**2 + _unresolved(view, p, declared.get("coulomb", 0.0)) ** 2))
+
+
+def _of_sensors(view: View, place: float, width: float) -> float | None:
+    """Two position sensors against each other; the filter does not average steps that a slow motion keeps."""
+    second = view.columns.get(view.response.channel)
+    if second is None:
+        return None
+    passed = float(np.sqrt(PASSED / width)) if view.sigma > 0 else 1.0
+    noise = position_noise(second, view.file) * abs(view.response.gain)
+    ratio = abs(view.response.ratio if view.response.ratio is not None else 1.0)
+    return float(np.hypot(noise, ratio * place) * passed)
+
+
+def _passed(view: View, full: Array, width: float) -> float | None:
+    """A column's white noise after the filter, the median over files."""
+    found = [rough(full[view.file == k], 2) for k in np.unique(view.file)]
+    good = [x for x in found if np.isfinite(x)]
+    if not good:
+        return None
+    return float(np.median(good) * np.sqrt(PASSED / width)) if view.sigma > 0 else float(np.median(good))
+
+
+def _declared(p: Problem) -> dict[str, float]:
+    beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=None)[0]
+    return {n: float(b) for (n, _), b in zip(p.base_labels, beta, strict=True)}
+
+
+def _unresolved(view: View, p: Problem, coulomb: float) -> float:
+    """Friction turns within a step of the position's sensor, and no log tells where: a loop of one step after
+    every reversal, less what the declared terms take up of it."""
+    if coulomb <= 0 or not view.dynamic:
+        return 0.0
+    width = float(np.sqrt(12.0)) * position_noise(view.x, view.file)
+    fresh = np.concatenate([[True], np.diff(view.file) != 0])
+    loop = stop_element(np.ascontiguousarray(view.x), fresh, float(width)) / width - view.direction
+    column = coulomb * view.at(loop)
+    rows = p.train
+    beta = np.linalg.lstsq(p.base[rows], column[rows], rcond=None)[0]
+    left = (column - p.base @ beta)[p.valid]
+    return float(np.sqrt(np.mean(left**2))) if len(left) else 0.0
