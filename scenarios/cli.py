@@ -100,9 +100,7 @@ def run(
 ) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
     whole = order = None
-    if (mute is None) != (feed is None):
-        raise click.UsageError("--mute BOARD and --feed LOG go together")
-    muted = None if mute is None or feed is None else (mute, feed)
+    muted = _muted(mute, feed)
     if begun is not None or snapshot_at is not None:
         from scenarios.native.finder import plain
 
@@ -259,6 +257,13 @@ def objective(
     sys.exit(command(out, plant, plant_high, compensation, starts, seeds, shift, seconds, only, steps))
 
 
+def _muted(mute: str | None, feed: Path | None) -> tuple[str, Path] | None:
+    """A board and the log its frames come from; raises UsageError for one without the other."""
+    if (mute is None) != (feed is None):
+        raise click.UsageError("--mute BOARD and --feed LOG go together")
+    return None if mute is None or feed is None else (mute, feed)
+
+
 @cli.command(short_help="Run the boards in real time and open doors to them.")
 @click.argument("scenario", type=click.Path(path_type=Path), required=False)
 @click.option(
@@ -300,6 +305,10 @@ def objective(
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
 @click.option("--debug", metavar="DIR", help="Every board's debug port as a pseudo-terminal in DIR (slcan).")
 @click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.option("--mute", metavar="BOARD", help="This board sends nothing; its frames come from --feed.")
+@click.option(
+    "--feed", type=click.Path(path_type=Path), metavar="LOG", help="Log to take them from (candump -L)."
+)
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
     scenario: Path | None,
@@ -319,6 +328,8 @@ def serve(
     duration: float | None,
     debug: str | None,
     network: str | None,
+    mute: str | None,
+    feed: Path | None,
     record: Path | None,
 ) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
@@ -326,7 +337,8 @@ def serve(
     from scenarios.serve import serve as command
 
     options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs, debug)
-    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network))
+    muted = _muted(mute, feed)
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted))
 
 
 @cli.command(short_help="The host program alone, on the boards' cables.")

@@ -15,6 +15,7 @@ from scenarios.doors.interrupt import interrupts
 from scenarios.doors.options import DoorOptions, make_doors
 from scenarios.doors.parking import park
 from scenarios.doors.recording import Recording
+from scenarios.muted import Feed, FeedError
 from scenarios.served import chosen, wire
 
 _STATUS_S = 1.0
@@ -30,8 +31,11 @@ def serve(
     duration_s: float | None = None,
     record: Path | None = None,
     network: str | None = None,
+    mute: tuple[str, Path] | None = None,
 ) -> int:
     """Pace the network with its doors open, until Ctrl-C, `schmidt control stop`, or `duration_s` (wall).
+
+    mute: a board that sends nothing and the candump log that its frames come from, times from the start on.
 
     The scenario's steps are not run (see `scenarios.served`). Returns the exit status, 0; raises ValueError
     subclasses and OSError with one line for input that cannot be used.
@@ -39,10 +43,14 @@ def serve(
     console = Console()
     checked_speed(speed)
     options.check()
+    if mute is not None and record is not None:
+        raise FeedError("--mute and --record: frames fed from a log are not recorded; leave one out")
     scenario, model = chosen(scenario_file, seed, plant, network)
     with console.status("starting (the first time compiles)") as line:
         recording = Recording(record, scenario, model) if record is not None else None
         served = Served(scenario, model, speed, recording)
+        if mute is not None:
+            Feed(served.network, *mute)
         doors = make_doors(options, served, console.print)
         if recording is not None:
             recording.attach(served)

@@ -4,8 +4,11 @@ from pathlib import Path
 
 import pytest
 
+from bus.can import Frame
 from bus.protocol import Device
-from scenarios.muted import FeedError, compare, read
+from scenarios.doors import Served
+from scenarios.muted import Feed, FeedError, compare, read, says
+from scenarios.served import chosen
 from tests.scenarios.conftest import Command
 
 
@@ -73,3 +76,26 @@ def test_error_frames_are_left_out_and_an_empty_remote_frame_is_read(tmp_path: P
     (tmp_path / "a.log").write_text(text)
     (logged,) = read(tmp_path / "a.log")
     assert logged.frame == (0x211, b"", False, True)
+
+
+def test_a_served_board_is_muted_and_fed(log: Path, schmidt: Command, tmp_path: Path) -> None:
+    heard: list[Frame] = []
+    scenario, model = chosen()
+    served = Served(scenario, model)
+    Feed(served.network, "POSITION_RA", log)
+    served.network.wire.tap(lambda _t, frame, _sender: heard.append(frame))
+    served.run_until(1_000_000_000)
+    own = [frame for frame in heard if says(Device.POSITION_RA, frame)]
+    logged = [each.frame for each in read(log) if says(Device.POSITION_RA, each.frame)]
+    assert own == logged[: len(own)] and len(own) > 190
+
+
+def test_serve_says_what_does_not_go_together(log: Path, schmidt: Command, tmp_path: Path) -> None:
+    door = ("serve", "--debug", tmp_path / "ports", "--duration", "1", "--mute", "POSITION_RA")
+    for more, complaint in (
+        ((), "--mute BOARD and --feed LOG go together"),
+        (("--feed", log, "--record", tmp_path / "rec"), "leave one out"),
+        (("--feed", tmp_path / "none.log"), "No such file"),
+    ):
+        done = schmidt(*door, *more)
+        assert done.returncode == 2 and complaint in done.stderr and "Traceback" not in done.stderr
