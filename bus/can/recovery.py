@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from bus.can.wire import Wire
 
 _NEVER: Final = 1 << 61
+_RECESSIVE_BITS: Final = 8
+"""Of what is on the wire when it ends: ACK delimiter and EOF, or an error delimiter."""
 
 
 class Recovery:
@@ -28,6 +30,18 @@ class Recovery:
     def add(self, port: Port) -> None:
         """`port` has just gone bus off."""
         self._back_at[port] = self._runs + RECOVERY_RUNS
+        self._look_again()
+
+    def join(self, port: Port) -> None:
+        """`port`, bus off, has come from another wire: its runs begin with the first one that begins here."""
+        under_way = 0
+        if self._wire._end_ns == _NEVER:
+            now_ns = self._wire.queue.now_ns
+            runs = self._runs_until(now_ns)
+            self._runs += runs
+            self.quiet_since_ns += runs * RECOVERY_RUN_BITS * self._wire.bit_ns
+            under_way = int(self.quiet_since_ns < now_ns)
+        self._back_at[port] = self._runs + under_way + RECOVERY_RUNS
         self._look_again()
 
     def drop(self, port: Port) -> None:
@@ -50,7 +64,8 @@ class Recovery:
     def _look_again(self) -> None:
         """Call back at the earliest time the next node can be through, if the bus stays quiet."""
         wire = self._wire
-        quiet = self.quiet_since_ns if wire._end_ns == _NEVER else wire._end_ns
+        ends_ns = wire._end_ns - _RECESSIVE_BITS * wire.bit_ns
+        quiet = self.quiet_since_ns if wire._end_ns == _NEVER else ends_ns
         needed = min(self._back_at.values()) - self._runs
         t_ns = quiet + needed * RECOVERY_RUN_BITS * wire.bit_ns
         wire.queue.at(max(t_ns, wire.queue.now_ns + 1), self._recover)

@@ -367,7 +367,7 @@ class Trouble:
 
     def comes_off(self, port: Port) -> None:
         """A node that is bus off joins this wire."""
-        self._recovery.add(port)
+        self._recovery.join(port)
 
     def restart(self, port: Port) -> None:
         """`port` was switched: counters start from zero."""

@@ -4,6 +4,7 @@ import pytest
 
 from bus.can import Flip, Frame, Wire
 from bus.can.bits import wire_bits
+from bus.can.partition import Partition
 from bus.can.port import BusError, Port
 from bus.can.stuck import StuckDominant
 from bus.time import EventQueue
@@ -57,6 +58,11 @@ def test_L1_on_a_quiet_bus_it_is_exactly_1408_bits(start_ns: int) -> None:
     assert (wire.ports[0].state, wire.ports[0].tec, wire.ports[0].rec) == ("active", 0, 0)
     queue.run_until(due + LENGTH * BIT_NS)  # its frame was kept, and goes at once
     assert wire.frames == 1
+    heard: list[Frame] = []
+    wire.ports[0].on_receive = lambda _t, frame: heard.append(frame)
+    wire.ports[1].send(Frame(7, b""), queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+    assert heard == [Frame(7, b"")]
 
 
 def test_L1_on_a_busy_bus_every_frame_is_one_run() -> None:
@@ -85,6 +91,56 @@ def test_L1_a_frame_in_between_costs_what_it_takes() -> None:
     assert wire.ports[0].state == "bus_off"
     queue.run_until(due)
     assert wire.ports[0].state == "active"
+
+
+def test_L1_a_frame_under_way_at_the_end_of_the_wait_gives_the_last_run() -> None:
+    queue, wire = network(2)
+    quiet = off_in_one(queue, wire)
+    wire.attach("third")
+    sof = quiet + (127 * 11 + 5) * BIT_NS
+    wire.ports[1].send(FRAME, sof)
+    due = sof + LENGTH * BIT_NS  # its last eleven bits are the 128th run
+    queue.run_until(due - 1)
+    assert wire.ports[0].state == "bus_off"
+    queue.run_until(due)
+    assert wire.ports[0].state == "active"
+
+
+@pytest.mark.parametrize("idle_ns", [3_000_000, 20_000_003])
+def test_L1_on_another_wire_the_count_begins_with_its_first_run(idle_ns: int) -> None:
+    """A cable breaks and is mended; neither wire's silence before counts, and less than a run is lost."""
+    queue, wire = network(4)
+    queue.run_until(idle_ns)
+    off_in_one(queue, wire)
+    for act in ("cut", "mend"):
+        queue.run_until(queue.now_ns + 100_000)
+        if act == "cut":
+            cut = Partition(wire, [wire.ports[0], wire.ports[3]], queue.now_ns)
+        else:
+            queue.run_until(queue.now_ns + 500_000)
+            cut.heal(queue.now_ns)
+        assert wire.ports[0].state == ("bus_off" if act == "mend" else "active")
+        since = queue.now_ns
+    back = back_ns(queue, wire.ports[0], since + 2 * RUNS_NS)
+    assert RUNS_NS <= back - since < RUNS_NS + 12 * BIT_NS
+
+
+def test_L1_in_a_piece_of_the_bus_it_takes_as_long() -> None:
+    queue, wire = network(4)
+    queue.run_until(20_000_000)
+    off_in_one(queue, wire)
+    port, partner = wire.ports[0], wire.ports[3]
+    queue.run_until(queue.now_ns + 100_000)
+    since = queue.now_ns
+    Partition(wire, [port, partner], since)
+    heard: list[Frame] = []
+    port.on_receive = lambda _t, frame: heard.append(frame)
+    back = back_ns(queue, port, since + 2 * RUNS_NS)
+    assert RUNS_NS <= back - since < RUNS_NS + 12 * BIT_NS
+    queue.run_until(back + 1_000_000)
+    partner.send(Frame(7, b""), queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+    assert heard == [Frame(7, b"")]  # it hears again, too
 
 
 def test_L1_two_nodes_off_come_back_one_after_the_other() -> None:
