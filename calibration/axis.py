@@ -8,14 +8,22 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.axisapply import before_of, corrected_runs, judged, keep_untouched, to_apply
+from calibration.axisapply import (
+    before_of,
+    corrected_runs,
+    judged,
+    keep_untouched,
+    to_apply,
+    too_little,
+    without,
+)
+from calibration.axisfloors import sensor_floors
 from calibration.axisresult import AxisResult
 from calibration.axistorque import torque_channel
 from calibration.candidates import amplifier, axis_torque
 from calibration.candidates import electrical as electrical_candidates
 from calibration.candidates import kinematic as kinematic_candidates
 from calibration.candidates.context import Context
-from calibration.channels import noise
 from calibration.channels.clock import clock_findings, repair_wraps
 from calibration.channels.command import command_candidates, command_problem, pulses
 from calibration.channels.electrical import (
@@ -70,14 +78,15 @@ def analyse(
     fault = to_apply(merge(deepcopy(result.findings)))
     if fault is None:
         return result
+    refusal = too_little(result, fault)
+    if refusal is not None:
+        return without(result, fault, refusal)
     tell(f"once more without the {fault.name.replace('_', ' ')}")
     again = _look(corrected_runs(result, fault), hold_out, seed, tell, plant)
     before = before_of(result, again, fault)
     refusal = judged(before, again, fault)
     if refusal is not None:
-        result.findings = [f for f in result.findings if f.name != fault.name]
-        result.refused.append((fault.channel, refusal.what, refusal.why))
-        return result
+        return without(result, fault, refusal)
     again.before = before
     if fault.name == "play":  # the motors see the crossings that the corrected encoder leaves out
         again.selections["K"] = result.selections["K"]
@@ -119,22 +128,6 @@ def _look(
         strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
         result.findings += [strange] if strange is not None else []
     return result
-
-
-def sensor_floors(result: AxisResult, drive: Transmission) -> dict[str, float]:
-    """Per channel, what the sensors' noise and quanta leave (channels/noise.py)."""
-    frame, m = result.frame, result.motion
-    n = noise.column_noise(frame)
-    inertia = result.calibrated["inertia"].value if "inertia" in result.calibrated else 0.0
-    resistance = result.electrical.resistance if result.electrical is not None else 0.0
-    rows = result.held[m.pick] & m.trusted[m.pick]
-    found = {
-        "T": noise.torque_floor(n, drive, inertia, m.period_s),
-        "E": noise.electrical_floor(n, resistance, frame.scale["supply_V"], frame.scale["counter_torque"]),
-        "K": noise.encoder_floor(n, frame, m, rows, drive),
-        "S": noise.roller_floor(n),
-    }
-    return {key: value for key, value in found.items() if value is not None}
 
 
 def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> tuple[float, dict[str, Array]]:
