@@ -70,7 +70,7 @@ def _unresolved(view: View, p: Problem, coulomb: float) -> float:
         return 0.0
     width = float(np.sqrt(12.0)) * position_noise(view.x, view.file)
     fresh = np.concatenate([[True], np.diff(view.file) != 0])
-    loop = stop_element(np.ascontiguousarray(view.x), fresh, float(width)) / width - view.direction
+    loop = stop_element(np.ascontiguousarray(view.x), fresh, float(width)) / width - np.sign(view.since)
     column = coulomb * view.at(loop)
     rows = p.train
     beta = np.linalg.lstsq(p.base[rows], column[rows], rcond=None)[0]

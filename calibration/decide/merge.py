@@ -56,6 +56,7 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
     ("cable_wrap", "T"): ("preload_change", "friction_warmup"),
 }
 TWIST = "gear_eccentricity"
+SAME_ORDER = 1e-6  # of an order: two counts of teeth that give the same one
 SUPERFLUOUS = (
     0.25  # a second torque effect that takes less than this part of the first one's share is its remainder
 )
@@ -65,6 +66,7 @@ def merge(findings: list[Finding]) -> list[Finding]:
     """Findings of all channels as a list of effects, strongest first."""
     out = _resolve_gain(findings)
     out = _resolve_motor(out)
+    out = _resolve_mesh(out)
     out = _same_key(out)
     out = _consequences(out)
     out = _remainders(out)
@@ -98,6 +100,24 @@ def _resolve_motor(findings: list[Finding]) -> list[Finding]:
             f = replace(f, name=TWIST, equivalent=[], parameters={"amplitude": told})
         out.append(f)
     return out
+
+
+def _resolve_mesh(findings: list[Finding]) -> list[Finding]:
+    """Two teeth of mesh 1 pass in the time of an even harmonic of the motor. Where the encoders see that mesh
+    turn unevenly and the torque shows it too, cogging or ripple at the same order is what its shape leaves:
+    they twist nothing."""
+
+    def orders(channel: str) -> list[float]:
+        return [f.order for f in findings if f.channel == channel and f.name == "gear_mesh" and f.order]
+
+    both = [k for k in orders("K") if any(abs(k - t) < SAME_ORDER * k for t in orders("T"))]
+
+    def imitates(f: Finding) -> bool:
+        order = f.order or 0.0
+        motor = f.channel == "T" and f.name in ("torque_ripple", "motor_cogging")
+        return motor and any(abs(order - k) < SAME_ORDER * k for k in both)
+
+    return [f for f in findings if not imitates(f)]
 
 
 def _same_key(findings: list[Finding]) -> list[Finding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -212,3 +212,11 @@ def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:
     seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)])
     assert [f.name for f in seen] == ["gear_eccentricity"]
     assert seen[0].parameters["amplitude"].value == pytest.approx(0.01 * STAGES["motor"])
+
+
+def test_ripple_at_the_order_of_a_mesh_that_the_encoders_see_is_the_mesh_s() -> None:
+    ripple, mesh = line("T", "torque_ripple"), line("T", "gear_mesh")
+    assert {f.name for f in merge([ripple, mesh])} == {"torque_ripple", "gear_mesh"}
+    assert {f.name for f in merge([ripple, mesh, line("K", "gear_mesh")])} == {"gear_mesh"}
+    other = replace(ripple, order=3 * STAGES["motor"], harmonic=3)
+    assert {f.name for f in merge([other, mesh, line("K", "gear_mesh")])} == {"torque_ripple", "gear_mesh"}
