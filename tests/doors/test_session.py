@@ -166,6 +166,15 @@ def test_frames_that_come_while_it_is_paused_are_kept_in_order(bench: Bench) -> 
         assert heard == list(range(200))
 
 
+def queued(process: int) -> float:
+    """Seconds that a process was ready to run and another one ran (Linux, Documentation/scheduler); the last
+    known when it has gone or the system does not say."""
+    try:
+        return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) * 1e-9
+    except (OSError, IndexError):
+        return 0.0
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -179,14 +188,19 @@ def test_ctrl_c_parks_flushes_and_ends(tmp_path: Path, number: signal.Signals) -
         while not (tmp_path / "s").exists() and time.monotonic() < deadline:
             time.sleep(0.1)
         time.sleep(1.0)
-        start = time.monotonic()
+        start, queued_s = time.monotonic(), queued(server.pid)
+        before_s = queued_s
         server.send_signal(number)
-        said, _ = server.communicate(timeout=60)
+        while server.poll() is None:  # it prints little: a pipe takes that unread
+            queued_s = max(queued_s, queued(server.pid))
+            time.sleep(0.01)
         took_s = time.monotonic() - start
+        said, _ = server.communicate(timeout=60)
     assert server.returncode == 0
     words = " ".join(said.split())
     assert "the motors were off" in words and ("ticks within 1 ms" in words or "no tick yet" in words)
-    print(f"ended within {took_s:.2f} s")
-    assert took_s < 1.0 * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
+    others_s = queued_s - before_s
+    print(f"ended within {took_s:.2f} s, {others_s:.2f} s of them the processor was with other programs")
+    assert took_s - others_s < 1.0
     assert not (tmp_path / "s").exists()
     assert replay(tmp_path / "rec", tmp_path / "again")[0] == replay(tmp_path / "rec", tmp_path / "third")[0]
