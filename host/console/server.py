@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import socket
 from typing import Any
 
@@ -23,6 +24,21 @@ from host.console.shell import Shell
 from host.console.views import BusView, Runs
 from host.telescope import Telescope
 from host.web import answer
+
+_LOGGERS = ("engineio.server", "socketio.server", "nicegui")
+"""Where the libraries tell of messages that no page sends; by default as tracebacks on the screen."""
+
+
+class _Counter(logging.Handler):
+    """Counts instead of printing."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.ERROR)
+        self.count = 0
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """One more."""
+        self.count += 1
 
 
 class Consoles:
@@ -47,6 +63,15 @@ class Consoles:
         web = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         ui.run_with(web, title="Schmidt telescope", dark=True, language="en-US", binding_refresh_interval=1.0)
         self._app = Guard(web, token)
+        self._refused = _Counter()
+        for name in _LOGGERS:
+            logger = logging.getLogger(name)
+            logger.handlers, logger.propagate = [self._refused], False
+
+    @property
+    def refused(self) -> int:
+        """Messages that no page sends, or that a page could do nothing with."""
+        return self._refused.count
 
     @property
     def browsers(self) -> int:

@@ -53,5 +53,6 @@ class ConsoleDoor:
         self._runs.close()
 
     def state(self) -> str:
-        """How many look."""
-        return f"{self._consoles.browsers} browsers"
+        """How many look, and what was sent that no page sends."""
+        refused = self._consoles.refused
+        return f"{self._consoles.browsers} browsers" + (f", {refused} messages refused" if refused else "")

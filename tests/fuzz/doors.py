@@ -25,10 +25,10 @@ from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
 from scenarios.doors.hid_report import out_report
-from scenarios.doors.serial_tcp import Rfc2217Door
+from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
 from scenarios.load import load
 from scenarios.served import chosen
-from tests.fuzz import chips, files, inputs, streams
+from tests.fuzz import browser, chips, files, inputs, streams
 from tests.fuzz.hosted import alpaca, lx200
 
 MS = 1_000_000
@@ -187,6 +187,39 @@ def telnet(served: Served, count: int, random: Random) -> dict[str, int]:
     return found
 
 
+def serial(served: Served, count: int, random: Random) -> dict[str, int]:
+    """Raw TCP of a serial line: bytes, clients that hang up, that reset, that never read."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        base = min(int(probe.getsockname()[1]), 65000)
+    door = TcpDoor(str(base), served)
+    door.open()
+    found = {"accepted": 0, "hung up": 0}
+    clients: list[socket.socket] = []
+
+    def one(_number: int) -> None:
+        while len(clients) < 8:
+            clients.append(socket.create_connection(("127.0.0.1", base + random.randrange(5)), 10))
+        client = random.choice(clients)
+        try:
+            client.sendall(inputs.data(random, 64))
+            found["accepted"] += 1
+        except OSError:
+            found["hung up"] += 1
+        if random.random() < 0.02:
+            if random.random() < 0.5:  # a reset instead of a farewell
+                client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")
+            clients.remove(client)
+            client.close()
+        door.poll(served.now_ns)
+
+    rounds(served, count, one)
+    for client in clients:
+        client.close()
+    door.close()
+    return found
+
+
 def scenarios(served: Served, count: int, random: Random) -> dict[str, int]:
     """Scenario files."""
     found = {"accepted": 0, "refused": 0}
@@ -204,16 +237,16 @@ def scenarios(served: Served, count: int, random: Random) -> dict[str, int]:
 
 DOORS: dict[str, Callable[[Served, int, Random], dict[str, int]]] = {
     "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "telnet": telnet,
-    "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
+    "serial": serial,    "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
 }  # fmt: skip
 
 
 ALONE: dict[str, Callable[[int, Random], dict[str, int]]] = {
     "packets": streams.packets, "debug": streams.debug, "slcan": streams.slcan, "spi": chips.spi,
     "endat": chips.endat, "candump": files.candump, "axis-logs": files.axis_logs,
-    "guide-logs": files.guide_logs,
+    "guide-logs": files.guide_logs, "websocket": browser.websocket,
 }  # fmt: skip
-"""What is attacked without a network around it."""
+"""What is attacked without a network around it, or with one of its own."""
 
 
 def attack(door: str, count: int, seed: int = 1) -> dict[str, int]:
