@@ -180,6 +180,13 @@ def _compared(loaded: Scenario, model: PlantModel, folder: Path, file: Path) -> 
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/paper"), show_default=True)
 @click.option("--plant", type=click.Path(path_type=Path), help="Plant file with low preload.")
 @click.option("--plant-high", type=click.Path(path_type=Path), help="Plant file with high preload.")
+@click.option(
+    "--reading",
+    type=click.Choice(["motor", "printed"]),
+    default="motor",
+    show_default=True,
+    help="Torques of Table 2: N mm at the motor, or N m at the axis as printed.",
+)
 @click.option("--markdown", type=click.Path(path_type=Path), help="Write the table to this file.")
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
@@ -191,6 +198,7 @@ def paper(
     out: Path,
     plant: Path | None,
     plant_high: Path | None,
+    reading: str,
     markdown: Path | None,
     rows: str | None,
     quick: bool,
@@ -202,7 +210,7 @@ def paper(
     missed)."""
     from scenarios.paper.command import paper as command
 
-    where: dict[str, Any] = {"jobs": jobs, "scheduler": scheduler}
+    where: dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "reading": reading}
     sys.exit(
         command(json_file, out, plant, plant_high, markdown, names=rows, quick=quick, every=every, **where)
     )

@@ -31,10 +31,18 @@ DEFAULTS = {"low": "low_preload_bridge", "high": "high_preload_bridge"}
 """The pair of plant files that is fitted to the rows with freewheel diodes: what it meets and misses is in
 docs/paper.md. The pair as printed is `low_preload`, `high_preload`."""
 
+_PRINTED = Path(__file__).with_name("printed")
+READINGS = {
+    "motor": DEFAULTS,
+    "printed": {preload: str(_PRINTED / f"{preload}_preload_fitted.yaml") for preload in ("low", "high")},
+}
+"""Table 2's Tc and Ts as N mm at the motor, or as printed, N m at the axis (hardware.md 2.3): the best pair
+known in each."""
 
-def pair(low: Path | None, high: Path | None) -> dict[str, str]:
+
+def pair(low: Path | None, high: Path | None, reading: str = "motor") -> dict[str, str]:
     """Return the two plant files. One that is not named is the other's twin, "low" and "high" exchanged in
-    its name, where there is one, and otherwise the default."""
+    its name, where there is one, and otherwise the one of the reading."""
     found = {"low": low, "high": high}
     names = {}
     for preload, other in (("low", "high"), ("high", "low")):
@@ -42,8 +50,13 @@ def pair(low: Path | None, high: Path | None) -> dict[str, str]:
         if given is None and partner is not None:
             twin = partner.with_name(partner.name.replace(other, preload))
             given = twin if twin != partner and (twin.exists() or twin.stem in default_files()) else None
-        names[preload] = str(given or DEFAULTS[preload])
+        names[preload] = str(given or READINGS[reading][preload])
     return names
+
+
+def names_of(files: Mapping[str, str]) -> list[str]:
+    """Return plant files as a table names them: without the folder they happen to lie in."""
+    return [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
 
 
 def select(names: str | None) -> list[Experiment]:
@@ -92,18 +105,20 @@ def paper(
     every: bool = False,
     jobs: int | None = None,
     scheduler: str | None = None,
+    reading: str = "motor",
 ) -> int:
     """Run the paper's experiments.
 
     json_path: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
     plant_high: plant files for low and high preload instead of the project's own. names: rows,
     comma-separated. quick: two starts only, for a look; every: all 24 combinations of angle and seed. jobs:
-    processes (None: one per core); scheduler: a Dask scheduler instead. Returns 0 when every row is met at
+    processes (None: one per core); scheduler: a Dask scheduler instead. reading: of Table 2's units,
+    "motor" or "printed", when no plant file is named. Returns 0 when every row is met at
     every start, 1 when one is missed. Raises ValueError for a file that cannot be
     used.
     """
     console = console or Console()
-    files = pair(plant, plant_high)
+    files = pair(plant, plant_high, reading)
     plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
     chosen, starts = select(names), QUICK if quick else ALL if every else STARTS
     if out is not None:
@@ -136,9 +151,23 @@ def paper(
                 drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
             for path in drawn:
                 console.print(f"  {path}")
-        _write(out / "table.md", markdown(found, list(files.values()), "schmidt paper"))
+        _write(
+            out / "table.md",
+            markdown(
+                found,
+                names_of(files),
+                "schmidt paper" + ("" if reading == "motor" else f" --reading {reading}"),
+            ),
+        )
     if markdown_path is not None:
-        _write(markdown_path, markdown(found, list(files.values()), "schmidt paper"))
+        _write(
+            markdown_path,
+            markdown(
+                found,
+                names_of(files),
+                "schmidt paper" + ("" if reading == "motor" else f" --reading {reading}"),
+            ),
+        )
     met = sum(row.passed for row in found)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if quick else "")
     console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")

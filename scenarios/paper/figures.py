@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.paper.coasting import coast
+from scenarios.paper.experiments.e08 import SPEEDS
 from scenarios.paper.log import Log
 from scenarios.paper.record import Record
 from scenarios.paper.runs import LOW, STEP_TO, TRACKING
-from scenarios.paper.scales import ARCSEC
+from scenarios.paper.scales import ARCSEC, COUNT_RATE, LOG_PERIOD_S
 
 SIZE = (10.0, 4.2)
 
@@ -114,22 +116,23 @@ def _figure_8(record: Record, folder: Path) -> Path | None:
 
 
 def _figure_9(record: Record, folder: Path) -> Path | None:
-    if record.run_down is None or "low" not in record.fits:
+    if record.run_down is None or record.drive is None or "low" not in record.fits:
         return None
     figure, axes = _panels(2, "Fig. 9: run-down test, low preload")
-    fit, down = record.fits["low"], record.run_down
+    fit, (log, down) = record.fits["low"], record.run_down
     points = record.points["low"]
     rate = np.linspace(0.5 * ARCSEC, max(p.rate for p in points), 400)
     axes[0].plot(np.degrees(rate), fit.torque(rate), color="black", linewidth=1.0)
     axes[0].plot(np.degrees([p.rate for p in points]), [p.torque for p in points], "o", markersize=4)
     axes[0].set(title="(a) friction over velocity", xlabel="velocity, °/s", ylabel="torque, N m")
-    axes[1].plot(down.t_s - down.t_s[0], np.degrees(down.rate), "o", markersize=4, label="log, 10 ms")
-    w, t, curve = float(down.rate[0]), 0.0, []
-    while w > 0.0 and t < down.stop_s:
-        curve.append((t, w))
-        w -= float(fit.torque(np.array([max(w, 1e-9)]))[0]) / down.inertia * 1e-3
-        t += 1e-3
-    axes[1].plot(*np.array([(a, np.degrees(b)) for a, b in curve]).T, color="black", linewidth=1.0,
+    shown = 6  # 60 ms: then it is at rest but for its swing
+    t = (np.arange(shown) + 1.0) * LOG_PERIOD_S
+    degrees = COUNT_RATE * ARCSEC * 180.0 / np.pi
+    axes[1].plot(t, log.counts[:shown] * degrees, "o", markersize=4, label="log, 10 ms")
+    curve = coast(
+        record.drive, fit, down.inertia, down.damping, down.late_s, np.array([SPEEDS[0] * ARCSEC]), shown
+    )[0]  # fmt: skip
+    axes[1].plot(t, curve * degrees, color="black", linewidth=1.0,
                  label=f"J = {down.inertia / 1e3:.3f}e6 N mm s²")  # fmt: skip
     axes[1].set(title="(b) deceleration", xlabel="time, s", ylabel="velocity, °/s")
     axes[1].legend(fontsize=8)

@@ -3,13 +3,15 @@
 from dataclasses import dataclass, field
 
 from scenarios.paper import runs
+from scenarios.paper.coasting import Drive, drive
+from scenarios.paper.experiments.e08 import SPEEDS
 from scenarios.paper.experiments.e09 import RAMP_ARCSEC_S2
 from scenarios.paper.experiments.frictionmap import friction_map
 from scenarios.paper.experiments.noise import Noise
-from scenarios.paper.friction_map import FrictionFit, MapPoint, data_sheet
+from scenarios.paper.friction_map import FrictionFit, MapPoint
 from scenarios.paper.linear import linear_axis, simulate_loop
 from scenarios.paper.log import Array, Log
-from scenarios.paper.rundown import RunDown, fit_inertia
+from scenarios.paper.rundown import Inertia, fit_run_downs
 from scenarios.paper.scales import LOG_PERIOD_S
 from scenarios.paper.starts import Benches
 
@@ -28,7 +30,8 @@ class Record:
     low: runs.LowSpeed | None = None
     points: dict[str, list[MapPoint]] = field(default_factory=dict)
     fits: dict[str, FrictionFit] = field(default_factory=dict)
-    run_down: RunDown | None = None
+    run_down: tuple[Log, Inertia] | None = None
+    drive: Drive | None = None
     step: Log | None = None
     linear: tuple[Array, Array, Array] | None = None
 
@@ -49,12 +52,14 @@ def record(benches: Benches) -> Record:
         if measured.fit is not None:
             found.fits[preload] = measured.fit
     plant = benches.plants["low"]
+    found.drive = drive(plant)
     if "low" in found.fits:
         try:
-            down = runs.run_down(benches("low"), 1)
-            found.run_down = fit_inertia(down, found.fits["low"], data_sheet(plant))
+            setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
+            logs = [runs.run_down(benches("low"), setpoint) for setpoint in setpoints]
+            found.run_down = logs[0], fit_run_downs(logs, setpoints, found.fits["low"], found.drive)
         except ValueError:
-            found.run_down = None  # it did not come to rest: there is no figure 9
+            found.run_down = None  # it was at rest at once: there is no figure 9
     found.step = log = runs.step(benches("low"), runs.STEP_TO)
     steps, seconds = round(plant.controller.pwm_steps.si), float(log.t_s.size * LOG_PERIOD_S)
     found.linear = simulate_loop(

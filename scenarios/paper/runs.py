@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import ceil
 
 import numpy as np
 
 from scenarios.paper.bench import Bench
 from scenarios.paper.log import Log, join
 from scenarios.paper.measures import stalled
+from scenarios.paper.scales import GEAR_RATIO
 
 TRACKING = 15.0
 """arcsec/s, the paper's tracking speed (Fig. 13)."""
@@ -119,11 +121,15 @@ def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 1
 
 TRIALS = 10
 """Efforts tried on each side at most."""
+MOTOR_TURN_ARCSEC = 1_296_000.0 / GEAR_RATIO
+"""arcsec of the axis in a turn of the motor."""
+OPENED_SETTLE_S, OPENED_AVERAGED_S = 12.0, 30.0
+"""s: settling is slowest where friction falls with speed nearly as fast as the motor's torque."""
 BROKEN_AWAY = 20.0
 """Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
 MAP_SPEEDS = (
-    10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 450.0, 700.0, 1200.0, 2400.0, 4800.0,
-    7200.0,
+    10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0,
+    1200.0, 1400.0, 1600.0, 1800.0, 2400.0, 4800.0, 7200.0,
 )  # fmt: skip
 """arcsec/s, set points of the torque-velocity map (Fig. 8): from below tracking to the slew speed of Table
 1."""
@@ -132,14 +138,28 @@ MAP_SPEEDS = (
 def map_run(bench: Bench, setpoint: float) -> Log:
     """E7: one steady state of the torque-velocity map, closed loop.
 
-    Slow ones are averaged for longer: half a motor turn (the disturbances are periodic in it), 6 s at least
-    and 36 s at most.
+    Averaged over whole half turns of the motor, 6 s at least: the gears' torques are periodic in it, and over
+    less their mean is not zero (2.3 % of the torque at 10 arcsec/s over 36 s).
     """
-    speed = abs(setpoint)
-    half_turn = 1_296_000.0 / 360.489 / speed / 2.0
-    seconds = min(36.0, max(6.0, half_turn * max(1, round(6.0 / half_turn))))
-    settle = 10.0 if speed < 30.0 else 6.0
-    return bench.closed_loop(setpoint, settle + seconds).after(settle)
+    settle = 10.0 if abs(setpoint) < 30.0 else 6.0
+    return bench.closed_loop(setpoint, settle + whole_turns(setpoint)).after(settle)
+
+
+def whole_turns(arcsec_s: float, at_least: float = 6.0) -> float:
+    """Return the time of the fewest half motor turns that last `at_least` seconds, s."""
+    half_turn = MOTOR_TURN_ARCSEC / abs(arcsec_s) / 2.0
+    return half_turn * ceil(at_least / half_turn)
+
+
+def opened_run(bench: Bench, begin: float, effort: int) -> Log:
+    """E7: one steady state with a fixed effort, entered from a speed that the loop holds. Averaged over whole
+    half turns at the speed at which it ends; a run that stops is returned as it is."""
+    bench.closed_loop(begin, 4.0)
+    log = bench.open_loop(effort, OPENED_SETTLE_S + OPENED_AVERAGED_S).after(OPENED_SETTLE_S)
+    speed = abs(float(log.rate.mean()))
+    half_turn = MOTOR_TURN_ARCSEC / max(1.0, speed) / 2.0
+    whole = int(OPENED_AVERAGED_S / half_turn) * half_turn
+    return log.last(whole) if whole > 0.0 else log
 
 
 def break_away(bench: Bench, direction: int, step_s: float = 0.05, limit: int = 3000) -> Log:
@@ -152,9 +172,9 @@ def break_away(bench: Bench, direction: int, step_s: float = 0.05, limit: int = 
     return join(logs)
 
 
-def run_down(bench: Bench, direction: int, setpoint: float = 7200.0) -> Log:
-    """E8: steady state at 2 deg/s, then the input is set to zero; the log starts at that moment."""
-    bench.closed_loop(direction * setpoint, 8.0)
+def run_down(bench: Bench, setpoint: float = 7200.0) -> Log:
+    """E8: steady state at a speed (2 deg/s), then the input is set to zero; the log starts at that moment."""
+    bench.closed_loop(setpoint, 8.0)
     return bench.open_loop(0, 1.5)
 
 

@@ -5,6 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from plant.model import load, with_value
+from scenarios.paper.coasting import Drive, coast, drive
+from scenarios.paper.compiled import CompiledBench
+from scenarios.paper.experiments.e08 import SPEEDS
+from scenarios.paper.experiments.frictionmap import friction_map
+from scenarios.paper.experiments.noise import Noise
 from scenarios.paper.friction_map import (
     DataSheet,
     FrictionFit,
@@ -15,10 +21,11 @@ from scenarios.paper.friction_map import (
     friction_curve,
     steady_point,
 )
-from scenarios.paper.published import TABLE_2
-from scenarios.paper.rundown import fit_inertia
-from scenarios.paper.runs import MAP_SPEEDS
-from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, GEAR_RATIO
+from scenarios.paper.published import INERTIA, TABLE_2
+from scenarios.paper.rundown import fit_run_downs
+from scenarios.paper.runs import MAP_SPEEDS, run_down
+from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, COUNT_RATE, GEAR_RATIO
+from scenarios.paper.starts import STARTS, Benches, with_inertia
 from tests.paper.synthetic import current_for, log_of
 
 K = 0.8  # N m/A
@@ -80,25 +87,68 @@ def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
     assert point.rate < 10.0 * ARCSEC
 
 
+RIGID = Drive(1e-6, 1.0, 1e-4, float("inf"), 4.0, 2e7, 24.0, 0.1)
+"""No motors to speak of, on trains that hardly give."""
+
+
 @pytest.mark.parametrize("inertia", [1200.0, 1760.0, 2200.0])
-def test_E8_run_down_gives_the_inertia_it_was_integrated_with(inertia):
+def test_E8_without_motors_an_axis_coasts_as_friction_and_inertia_have_it(inertia):
     fit = FrictionFit(*table("low", 1.0), 0.0)
-    dt, w, rates = 1e-5, 2.0 * 3600 * ARCSEC, []
-    for k in range(60_000):
-        if k % 1000 == 0:
-            rates.append(w)
+    dt, begin = 1e-5, 2.0 * 3600 * ARCSEC
+    w, rates = begin, []
+    for _ in range(10_000):
         w = max(0.0, w - float(fit.torque(np.array([max(w, 1e-9)]))[0]) / inertia * dt)
-        if k > 40_000 and w == 0.0 and k % 1000 == 999:
-            break
-    for sign in (1.0, -1.0):
-        found = fit_inertia(log_of(sign * np.array(rates) / ARCSEC), fit, SHEET)
-        assert found.inertia == pytest.approx(inertia, rel=0.02)
+        rates.append(w)
+    expected = np.array(rates).reshape(10, 1000)[:, 500:].mean(axis=1) / ARCSEC / COUNT_RATE
+    found = coast(RIGID, fit, inertia, 300.0, 0.0, np.array([begin]), 10)[0]
+    assert found == pytest.approx(expected, rel=0.02)
 
 
-def test_E8_an_axis_that_does_not_stop_is_refused():
+def test_E8_an_axis_that_was_at_rest_is_refused():
     fit = FrictionFit(*table("low", 1.0), 0.0)
-    with pytest.raises(ValueError, match="did not come to rest"):
-        fit_inertia(log_of(np.full(100, 7200.0)), fit, SHEET)
+    with pytest.raises(ValueError, match="only 0 samples"):
+        fit_run_downs([log_of(np.zeros(100))], [7200.0], fit, RIGID)
+
+
+OTHER = {
+    "friction.coulomb": 1.2,
+    "friction.stiction": 0.85,
+    "friction.viscous": 1.4,
+    "friction.stribeck_rate": 1.3,
+    "friction.stribeck_exponent": 1.3,
+    "friction.bristle_damping": 0.5,
+    "motor.torque_constant": 0.93,
+    "motor.resistance": 1.15,
+    "gear.damping": 0.7,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("preload", "begin"), [("low", STARTS[1]), ("high", STARTS[6])])
+def test_E7_and_E8_find_the_numbers_of_a_plant_that_nobody_tuned_them_on(preload, begin):
+    plants = {}
+    for name in ("low", "high"):
+        model = load(f"{name}_preload_bridge")
+        for path, factor in OTHER.items():
+            part, field = path.split(".")
+            value = getattr(getattr(model.axes.ra, part), field).value * factor
+            model = with_value(model, f"axes.ra.{path}", value)
+        plants[name] = with_inertia(model, 1.3)
+    benches = Benches(CompiledBench, plants, begin)
+    noise = Noise(7, "other")
+    noise.constant = 1.0
+    found = friction_map(benches, preload, noise)
+    truth = plants[preload].axes.ra.friction
+    assert found.fit is not None
+    assert found.fit.stiction == pytest.approx(truth.stiction.si, rel=0.10)
+    assert found.fit.viscous == pytest.approx(truth.viscous.si, rel=0.10)
+    assert found.fit.coulomb == pytest.approx(truth.coulomb.si, rel=0.20)
+    assert found.fit.stribeck_rate == pytest.approx(truth.stribeck_rate.si, rel=0.20)
+    if preload == "low":
+        setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
+        logs = [noise.log(run_down(benches("low"), setpoint)) for setpoint in setpoints]
+        inertia = fit_run_downs(logs, setpoints, found.fit, drive(plants["low"])).inertia
+        assert inertia == pytest.approx(1.3 * INERTIA, rel=0.05)
 
 
 def test_E7_half_the_current_ripple_is_taken_off_the_peaks():

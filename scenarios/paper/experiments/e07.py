@@ -40,8 +40,10 @@ ROW = Experiment(
     "different steady state velocities and measuring the corresponding motor armature current.",
     "Both preloads, from logged velocity and ADC counts with sensor noise (1 count and 1 % rms) and a torque"
     " constant that is up to 5 % off its data sheet; four parameters and the exponent fitted, δ free within "
-    "0.5–2; at least four points between vs/4 and 3 vs. σ2 and Ts within 10 %, Tc and vs within 20 % of "
-    "Table 2.",
+    "0.5–2; at least four points between vs/4 and 3 vs. Steady states in closed loop, and with the loop "
+    "opened where it leaps (efforts there and back lowered in turn by one PWM step); there and back over the "
+    "same stretch, whole half turns of the motor, currents within the converter's range. σ2 and Ts within 10 "
+    "%, Tc and vs within 20 % of Table 2.",
     (
         *(
             Limit(f"{preload} {name}", "%", -bound, bound, f"{preload} {NAMES[name]}", bound)

@@ -1,15 +1,17 @@
 """E8: run-down and moment of inertia."""
 
+from scenarios.paper.coasting import drive
 from scenarios.paper.experiments.experiment import Experiment, Figures, Limit
 from scenarios.paper.experiments.frictionmap import friction_map
 from scenarios.paper.experiments.noise import Noise
-from scenarios.paper.friction_map import data_sheet
 from scenarios.paper.published import INERTIA
-from scenarios.paper.rundown import fit_inertia
+from scenarios.paper.rundown import fit_run_downs
 from scenarios.paper.runs import run_down
 from scenarios.paper.starts import Benches, with_inertia
 
 OTHERS = (0.8, 1.2)
+SPEEDS = (7200.0, 2400.0)
+"""arcsec/s: the slew speed of Table 1, and a third of it."""
 
 
 def measure(benches: Benches) -> Figures:
@@ -20,12 +22,13 @@ def measure(benches: Benches) -> Figures:
     fit = friction_map(benches, "low", noise).fit
     if fit is None:
         return {}
-    sheet = data_sheet(plant)
+    sheet = drive(plant)
+    setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
     found: Figures = {}
     for factor in (1.0, *OTHERS):
         model = plant if factor == 1.0 else with_inertia(plant, factor)
-        logs = [noise.log(run_down(benches.of(model), way)) for way in (1, -1)]
-        inertia = sum(fit_inertia(log, fit, sheet).inertia for log in logs) / 2.0
+        logs = [noise.log(run_down(benches.of(model), setpoint)) for setpoint in setpoints]
+        inertia = fit_run_downs(logs, setpoints, fit, sheet).inertia
         found[f"off {factor:g}"] = (inertia / (factor * INERTIA) - 1.0) * 100.0
         found[f"J {factor:g}"] = inertia
     return found
@@ -33,11 +36,15 @@ def measure(benches: Benches) -> Figures:
 
 ROW = Experiment(
     "E8", "run-down, J", "Fig. 9", "1.76e6 N mm s²",
-    "after reaching a steady state speed, the input torque is set to zero ... From the deceleration curve "
-    "and friction characteristics, the moment of inertia was determined to be J = 1.76 × 10⁶ N-mm sec².",
-    "Low preload, from 2°/s both ways, noise as in E7 and a torque constant that is known, with the friction"
-    " of a map like E7's (δ free): J within 5 %, and the same for plants with 20 % less and 20 % more "
-    "inertia.",
+    "after reaching a steady state speed, the input torque is set to zero ... As the applied voltage and "
+    "electrical model of the motor are known, copper losses in the armature can be calculated. From the "
+    "deceleration curve and friction characteristics, the moment of inertia was determined to be J = 1.76 × "
+    "10⁶ N-mm sec².",
+    "Low preload, from 2°/s and 2400″/s both ways, with the friction of a map like E7's (δ free, noise, a "
+    "torque constant that is known). A bridge with diodes stops the axis in some 50 ms while its trains "
+    "swing, so J, the trains' damping and the moment of the command are fitted to the logged counts; load "
+    "and rotors on Table 1's trains, currents from the electrical model: J within 5 %, and the same for "
+    "plants with 20 % less and 20 % more inertia.",
     (
         Limit("off 1", "%", -5.0, 5.0, "J of the plant", 5.0),
         Limit("off 0.8", "%", -5.0, 5.0, "J of the plant with 0.8 J", 5.0),

@@ -1,11 +1,20 @@
-"""The torque-velocity map of one preload from noisy logs, and the characteristic fitted to it."""
+"""The torque-velocity map of one preload from noisy logs, and the characteristic fitted to it.
 
+Steady states in closed loop where the loop holds them. Below the slowest of these the loop may leap instead:
+there the loop is opened (as the authors did for Figs. 6 and 7) and the effort lowered in the smallest steps,
+until the axis no longer keeps its speed. There and back go over the same stretch, because the balance of the
+axis changes along it. Runs whose currents reach the end of the
+converter are left out: what it reads there is not the current.
+"""
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from scenarios.paper.experiments.noise import Noise
 from scenarios.paper.friction_map import (
+    DataSheet,
     FrictionFit,
     MapPoint,
     break_away_point,
@@ -15,18 +24,27 @@ from scenarios.paper.friction_map import (
 )
 from scenarios.paper.log import Log
 from scenarios.paper.measures import cycles, stalled
-from scenarios.paper.runs import MAP_SPEEDS, break_away, map_run
+from scenarios.paper.runs import MAP_SPEEDS, break_away, map_run, opened_run
 from scenarios.paper.scales import ARCSEC
 from scenarios.paper.starts import Benches
 
 STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
 """Shares: how far the mean velocity may be off the set point, and how uncertain the mean torque may be, for a
 steady state."""
+ADC_FULL = 1023.0
+"""Largest count of the 10-bit converter: 6.24 A."""
+TRIALS = 80
+"""Pairs of efforts tried at most."""
 
 
-def steady(speed: float, point: MapPoint, logs: tuple[Log, Log]) -> bool:
+def saturated(log: Log) -> bool:
+    """Whether a current was at the end of the converter's range."""
+    return bool(max(np.max(log.adc_a), np.max(log.adc_b)) >= ADC_FULL)
+
+
+def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
     """Whether a run is a steady state. A limit cycle is none: its torque belongs to no velocity."""
-    if any(stalled(log.rate) or cycles(np.abs(log.true_rate), speed) for log in logs):
+    if any(stalled(log.rate) or cycles(np.abs(log.rate), speed) for log in logs):
         return False
     off = abs(point.rate / ARCSEC / speed - 1.0)
     return off < STEADY_RATE and point.spread < STEADY_TORQUE * point.torque
@@ -34,7 +52,7 @@ def steady(speed: float, point: MapPoint, logs: tuple[Log, Log]) -> bool:
 
 @dataclass(frozen=True)
 class Map:
-    """Points, the speeds that were no steady states, and the fit (None: too few points)."""
+    """Points, the speeds at which the loop had no steady state, and the fit (None: too few points)."""
 
     points: list[MapPoint]
     left_out: list[float]
@@ -46,12 +64,42 @@ def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
     sheet = noise.sheet(data_sheet(benches.plants[preload]))
     ways = [noise.log(break_away(benches(preload), way)) for way in (1, -1)]
     points = [break_away_point(ways[0], ways[1], sheet)]
-    left_out = []
-    for speed in MAP_SPEEDS:
-        logs = [noise.log(map_run(benches(preload), way * speed)) for way in (1.0, -1.0)]
+    left_out: list[float] = []
+    slowest: tuple[Log, Log] | None = None
+    for speed in reversed(MAP_SPEEDS):
+        bench = benches(preload)
+        logs = (noise.log(map_run(bench, speed)), noise.log(map_run(bench, -speed)))
         point = steady_point(logs[0], logs[1], sheet)
-        if steady(speed, point, (logs[0], logs[1])):
+        if any(saturated(log) for log in logs):
+            continue
+        if steady(speed, point, logs):
             points.append(point)
+            slowest = logs if not left_out else slowest
         else:
             left_out.append(speed)
+    if left_out and slowest is not None:
+        points += opened(benches, preload, noise, sheet, slowest)
     return Map(points, left_out, fit_friction(points) if len(points) >= 6 else None)
+
+
+def opened(
+    benches: Benches, preload: str, noise: Noise, sheet: DataSheet, begin: tuple[Log, Log]
+) -> Iterator[MapPoint]:
+    """Yield the steady states with the loop opened, one for every step of the effort, until one is none.
+
+    Lowered is the effort there and the effort back in turn, so that a step of the map is half a step of the
+    PWM. begin: there and back at the slowest speed that the loop holds. The efforts there and back keep the
+    difference that the loop had needed between them: the balance of the axis pulls to one side.
+    """
+    speed = float(begin[0].rate.mean())
+    efforts = [round(abs(float(log.effort.mean()))) for log in begin]
+    for lower in range(1, min(TRIALS, 2 * min(efforts))):
+        bench = benches(preload)
+        logs = (
+            noise.log(opened_run(bench, speed, efforts[0] - (lower + 1) // 2)),
+            noise.log(opened_run(bench, -speed, lower // 2 - efforts[1])),
+        )
+        point = steady_point(logs[0], logs[1], sheet)
+        if point.rate <= 0.0 or not steady(point.rate / ARCSEC, point, logs):
+            return
+        yield point
