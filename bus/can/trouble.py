@@ -323,7 +323,7 @@ class Trouble:
         wire._end_ns = _NEVER
         wire._decide_ns = _NEVER
         delimiter = (ERROR_DELIMITER_BITS + INTERMISSION_BITS) * wire.bit_ns
-        self._recovery.quiet_since_ns = wire._free_ns - delimiter
+        self._recovery.quiet(wire._free_ns - delimiter)
         self.errors["stuff"] += 1
         listeners = self.listeners(offer.port)
         confinement.receive_failed(listeners)

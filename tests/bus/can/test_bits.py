@@ -83,8 +83,9 @@ def test_L1_the_key_orders_as_the_bits_do(one: Frame, other: Frame) -> None:
     "frame", [Frame(0x800, b""), Frame(-1, b""), Frame(1 << 29, b"", True), Frame(1, bytes(9))]
 )
 def test_L1_what_can_cannot_carry_is_refused(frame: Frame) -> None:
-    with pytest.raises(FrameError):
-        frame_bits(frame)
+    for count in (frame_bits, stuffed_field):
+        with pytest.raises(FrameError):
+            count(frame)
 
 
 @pytest.mark.parametrize(

@@ -58,3 +58,20 @@ def test_a_bad_reception(rec: int, first: bool, after: int) -> None:
     confinement.receive_failed([node, silent], node if first else None)
     confinement.received([silent])
     assert (node.rec, silent.rec) == (after, 5)
+
+
+@pytest.mark.parametrize(("rec", "after"), [(0, 8), (127, 135), (247, 255), (248, 255), (255, 255)])
+def test_dominant_bits_behind_the_flag_count_eight(rec: int, after: int) -> None:
+    node, silent = port(0, rec), port(0, rec)
+    silent.listen_only = True
+    confinement.still_dominant([node, silent])
+    assert (node.rec, silent.rec) == (after, rec)
+
+
+@pytest.mark.parametrize(
+    ("rec", "silent", "full"), [(254, False, False), (255, False, True), (0, True, True)]
+)
+def test_a_counter_that_goes_no_higher(rec: int, silent: bool, full: bool) -> None:
+    node = port(0, rec)
+    node.listen_only = silent
+    assert confinement.saturated(node) == full

@@ -106,6 +106,29 @@ def test_L1_a_frame_under_way_at_the_end_of_the_wait_gives_the_last_run() -> Non
     assert wire.ports[0].state == "active"
 
 
+def test_L1_a_frame_cut_off_at_the_end_of_the_wait_delays_it_by_its_flags_only() -> None:
+    queue, wire = network(4)
+    quiet = off_in_one(queue, wire)
+    sof = quiet + (127 * 11 + 5) * BIT_NS
+    queue.run_until(sof - BIT_NS)
+    wire.ports[1].send(FRAME, sof)
+    queue.run_until(sof + 40 * BIT_NS)
+    wire.ports[1].online = False
+    assert back_ns(queue, wire.ports[0]) == sof + (40 + 6 + 6 + 11) * BIT_NS
+
+
+def test_L1_a_node_that_joins_between_two_runs_waits_exactly_128() -> None:
+    queue, wire = network(4)
+    queue.run_until(21_500_000)
+    off_in_one(queue, wire)
+    since = 2000 * 11 * BIT_NS
+    queue.run_until(since)
+    port = wire.ports[0]
+    Partition(wire, [port, wire.ports[3]], since)  # the new piece has been silent for 2000 whole runs
+    assert port.state == "bus_off"
+    assert back_ns(queue, port, since + 2 * RUNS_NS) == since + RUNS_NS
+
+
 @pytest.mark.parametrize("idle_ns", [3_000_000, 20_000_003])
 def test_L1_on_another_wire_the_count_begins_with_its_first_run(idle_ns: int) -> None:
     """A cable breaks and is mended; neither wire's silence before counts, and less than a run is lost."""

@@ -186,3 +186,10 @@ def test_what_stands_before_a_packet_is_skipped_and_counted(before: bytes, skipp
         assert (decoder.skipped_bytes, decoder.crc_errors) == (skipped, wrong)
         assert decoder.feed(b"\xaa") == [] and decoder.skipped_bytes == skipped
         assert len(decoder.feed(GOOD[1:])) == 1 and decoder.skipped_bytes == skipped
+
+
+def test_noise_without_a_sync_is_counted_at_once_and_not_kept() -> None:
+    decoder = PacketDecoder()
+    assert decoder.feed(bytes(1000)) == [] and decoder.skipped_bytes == 1000
+    assert decoder.feed(b"\x01\xaa") == [] and decoder.skipped_bytes == 1001  # half a sync may go on
+    assert len(decoder.feed(GOOD[1:])) == 1 and decoder.skipped_bytes == 1001

@@ -58,6 +58,7 @@ def test_the_prescaler_and_jump_width() -> None:
         (16_000_000, (0x00, 0x91, 0x01), set()),
         (16_000_000, (0x00, 0x90, 0x02), set()),
         (16_000_000, (0x00, 0x88, 0x03), {"shorter than PS2"}),
+        (8_000_000, (0x00, 0x88, 0x02), {"7 TQ per bit"}),  # PropSeg + PS1 may equal PS2
     ],
 )
 def test_what_the_data_sheet_forbids_is_said(fosc: int, cnf: tuple[int, int, int], words: set[str]) -> None:
