@@ -40,6 +40,12 @@ def call(command: str, argv: list[str]) -> int:
     return 0
 
 
+def told(said: io.TextIOWrapper) -> str:
+    """What was written, as text and as bytes."""
+    said.seek(0)
+    return said.read()
+
+
 def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     """Answer for one case: {"status", "seconds", "failure"}; report.json is in `out` when status is 0.
 
@@ -52,7 +58,7 @@ def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     out.mkdir(parents=True, exist_ok=True)
     files = sorted(str(path) for path in logs.glob("*.log"))
     begin = time.perf_counter()
-    said = io.StringIO()
+    said = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)  # errors come as bytes
     failure = None
     status = 1
     old = signal.signal(signal.SIGALRM, _alarm)
@@ -68,7 +74,7 @@ def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     if status == INTERRUPTED:
         raise KeyboardInterrupt  # the run was stopped: this case has no answer yet
     if status != 0 and failure is None:
-        failure = said.getvalue()[-2000:]
+        failure = told(said)[-2000:]
     if failure is None and not (out / "report.json").exists():
         failure = "no report.json"
     answer = {"status": status, "seconds": time.perf_counter() - begin, "failure": failure}

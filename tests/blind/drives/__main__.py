@@ -31,7 +31,8 @@ def answer(folder: Path, out: Path, command: str) -> dict[str, Any]:
         told: dict[str, Any] = json.loads(done.read_text())
         return told
     files = sorted(str(p) for p in folder.glob("run*.csv"))
-    said, begin, failure, status = io.StringIO(), time.perf_counter(), None, 1
+    said = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)  # errors come as bytes
+    begin, failure, status = time.perf_counter(), None, 1
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             arguments = ["calibrate", *files, "--rig", str(folder / "rig.yaml"), "--out", str(out)]
@@ -41,7 +42,7 @@ def answer(folder: Path, out: Path, command: str) -> dict[str, Any]:
     if status == finder.INTERRUPTED:
         raise KeyboardInterrupt
     if failure is None and (status != 0 or not (out / "report.json").exists()):
-        failure = said.getvalue()[-1000:] or "no report.json"
+        failure = finder.told(said)[-1000:] or "no report.json"
     told = {"status": status, "seconds": time.perf_counter() - begin, "failure": failure}
     done.write_text(json.dumps(told, indent=1))
     return told
