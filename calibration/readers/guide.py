@@ -14,27 +14,22 @@ when no pulse was sent (guiding disabled); such a row's RADuration is 0 and noth
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
-from dataclasses import dataclass
 from datetime import datetime
-from math import hypot, isinf
+from math import isinf
 from pathlib import Path
 
 import numpy as np
 
 from calibration.errors import CalibrationInputError
 from calibration.readers.csvtext import plain
+from calibration.readers.guidemoves import Moves, moves_of
 from calibration.readers.run import Array, Run
 
-_PX = r"([+-]?(?:[0-9]{1,9}\.?[0-9]*|\.[0-9]+))(?![0-9.])"
 _SCALE = re.compile(r"[Pp]ixel scale\s*=\s*([0-9.,+-]+)\s*arc-sec/px")
 _BEGIN = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
 _MOUNT = re.compile(r"^Mount\s*=\s*([^,\r\n]+)", re.MULTILINE)
 _DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
 _SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
-_DITHER = re.compile(rf"DITHER by {_PX}, {_PX}")
-_LOCK = re.compile(rf"[Ll]ock pos(?:ition)?\s*=\s*{_PX}, {_PX}")
-SAME_PX = 0.01  # a lock position that is written again, to PHD2's last digits
 COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
 MARKS = ("Mount", "AO", "DROP")
@@ -133,7 +128,7 @@ def _close(
         path,
         columns,
         events,
-        _moves(text, events),
+        moves_of(text, events),
         _scale(path, rows[0][0], scale.group(1)) if scale else 1.0,
     )
     for line, fields in rows:
@@ -168,7 +163,7 @@ class _Track:
     """The error of one section, summed up frame by frame; `rows` are t s, ra, dec, segment, dither."""
 
     def __init__(
-        self, path: Path, columns: list[str], events: list[tuple[int, str]], moves: _Moves, factor: float
+        self, path: Path, columns: list[str], events: list[tuple[int, str]], moves: Moves, factor: float
     ) -> None:
         self.path, self.width, self.moves, self.factor = path, len(columns), moves, factor
         self.where = {c: k for k, c in enumerate(columns)}
@@ -237,45 +232,6 @@ class _Track:
     def _correction(self, fields: list[str], duration: str, guided: float) -> float:
         """px that a pulse moved the mount by; 0 when none was sent."""
         return guided if np.isfinite(guided) and _sent(fields, self.where.get(duration)) else 0.0
-
-
-@dataclass(frozen=True)
-class _Moves:
-    """Where the star was told to be: dithers so far (px along the axes), jumps of unknown size; by line."""
-
-    lines: list[int]
-    ra: list[float]
-    dec: list[float]
-    jumps: list[int]
-
-    def before(self, line: int) -> tuple[float, float, int]:
-        """Sums of all dithers above this line, and how many jumps there were."""
-        k = bisect_left(self.lines, line)
-        return (self.ra[k - 1], self.dec[k - 1], self.jumps[k - 1]) if k else (0.0, 0.0, 0)
-
-
-def _moves(head: str, events: list[tuple[int, str]]) -> _Moves:
-    """Dithers and new lock positions of one section; PHD2 writes the old lock position before a dither."""
-    at = _LOCK.search(head)
-    lock = (float(at[1]), float(at[2])) if at else None
-    moves = _Moves([], [], [], [])
-    ra = dec = 0.0
-    jumps = 0
-    for line, event in events:
-        dither, new = _DITHER.search(event), _LOCK.search(event)
-        if not dither and not ("SET LOCK" in event or "DITHER" in event):
-            continue
-        place = (float(new[1]), float(new[2])) if new else None
-        if dither:
-            ra, dec = ra + float(dither[1]), dec + float(dither[2])
-        elif place is None or lock is None or hypot(place[0] - lock[0], place[1] - lock[1]) > SAME_PX:
-            jumps += 1
-        lock = place or lock
-        moves.lines.append(line)
-        moves.ra.append(ra)
-        moves.dec.append(dec)
-        moves.jumps.append(jumps)
-    return moves
 
 
 def _sent(fields: list[str], at: int | None) -> bool:
