@@ -35,7 +35,7 @@ slow: $(READY)
 	$(BIN)/python -m pytest -n $(WORKERS) -m "slow and not long and not guest"
 
 # Minutes of an idle core each: the finder on many logs, the paper's table, a cluster of workers. Not in CI.
-long: $(READY)
+long: $(VENV)/.cluster
 	$(BIN)/python -m pytest -n $(WORKERS) -m "long"
 
 # In a Linux guest with vcan, under emulation; skips with a message where qemu is not installed.
@@ -71,6 +71,10 @@ $(READY): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet -e ".[test]"
+	touch $@
+
+$(VENV)/.cluster: $(READY)
+	$(BIN)/python -m pip install --quiet -e ".[test,cluster]"
 	touch $@
 
 $(VENV)/.bench: $(READY)
