@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.bench import campaigns
+from scenarios.bench import campaigns, night
 from scenarios.campaign import table
+from scenarios.load import load
+from scenarios.targets import check_targets
 
 
 @pytest.mark.slow
@@ -15,3 +17,12 @@ def test_planned_runs_that_do_nothing_end_in_a_table_and_a_report(tmp_path: Path
     columns = table.read(tmp_path / "out" / table.TABLE)
     assert sorted(columns["index"]) == list(range(40))
     assert (tmp_path / "out" / "report.html").exists()
+
+
+def test_a_long_night_is_a_scenario_whose_fields_follow_the_sky(tmp_path: Path) -> None:
+    file = tmp_path / "night.yaml"
+    file.write_text(night.scenario(10.0))
+    found = load(file)
+    places = [step.arguments["target"] for step in found.steps if step.action == "goto"]
+    assert len(places) == 40
+    check_targets(found)
