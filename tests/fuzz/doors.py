@@ -8,7 +8,10 @@ After every thousand all boards must have ticked.
 
 from __future__ import annotations
 
+import ast
 import socket
+import subprocess
+import sys
 import tempfile
 from collections import deque
 from collections.abc import Callable
@@ -32,6 +35,7 @@ from tests.fuzz import browser, chips, files, inputs, streams
 from tests.fuzz.hosted import alpaca, lx200
 
 MS = 1_000_000
+ROOT = Path(__file__).parents[2]
 _LOOK = 1000
 """Inputs between two looks at the boards."""
 
@@ -247,6 +251,17 @@ ALONE: dict[str, Callable[[int, Random], dict[str, int]]] = {
     "guide-logs": files.guide_logs, "websocket": browser.websocket,
 }  # fmt: skip
 """What is attacked without a network around it, or with one of its own."""
+
+
+def attack_apart(door: str, count: int, seed: int = 1) -> dict[str, int]:
+    """The same in a process of its own: NiceGUI starts once in a process, and only in a quiet one."""
+    words = ["--door", door, "--inputs", str(count), "--seed", str(seed)]
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.fuzz", *words], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    found: dict[str, int] = ast.literal_eval(done.stdout.rpartition("; ")[2])
+    return found
 
 
 def attack(door: str, count: int, seed: int = 1) -> dict[str, int]:
