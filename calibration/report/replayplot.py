@@ -40,9 +40,8 @@ def replay_picture(again: Replay) -> dict[str, str]:
     top.legend(frameon=False, fontsize=8, loc="upper center", ncol=3)
     for trace, color, name in ((again.before, RED, "declared"), (again.after, BLUE, "corrected")):
         e = residual("velocity", again.log, trace, use)
-        low.plot(
-            t[use][: len(e)], e, ".", ms=1.2, color=color, label=f"{name}, rms {np.sqrt(np.mean(e**2)):.3g}"
-        )
+        said = f"rms {np.sqrt(np.mean(e**2)):.3g}" if len(e) else "no row usable"
+        low.plot(t[use][: len(e)], e, ".", ms=1.2, color=color, label=f"{name}, {said}")
     low.set(xlabel="time in the run, s", ylabel="velocity error, arcsec/s")
     low.legend(frameon=False, fontsize=8, markerscale=6)
     return {

@@ -161,3 +161,17 @@ def test_a_log_cut_short_never_gets_a_wrong_name(tmp_path: Path, kind: str, seco
     assert report["not_identifiable"]
     for p in report["calibrated"].values():
         assert np.isfinite([p["value"], p["low"], p["high"]]).all()
+
+
+@pytest.mark.parametrize("place", [1, 2, 3, 4, 5, 7, None], ids=str)
+def test_a_column_that_never_changes_warns_of_nothing(tmp_path: Path, place: int | None) -> None:
+    """Warnings are errors here: the command answers, with pictures, or refuses with its own error."""
+    text = tiny_log(3000)
+    for at in [place] if place is not None else range(1, 9):
+        text = column(text, at, lambda _: "7")
+    (tmp_path / "constant.log").write_text(text)
+    try:
+        calibrate([tmp_path / "constant.log"], out=tmp_path / "out")
+    except CalibrationInputError:
+        return
+    assert (tmp_path / "out" / "report.html").exists()

@@ -58,7 +58,10 @@ def times(log: Path, identifier: int) -> list[float]:
 
 
 def answered(bus: can.BusABC, device: Device) -> bool:
-    """Whether a board answers PING."""
+    """Whether a board answers PING. What came since the last look is read first: in a full buffer of this
+    program the answer would be lost, which is no fault of the board."""
+    while bus.recv(0) is not None:
+        pass
     bus.send(
         can.Message(
             arbitration_id=COMMAND_BASE + device, data=bytes([device, Opcode.PING, *[0] * 6]),

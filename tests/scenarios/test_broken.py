@@ -95,3 +95,20 @@ def test_a_broken_command_line_is_one_line_and_status_2(words: tuple[str, ...], 
     assert result.stderr.startswith("schmidt: ")
     assert result.stderr.count("\n") == 1
     assert len(result.stderr) < 1000
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(60)
+def test_more_runs_than_any_memory_holds_is_one_line(tmp_path: Path) -> None:
+    root = Path(__file__).parents[2]
+    for name in ("what-fails-first.yaml", "short-night.yaml"):
+        text = (root / "scenarios" / "campaigns" / name).read_text()
+        (tmp_path / name).write_text(text.replace("{runs: 200}", "{runs: 1000000000000000}"))
+    words = ["campaign", "what-fails-first.yaml", "--out", "out"]
+    result = subprocess.run(
+        [sys.executable, "-c", "from scenarios.cli import main; main()", *words],
+        capture_output=True, text=True, timeout=50, cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(root), "SCHMIDT_PURE": "1"},
+    )  # fmt: skip
+    assert result.returncode == 2
+    assert result.stderr == "schmidt: there is not enough memory for this\n"
