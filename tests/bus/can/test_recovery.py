@@ -47,6 +47,14 @@ def back_ns(queue: EventQueue, port: Port, limit_ns: int = 10_000_000) -> int:
     return queue.now_ns
 
 
+def assert_back_at(queue: EventQueue, wire: Wire, due_ns: int) -> None:
+    """The first node is back at this nanosecond and not one earlier."""
+    queue.run_until(due_ns - 1)
+    assert wire.ports[0].state == "bus_off"
+    queue.run_until(due_ns)
+    assert wire.ports[0].state == "active"
+
+
 @pytest.mark.parametrize("start_ns", [0, 777_000])
 def test_L1_on_a_quiet_bus_it_is_exactly_1408_bits(start_ns: int) -> None:
     queue, wire = network(2)
@@ -87,10 +95,7 @@ def test_L1_a_frame_in_between_costs_what_it_takes() -> None:
     wire.ports[1].send(FRAME, sof)
     tail = sof + (LENGTH - 11) * BIT_NS
     due = tail + (128 - 10) * 11 * BIT_NS
-    queue.run_until(due - 1)
-    assert wire.ports[0].state == "bus_off"
-    queue.run_until(due)
-    assert wire.ports[0].state == "active"
+    assert_back_at(queue, wire, due)
 
 
 def test_L1_a_frame_under_way_at_the_end_of_the_wait_gives_the_last_run() -> None:
@@ -100,10 +105,7 @@ def test_L1_a_frame_under_way_at_the_end_of_the_wait_gives_the_last_run() -> Non
     sof = quiet + (127 * 11 + 5) * BIT_NS
     wire.ports[1].send(FRAME, sof)
     due = sof + LENGTH * BIT_NS  # its last eleven bits are the 128th run
-    queue.run_until(due - 1)
-    assert wire.ports[0].state == "bus_off"
-    queue.run_until(due)
-    assert wire.ports[0].state == "active"
+    assert_back_at(queue, wire, due)
 
 
 def test_L1_a_frame_cut_off_at_the_end_of_the_wait_delays_it_by_its_flags_only() -> None:
@@ -204,10 +206,7 @@ def test_L1_dominant_bits_do_not_count_and_what_counted_stays() -> None:
     assert wire.ports[0].state == "bus_off"
     stuck.release(queue.now_ns)
     due = queue.now_ns + 108 * 11 * BIT_NS
-    queue.run_until(due - 1)
-    assert wire.ports[0].state == "bus_off"
-    queue.run_until(due)
-    assert wire.ports[0].state == "active"
+    assert_back_at(queue, wire, due)
 
 
 def test_L1_a_sender_cut_off_costs_its_flag_and_no_run() -> None:
