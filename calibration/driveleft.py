@@ -16,7 +16,8 @@ from calibration.names.scene import Scene
 from calibration.names.unknown import domains
 from calibration.readers.run import Array
 
-# of the mean square above the floor: names that leave more than they take are not what the log mostly holds
+# of the mean square above the floor: names that leave more than they take are not what the log mostly holds.
+# ASSUMPTION, one half by that reasoning; looked at on development seeds and the opened seed 20261122
 MOST_LEFT = 0.5
 
 

@@ -9,9 +9,13 @@ from typing import Final
 from boards.axis.tachometer import MISSING_NS
 
 _TURN: Final = 1 << 17
+"""Counts of a turn, as the ENCODER frame carries them (final.dbc)."""
 _FRAME_NS: Final = 10_000_000
+"""Period of that frame, ns (final.dbc)."""
 _AGE_UNIT_NS: Final = 4000
+"""Unit of its age byte, ns (final.dbc)."""
 _RATE_SHIFT: Final = 8
+"""Fraction bits of the rate, counts per frame; with the low-pass over four frames: ASSUMPTION."""
 _UNIT: Final = _FRAME_NS << _RATE_SHIFT
 
 
