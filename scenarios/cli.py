@@ -362,6 +362,15 @@ def serve(
     help="LX200, for Stellarium and INDI; repeatable.",
 )
 @click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
+@click.option(
+    "--runs",
+    type=click.Path(path_type=Path),
+    default=Path("out/console"),
+    show_default=True,
+    help="Folder of the runs recorded on the console.",
+)
+@click.option("--token", help="Word that browsers of other machines must know (default: made up, printed).")
 @click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
@@ -371,6 +380,9 @@ def host(
     serial: tuple[str, ...],
     lx200: tuple[str, ...],
     alpaca: str | None,
+    console: str | None,
+    runs: Path,
+    token: str | None,
     network: str | None,
     logs: Path | None,
     duration: float | None,
@@ -379,7 +391,7 @@ def host(
     from scenarios.doors.options import DoorOptions
     from scenarios.host import command
 
-    options = DoorOptions(lx200=lx200, alpaca=alpaca, logs=logs)
+    options = DoorOptions(lx200=lx200, alpaca=alpaca, logs=logs, console=console, runs=runs, token=token)
     sys.exit(command(scenario, usb, serial, options, duration, network))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic, sleep
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -16,13 +17,20 @@ from host.links.task import LinkTask
 from host.outside import Outside
 from host.serial_link import SerialLink
 from scenarios.doors import Keeper
+from scenarios.doors.door import Door
 from scenarios.doors.options import DoorOptions, astronomy
-from scenarios.hosted import Hosted
+from scenarios.hosted import Hosted, dated
 from scenarios.model import Scenario
 from scenarios.network import config_from, devices_of
 from scenarios.served import chosen
+from scenarios.session import log_headers
+
+if TYPE_CHECKING:
+    from host.console.heard import HeardBus
+    from scenarios.doors.runs import RecordedRuns
 
 SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
+_SERIAL = "serial "
 
 
 class HostProgram:
@@ -40,7 +48,8 @@ class HostProgram:
         self.inbox: SimpleQueue[tuple[str, bytes]] = SimpleQueue()
         said: SimpleQueue[str] = SimpleQueue()
         self._said, self._console = said, console
-        chosen_scenario, _ = chosen(scenario, network_name=network)
+        chosen_scenario, model = chosen(scenario, network_name=network)
+        chosen_scenario = dated(chosen_scenario)
         boards = boards_of(chosen_scenario)
         self.hosted = Hosted(chosen_scenario, self._send, boards, options.logs)
         self.outside = Outside()
@@ -48,11 +57,16 @@ class HostProgram:
         self.tasks = [self.usb]
         self.serial: dict[str, SerialLink] = {}
         for board, url in serial.items():
-            self.tasks.append(LinkTask(f"serial {board}", _serial(url), self.inbox, said.put))
-            self.serial[f"serial {board}"] = SerialLink(
+            self.tasks.append(LinkTask(_SERIAL + board, _serial(url), self.inbox, said.put))
+            self.serial[_SERIAL + board] = SerialLink(
                 Device[board], self.hosted.journal, lambda _t, _packet: None
             )
-        self.keepers = [Keeper(door, console.print) for door in astronomy(options, self)]
+        doors = astronomy(options, self)
+        self._heard: HeardBus | None = None
+        self._runs: RecordedRuns | None = None
+        if options.console is not None:
+            doors.append(self._consoles(options, log_headers(chosen_scenario, model), list(serial)))
+        self.keepers = [Keeper(door, console.print) for door in doors]
         self._start_s = monotonic()
 
     def run(self, duration_s: float | None = None) -> None:
@@ -79,8 +93,12 @@ class HostProgram:
             name, data = self.inbox.get()
             if name in self.serial:
                 self.serial[name].receive(now_ns, data)
+                if self._runs is not None:
+                    self._runs.receive(now_ns, name.removeprefix(_SERIAL), data)
             else:
                 self.hosted.link.receive(now_ns, data)
+                if self._heard is not None:
+                    self._heard.take(now_ns, data)
         self.hosted.poll(now_ns)
         for link in self.serial.values():
             link.watch(now_ns)
@@ -96,6 +114,17 @@ class HostProgram:
         for task in self.tasks:
             task.close()
         self.hosted.close()
+
+    def _consoles(self, options: DoorOptions, headers: dict[str, dict[str, str]], lines: list[str]) -> Door:
+        """The consoles, for who asks: a web framework is much to import."""
+        from host.console.heard import HeardBus
+        from scenarios.doors.console import ConsoleDoor
+        from scenarios.doors.runs import RecordedRuns
+
+        assert options.console is not None
+        self._heard = HeardBus(self.hosted.telescope.client)
+        self._runs = RecordedRuns(options.runs, headers, self.hosted.journal, lines)
+        return ConsoleDoor(options.console, options.token, self, self._heard, self._runs)
 
     def _tell(self, now_ns: int) -> None:
         while True:

@@ -66,6 +66,7 @@ class Hosted:
         if self.files is not None and t_ns >= self._next_log_ns:
             self._next_log_ns = t_ns + self._log_ns
             self.journal.sensors(t_ns, readings(self.telescope.client, self.observatory.mount))
+            self.files.flush()  # who follows a log reads it now, and a host that is killed has left it
 
     def close(self) -> None:
         """Bring the logs to disk; whoever still waits for the telescope is told that it is gone."""

@@ -136,13 +136,19 @@ class Shell:
             state = ui.label().classes("mid grow").props('role="status"')
             button("Night / day", on_click=self._toggle_day)
             lock = button("Lock", on_click=self._lock)
-            button("STOP  (space)", on_click=self.stop).classes("stop")
+            self._stop_button()
             self._said = ui.label().classes("said").props('role="log" aria-label="Last answer"')
         with ui.element("div").classes("w-full"):
             yield
         self.each(lambda: state.set_text(summary(self.desk.now)))
         self.each(lambda: lock.set_text("Unlock" if self.desk.now.locked else "Lock"))
         ui.timer(PERIOD_S, self._tick)
+
+    def _stop_button(self) -> None:
+        """In force at the press already, as of any such button: the click comes only with the release."""
+        stop = button("STOP  (space)").classes("stop")
+        stop.on("pointerdown", self.stop, js_handler="event => { if (event.button === 0) emit(); }")
+        stop.on("click", self.stop, js_handler="event => { if (!event.detail) emit(); }")  # Enter: no press
 
     def _tick(self) -> None:
         for refresh in self._refresh:

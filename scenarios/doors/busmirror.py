@@ -8,6 +8,7 @@ from itertools import count
 from time import monotonic
 from typing import Any
 
+from host.console.decoded import seen
 from host.console.views import FaultKind, Node, SeenFrame
 from scenarios.doors.hostlink import BusState, Done, Wish
 
@@ -47,7 +48,7 @@ class BusMirror:
 
     def frames(self, most: int) -> list[SeenFrame]:
         """The last ones, decoded by the DBC."""
-        return [_seen(*each) for each in self.state.frames[-most:]]
+        return [seen(*each) for each in self.state.frames[-most:]]
 
     def faults(self) -> tuple[str, ...]:
         """Every board's supply can be cut."""
@@ -88,19 +89,3 @@ class BusMirror:
         future = self._open[number] = Future()
         self._send(Wish(number, name, arguments))
         return future
-
-
-def _seen(t_ns: int, sender: str, identifier: int, data: bytes) -> SeenFrame:
-    from bus.protocol.database import database
-
-    try:
-        said = database().decode_message(identifier, data)
-        text = _words(said) if isinstance(said, dict) else ""
-    except Exception:  # whatever anybody put on the bus is shown as it is
-        text = "not in the protocol"
-    return SeenFrame(t_ns * 1e-9, sender, identifier, data, text)
-
-
-def _words(said: dict[str, Any]) -> str:
-    """Signals of a frame; its device is the sender's column already."""
-    return ", ".join(f"{name} {value}" for name, value in said.items() if name != "Device")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 from bus.protocol import Device
@@ -18,16 +18,24 @@ AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
 class RecordedRuns:
     """Runs of both axes in a folder. Pages only ask; `poll` and `receive`, on the host's own thread, write.
 
-    headers: of the logs, by axis. journal: where a broken packet is told.
+    headers: of the logs, by axis. journal: where a broken packet is told. lines: boards whose RS232 line is
+    there; nothing is recorded of others.
     """
 
-    def __init__(self, folder: Path, headers: dict[str, dict[str, str]], journal: Journal) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        headers: dict[str, dict[str, str]],
+        journal: Journal,
+        lines: Collection[str] = ("AXIS_RA", "AXIS_DEC"),
+    ) -> None:
         self.folder = folder
         self._headers = headers
         self._journal = journal
         self._wanted: deque[Callable[[], None]] = deque()
         self._open: dict[str, tuple[SerialLink, AxisLog]] = {}
-        self._count = len(self.logs("ra"))
+        self._axes = {axis: device for axis, device in AXES.items() if device.name in lines}
+        self._count = max(len(self.logs(axis)) for axis in AXES)
 
     @property
     def recording(self) -> bool:
@@ -35,7 +43,9 @@ class RecordedRuns:
         return bool(self._open)
 
     def start(self) -> None:
-        """Begin a run; the one before ends."""
+        """Begin a run; the one before ends. Raises ValueError when there is nothing to record."""
+        if not self._axes:
+            raise ValueError("no RS232 line of an axis board: give schmidt host --serial AXIS_RA=PORT")
         self._wanted.append(self._begin)
 
     def stop(self) -> None:
@@ -45,7 +55,7 @@ class RecordedRuns:
     def logs(self, axis: str) -> list[Path]:
         """Finished runs; while one is recorded it is not among them."""
         found = sorted(self.folder.glob(f"{axis}-*.csv"))
-        return found[:-1] if self._open and found else found
+        return found[:-1] if AXES[axis].name in self._open else found
 
     def command(self, axis: str, out: Path) -> list[str]:
         """The finder as its own program: it may take a minute, and nobody must wait for it."""
@@ -70,7 +80,7 @@ class RecordedRuns:
     def _begin(self) -> None:
         self._end()
         self._count += 1
-        for axis, device in AXES.items():
+        for axis, device in self._axes.items():
             log = AxisLog(self.folder / f"{axis}-{self._count:03d}.csv", self._headers[axis])
             self._open[device.name] = (SerialLink(device, self._journal, log.packet), log)
 

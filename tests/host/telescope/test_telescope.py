@@ -224,3 +224,10 @@ def test_logs_and_journal_say_the_same(rig: Rig, tmp_path: Path) -> None:
     assert len(lines) - 1 == len(kept) and any("POWER 1" in line for line in lines)
     with pytest.raises(Refused, match="shut down"):
         rig.telescope.call(lambda t: None).result(0)
+
+
+def test_H6_a_log_can_be_followed_while_it_grows(rig: Rig, tmp_path: Path) -> None:
+    """A host that is killed has left what it wrote, and `tail -f` shows what has just been done."""
+    rig.run(lambda t: t.drive.power_on())
+    rig.advance(0.3)  # the next sensor line brings all four to the disk
+    assert "POWER 1  ok" in (tmp_path / "commands.log").read_text()

@@ -1,0 +1,115 @@
+"""The bus page's view of real boards: what reaches the host's own link, and what the heartbeats say."""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import Future
+
+from bus.can.length import frame_bits
+from bus.can.wire import MAX_BITRATE
+from bus.protocol import Device, unpack_heartbeat
+from bus.protocol.report import ReportError, unpack_report
+from host.client import SILENCE_NS, Client
+from host.console.decoded import seen
+from host.console.views import FaultKind, Node, SeenFrame
+
+KEPT = 25
+"""Frames that a page shows."""
+_LOAD_NS = 1_000_000_000
+"""The load is that of the last second."""
+_PASSIVE = 128
+"""Error counter from which ISO 11898-1 has a node passive. Bus off cannot be heard."""
+
+
+class HeardBus:
+    """A `BusView`. client: whose heartbeats are looked at; it ticks elsewhere, and what is read here is
+    replaced as a whole.
+
+    The load is a lower bound: the gateway does not pass on what the host itself commands, nor broken frames.
+    A host at a real bus has no faults to make.
+    """
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._frames: deque[tuple[int, int, bytes]] = deque(maxlen=KEPT)
+        self._second_ns = 0
+        self._bits = 0
+        self._load = 0.0
+        self.unknown = 0
+        """Reports with a slot that the protocol has no place for."""
+
+    def take(self, t_ns: int, report: bytes) -> None:
+        """A report of the gateway, on the ticking thread."""
+        if t_ns - self._second_ns >= _LOAD_NS:
+            self._load = self._bits * 1e9 / MAX_BITRATE / (t_ns - self._second_ns)
+            self._second_ns, self._bits = t_ns, 0
+        try:
+            frames = unpack_report(report)
+        except ReportError:
+            self.unknown += 1
+            return
+        for frame in frames:
+            self._bits += frame_bits(frame)
+            self._frames.append((t_ns, frame.identifier, frame.data))
+
+    def nodes(self) -> list[Node]:
+        """Boards that should live; silent ones are shown as off. Nobody tells the host of their REC."""
+        return [self._node(device) for device in self._client.devices]
+
+    def load(self) -> float:
+        """Of the last whole second, at least."""
+        return self._load
+
+    def errors(self) -> dict[str, int]:
+        """No host hears error frames through the gateway."""
+        return {}
+
+    def frames(self, most: int) -> list[SeenFrame]:
+        """The last ones, by the protocol."""
+        return [
+            seen(t_ns, _name(data[0]), identifier, data)
+            for t_ns, identifier, data in tuple(self._frames)[-most:]
+        ]
+
+    def faults(self) -> tuple[str, ...]:
+        """None: real supplies have no switch here."""
+        return ()
+
+    def switch(self, board: str, on: bool) -> None:
+        """Nothing to switch."""
+
+    def fault_kinds(self) -> list[FaultKind]:
+        """None."""
+        return []
+
+    def running(self) -> list[tuple[int, str]]:
+        """None."""
+        return []
+
+    def start_fault(self, name: str, arguments: str) -> Future[str]:
+        """Refused."""
+        return _refused()
+
+    def clear_fault(self, number: int) -> Future[str]:
+        """Refused."""
+        return _refused()
+
+    def _node(self, device: Device) -> Node:
+        heard_ns, data = self._client.link.heard_ns.get(device), self._client.link.heartbeats.get(device)
+        if heard_ns is None or data is None or self._client.now_ns - heard_ns > SILENCE_NS:
+            return Node(device.name, False, "silent", 0, 0)
+        tec = unpack_heartbeat(data).tec
+        return Node(device.name, True, "passive" if tec >= _PASSIVE else "active", tec, 0)
+
+
+def _name(device: int) -> str:
+    try:
+        return Device(device).name
+    except ValueError:
+        return f"{device:#04x}"
+
+
+def _refused() -> Future[str]:
+    future: Future[str] = Future()
+    future.set_exception(ValueError("this is no emulated bus: nothing can be broken from here"))
+    return future
