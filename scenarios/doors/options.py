@@ -1,6 +1,6 @@
 """Which doors the command line asks for, and the objects that stand for them.
 
-A new door: a field here, an option in `scenarios/cli.py`, a line in `make_doors`.
+A new door: a field here, an option of `serve` in `scenarios/commands/serving.py`, a line in `make_doors`.
 """
 
 from __future__ import annotations

@@ -1,0 +1,105 @@
+"""Commands that say what is there: conformance, eds, protocol, effects."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from scenarios.commands.options import NETWORK, SPEED, Number
+
+
+@click.command(short_help="Check boards, emulated or real, against the protocol.")
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.option(
+    "--can",
+    "channel",
+    metavar="INTERFACE:CHANNEL",
+    help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
+)
+@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
+@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Speed the boards are served at.")
+@click.option(
+    "--tolerance",
+    type=Number(min=0, max=1, min_open=True),
+    default=0.02,
+    show_default=True,
+    help="Allowed error of a message's mean period, relative.",
+)
+@click.option(
+    "--stamps",
+    type=Number(min=0),
+    default=0.001,
+    show_default=True,
+    help="Uncertainty of the tester's time stamps, seconds (in process: 0).",
+)
+@click.option("--board", "boards", multiple=True, metavar="TYPE:ID", help="Check this one only (repeatable).")
+@click.option(
+    "--motion/--no-motion", help="Send commands that move the telescope, too; it is stopped at the end."
+)
+@click.option("--flood", is_flag=True, help="Fill the bus, too: boards will report what they had to drop.")
+def conformance(
+    scenario: Path | None,
+    network: str | None,
+    channel: str | None,
+    json_file: Path | None,
+    speed: float,
+    tolerance: float,
+    stamps: float,
+    boards: tuple[str, ...],
+    motion: bool,
+    flood: bool,
+) -> None:
+    """Check boards, emulated or real, against the protocol; SCENARIO or --network says which boards."""
+    from bus.conformance import Settings
+    from scenarios.conformance import command
+
+    settings = Settings(period_tolerance=tolerance, stamps_s=stamps, speed=speed, motion=motion, flood=flood)
+    sys.exit(command(channel, json_file, boards, settings, scenario, network))
+
+
+@click.command(short_help="Write CANopen data sheets of the boards.")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+def eds(folder: Path, scenario: Path | None, network: str | None) -> None:
+    """Write a CANopen data sheet (EDS) per type of board into FOLDER; SCENARIO or --network says which
+    boards, those of one's own too."""
+    from scenarios.canopen import write_eds
+
+    for file in write_eds(folder, scenario, network):
+        click.echo(file)
+
+
+@click.command()
+def protocol() -> None:
+    """Print the protocol page, made from the DBC."""
+    from bus.protocol.page import page
+
+    click.echo(page())
+
+
+@click.command()
+@click.argument("name", required=False)
+def effects(name: str | None) -> None:
+    """List the catalogue of effects, or describe one."""
+    from plant.effects import REGISTRY
+
+    if name is not None:
+        if name not in REGISTRY:
+            from scenarios.validate import nearest
+
+            raise ValueError(f"no effect is called {name!r}; {nearest(name, REGISTRY)}")
+        effect = REGISTRY[name]
+        click.echo(f"{effect.name}: {effect.equation}\nchannel {effect.channel}, seen over {effect.domain}")
+        if effect.stages:
+            click.echo(f"stages: {', '.join(effect.stages)}")
+        for each in effect.parameters:
+            click.echo(
+                f"  {each.name}: {each.default:g} {each.unit}, {each.low:g}..{each.high:g}; {each.source}"
+            )
+        return
+    for effect in REGISTRY.values():
+        click.echo(f"{effect.name:22} {effect.channel}  {effect.domain:12} {effect.equation}")

@@ -1,0 +1,21 @@
+"""How a command ends that does not end well: one line and a status."""
+
+from __future__ import annotations
+
+import sys
+from typing import NoReturn
+
+import click
+
+UNUSABLE = 2
+INTERRUPTED = 130
+_LINE = 600
+"""Longer messages quote somebody's megabyte."""
+
+
+def fail(text: str, status: int) -> NoReturn:
+    """Say `schmidt: text` on stderr and leave with `status`."""
+    if len(text) > _LINE:
+        text = text[: _LINE // 2] + " … " + text[-_LINE // 2 :]
+    click.echo(f"schmidt: {text}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)
+    sys.exit(status)

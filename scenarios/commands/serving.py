@@ -1,0 +1,165 @@
+"""Commands with real time, cables and clients: serve, control, replay, host."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding
+
+
+@click.command(short_help="Run the boards in real time and open doors to them.")
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option(
+    "--can",
+    multiple=True,
+    metavar="INTERFACE:CHANNEL",
+    help="The CAN bus, such as socketcan:vcan0; repeatable.",
+)
+@click.option(
+    "--serial",
+    multiple=True,
+    metavar="pty:DIR|tcp:PORT|rfc2217:PORT",
+    help="The five RS232 lines: pseudo-terminals named in DIR, or five TCP ports from PORT on.",
+)
+@click.option(
+    "--hid", multiple=True, metavar="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket."
+)
+@click.option(
+    "--lx200",
+    multiple=True,
+    metavar="[HOST:]PORT|pty:NAME",
+    help="LX200, for Stellarium and INDI; repeatable.",
+)
+@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
+@click.option(
+    "--runs",
+    type=click.Path(path_type=Path),
+    default=Path("out/console"),
+    show_default=True,
+    help="Folder of the runs recorded on the console.",
+)
+@click.option("--logs", type=click.Path(path_type=Path), help="Folder of the host's four logs.")
+@click.option("--control", metavar="[HOST:]PORT", help="Speed, pause, status, stop (see schmidt control).")
+@click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
+@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
+@click.option("--seed", type=SEED, help="Another seed than the scenario's.")
+@click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
+@click.option("--duration", type=SECONDS, help="End after this many seconds.")
+@click.option("--debug", metavar="DIR", help="Every board's debug port as a pseudo-terminal in DIR (slcan).")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.option("--mute", metavar="BOARD", help="This board sends nothing; its frames come from --feed.")
+@click.option(
+    "--feed", type=click.Path(path_type=Path), metavar="LOG", help="Log to take them from (candump -L)."
+)
+@click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
+def serve(
+    scenario: Path | None,
+    can: tuple[str, ...],
+    serial: tuple[str, ...],
+    hid: tuple[str, ...],
+    lx200: tuple[str, ...],
+    alpaca: str | None,
+    console: str | None,
+    runs: Path,
+    logs: Path | None,
+    control: str | None,
+    token: str | None,
+    speed: float,
+    seed: int | None,
+    plant: str | None,
+    duration: float | None,
+    debug: str | None,
+    network: str | None,
+    mute: str | None,
+    feed: Path | None,
+    record: Path | None,
+) -> None:
+    """Pace the network in real time and open its doors; its boards answer to anyone."""
+    from scenarios.doors.options import DoorOptions
+    from scenarios.serve import serve as command
+
+    options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs, debug)
+    muted = feeding(mute, feed)
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted))
+
+
+@click.command(short_help="The host program alone, on the boards' cables.")
+@click.argument("scenario", type=click.Path(path_type=Path), required=False)
+@click.option("--usb", required=True, metavar="/dev/hidrawN|unix:PATH|can:SPEC", help="Where the gateway is.")
+@click.option(
+    "--serial", multiple=True, metavar="BOARD=PORT", help="RS232 of a board, such as AXIS_RA=/dev/ttyS0."
+)
+@click.option(
+    "--lx200",
+    multiple=True,
+    metavar="[HOST:]PORT|pty:NAME",
+    help="LX200, for Stellarium and INDI; repeatable.",
+)
+@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
+@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
+@click.option(
+    "--runs",
+    type=click.Path(path_type=Path),
+    default=Path("out/console"),
+    show_default=True,
+    help="Folder of the runs recorded on the console.",
+)
+@click.option("--token", help="Word that browsers of other machines must know (default: made up, printed).")
+@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")
+@click.option("--duration", type=SECONDS, help="End after this many seconds.")
+def host(
+    scenario: Path | None,
+    usb: str,
+    serial: tuple[str, ...],
+    lx200: tuple[str, ...],
+    alpaca: str | None,
+    console: str | None,
+    runs: Path,
+    token: str | None,
+    network: str | None,
+    logs: Path | None,
+    duration: float | None,
+) -> None:
+    """The host program by itself, on the boards' cables; SCENARIO gives site, mount and date."""
+    from scenarios.doors.options import DoorOptions
+    from scenarios.host import command
+
+    options = DoorOptions(lx200=lx200, alpaca=alpaca, logs=logs, console=console, runs=runs, token=token)
+    sys.exit(command(scenario, usb, serial, options, duration, network))
+
+
+@click.command(short_help="Repeat a session that serve --record has left.")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: FOLDER-replayed).")
+def replay(folder: Path, out: Path | None) -> None:
+    """Run a session again that serve --record left in FOLDER (exit 0: to the same digest)."""
+    from scenarios.doors.replay import replay as command
+
+    again, before = command(folder, out or folder.with_name(folder.name + "-replayed"))
+    same = "" if before is None else " as recorded" if again == before else f", recorded was {before[:16]}"
+    click.echo(f"digest {again[:16]}{same}")
+    sys.exit(0 if before in (None, again) else 1)
+
+
+@click.command(short_help="Speed, pause, faults, supply, end of a served network.")
+@click.argument("command", nargs=-1, required=True)
+@click.option(
+    "--at",
+    default="127.0.0.1:7411",
+    show_default=True,
+    metavar="[HOST:]PORT",
+    help="Where serve --control listens.",
+)
+@click.option("--token", help="The word serve has printed; for other machines.")
+def control(command: tuple[str, ...], at: str, token: str | None) -> None:
+    """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop,
+    fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/faults.md).
+    """
+    from scenarios.doors.tell import tell
+
+    click.echo(tell(" ".join(command), at, token))
