@@ -7,7 +7,7 @@ from pathlib import Path
 from bus.conformance import Settings, board_of, parse
 from bus.conformance.cli import check, conformance_command
 from bus.pythoncan import SchmidtBus
-from scenarios.network import config_from, devices_of
+from scenarios.networks import config_from, devices_of
 from scenarios.served import chosen, wire
 
 

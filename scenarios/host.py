@@ -21,7 +21,7 @@ from scenarios.doors.door import Door
 from scenarios.doors.options import DoorOptions, astronomy
 from scenarios.hosted import Hosted, dated
 from scenarios.model import Scenario
-from scenarios.network import config_from, devices_of
+from scenarios.networks import config_from, devices_of
 from scenarios.served import chosen
 from scenarios.session import log_headers
 

@@ -1,15 +1,14 @@
 """Wires boards, bus and plant together: `build(config, plant, seed)`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from boards.axis import AxisBoard, AxisPins
 from boards.axis.config import STEPS_PER_TURN
 from boards.core import Board
 from boards.core.debug import DebugPort
-from boards.core.declared import DeclaredBoard, uart_of
+from boards.core.declared import uart_of
 from boards.display import DisplayBoard
 from boards.focus import FocusBoard, FocusConfig, FocusPins
 from boards.gateway import GatewayBoard
@@ -24,8 +23,8 @@ from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
 from plant.plant import Plant
 from scenarios.drive import axis_config
-from scenarios.networks import FINAL, NETWORKS
-from scenarios.nodes import BOARDS, Site, load_board, pins_of
+from scenarios.networks import FINAL, NetworkConfig, NetworkError, NodeConfig, devices_of
+from scenarios.nodes import BOARDS, Site, pins_of
 
 if TYPE_CHECKING:
     from boards.canopen import Voice
@@ -37,43 +36,6 @@ CRYSTAL_DRIFT_PPM_PER_HOUR = 0.2
 CRYSTAL_PHASE_NS = 1_000_000_000
 """Boards have been switched on within the same second, ASSUMPTION."""
 _MAXIMUM_NODES = 64
-
-
-class NetworkError(ValueError):
-    """A network that cannot be built."""
-
-
-@dataclass(frozen=True, slots=True)
-class NodeConfig:
-    """What may be set per board: crystal error and phase (None: drawn from the seed), parameters by
-    number, inputs of a declared board by pin."""
-
-    ppm: float | None = None
-    phase_ns: int | None = None
-    parameters: Mapping[int, int] = field(default_factory=dict)
-    inputs: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class NetworkConfig:
-    """bitrate: of the CAN bus, bit/s. nodes: settings by board name. limits: soft limits (low, high)
-    in steps by axis.
-
-    name: which network (`scenarios/networks.py`). extra: declared boards beside it.
-    canopen: every board speaks CANopen, too (`boards/canopen/`); a master has to start it.
-    size: number of boards, None: those of the network. Fewer leaves out boards from its end, more adds motor
-        velocity boards of unassigned device types (for scaling measurements).
-    """
-
-    bitrate: int = 1_000_000
-    nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
-    limits: Mapping[str, tuple[int, int]] = field(default_factory=dict)
-    size: int | None = None
-    name: str = "lab"
-    extra: tuple[type[DeclaredBoard], ...] = ()
-    canopen: bool = False
-
-
 SPARE_TYPES = tuple(
     number for number in range(0x35, 0x80) if number not in {int(device) for device in (*Device, *FINAL)}
 )
@@ -220,16 +182,6 @@ _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
 )
 
 
-def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
-    """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
-    if config.name not in NETWORKS:
-        raise NetworkError(
-            f"network: there is no network '{config.name}'; expected one of {', '.join(NETWORKS)}"
-        )
-    own = tuple(Device(number) for board in config.extra for number in board.KIND.nodes.values())
-    return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
-
-
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     """The network, every board running from time 0 on; raises NetworkError for settings no network can
     have."""
@@ -276,26 +228,3 @@ def _set_parameters(board: Board, settings: NodeConfig) -> None:
             reply = board.parameters.get(number)
             reason = "does not exist" if reply.result else f"does not take {value}"
             raise NetworkError(f"network: nodes.{board.name}.parameters: parameter {number} {reason}")
-
-
-def config_from(
-    network: Mapping[str, Any], limits: Mapping[str, tuple[int, int]], folder: Path = Path()
-) -> NetworkConfig:
-    """The configuration of a scenario's checked `network` section (bit/s, s, ppm, parameters by number).
-
-    folder: where its `boards` are looked for.
-    """
-    nodes = {
-        name: NodeConfig(
-            settings.get("ppm"),
-            None if settings.get("phase") is None else round(settings["phase"] * 1e9),
-            {int(number): int(value) for number, value in settings.get("parameters", {}).items()},
-            settings.get("inputs", {}),
-        )
-        for name, settings in network.get("nodes", {}).items()
-    }
-    extra = tuple(load_board(folder / file) for file in network.get("boards", ()))
-    bitrate = round(network.get("bitrate", 1_000_000))
-    canopen = bool(network.get("canopen", False))
-    name = network.get("name", "lab")
-    return NetworkConfig(bitrate, nodes, dict(limits), name=name, extra=extra, canopen=canopen)

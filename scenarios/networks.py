@@ -1,7 +1,14 @@
-"""Named networks: which boards are on the bus, in the order they are wired."""
+"""Which boards are on the bus, in the order they are wired, and what is set on them."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from boards.core.declared import DeclaredBoard
 from bus.protocol import Device
 from bus.protocol.nodes import KINDS
+from scenarios.nodes import load_board
 
 LAB = (
     Device.AXIS_RA,
@@ -24,3 +31,71 @@ FINAL = (*LAB, *(Device(number) for kind in KINDS for number in kind.nodes.value
 
 NETWORKS: dict[str, tuple[Device, ...]] = {"lab": LAB, "serial": SERIAL, "final": FINAL}
 """By the name a scenario and the command line give them."""
+
+
+class NetworkError(ValueError):
+    """A network that cannot be built."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeConfig:
+    """What may be set per board: crystal error and phase (None: drawn from the seed), parameters by
+    number, inputs of a declared board by pin."""
+
+    ppm: float | None = None
+    phase_ns: int | None = None
+    parameters: Mapping[int, int] = field(default_factory=dict)
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkConfig:
+    """bitrate: of the CAN bus, bit/s. nodes: settings by board name. limits: soft limits (low, high)
+    in steps by axis.
+
+    name: which network (`scenarios/networks.py`). extra: declared boards beside it.
+    canopen: every board speaks CANopen, too (`boards/canopen/`); a master has to start it.
+    size: number of boards, None: those of the network. Fewer leaves out boards from its end, more adds motor
+        velocity boards of unassigned device types (for scaling measurements).
+    """
+
+    bitrate: int = 1_000_000
+    nodes: Mapping[str, NodeConfig] = field(default_factory=dict)
+    limits: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    size: int | None = None
+    name: str = "lab"
+    extra: tuple[type[DeclaredBoard], ...] = ()
+    canopen: bool = False
+
+
+def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
+    """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
+    if config.name not in NETWORKS:
+        raise NetworkError(
+            f"network: there is no network '{config.name}'; expected one of {', '.join(NETWORKS)}"
+        )
+    own = tuple(Device(number) for board in config.extra for number in board.KIND.nodes.values())
+    return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
+
+
+def config_from(
+    network: Mapping[str, Any], limits: Mapping[str, tuple[int, int]], folder: Path = Path()
+) -> NetworkConfig:
+    """The configuration of a scenario's checked `network` section (bit/s, s, ppm, parameters by number).
+
+    folder: where its `boards` are looked for.
+    """
+    nodes = {
+        name: NodeConfig(
+            settings.get("ppm"),
+            None if settings.get("phase") is None else round(settings["phase"] * 1e9),
+            {int(number): int(value) for number, value in settings.get("parameters", {}).items()},
+            settings.get("inputs", {}),
+        )
+        for name, settings in network.get("nodes", {}).items()
+    }
+    extra = tuple(load_board(folder / file) for file in network.get("boards", ()))
+    bitrate = round(network.get("bitrate", 1_000_000))
+    canopen = bool(network.get("canopen", False))
+    name = network.get("name", "lab")
+    return NetworkConfig(bitrate, nodes, dict(limits), name=name, extra=extra, canopen=canopen)

@@ -11,7 +11,7 @@ _NEEDS = {"display": "DISPLAY", "focus": "FOCUS"}
 
 def check_boards(scenario: Scenario) -> None:
     """Raise `ScenarioError` for the first step or fault that speaks of a board which is not there."""
-    from scenarios.network import config_from, devices_of
+    from scenarios.networks import config_from, devices_of
 
     config = config_from(scenario.network, {}, scenario.file.parent)
     names = [device.name for device in devices_of(config)]

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from host.sky.observed import Clock
 from scenarios.model import Scenario
-from scenarios.network import Network, build, config_from
+from scenarios.network import Network, build
+from scenarios.networks import config_from
 
 if TYPE_CHECKING:
     from plant.model import PlantModel

@@ -19,7 +19,8 @@ from plant.plant import Plant
 from scenarios.cables import Cables
 from scenarios.faults import Faults
 from scenarios.model import Scenario
-from scenarios.network import Network, build, config_from
+from scenarios.network import Network, build
+from scenarios.networks import config_from
 from scenarios.programme import Programme
 from scenarios.recorder import AXES, Recorder
 

@@ -14,8 +14,8 @@ from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report
 from plant.model import load
 from plant.plant import Plant
-from scenarios.network import Network, NetworkConfig, build
-from scenarios.networks import NETWORKS
+from scenarios.network import Network, build
+from scenarios.networks import NETWORKS, NetworkConfig
 
 _SECOND_NS = 1_000_000_000
 _START = {"ra": float(1 << 28), "dec": float(1 << 28)}

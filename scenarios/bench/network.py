@@ -11,7 +11,8 @@ from pathlib import Path
 from plant.model import load
 from plant.plant import Plant
 from scenarios import run as runner
-from scenarios.network import Network, NetworkConfig, build
+from scenarios.network import Network, build
+from scenarios.networks import NetworkConfig
 from scenarios.session import Session, start_steps
 
 SCENARIO = Path(__file__).parents[1] / "observing-night.yaml"

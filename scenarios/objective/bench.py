@@ -14,7 +14,8 @@ from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, pack_command,
 from plant.gears import ARCSEC
 from plant.parts import PlantModel
 from plant.plant import Plant
-from scenarios.network import NetworkConfig, build
+from scenarios.network import build
+from scenarios.networks import NetworkConfig
 
 Floats = NDArray[np.float64]
 SIDEREAL = 15.041

@@ -23,7 +23,8 @@ from bus.protocol import (
 )
 from plant.parts import PlantModel
 from plant.plant import Plant
-from scenarios.network import NetworkConfig, build
+from scenarios.network import build
+from scenarios.networks import NetworkConfig
 from scenarios.paper.log import Log
 from scenarios.paper.scales import ARCSEC, LOG_PERIOD_S
 

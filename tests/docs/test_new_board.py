@@ -9,7 +9,7 @@ import pytest
 from bus.conformance import Settings, run
 from bus.protocol.nodes import documented
 from bus.pythoncan import SchmidtBus
-from scenarios.network import config_from, devices_of
+from scenarios.networks import config_from, devices_of
 from scenarios.served import chosen, wire
 
 PAGE = Path(__file__).parents[2] / "docs" / "new-board.md"

@@ -26,7 +26,8 @@ from host.sky.mount import STEP_ARCSEC
 from host.telescope.state import axis_state
 from plant.model import load
 from plant.plant import Plant
-from scenarios.network import NetworkConfig, build
+from scenarios.network import build
+from scenarios.networks import NetworkConfig
 from tests.host.console.test_parts import MOUNT
 
 SECOND_NS = 1_000_000_000

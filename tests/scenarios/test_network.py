@@ -14,7 +14,8 @@ from bus.protocol.report import pack_report, unpack_report
 from bus.protocol.serial import PacketDecoder
 from plant.model import load
 from plant.plant import Plant
-from scenarios.network import Network, NetworkConfig, NetworkError, NodeConfig, build, config_from
+from scenarios.network import Network, build
+from scenarios.networks import NetworkConfig, NetworkError, NodeConfig, config_from
 
 CENTRE = 1 << 28
 STEP_ARCSEC = 1_296_000 / (1 << 29)

@@ -15,8 +15,8 @@ from bus.pythoncan import SchmidtBus
 from plant.model import load
 from plant.plant import Plant
 from scenarios.document import ScenarioError
-from scenarios.network import Network, NetworkConfig, NetworkError, NodeConfig, build
-from scenarios.networks import FINAL, LAB, NETWORKS, SERIAL
+from scenarios.network import Network, build
+from scenarios.networks import FINAL, LAB, NETWORKS, SERIAL, NetworkConfig, NetworkError, NodeConfig
 from scenarios.run import prepare
 from scenarios.run import run as execute
 from scenarios.served import chosen, wire

@@ -14,7 +14,8 @@ from bus.lockstep import LockstepBus
 from plant.model import load
 from plant.plant import Plant
 from scenarios.canopen import write_eds
-from scenarios.network import Network, NetworkConfig, build
+from scenarios.network import Network, build
+from scenarios.networks import NetworkConfig
 
 RA = p.Device.AXIS_RA
 RATE_600 = 17_123_328
