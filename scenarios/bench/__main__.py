@@ -12,11 +12,12 @@ from typing import Any
 import click
 from rich.console import Console
 
-from scenarios.bench import counters, history, interleaved, named, network, profile, serving, startup
-from scenarios.bench.show import headline, show
+from scenarios.bench import counters, history, interleaved, named, network, night, profile, serving, startup
+from scenarios.bench.show import costs, headline, show
 from scenarios.native.build import BuildError, build
 
 SIZES = (11, 22, 44, 64, 128, 256)
+_ROUNDS = 5
 
 
 def measure(quick: bool, say: Console) -> dict[str, Any]:
@@ -30,11 +31,11 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
     with say.status("instructions"):
         instructions = counters.instructions(native)
     with say.status("cost per node"):
-        sizes = network.nodes(SIZES, max(5, seconds // 20))
+        sizes = network.nodes(SIZES, max(1, seconds // 50), 3 if quick else _ROUNDS)
     with say.status("named networks in turn"):
         by_name = named.measure(max(2, seconds // 10), 3 if quick else named.ROUNDS)
-    with say.status("memory"):
-        memory = network.memory(max(200, seconds * 4))  # shorter, the first row groups look like growth
+    with say.status("a long night, run"):
+        long_night = night.measure(0.25 if quick else 10.0 if native else 1.0, quiet=True)
     with say.status("profile"):
         profiled = profile.measure(max(5, seconds // 5))
     with say.status("start-up, compiling from nothing"):
@@ -49,7 +50,7 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         "instructions": instructions,
         "nodes": sizes,
         "networks": by_name,
-        "memory": memory,
+        "long night": long_night,
         "startup": start,
         "served": served,
         "rooms": profiled["rooms"],
@@ -79,8 +80,9 @@ def main(json_file: Path | None, past: Path | None, quick: bool) -> None:
         json_file.parent.mkdir(parents=True, exist_ok=True)
         json_file.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
     if past is not None and not quick:
-        now = headline(figures)
-        for line in history.falls(history.read(past), now):
+        dear = costs(figures)
+        now = headline(figures) | dear
+        for line in history.falls(history.read(past), now, dear):
             console.print(f"[bold red]{line}")
         history.add(past, now, {"begun": figures["begun"], "load": figures["machine"]["load"][0]})
 

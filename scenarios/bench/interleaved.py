@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import statistics
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,8 +11,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+from scenarios.bench.network import spread
+
 ROOT = Path(__file__).parents[2]
-PARTS = {"night": 5, "bare": 5, "plant": 20, "virtual": 1}
+PARTS = {"night": 20, "bare": 20, "plant": 20, "virtual": 3}
 """Simulated seconds of each part in a round."""
 ROUNDS = 12
 
@@ -72,13 +73,14 @@ def measure(rounds: int = ROUNDS, native: bool = True) -> dict[str, Any]:
                     way.ask(part)
     figures: dict[str, Any] = {"rounds": rounds, "seconds": dict(PARTS)}
     for name, way in ways.items():
-        figures[name] = {part: _spread(values) for part, values in way.rounds.items()}
+        figures[name] = {part: spread(values) for part, values in way.rounds.items()}
         figures[name]["frames_per_s"] = way.frames["night"]
         figures[name]["bare over night"] = _ratio(way, "bare", way, "night")
         figures[name]["python-can over night"] = _ratio(way, "virtual", way, "night")
     if native:
         plain, fast = ways["plain"], ways["compiled"]
         figures["plain over compiled night"] = _ratio(plain, "night", fast, "night")
+        figures["compiled"]["bare on compiled pins over night"] = figures["compiled"]["bare over night"]
         # the yardstick is plain Python, whatever the emulator is
         figures["compiled"]["bare over night"] = _ratio(plain, "bare", fast, "night")
         figures["compiled"]["python-can over night"] = _ratio(plain, "virtual", fast, "night")
@@ -87,12 +89,4 @@ def measure(rounds: int = ROUNDS, native: bool = True) -> dict[str, Any]:
 
 def _ratio(one: Way, part: str, other: Way, beside: str) -> dict[str, float]:
     pairs = zip(one.rounds[part], other.rounds[beside], strict=True)
-    return _spread([a / b for a, b in pairs])
-
-
-def _spread(values: list[float]) -> dict[str, float]:
-    """Median, and half the range between the quartiles."""
-    if len(values) < 2:
-        return {"median": values[0], "noise": float("nan"), "least": values[0]}
-    low, middle, high = statistics.quantiles(values, n=4)
-    return {"median": middle, "noise": 0.5 * (high - low), "least": min(values)}
+    return spread([a / b for a, b in pairs])

@@ -1,11 +1,9 @@
-"""The main scenario set up for measuring; cost per node; memory."""
+"""The main scenario set up for measuring; cost per node."""
 
 from __future__ import annotations
 
-import os
-import tempfile
+import statistics
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 from plant.model import load
@@ -31,77 +29,60 @@ def session(folder: Path) -> Session:
     return made
 
 
-def factor(advance: Callable[[int], None], start_ns: int, seconds: int, parts: int = 5) -> dict[str, float]:
-    """Simulated over wall and over CPU time: the median of several parts, and the best."""
-    walls, cpus = [], []
-    for part in range(parts):
-        wall, cpu = time.perf_counter(), time.process_time()
-        advance(start_ns + (part + 1) * seconds * _SECOND_NS // parts)
-        walls.append(time.perf_counter() - wall)
-        cpus.append(time.process_time() - cpu)
-    simulated = seconds / parts
-    middle = parts // 2
-    return {
-        "real_time_factor": simulated / sorted(walls)[middle],
-        "cpu_time_factor": simulated / sorted(cpus)[middle],
-        "best_real_time_factor": simulated / min(walls),
-    }
+def nodes(sizes: tuple[int, ...], seconds: int, rounds: int) -> list[dict[str, float]]:
+    """Cost per node: boards, bus and plant without the host, for networks of several sizes, in turn.
 
-
-def nodes(sizes: tuple[int, ...], seconds: int) -> list[dict[str, float]]:
-    """Cost per node: boards, bus and plant without the host, for networks of several sizes.
-
-    A bus has 64 nodes at most; more nodes are on two or four buses, each a network of its own, taken forward
-    together in steps of 10 ms.
+    CPU ms per node and simulated second (median over rounds), and its ratio to that of the first size in the
+    same round. A bus has 64 nodes at most; more nodes are on two or four buses, each a network of its own,
+    taken forward together in steps of 10 ms.
     """
-    scenario, _ = runner.prepare(SCENARIO)
+    groups = {size: _networks(size) for size in sizes}
+    for networks in groups.values():
+        _together(networks, 1)
+    times: dict[int, list[float]] = {size: [] for size in sizes}
+    for _ in range(rounds):
+        for size, networks in groups.items():
+            cpu = time.process_time()
+            _together(networks, seconds)
+            times[size].append(1e3 * (time.process_time() - cpu) / seconds / size)
+    first = times[sizes[0]]
     rows = []
-    for size in sizes:
-        buses = -(-size // MOST_NODES)
-        networks = [
-            build(NetworkConfig(size=size // buses), Plant(load(), 1, start_steps(scenario)), 1 + bus)
-            for bus in range(buses)
-        ]
-
-        def together(until_ns: int, networks: list[Network] = networks) -> None:
-            while networks[0].queue.now_ns < until_ns:
-                t_ns = min(until_ns, networks[0].queue.now_ns + _STEP_NS)
-                for network in networks:
-                    network.run_until(t_ns)
-
-        together(_SECOND_NS)
-        made = factor(together, _SECOND_NS, seconds)
-        per_node = 1e3 / made["cpu_time_factor"] / size
-        load_now = networks[0].wire.load
+    for size, networks in groups.items():
+        ratio = spread([own / base for own, base in zip(times[size], first, strict=True)])
         rows.append(
-            {"nodes": size, "buses": buses, "ms_per_node_and_s": per_node, **made, "bus_load": load_now}
+            {
+                "nodes": size,
+                "buses": len(networks),
+                "ms_per_node_and_s": statistics.median(times[size]),
+                "of_first": ratio["median"],
+                "of_first_noise": ratio["noise"],
+                "bus_load": networks[0].wire.load,
+            }
         )
     return rows
 
 
-def memory(seconds: int) -> dict[str, float]:
-    """Growth of the resident set, MiB per simulated hour, and what a ten-hour night would reach."""
-    with tempfile.TemporaryDirectory() as folder:
-        made = session(Path(folder))
-        made.advance(
-            made.network.queue.now_ns + seconds // 2 * _SECOND_NS
-        )  # fill buffers and row groups first
-        before, start_ns = resident_mib(), made.network.queue.now_ns
-        while made.network.queue.now_ns < start_ns + seconds * _SECOND_NS:
-            made.advance(made.network.queue.now_ns + _SECOND_NS)
-            made.recorder.flush()
-        after = resident_mib()
-        made.recorder.close()
-    per_hour = (after - before) * 3600 / seconds
-    return {"resident_MiB": after, "MiB_per_hour": per_hour, "ten_hours_MiB": after + 10 * max(0.0, per_hour)}
+def _networks(size: int) -> list[Network]:
+    scenario, _ = runner.prepare(SCENARIO)
+    buses = -(-size // MOST_NODES)
+    return [
+        build(NetworkConfig(size=size // buses), Plant(load(), 1, start_steps(scenario)), 1 + bus)
+        for bus in range(buses)
+    ]
 
 
-def resident_mib() -> float:
-    """Resident set of this process, MiB (its peak where the system has no /proc)."""
-    try:
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
-    except OSError:
-        import resource
+def _together(networks: list[Network], seconds: int) -> None:
+    t_ns = networks[0].queue.now_ns
+    until_ns = t_ns + seconds * _SECOND_NS
+    while t_ns < until_ns:
+        t_ns = min(until_ns, t_ns + _STEP_NS)
+        for network in networks:
+            network.run_until(t_ns)
 
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+def spread(values: list[float]) -> dict[str, float]:
+    """Median, half the range between the quartiles, and the least."""
+    if len(values) < 2:
+        return {"median": values[0], "noise": float("nan"), "least": values[0]}
+    low, middle, high = statistics.quantiles(values, n=4)
+    return {"median": middle, "noise": 0.5 * (high - low), "least": min(values)}

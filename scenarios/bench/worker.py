@@ -39,10 +39,16 @@ class Worker:
         self._traffic = last_second(folder / "can.log")
 
     def night(self, seconds: int) -> dict[str, float]:
-        """The whole network, host and all logs."""
+        """The whole network, host and all logs; what still waits to be written is written, as a part would
+        else leave it to another."""
         queue, wire = self.session.network.queue, self.session.network.wire
         frames = wire.frames
         self.session.advance(queue.now_ns + seconds * _SECOND_NS)
+        recorder = self.session.recorder
+        self.session.network.plant.flush()
+        recorder.flush()
+        for trace in (*recorder.truth.values(), recorder.host, recorder.focus):
+            trace.flush()
         return {"frames": wire.frames - frames}
 
     def bare_loop(self, seconds: int) -> dict[str, float]:

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from plant.model import load
 from plant.plant import Plant
-from scenarios.bench import dither, history, named, serving, show
+from scenarios.bench import dither, history, named, network, night, serving, show
 from scenarios.bench.bare import BareLoop
 
 
@@ -41,11 +42,69 @@ def test_a_fall_beyond_the_noise_is_said_and_noise_is_not(tmp_path: Path) -> Non
     assert history.falls(before[:2], {"speed": 1.0}) == []
 
 
+def test_a_cost_that_rises_is_said_and_one_that_falls_is_not(tmp_path: Path) -> None:
+    before = [{"memory": 130.0 + k, "speed": 1.0} for k in range(4)]
+    assert history.falls(before, {"memory": 90.0, "speed": 1.0}, {"memory"}) == []
+    (line,) = history.falls(before, {"memory": 180.0, "speed": 1.0}, {"memory"})
+    assert line.startswith("memory rose from 13")
+
+
 def test_benches_of_another_machine_are_left_out(tmp_path: Path) -> None:
     path = tmp_path / "history.jsonl"
     history.add(path, {"speed": 1.0}, {})
     path.write_text(path.read_text().replace(history.machine(), "another"))
     assert history.read(path) == []
+
+
+def test_memory_that_grows_after_the_start_is_told_from_memory_that_does_not() -> None:
+    filled = [60.0 + min(k, 20) for k in range(200)]  # buffers that fill in the first tenth
+    assert night.growth(filled) == 0.0
+    leak = [80.0 + 0.1 * k for k in range(200)]
+    assert night.growth(leak) == pytest.approx(20.0)  # over the whole of it
+    assert night.growth([80.0]) != night.growth([80.0])  # too short to tell
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_a_night_that_is_run_tells_its_own_memory_and_not_that_of_who_asks() -> None:
+    held = np.ones(48 << 20)  # 384 MiB here
+    found = night.measure(0.02, quiet=True)
+    assert held.any()
+    assert 40.0 < found["peak_MiB"] < 300.0
+    assert found["cpu_s"] > 0.0 and found["logs_MB"] > 0.0
+
+
+def test_sizes_of_networks_are_measured_in_turn() -> None:
+    found = network.nodes((11, 22), 1, 2)
+    assert [row["nodes"] for row in found] == [11, 22]
+    assert found[0]["of_first"] == 1.0
+    assert all(row["ms_per_node_and_s"] > 0.0 for row in found)
+
+
+def test_the_table_has_a_row_for_everything_that_is_asked() -> None:
+    middle = {"median": 1.0, "noise": 0.1, "least": 0.9}
+    way = {"night": {**middle, "median": 8.0}, "plant": middle, "frames_per_s": 1048.0,
+           "bare over night": middle, "python-can over night": middle}  # fmt: skip
+    start = {"first_run_s": 1.0, "later_run_s": 0.5, "short_run_with_report_s": 1.2}
+    figures = {
+        "turns": {"plain": way, "compiled": way, "plain over compiled night": middle},
+        "instructions": {"plain": 160.0, "compiled": 44.0},
+        "nodes": [{"nodes": n, "ms_per_node_and_s": 0.3, "of_first": 1.0, "of_first_noise": 0.1}
+                  for n in (11, 64)],
+        "long night": {"hours": 10.0, "peak_MiB": 131.0, "MiB_per_hour": 0.2, "cpu_s": 263.0},
+        "startup": start | {"version_s": 0.1}
+        | {name.replace("_s", "_cpu_s"): value for name, value in start.items()},
+        "networks": {}, "served": {},
+    }  # fmt: skip
+    rows = show.rows(figures)
+    asked = {what.strip(): limit for what, _, limit in rows if limit}
+    assert asked["times real time by CPU"] == "≥ 130, aim 300"
+    assert asked["a night of 10 hours, run once, compiled: peak memory"] == "≤ 250, aim 120"
+    assert asked["over that of 11, in turn"] == "flat"
+    others = {"bare loop over it", "python-can over it", "first command until it simulates"}
+    assert set(asked) >= others | {"later command until it simulates", "a whole short run with its report"}
+    assert show.costs(figures)["million instructions, compiled"] == 44.0
+    assert set(show.costs(figures)).isdisjoint(show.headline(figures))
 
 
 @pytest.mark.slow
