@@ -1,11 +1,14 @@
 """Are the 5 ms ticks on time? Wall time at which each happens against when it is due."""
 
+from collections import deque
 from time import perf_counter
 
 from bus.pacer import Pacer
 
 TICK_NS = 5_000_000
 ON_TIME_S = 1e-3
+_KEPT = 1000
+"""Late ticks that are remembered one by one."""
 _BIN_S, _FINE = 1e-5, 2000
 _COARSE_S, _COARSE = 1e-3, 1000
 """Histogram of |lateness|: bins of 10 µs up to 20 ms, of 1 ms up to a second, and one for the rest."""
@@ -30,11 +33,14 @@ class Punctuality:
     """A probe on the queue every 5 ms of simulated time. It changes nothing that the boards do.
 
     due is when the pacer's schedule wants it; a schedule that was dropped (`Pacer.slips`) is late once.
+    late: (due, lateness) of the last ticks that were more than 1 ms off, s on the clock of `perf_counter`,
+    which other programs on the machine can read too.
     """
 
     def __init__(self, pacer: Pacer) -> None:
         self.worst_s = 0.0
         self.ticks = 0
+        self.late: deque[tuple[float, float]] = deque(maxlen=_KEPT)
         self._late = [0] * (_FINE + _COARSE + 1)
         self._pacer = pacer
         self.counting = True
@@ -42,11 +48,14 @@ class Punctuality:
 
     def _tick(self, t_ns: int) -> None:
         if self.counting:
-            late_s = abs(perf_counter() - self._pacer.due_s(t_ns))
+            due_s = self._pacer.due_s(t_ns)
+            late_s = abs(perf_counter() - due_s)
             self._late[_bin(late_s)] += 1
             self.ticks += 1
             if late_s > self.worst_s:
                 self.worst_s = late_s
+            if late_s > ON_TIME_S:
+                self.late.append((due_s, late_s))
         self._pacer.queue.at(t_ns + TICK_NS, self._tick)
 
     @property
@@ -70,6 +79,7 @@ class Punctuality:
         """Count afresh from here."""
         self.worst_s, self.ticks = 0.0, 0
         self._late = [0] * len(self._late)
+        self.late.clear()
 
     def text(self) -> str:
         """One line."""

@@ -10,15 +10,18 @@ from typing import Any
 import uvicorn
 
 
+_ERRORS = logging.getLogger("uvicorn.error")
+_ERRORS.propagate = False
+_ERRORS.addHandler(logging.NullHandler())  # or what is cancelled last is a traceback on the screen
+
+
 class _FirstError(logging.Handler):
     """Keeps the last line of uvicorn's first error, instead of a traceback on the screen."""
 
     def __init__(self) -> None:
         super().__init__(logging.ERROR)
         self.line = ""
-        self._logger = logging.getLogger("uvicorn.error")
-        self._logger.addHandler(self)
-        self._logger.propagate = False
+        _ERRORS.addHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
         """An error; those behind it only say that it ends."""
@@ -31,7 +34,7 @@ class _FirstError(logging.Handler):
 
     def forget(self) -> None:
         """Listen no longer."""
-        self._logger.removeHandler(self)
+        _ERRORS.removeHandler(self)
 
 
 async def answer(app: Any, listener: socket.socket) -> None:

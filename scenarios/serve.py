@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
+from rich.live import Live
 
 from bus.pacer import checked_speed
 from scenarios.doors import Door, Keeper, Served
 from scenarios.doors.interrupt import interrupts
 from scenarios.doors.options import DoorOptions, make_doors
 from scenarios.doors.parking import park
+from scenarios.doors.priority import first
 from scenarios.doors.recording import Recording
 from scenarios.muted import Feed, FeedError
 from scenarios.served import chosen, wire
@@ -32,10 +36,13 @@ def serve(
     record: Path | None = None,
     network: str | None = None,
     mute: tuple[str, Path] | None = None,
+    realtime: bool = False,
 ) -> int:
     """Pace the network with its doors open, until Ctrl-C, `schmidt control stop`, or `duration_s` (wall).
 
     mute: a board that sends nothing and the candump log that its frames come from, times from the start on.
+
+    realtime: ask the system to run the ticks before all other programs.
 
     The scenario's steps are not run (see `scenarios.served`). Returns the exit status, 0; raises ValueError
     subclasses and OSError with one line for input that cannot be used.
@@ -46,7 +53,11 @@ def serve(
     if mute is not None and record is not None:
         raise FeedError("--mute and --record: frames fed from a log are not recorded; leave one out")
     scenario, model = chosen(scenario_file, seed, plant, network)
-    with console.status("starting (the first time compiles)") as line:
+    # no thread that refreshes: it would hold Python's lock when a tick is due
+    with Live(
+        "starting (the first time compiles)", console=console, auto_refresh=False, transient=True
+    ) as line:
+        line.refresh()
         recording = Recording(record, scenario, model) if record is not None else None
         served = Served(scenario, model, speed, recording)
         if mute is not None:
@@ -61,8 +72,9 @@ def serve(
             for keeper in keepers:
                 keeper.open()
             _say_hello(console, served, doors)
-            loop = _Loop(served, keepers, console, line.update, duration_s, recording)
-            with interrupts(served.stop):
+            show = partial(line.update, refresh=True)
+            loop = _Loop(served, keepers, console, show, duration_s, recording)
+            with interrupts(served.stop), first() if realtime else nullcontext():
                 loop.run()
         finally:
             for keeper in keepers:

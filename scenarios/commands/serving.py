@@ -55,6 +55,7 @@ from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding
 @click.option(
     "--feed", type=click.Path(path_type=Path), metavar="LOG", help="Log to take them from (candump -L)."
 )
+@click.option("--realtime", is_flag=True, help="Ask the system to run the ticks before all other programs.")
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
 def serve(
     scenario: Path | None,
@@ -76,6 +77,7 @@ def serve(
     network: str | None,
     mute: str | None,
     feed: Path | None,
+    realtime: bool,
     record: Path | None,
 ) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
@@ -84,7 +86,7 @@ def serve(
 
     options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs, debug)
     muted = feeding(mute, feed)
-    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted))
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted, realtime))
 
 
 @click.command(short_help="The host program alone, on the boards' cables.")

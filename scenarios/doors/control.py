@@ -57,7 +57,8 @@ class ControlDoor:
         self.refused = 0
         self._commands: dict[str, Callable[[list[str]], str]] = {
             "status": self._status, "speed": self._speed, "pause": self._pause, "resume": self._resume,
-            "power": self._power, "fault": self._fault, "stop": self._stop, "help": self._help,
+            "power": self._power, "fault": self._fault, "late": self._late, "stop": self._stop,
+            "help": self._help,
         }  # fmt: skip
 
     def open(self) -> None:
@@ -168,13 +169,17 @@ class ControlDoor:
                 return f"fault {number} cleared"
         raise ControlError("fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER")
 
+    def _late(self, _words: list[str]) -> str:
+        """When the last late ticks were due, s on the machine's monotonic clock, and how late, ms."""
+        return json.dumps([(due_s, late_s * 1e3) for due_s, late_s in self._served.punctual.late])
+
     def _stop(self, _words: list[str]) -> str:
         self._served.stop()
         return "ending"
 
     def _help(self, _words: list[str]) -> str:
         return (
-            "status | speed X | pause | resume | power BOARD on|off | stop | "
+            "status | speed X | pause | resume | power BOARD on|off | late | stop | "
             "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER"
         )
 

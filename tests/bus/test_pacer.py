@@ -85,8 +85,10 @@ def test_punctuality_counts_what_is_early_and_late() -> None:
     assert 0.02 < probe.quantile_s(1.0) <= probe.worst_s
     assert "of 20 ticks" in probe.text()
     assert "inf" not in probe.text()
+    first_s, most_s = min(due for due, _ in probe.late), max(late for _, late in probe.late)
+    assert pacer.due_s(50_000_000) <= first_s <= pacer.due_s(60_000_000) and most_s == probe.worst_s
     probe.restart()
-    assert probe.text() == "no tick yet"
+    assert probe.text() == "no tick yet" and not probe.late
 
 
 @pytest.mark.parametrize("late_s", [0.0, 0.9e-5, 0.0123, 0.0199999, 0.02, 0.0205, 0.5, 1.0199, 1.03, 77.0])

@@ -46,6 +46,9 @@ def test_speed_pause_status_power_and_stop(bench: Bench, door: ControlDoor) -> N
     assert ask("resume") == "ok running" and not bench.served.pacer.paused
     status = json.loads(ask("status").removeprefix("ok "))
     assert status["speed"] == 5.0
+    late = json.loads(ask("late").removeprefix("ok "))  # time goes on, and more may be late before we look
+    known = [[due_s, late_s * 1e3] for due_s, late_s in bench.served.punctual.late]
+    assert late == known[: len(late)]
     assert status["boards"]["FOCUS"] is True
     assert ask("power FOCUS off") == "ok FOCUS off"
     assert not bench.served.network.boards["FOCUS"].on

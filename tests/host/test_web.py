@@ -37,3 +37,13 @@ def test_an_application_that_does_not_start_says_why_and_leaves_the_other_doors_
         assert outside.run(asyncio.sleep(0, "alive"), 10) == "alive"
     finally:
         outside.close()
+
+
+def test_a_server_that_is_closed_says_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """Its lifespan is cancelled last, and FastAPI tells that as an error, with a traceback."""
+    outside = Outside()
+    service = outside.keep(answer(FastAPI(), _listener()))
+    outside.run(asyncio.sleep(0.2), 10)
+    service.cancel()
+    outside.close()
+    assert capfd.readouterr() == ("", "")
