@@ -9,7 +9,6 @@ from typing import Any
 
 import uvicorn
 
-
 _ERRORS = logging.getLogger("uvicorn.error")
 _ERRORS.propagate = False
 _ERRORS.addHandler(logging.NullHandler())  # or what is cancelled last is a traceback on the screen
