@@ -6,19 +6,23 @@ import gc
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
 from rich.live import Live
 
+from bus.can.candump import CandumpWriter
 from bus.pacer import checked_speed
+from plant.model import PlantModel
 from scenarios.doors import Door, Keeper, Served
 from scenarios.doors.interrupt import interrupts
 from scenarios.doors.options import DoorOptions, make_doors
 from scenarios.doors.parking import park
 from scenarios.doors.priority import first
 from scenarios.doors.recording import Recording
+from scenarios.model import Scenario
 from scenarios.muted import Feed, FeedError
 from scenarios.served import chosen, wire
 
@@ -67,12 +71,11 @@ def serve(
             recording.attach(served)
         keepers = [Keeper(door, console.print) for door in doors]
         try:
-            warm = wire(scenario, model)  # another one, so that all is compiled before the clock starts
-            warm.run_until(_WARM_NS)
+            _warm_up(scenario, model)
             for keeper in keepers:
                 keeper.open()
             _say_hello(console, served, doors)
-            show = partial(line.update, refresh=True)
+            show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
             loop = _Loop(served, keepers, console, show, duration_s, recording)
             with interrupts(served.stop), first() if realtime else nullcontext():
                 loop.run()
@@ -90,10 +93,22 @@ def serve(
     return 0
 
 
+def _warm_up(scenario: Scenario, model: PlantModel) -> None:
+    """Another network for a moment, and a log, so that all is compiled and imported before time starts."""
+    network, log = wire(scenario, model), CandumpWriter(BytesIO())
+    network.wire.tap(log.take)
+    network.run_until(_WARM_NS)
+    log.flush()
+
+
 def _say_hello(console: Console, served: Served, doors: Sequence[Door]) -> None:
     on = ", ".join(door.name.partition(" ")[2] or door.name for door in doors)
     boards, speed = len(served.network.boards), served.pacer.speed
     console.print(f"serving {boards} boards on {on} at {speed:g} times real time; Ctrl-C ends it")
+
+
+def _nowhere(_text: str) -> None:
+    """The line for a terminal that is none."""
 
 
 class _Loop:
@@ -116,6 +131,7 @@ class _Loop:
         self._start_s = perf_counter()
         self._start_ns = served.now_ns
         self._next_s = self._start_s + _STATUS_S
+        self._flush_s = self._next_s + _STATUS_S / 2
         self._second = (self._start_s, self._start_ns, 0)
         self._slow = False
         self._duration_s = duration_s
@@ -129,6 +145,7 @@ class _Loop:
         served = self._served
         self._start_s = now_s = perf_counter()
         self._next_s = now_s + _STATUS_S
+        self._flush_s = self._next_s + _STATUS_S / 2
         self._second = (now_s, served.now_ns, 0)
         self._end_s = None if self._duration_s is None else now_s + self._duration_s
         try:
@@ -149,6 +166,11 @@ class _Loop:
         now_s = perf_counter()
         if now_s >= self._next_s:
             self._each_second(now_s)
+        elif (
+            now_s >= self._flush_s and self._recording is not None
+        ):  # in another slice: half a millisecond each
+            self._flush_s = now_s + _STATUS_S
+            self._recording.flush()
         served.entry.running = True
         return served.ending or (self._end_s is not None and now_s >= self._end_s)
 
@@ -156,8 +178,6 @@ class _Loop:
         self._next_s = now_s + _STATUS_S
         self._end_wall_s = now_s
         self._show(self.text())
-        if self._recording is not None:
-            self._recording.flush()
         self._keeping_up(now_s)
 
     def _keeping_up(self, now_s: float) -> None:
