@@ -108,3 +108,31 @@ def test_addresses() -> None:
     assert address("0.0.0.0:7411", "x") == ("0.0.0.0", 7411)
     assert address("[::1]:7411", "x") == ("::1", 7411)
     assert is_local("127.0.0.1") and is_local("::1") and not is_local("192.168.0.1")
+
+
+def test_commands_that_come_faster_than_they_are_taken_wait_and_keep_their_order(
+    bench: Bench, door: ControlDoor
+) -> None:
+    """Eight are taken between two slices, so that a talker cannot make a tick late; the ninth waits."""
+    ask = Caller(bench, door.port)
+    said = "".join(f"speed {1 + k}\n" for k in range(30))
+    answers = ask.send(said.encode())
+    while answers.count("\n") < 30:
+        more = ask.send(b"")
+        assert more, answers
+        answers += more
+    assert answers.split("\n")[:30] == [f"ok speed {1 + k}" for k in range(30)]
+    ask.socket.close()
+
+
+def test_no_more_than_eight_are_taken_at_once(bench: Bench, door: ControlDoor) -> None:
+    ask = Caller(bench, door.port)
+    ask.socket.sendall(b"speed 2\n" * 8 + b"stop\n")
+    for _ in range(200):
+        bench.run(1)
+        if bench.served.pacer.speed == 2.0:
+            break
+    assert bench.served.pacer.speed == 2.0 and not bench.served.ending
+    bench.run(1)
+    assert bench.served.ending
+    ask.socket.close()
