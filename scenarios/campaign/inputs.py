@@ -49,25 +49,26 @@ def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callabl
     if not isinstance(spread, dict):
         raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
     levels = int(spread.get("levels", _LEVELS))
-    law = _law(spread, where)
+    inverse = _inverse(spread, where)
     whole = bool(spread.get("whole"))
 
     def draw(share: float) -> Any:
-        value = float(law.ppf(share))
+        value = inverse(share)
         return round(value) if whole else value
 
     return draw, [draw((k + 0.5) / levels) for k in range(levels)]
 
 
-def _law(spread: dict[str, Any], where: str) -> Any:
-    """A frozen distribution of scipy.stats."""
-    from scipy import stats
-
+def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
+    """The inverse distribution function: uniform between two numbers, or one of scipy.stats."""
     if "between" in spread:
         low, high = map(float, spread["between"])
         if not low < high:
             raise ScenarioError(f"{where}: between {low:g} and {high:g} there is nothing")
-        return stats.uniform(low, high - low)
+        width = high - low
+        return lambda share: share * width + low
+    from scipy import stats  # a second of imports
+
     name = str(spread["distribution"])
     known = [word for word, each in vars(stats).items() if isinstance(each, stats.rv_continuous)]
     if name not in known:
@@ -80,7 +81,7 @@ def _law(spread: dict[str, Any], where: str) -> Any:
             raise ValueError("its parameters are out of range")
     except (TypeError, ValueError) as error:
         raise ScenarioError(f"{where}: {name}: {' '.join(str(error).split())}") from None
-    return law
+    return lambda share: float(law.ppf(share))
 
 
 Put = tuple[Callable[[Document, Any], None], str, Callable[[], float]]

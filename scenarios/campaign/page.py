@@ -131,7 +131,7 @@ def _write_worst(plan: Plan, index: int, path: Path) -> None:
     """The scenario of one run as a file that runs alone, from anywhere."""
     import yaml
 
-    case = next(case for case in plan.cases() if case.index == index)
+    case = plan.case(index)
     document = dict(case.document)
     plant = document.get("plant")
     name = plant.get("file") if isinstance(plant, dict) else plant

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import json
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -20,6 +20,9 @@ from scenarios.load import convert
 from scenarios.units import parse
 
 SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
+MOST = 1_000_000
+"""Planned runs of one campaign. That many runs of five seconds are two months of one core, and its table and
+report take some 3 GB; beyond that there would be minutes of planning without a word."""
 
 
 @dataclass(frozen=True)
@@ -59,19 +62,21 @@ class Plan:
     @property
     def count(self) -> int:
         """Planned runs."""
-        return int(np.prod([len(each.values) for each in self.inputs])) if self.grid else len(self.shares)
+        return math.prod(len(each.values) for each in self.inputs) if self.grid else len(self.shares)
 
     def cases(self) -> Iterator[Case]:
         """The planned runs, one after the other."""
+        return map(self.case, range(self.count))
+
+    def case(self, index: int) -> Case:
+        """One of the planned runs; a grid's last input changes fastest."""
         if self.grid:
-            rows: Iterator[tuple[Any, ...]] = itertools.product(*(each.values for each in self.inputs))
+            places = np.unravel_index(index, [len(each.values) for each in self.inputs])
+            values = tuple(each.values[int(place)] for each, place in zip(self.inputs, places, strict=True))
         else:
-            rows = (
-                tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
-                for row in self.shares
-            )
-        for index, values in enumerate(rows):
-            yield self._case(index, values)
+            row = self.shares[index]
+            values = tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
+        return self._case(index, values)
 
     def _case(self, index: int, values: tuple[Any, ...]) -> Case:
         document = json.loads(json.dumps(self.base))
@@ -100,6 +105,14 @@ def load(file: Path) -> Plan:
         raise ScenarioError(f"{file}: two inputs have one name; give one a `name`")
     way = data.get("sample", "latin hypercube")
     runs = int(data.get("budget", {}).get("runs", 100))
+    if way == "grid":
+        runs = math.prod(len(each.values) for each in found)
+    if runs > MOST:
+        lower = "fewer values or `levels`" if way == "grid" else "a lower budget.runs"
+        raise ScenarioError(
+            f"{file}: {runs} runs are planned, one campaign has at most {MOST}: give it {lower}, or make "
+            "several"
+        )
     plan = Plan(
         file=file,
         name=data["name"],
@@ -114,7 +127,7 @@ def load(file: Path) -> Plan:
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
         saltelli=way == "saltelli",
     )
-    first = next(plan.cases()).document
+    first = plan.case(0).document
     if plan.calibrates:
         _check_calibration(document, first)
     else:
@@ -147,22 +160,35 @@ def _check_calibration(document: Document, first: dict[str, Any]) -> None:
 
 def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64]:
     """Shares within 0..1, (runs, width)."""
-    from scipy.stats import qmc
-
     random = np.random.default_rng(seed)
     if way == "random":
         return random.random((runs, width))
+    if way == "latin hypercube":
+        return latin_hypercube(runs, width, random)
+    from scipy.stats import qmc  # a second of imports
+
     if way == "saltelli":
         base = 1 << max(0, (runs // (width + 2)).bit_length() - 1)
         both = qmc.Sobol(2 * width, rng=random).random(base)
         return saltelli(both[:, :width], both[:, width:])
-    if way == "sobol":
-        drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
-            max(0, (runs - 1).bit_length())
-        )[:runs]
-        return drawn
-    shares: npt.NDArray[np.float64] = qmc.LatinHypercube(width, rng=random).random(runs)
-    return shares
+    drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
+        max(0, (runs - 1).bit_length())
+    )
+    return drawn[:runs]
+
+
+def latin_hypercube(runs: int, width: int, random: np.random.Generator) -> npt.NDArray[np.float64]:
+    """A share in every one of `runs` stripes of each column, the stripes in an order of its own (McKay et al.
+    1979, Technometrics 21, 239); the points that scipy.stats.qmc draws from the same generator, whose import
+    takes a second."""
+    (random,) = random.spawn(1)
+    inside = random.uniform(size=(runs, width))
+    stripes = np.empty((runs, width))
+    for column in range(width):
+        order = np.arange(1, runs + 1)
+        random.shuffle(order)
+        stripes[:, column] = order
+    return (stripes - inside) / runs
 
 
 def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from scipy.stats import kstest
+from scipy.stats import kstest, qmc
 
+from scenarios.campaign import plan
 from scenarios.campaign.plan import Case, load
 from scenarios.campaign.sensitivity import sobol
 from scenarios.document import Document, ScenarioError
@@ -98,6 +99,50 @@ def test_a_latin_hypercube_has_one_run_in_every_stripe(campaign: Any) -> None:
     inputs = [{"plant": FRICTION, "times": {"between": [0.0, 1.0]}}]
     found = cases(campaign(inputs, budget={"runs": 40}))
     assert sorted(int(case.values[FRICTION] * 40) for case in found) == list(range(40))
+
+
+def test_a_latin_hypercube_is_scipys_from_the_same_seed() -> None:
+    drawn = plan.sample("latin hypercube", 50, 3, 7)
+    assert (drawn == qmc.LatinHypercube(3, rng=np.random.default_rng(7)).random(50)).all()
+
+
+def test_between_is_scipys_uniform_distribution(campaign: Any) -> None:
+    between, uniform = (
+        [case.values["x"] for case in cases(campaign([{"name": "x", "plant": FRICTION, "times": spread}]))]
+        for spread in (
+            {"between": [0.8, 1.2]},
+            {"distribution": "uniform", "with": {"loc": 0.8, "scale": 1.2 - 0.8}},
+        )
+    )
+    assert between == uniform
+
+
+def test_a_case_alone_is_the_one_among_all(campaign: Any) -> None:
+    two = [{"seed": True, "is": [1, 2, 3]}, {"plant": FRICTION, "times": {"between": [0, 1], "levels": 4}}]
+    for way in ("grid", "random"):
+        planned = load(campaign(two, sample=way, budget={"runs": 12}))
+        assert [planned.case(k) for k in range(12)] == list(planned.cases())
+    assert [case.values["seed"] for case in cases(campaign(two, sample="grid"))] == [1] * 4 + [2] * 4 + [
+        3
+    ] * 4
+
+
+@pytest.mark.parametrize(
+    ("way", "given", "words"),
+    [
+        ("latin hypercube", [1], "100000000 runs"),
+        ("grid", {"between": [0, 1], "levels": 100_000}, "10000000000 runs"),
+    ],
+)
+def test_more_runs_than_a_campaign_can_have_are_refused_at_once(
+    campaign: Any, way: str, given: Any, words: str
+) -> None:
+    inputs = [{"name": str(k), "plant": FRICTION, "times": given} for k in range(2)]
+    path = campaign(inputs, sample=way, budget={"runs": 100_000_000})
+    with pytest.raises(ScenarioError, match="at most 1000000") as error:
+        load(path)
+    assert words in str(error.value)
+    assert "make several" in str(error.value)
 
 
 def test_keys_are_those_of_the_input_and_of_nothing_else(campaign: Any) -> None:
