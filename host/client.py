@@ -13,6 +13,7 @@ from typing import Any, Final
 from bus.protocol import (
     Device,
     Focus,
+    Health,
     Heartbeat,
     Motion,
     Opcode,
@@ -82,6 +83,8 @@ class Client:
         self.link = link
         self.logs = logs
         self.devices = devices
+        self.health: dict[Device, Health] = {}
+        """What each board answered to its last PING."""
         self.now_ns = 0
         self._watch_ns = 0
         self._waiting: dict[Device, list[_Pending]] = {}
@@ -188,6 +191,8 @@ class Client:
             return
         pending = queue.pop(0)
         pending.reply = reply
+        if reply.opcode == Opcode.PING and reply.result == Result.OK:
+            self.health[pending.device] = Health(reply.value)
         result = Result(reply.result).name.lower() if reply.result in _RESULTS else f"result {reply.result}"
         self.logs.command(t_ns, pending.device.name, pending.text(), f"{result} {reply.value}")
         if reply.result:
@@ -200,6 +205,7 @@ class Client:
             if t_ns - heard_ns > SILENCE_NS:
                 if device not in self._silent:
                     self._silent.add(device)
+                    self.health.pop(device, None)  # whoever comes back may not be what it was
                     self.logs.error(t_ns, device.name, f"silent since {heard_ns / 1e9:.1f} s")
             elif device in self._silent:
                 self._silent.discard(device)

@@ -13,6 +13,8 @@ from host.console.theme import INK, LINE, SOFT
 
 _EVERY = 4
 """A plot is sent once in so many ticks, once a second."""
+DASHES = ("solid", "dashed")
+"""In red light two lines differ better by form than by colour."""
 PANELS = (
     ("Position error, ″", ("RA", "Dec"), lambda s: s.error_arcsec),
     ("Rate, ″/s", ("RA", "Dec"), lambda s: s.rate_arcsec_s),
@@ -67,9 +69,12 @@ def options(names: tuple[str, ...], mode: str) -> dict[str, Any]:
     return {
         "animation": False,
         "color": [INK[mode], SOFT[mode], "#ffffff" if mode == "day" else "#ffb3a8", "#888888"],
-        "grid": {"left": 55, "right": 10, "top": 24, "bottom": 24},
+        "grid": {"left": 55, "right": 24, "top": 24, "bottom": 24},
         "legend": {"textStyle": text, "top": 0},
-        "xAxis": {"type": "value", "min": -120, "max": 0, **axis},
+        "xAxis": {"type": "value", "min": -120, "max": 0, "name": "s", "nameTextStyle": text, **axis},
         "yAxis": {"type": "value", "scale": True, **axis},
-        "series": [{"name": name, "type": "line", "showSymbol": False, "data": []} for name in names],
+        "series": [
+            {"name": name, "type": "line", "symbol": "none", "lineStyle": {"type": DASHES[k % 2]}, "data": []}
+            for k, name in enumerate(names)
+        ],
     }

@@ -14,13 +14,9 @@ from host.telescope.state import AXES
 
 
 class Boards:
-    """Asks and sets what belongs to single boards; each command is a `Job` beside the others.
-
-    health: the last answers to PING.
-    """
+    """Asks and sets what belongs to single boards; each command is a `Job` beside the others."""
 
     def __init__(self, client: Client, observatory: Observatory, side: Side) -> None:
-        self.health: dict[Device, Health] = {}
         self._client = client
         self._observatory = observatory
         self._side = side
@@ -57,9 +53,9 @@ class Boards:
                 reply = yield from self._client.ask(device, Opcode.PING)
             except ClientError:
                 answers[device] = None
-                self.health.pop(device, None)
+                self._client.health.pop(device, None)
             else:
-                answers[device] = self.health[device] = Health(reply.value)
+                answers[device] = Health(reply.value)
         return answers
 
     def _get(self, device: Device, parameter: int) -> Generator[None, None, int]:

@@ -148,7 +148,7 @@ def focus_state(client: Client) -> FocusState | None:
     )
 
 
-def board_states(client: Client, health: dict[Device, Health]) -> tuple[BoardState, ...]:
+def board_states(client: Client) -> tuple[BoardState, ...]:
     """Every board that is expected to live."""
     states = []
     for device in client.devices:
@@ -162,7 +162,7 @@ def board_states(client: Client, health: dict[Device, Health]) -> tuple[BoardSta
                 uptime_s=beat.uptime if beat else 0,
                 overruns=beat.overruns if beat else 0,
                 tec=beat.tec if beat else 0,
-                health=health.get(device),
+                health=client.health.get(device),
             )
         )
     return tuple(states)

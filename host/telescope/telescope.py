@@ -128,7 +128,7 @@ class Telescope:
             ra=axis_state(client, "ra"),
             dec=axis_state(client, "dec"),
             focus=focus_state(client),
-            boards=board_states(client, self.boards.health),
+            boards=board_states(client),
             activity=drive.activity.value,
             powered=drive.powered,
             slewing=drive.activity in _SLEWING,

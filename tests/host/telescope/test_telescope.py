@@ -231,3 +231,13 @@ def test_H6_a_log_can_be_followed_while_it_grows(rig: Rig, tmp_path: Path) -> No
     rig.run(lambda t: t.drive.power_on())
     rig.advance(0.3)  # the next sensor line brings all four to the disk
     assert "POWER 1  ok" in (tmp_path / "commands.log").read_text()
+
+
+def test_H2_the_check_at_power_up_is_seen_on_every_boards_line_until_it_falls_silent(rig: Rig) -> None:
+    assert all(board.health is None for board in rig.telescope.snapshot.boards)
+    rig.run(lambda t: t.drive.power_on())
+    assert all(board.health == Health(0) for board in rig.telescope.snapshot.boards)
+    rig.network.boards["FOCUS"].power_off(rig.served.now_ns)
+    rig.advance(5.0)
+    health = {board.device: board.health for board in rig.telescope.snapshot.boards}
+    assert health.pop(Device.FOCUS) is None and all(each == Health(0) for each in health.values())
