@@ -15,6 +15,7 @@ _EVERY = 4
 """A plot is sent once in so many ticks, once a second."""
 DASHES = ("solid", "dashed")
 """In red light two lines differ better by form than by colour."""
+SHOWN_S = 120
 PANELS = (
     ("Position error, ″", ("RA", "Dec"), lambda s: s.error_arcsec),
     ("Rate, ″/s", ("RA", "Dec"), lambda s: s.rate_arcsec_s),
@@ -51,11 +52,13 @@ def _refresher(shell: Shell, chart: Any, names: tuple[str, ...], pick: Any) -> A
 
 
 def series(samples: Sequence[Sample], pick: Any, count: int) -> list[list[list[float | None]]]:
-    """Points (s before now, value) of every line."""
+    """Points (s before now, value) of every line, of the time the plot shows: what is older would still
+    stretch its vertical axis."""
     if not samples:
         return [[] for _ in range(count)]
     now = samples[-1].t_s
-    return [[[round(s.t_s - now, 2), _short(pick(s)[k])] for s in samples] for k in range(count)]
+    shown = [s for s in samples if now - s.t_s <= SHOWN_S]
+    return [[[round(s.t_s - now, 2), _short(pick(s)[k])] for s in shown] for k in range(count)]
 
 
 def _short(value: float | None) -> float | None:
@@ -71,7 +74,7 @@ def options(names: tuple[str, ...], mode: str) -> dict[str, Any]:
         "color": [INK[mode], SOFT[mode], "#ffffff" if mode == "day" else "#ffb3a8", "#888888"],
         "grid": {"left": 55, "right": 24, "top": 24, "bottom": 24},
         "legend": {"textStyle": text, "top": 0},
-        "xAxis": {"type": "value", "min": -120, "max": 0, "name": "s", "nameTextStyle": text, **axis},
+        "xAxis": {"type": "value", "min": -SHOWN_S, "max": 0, "name": "s", "nameTextStyle": text, **axis},
         "yAxis": {"type": "value", "scale": True, **axis},
         "series": [
             {"name": name, "type": "line", "symbol": "none", "lineStyle": {"type": DASHES[k % 2]}, "data": []}

@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 from host.auxiliary import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
 from host.console.figures import hours
 from host.console.guard import COOKIE, Guard
+from host.console.live import Sample
+from host.console.plots import series
 from host.console.skymap import boundary, svg
 from host.sky.mount import STEP_ARCSEC, Mount, scale_from_limits
 from host.sky.observed import Clock
@@ -97,3 +99,22 @@ def test_this_machine_may_look_and_others_need_the_token() -> None:
     status, headers = asyncio.run(_ask("192.0.2.7", b"token=word"))
     assert status == 200 and headers[0][0] == b"set-cookie"
     assert asyncio.run(_ask("192.0.2.7", b"", f"{COOKIE}=word".encode()))[0] == 200
+
+
+def test_a_plot_has_only_points_that_it_shows() -> None:
+    """At ten times real time the kept samples reach back further than the two minutes of the axis."""
+    samples = [
+        Sample(
+            float(t),
+            (None, None),
+            (9000.0 if t < 100 else 1.0, 0.0),
+            (0.0, 0.0),
+            (0.0,) * 4,
+            (None,) * 2,
+            (None,) * 2,
+        )
+        for t in range(0, 400, 3)
+    ]
+    ra, dec = series(samples, lambda sample: sample.rate_arcsec_s, 2)
+    assert ra[-1] == [0.0, 1.0] and ra[0][0] == -120 and {y for _, y in ra} == {1.0}
+    assert len(ra) == len(dec) == 41
