@@ -1,0 +1,40 @@
+"""`serve --realtime`: the ticks' thread before ordinary programs, its children not, and what is not granted."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import NoReturn
+
+import pytest
+
+from scenarios.doors.door import DoorError
+from scenarios.doors.priority import first
+
+ASK = "import os; print(os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK)"
+
+
+def scheduler() -> int:
+    return os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
+
+
+def test_the_ticks_are_first_and_their_children_ordinary_and_afterwards_all_is_as_before() -> None:
+    before = scheduler()
+    try:
+        with first():
+            assert scheduler() == os.SCHED_RR
+            child = subprocess.run([sys.executable, "-c", ASK], capture_output=True, text=True, check=True)
+            assert int(child.stdout) == os.SCHED_OTHER
+    except DoorError as error:
+        pytest.skip(str(error))
+    assert scheduler() == before
+
+
+def test_what_the_system_does_not_grant_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_arguments: object) -> NoReturn:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
+    with pytest.raises(DoorError, match="not granted; run as root"), first():
+        pass
