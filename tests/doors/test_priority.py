@@ -1,4 +1,4 @@
-"""`serve --realtime`: the ticks' thread before ordinary programs, its children not, and what is not granted."""
+"""`serve --realtime`: ticks before ordinary programs, their children not, and what is not granted."""
 
 from __future__ import annotations
 
