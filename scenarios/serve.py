@@ -9,6 +9,7 @@ from functools import partial
 from io import BytesIO
 from pathlib import Path
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.live import Live
@@ -26,6 +27,9 @@ from scenarios.model import Scenario
 from scenarios.muted import Feed, FeedError
 from scenarios.served import chosen, wire
 
+if TYPE_CHECKING:
+    from scenarios.snapshot.served import Standing
+
 _STATUS_S = 1.0
 _WARM_NS = 20_000_000
 
@@ -41,12 +45,17 @@ def serve(
     network: str | None = None,
     mute: tuple[str, Path] | None = None,
     realtime: bool = False,
+    snapshots: Path | None = None,
+    begun: Path | None = None,
 ) -> int:
     """Pace the network with its doors open, until Ctrl-C, `schmidt control stop`, or `duration_s` (wall).
 
     mute: a board that sends nothing and the candump log that its frames come from, times from the start on.
 
     realtime: ask the system to run the ticks before all other programs.
+
+    snapshots: the folder for those that are asked for on the way. begun: one to go on from; scenario, seed,
+    plant and network are what is in it.
 
     The scenario's steps are not run (see `scenarios.served`). Returns the exit status, 0; raises ValueError
     subclasses and OSError with one line for input that cannot be used.
@@ -56,14 +65,22 @@ def serve(
     options.check()
     if mute is not None and record is not None:
         raise FeedError("--mute and --record: frames fed from a log are not recorded; leave one out")
-    scenario, model = chosen(scenario_file, seed, plant, network)
+    standing = None if begun is None else _standing(begun)
+    if standing is None:
+        scenario, model = chosen(scenario_file, seed, plant, network)
+    else:
+        scenario, model = standing.scenario, standing.model
     # no thread that refreshes: it would hold Python's lock when a tick is due
     with Live(
         "starting (the first time compiles)", console=console, auto_refresh=False, transient=True
     ) as line:
         line.refresh()
-        recording = Recording(record, scenario, model) if record is not None else None
-        served = Served(scenario, model, speed, recording)
+        recording = Recording(record, scenario, model, begun) if record is not None else None
+        served = Served(scenario, model, speed, recording, standing)
+        if snapshots is not None:
+            from scenarios.doors.snapshots import Snapshots
+
+            Snapshots(snapshots, served, recording)
         if mute is not None:
             Feed(served.network, *mute)
         doors = make_doors(options, served, console.print)
@@ -99,6 +116,13 @@ def _warm_up(scenario: Scenario, model: PlantModel) -> None:
     network.wire.tap(log.take)
     network.run_until(_WARM_NS)
     log.flush()
+
+
+def _standing(file: Path) -> Standing:
+    from scenarios.snapshot.file import read
+    from scenarios.snapshot.served import standing
+
+    return standing(read(file))
 
 
 def _say_hello(console: Console, served: Served, doors: Sequence[Door]) -> None:

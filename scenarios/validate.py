@@ -33,23 +33,27 @@ def schema() -> dict[str, Any]:
     return loaded
 
 
-def check(document: Document, language: dict[str, Any] | None = None) -> None:
-    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow.
-
-    language: a JSON schema; None: that of scenarios.
-    """
-    from jsonschema import Draft202012Validator
+@cache
+def _validator() -> Any:
+    """The class that knows our quantities: making one takes longer than using it on a file."""
+    from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
 
     def quantity(_: object, kind: str, value: object, __: object) -> Iterable[Exception]:
-        from jsonschema import ValidationError
-
         try:
             parse(value, kind)
         except UnitError as error:
             yield ValidationError(str(error))
 
-    validator = extend(Draft202012Validator, {"x-quantity": quantity})(language or schema())  # type: ignore[no-untyped-call]
+    return extend(Draft202012Validator, {"x-quantity": quantity})  # type: ignore[no-untyped-call]
+
+
+def check(document: Document, language: dict[str, Any] | None = None) -> None:
+    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow.
+
+    language: a JSON schema; None: that of scenarios.
+    """
+    validator = _validator()(language or schema())
     found = (_describe(document, error) for error in validator.iter_errors(_plain(document.data)))
     problems = sorted({problem for problem in found if problem is not None})
     if problems:

@@ -78,7 +78,8 @@ def run(
 
         plain()  # compiled instances cannot be taken apart; the source gives the same bits
     if begun is not None:
-        from scenarios.snapshot.run import parts, read
+        from scenarios.snapshot.run import begun as read
+        from scenarios.snapshot.run import parts
 
         if scenario or seed is not None or plant or network or firmware or compensation or log_rate:
             raise click.UsageError("--from goes on with what is in the snapshot, nothing else")

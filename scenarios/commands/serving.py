@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -57,6 +58,15 @@ from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding
 )
 @click.option("--realtime", is_flag=True, help="Ask the system to run the ticks before all other programs.")
 @click.option("--record", type=click.Path(path_type=Path), help="Record the session in this folder.")
+@click.option(
+    "--snapshots",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Take snapshots into DIR when schmidt control asks for them; runs plain.",
+)
+@click.option(
+    "--from", "begun", type=click.Path(path_type=Path), help="Go on from this snapshot; takes no SCENARIO."
+)
 def serve(
     scenario: Path | None,
     can: tuple[str, ...],
@@ -79,14 +89,23 @@ def serve(
     feed: Path | None,
     realtime: bool,
     record: Path | None,
+    snapshots: Path | None,
+    begun: Path | None,
 ) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
+    if snapshots is not None or begun is not None:
+        from scenarios.native.finder import plain
+
+        plain()  # as in run
+    if begun is not None and (scenario or seed is not None or plant or network or mute):
+        raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
     from scenarios.doors.options import DoorOptions
     from scenarios.serve import serve as command
 
     options = DoorOptions(can, serial, hid, control, token, lx200, alpaca, logs, console, runs, debug)
     muted = feeding(mute, feed)
-    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted, realtime))
+    kept: dict[str, Any] = {"realtime": realtime, "snapshots": snapshots, "begun": begun}
+    sys.exit(command(scenario, options, speed, seed, plant, duration, record, network, muted, **kept))
 
 
 @click.command(short_help="The host program alone, on the boards' cables.")
@@ -138,11 +157,22 @@ def host(
 @click.command(short_help="Repeat a session that serve --record has left.")
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: FOLDER-replayed).")
-def replay(folder: Path, out: Path | None) -> None:
+@click.option(
+    "--from", "begun", type=click.Path(path_type=Path), help="Only what came after this snapshot of it."
+)
+def replay(folder: Path, out: Path | None, begun: Path | None) -> None:
     """Run a session again that serve --record left in FOLDER (exit 0: to the same digest)."""
-    from scenarios.doors.replay import replay as command
+    if begun is not None or (folder / "begun.snapshot").exists():
+        from scenarios.native.finder import plain
 
-    again, before = command(folder, out or folder.with_name(folder.name + "-replayed"))
+        plain()  # as in run
+    from scenarios.doors.replay import replay as command
+    from scenarios.doors.replay import replay_rest
+
+    if begun is not None:
+        again, before = replay_rest(folder, begun)
+    else:
+        again, before = command(folder, out or folder.with_name(folder.name + "-replayed"))
     same = "" if before is None else " as recorded" if again == before else f", recorded was {before[:16]}"
     click.echo(f"digest {again[:16]}{same}")
     sys.exit(0 if before in (None, again) else 1)
@@ -160,7 +190,8 @@ def replay(folder: Path, out: Path | None) -> None:
 @click.option("--token", help="The word serve has printed; for other machines.")
 def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop,
-    fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/faults.md).
+    fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/faults.md),
+    snapshot [NAME] (docs/scenarios.md).
     """
     from scenarios.doors.tell import tell
 

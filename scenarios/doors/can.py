@@ -11,10 +11,8 @@ import can
 from bus.can.frame import Frame
 from bus.door import Door as Fence
 from bus.external import open_bus
-from bus.node import OutsideNode
-from scenarios.doors.entry import Entry
 from scenarios.doors.payload import pack_frame, unpack_frame
-from scenarios.network import Network
+from scenarios.doors.served import Served
 
 _BUFFER_BYTES = 1 << 23
 """Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
@@ -23,14 +21,14 @@ _BUFFER_BYTES = 1 << 23
 class CanDoor:
     """One interface. Its node stays on the wire while the interface is away."""
 
-    def __init__(self, spec: str, index: int, network: Network, entry: Entry) -> None:
+    def __init__(self, spec: str, index: int, served: Served) -> None:
         self.name = f"--can {spec}"
         self._spec = spec
-        self._network = network
-        self._entry = entry
+        self._network = served.network
+        self._entry = served.entry
         self.kind = f"can{index}"
-        self.node = OutsideNode(network.queue, network.wire, f"outside {index}" if index else "outside")
-        entry.register(self.kind, self._arrive)
+        self.node = served.node(index)
+        self._entry.register(self.kind, self._arrive)
         self._bus: can.BusABC | None = None
         self.fence: Fence | None = None
         self._before = [0, 0, 0, 0, 0, 0]

@@ -2,6 +2,7 @@
 
     status | speed X | pause | resume | power BOARD on|off | stop | help
     fault list | fault kinds | fault start NAME argument=value ... | fault clear NUMBER
+    snapshot [NAME]
 
 A client of this machine just asks; any other must say `token WORD` first. Answers begin with `ok` or `error`.
 """
@@ -57,8 +58,8 @@ class ControlDoor:
         self.refused = 0
         self._commands: dict[str, Callable[[list[str]], str]] = {
             "status": self._status, "speed": self._speed, "pause": self._pause, "resume": self._resume,
-            "power": self._power, "fault": self._fault, "late": self._late, "stop": self._stop,
-            "help": self._help,
+            "power": self._power, "fault": self._fault, "late": self._late,
+            "snapshot": self._snapshot, "stop": self._stop, "help": self._help,
         }  # fmt: skip
 
     def open(self) -> None:
@@ -173,6 +174,14 @@ class ControlDoor:
         """When the last late ticks were due, s on the machine's monotonic clock, and how late, ms."""
         return json.dumps([(due_s, late_s * 1e3) for due_s, late_s in self._served.punctual.late])
 
+    def _snapshot(self, words: list[str]) -> str:
+        take = self._served.snapshot
+        if take is None:
+            raise ControlError("this session takes no snapshots: schmidt serve --snapshots DIR does")
+        if len(words) > 1:
+            raise ControlError("snapshot [NAME]")
+        return take(words[0] if words else "")
+
     def _stop(self, _words: list[str]) -> str:
         self._served.stop()
         return "ending"
@@ -180,7 +189,8 @@ class ControlDoor:
     def _help(self, _words: list[str]) -> str:
         return (
             "status | speed X | pause | resume | power BOARD on|off | late | stop | "
-            "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER"
+            "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER | "
+            "snapshot [NAME]"
         )
 
     def _forget(self, client: Client) -> None:

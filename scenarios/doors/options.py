@@ -58,9 +58,7 @@ def make_doors(options: DoorOptions, served: Served, say: Callable[[str], None] 
     the user."""
     from scenarios.doors.can import CanDoor
 
-    doors: list[Door] = [
-        CanDoor(spec, index, served.network, served.entry) for index, spec in enumerate(options.can)
-    ]
+    doors: list[Door] = [CanDoor(spec, index, served) for index, spec in enumerate(options.can)]
     doors += [_serial(spec, served) for spec in options.serial]
     doors += [_hid(spec, served) for spec in options.hid]
     if options.debug is not None:

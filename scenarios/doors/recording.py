@@ -11,30 +11,40 @@ from bus.protocol import Device
 from host.logs.files import LineFile, LogError
 from host.serial_link import SerialLink
 from plant.model import PlantModel, dump
+from scenarios.doors.rest import Rest
 from scenarios.doors.served import Served
 from scenarios.model import Scenario
 from scenarios.recorder import AXES, Recorder
 from scenarios.session import SERIAL, log_headers
 
 SESSION, ENTERED, PLANT, SCENARIO = "session.json", "entered.log", "plant.yaml", "scenario.yaml"
+BEGUN = "begun.snapshot"
 
 
 class Recording:
     """Owns the folder: the files of a run (`scenarios.recorder`), and
 
-    entered.log: `t_ns kind hex` for every entry; session.json: what the session was made of, and its digest.
+    entered.log: `t_ns kind hex` for every entry; session.json: what the session was made of, its digest, and
+    the digest of the rest from each snapshot on. begun: the snapshot that the session goes on from; a copy
+    stays in the folder.
     """
 
-    def __init__(self, folder: Path, scenario: Scenario, model: PlantModel) -> None:
+    def __init__(
+        self, folder: Path, scenario: Scenario, model: PlantModel, begun: Path | None = None
+    ) -> None:
         self.folder = folder
         self._scenario = scenario
         self._model = model
         self._recorder: Recorder | None = None
         self._facts: dict[str, Any] = {}
+        self._rests: dict[str, Rest] = {}
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            if begun is not None:
+                (folder / BEGUN).write_bytes(begun.read_bytes())
         except OSError as error:
             raise LogError(f"{folder}: cannot be made: {error.strerror}") from None
+        self._begun = begun is not None
         self._entered = LineFile(folder / ENTERED, buffer_bytes=1 << 13)
 
     def attach(self, served: Served) -> None:
@@ -55,7 +65,15 @@ class Recording:
             "network": scenario.network.get("name", "lab"),
             "kinds": served.entry.kinds(),
             "version": version("schmidt"),
+            "begun": self._begun,
+            "snapshots": {},
         }
+        self._save()
+
+    def mark(self, name: str, served: Served) -> None:
+        """A snapshot has been taken now: what comes after it gets a digest of its own."""
+        self._facts["snapshots"][name] = {"t_ns": served.now_ns, "entries": served.entry.count}
+        self._rests[name] = Rest(served)
         self._save()
 
     @staticmethod
@@ -82,6 +100,8 @@ class Recording:
         failures = self._recorder.close()
         if failures:
             raise LogError(failures[0])
+        for name, rest in self._rests.items():
+            self._facts["snapshots"][name]["rest"] = rest.digest()
         digest = self._recorder.digest()
         self._facts |= {"end_ns": end_ns, "digest": digest}
         self._save()

@@ -1,18 +1,21 @@
-"""`schmidt replay DIR`: a recorded session again, from what entered it, to the same digest."""
+"""`schmidt replay DIR [--from SNAPSHOT]`: a recorded session again, to the same digest."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from bus.node import OutsideNode
 from plant.model import load as load_plant
 from scenarios.doors.payload import unpack_frame
-from scenarios.doors.recording import ENTERED, PLANT, SCENARIO, SESSION, Recording
+from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording
+from scenarios.doors.rest import Rest
 from scenarios.doors.served import Served
 from scenarios.served import chosen
+from scenarios.snapshot.file import read
+from scenarios.snapshot.served import standing
 
 
 class ReplayError(ValueError):
@@ -22,32 +25,62 @@ class ReplayError(ValueError):
 def replay(folder: Path, out: Path) -> tuple[str, str | None]:
     """Run the session in `folder` again into `out`; returns both digests (None: it was never closed)."""
     facts = _facts(folder)
-    scenario_file = folder / SCENARIO if facts["scenario"] else None
-    scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
-    model = load_plant(folder / PLANT)
     if out.resolve() == folder.resolve():
         raise ReplayError(f"{out}: a session is not replayed onto itself; give another --out")
-    recording = Recording(out, scenario, model)
-    served = Served(scenario, model, journal=recording)
+    begun = folder / BEGUN if facts.get("begun") else None
+    if begun is not None:
+        stood = standing(read(begun))
+        scenario, model = stood.scenario, stood.model
+    else:
+        stood = None
+        scenario_file = folder / SCENARIO if facts["scenario"] else None
+        scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
+        model = load_plant(folder / PLANT)
+    recording = Recording(out, scenario, model, begun)
+    served = Served(scenario, model, journal=recording, begun=stood)
+    _nodes(served, facts)
+    recording.attach(served)
+    _enter(served, folder, facts)
+    return recording.close(served.now_ns), facts.get("digest")
+
+
+def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
+    """What entered the session in `folder` after a snapshot of it, again, on from that snapshot; returns the
+    digest of the rest both ways (None: that one was not taken in this session, or it was never closed)."""
+    facts = _facts(folder)
+    stood = standing(read(snapshot))
+    served = Served(stood.scenario, stood.model, begun=stood)
+    taken = [
+        each.get("rest")
+        for each in facts.get("snapshots", {}).values()
+        if (each["t_ns"], each["entries"]) == (served.now_ns, stood.entries)
+    ]
+    _nodes(served, facts)
+    rest = Rest(served)
+    _enter(served, folder, facts, stood.entries)
+    return rest.digest(), taken[0] if taken else None
+
+
+def _nodes(served: Served, facts: dict[str, Any]) -> None:
     for kind in facts["kinds"]:
         if kind.startswith("can"):
             _register(served, kind)
-    recording.attach(served)
-    t_ns = 0
-    for t_ns, kind, data in _entries(folder / ENTERED):
+
+
+def _enter(served: Served, folder: Path, facts: dict[str, Any], after: int = 0) -> None:
+    """Everything that entered, from number `after` on, and on to the session's end."""
+    t_ns = served.now_ns
+    for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
         served.run_until(t_ns)
         try:
             served.entry.enter(kind, data)
         except (KeyError, ValueError) as error:
             raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
     served.run_until(max(t_ns, int(facts.get("end_ns", t_ns))))
-    return recording.close(served.now_ns), facts.get("digest")
 
 
 def _register(served: Served, kind: str) -> None:
-    index = int(kind[3:])
-    network = served.network
-    node = OutsideNode(network.queue, network.wire, f"outside {index}" if index else "outside")
+    node = served.node(int(kind[3:]))
     served.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
 
 

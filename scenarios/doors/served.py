@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
+from bus.node import OutsideNode
 from bus.pacer import Pacer
 from bus.punctual import Punctuality
 from plant.model import PlantModel
@@ -13,6 +15,9 @@ from scenarios.doors.lines import Lines
 from scenarios.doors.usb import Usb
 from scenarios.model import Scenario
 from scenarios.served import wired
+
+if TYPE_CHECKING:
+    from scenarios.snapshot.served import Standing
 
 BOARD = "board"
 """Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""
@@ -27,16 +32,27 @@ class Served:
 
     entry: where things enter. usb: the gateway's USB cable, for host programs in this process too. lines: the
     five RS232 lines. pacer: speed and pause, both changeable at any time. `stop()` ends the serving.
+    nodes: of the doors to CAN, by their kinds of entry. snapshot: takes one of this session under a name and
+    says where; None: it takes none. begun: a network to go on with, instead of a new one.
     """
 
     def __init__(
-        self, scenario: Scenario, model: PlantModel, speed: float = 1.0, journal: Journal | None = None
+        self,
+        scenario: Scenario,
+        model: PlantModel,
+        speed: float = 1.0,
+        journal: Journal | None = None,
+        begun: Standing | None = None,
     ) -> None:
         self.scenario = scenario
         self.model = model
-        self.network, self.faults = wired(scenario, model)
+        self.network, self.faults = wired(scenario, model) if begun is None else (begun.network, begun.faults)
         self.entry = Entry(self.network.queue, journal)
-        self.usb = Usb(self.network.queue, self.network.hid, self.entry)
+        cable = None if begun is None else begun.usb
+        self.usb = cable or Usb(self.network.queue, self.network.hid)
+        self.usb.enter_by(self.entry)
+        self.nodes: dict[str, OutsideNode] = {} if begun is None else begun.nodes
+        self.snapshot: Callable[[str], str] | None = None
         self.lines = Lines(self.network.uarts)
         self.pacer = Pacer(self.network.queue, speed)
         self.punctual = Punctuality(self.pacer)
@@ -49,6 +65,14 @@ class Served:
     def now_ns(self) -> int:
         """Simulated time."""
         return self.network.queue.now_ns
+
+    def node(self, index: int) -> OutsideNode:
+        """The node on the wire for the door to CAN of this number, from 0 on."""
+        kind = f"can{index}"
+        if kind not in self.nodes:
+            name = f"outside {index}" if index else "outside"
+            self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
+        return self.nodes[kind]
 
     def stop(self) -> None:
         """End the serving with the next slice."""

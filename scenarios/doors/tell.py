@@ -8,6 +8,8 @@ from scenarios.doors.address import address
 from scenarios.doors.control import ControlError
 
 _PATIENCE_S = 5.0
+_ANSWER_S = 60.0
+"""A snapshot on a busy machine takes its time."""
 
 
 def tell(command: str, at: str, token: str | None = None) -> str:
@@ -19,6 +21,7 @@ def tell(command: str, at: str, token: str | None = None) -> str:
             socket.create_connection((host, port), _PATIENCE_S) as connection,
             connection.makefile("rw", encoding="utf-8", newline="\n") as stream,
         ):
+            connection.settimeout(_ANSWER_S)
             answer = ""
             for line in lines:
                 stream.write(line + "\n")

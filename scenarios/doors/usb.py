@@ -1,6 +1,7 @@
 """The USB cable of the gateway and the host programs that share it.
 
-    usb = Usb(queue, network.hid, entry)
+    usb = Usb(queue, network.hid)
+    usb.enter_by(entry)
     plug = usb.plug("alpaca")
     link = HidLink(plug.write)                      # host/link.py; the client sends through it
     for t_ns, report in plug.reports():             # in the door's poll: what the gateway has sent since
@@ -71,14 +72,18 @@ class UsbPlug:
 class Usb:
     """The cable: fans out IN reports to all plugs, polls OUT reports into the gateway once a USB frame."""
 
-    def __init__(self, queue: EventQueue, hid: HidEndpoint, entry: Entry) -> None:
+    def __init__(self, queue: EventQueue, hid: HidEndpoint) -> None:
         self._queue = queue
         self._hid = hid
-        self._entry = entry
         self._plugs: list[UsbPlug] = []
         self._out: deque[bytes] = deque()
         self._polling = False
-        hid.to_host = self._heard
+
+    def enter_by(self, entry: Entry) -> None:
+        """What host programs write enters here from now on; those that were on the cable are off it."""
+        self._entry = entry
+        self._plugs.clear()
+        self._hid.to_host = self._heard
         entry.register(KIND, self._take)
 
     def plug(self, name: str) -> UsbPlug:

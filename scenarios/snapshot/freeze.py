@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Mapping
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import CellType, FunctionType
@@ -17,6 +18,7 @@ import numpy as np
 
 from scenarios.native.finder import compiled
 from scenarios.snapshot import code
+from scenarios.snapshot.outside import Nobody
 
 _ROOT = Path(__file__).parents[2]
 ROOMS = ("bus", "boards", "plant", "host", "scenarios")
@@ -38,6 +40,7 @@ class SnapshotError(ValueError):
     """A snapshot that cannot be taken or used; one line."""
 
 
+@cache
 def source_digest() -> str:
     """SHA-256 over the rooms' sources: functions and fields are found by their place in them."""
     digest = sha256()
@@ -60,14 +63,17 @@ def _array(shape: tuple[int, ...], kind: str, data: bytes) -> np.ndarray[Any, An
 
 
 class _Pickler(pickle.Pickler):
-    def __init__(self, file: io.BytesIO, outside: Mapping[str, Any]) -> None:
+    def __init__(self, file: io.BytesIO, outside: Mapping[str, Any], outsiders: tuple[type, ...]) -> None:
         super().__init__(file, protocol=5)
         self._names = {id(value): name for name, value in outside.items()}
+        self._outsiders = outsiders
 
     def persistent_id(self, value: Any) -> str | None:
         return self._names.get(id(value))
 
     def reducer_override(self, value: Any) -> Any:
+        if isinstance(value, self._outsiders):
+            return Nobody, ()
         if isinstance(value, FunctionType):
             return NotImplemented if code.importable(value) else self._function(value)
         if isinstance(value, CellType):
@@ -114,19 +120,18 @@ class _Unpickler(pickle.Unpickler):
         return super().find_class(module, name)
 
 
-def take(what: Any, outside: Mapping[str, Any] | None = None) -> bytes:
+def take(what: Any, outside: Mapping[str, Any] | None = None, outsiders: tuple[type, ...] = ()) -> bytes:
     """Everything that can be reached from `what`, between two slices of simulated time.
 
-    outside: what is not taken, by name. Raises SnapshotError, also when the compiled library is in use: its
+    outside: what is not taken, by name. outsiders: classes whose objects are not taken either; there will be
+    nobody in their place. Raises SnapshotError, also when the compiled library is in use: its
     instances cannot be taken apart (SCHMIDT_PURE=1 runs the same source plain, to the same bits).
     """
     if compiled():
-        raise SnapshotError(
-            "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
-        )
+        raise SnapshotError(_PLAIN)
     file = io.BytesIO()
     try:
-        _Pickler(file, outside or {}).dump(what)
+        _Pickler(file, outside or {}, outsiders).dump(what)
     except (TypeError, AttributeError, pickle.PicklingError) as error:
         raise SnapshotError(f"snapshot: {error}") from None
     return _MAGIC + source_digest().encode() + b"\n" + file.getvalue()
@@ -144,9 +149,7 @@ def restore(data: bytes, outside: Mapping[str, Any] | None = None, refused: tupl
     if digest.decode(errors="replace") != source_digest():
         raise SnapshotError("snapshot: made by other sources than these; run the scenario again instead")
     if compiled():
-        raise SnapshotError(
-            "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
-        )
+        raise SnapshotError(_PLAIN)
     try:
         return _Unpickler(io.BytesIO(body), outside or {}, refused).load()
     except SnapshotError:

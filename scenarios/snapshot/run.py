@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from bus.protocol import Device
-from host.logs.files import LogError
 from plant.model import PlantModel
 from scenarios.model import Scenario
 from scenarios.session import Session
+from scenarios.snapshot.file import read, write
 from scenarios.snapshot.freeze import SnapshotError, restore, take
 from scenarios.snapshot.tape import Tape, listeners
+
+__all__ = ["Order", "Progress", "begun", "parts", "read", "resume"]
 
 
 @dataclass
@@ -65,36 +66,24 @@ class Order:
             "rows": (session.host_rows, session.focus_rows),
             "network": take((session.network, session.faults), outside),
         }
-        data = zlib.compress(take(whole), 1)
-        try:
-            self.file.parent.mkdir(parents=True, exist_ok=True)
-            self.file.write_bytes(data)
-        except OSError as error:
-            raise LogError(f"{self.file}: cannot be written: {error.strerror}") from None
+        write(whole, self.file)
 
 
 def _outside(session: Session) -> dict[str, Any]:
     return {"session": session, "can": session.recorder.can, "recorder": session.recorder}
 
 
-def read(file: Path) -> dict[str, Any]:
-    """What stands in a file; raises SnapshotError with one line."""
-    try:
-        data = zlib.decompress(file.read_bytes())
-    except OSError as error:
-        raise SnapshotError(f"{file}: {error.strerror}") from None
-    except zlib.error:
-        raise SnapshotError(f"{file}: this is no snapshot of schmidt's") from None
-    try:
-        whole: dict[str, Any] = restore(data)
-    except SnapshotError as error:
-        raise SnapshotError(f"{file}: {error}") from None
-    return whole
-
-
 def parts(whole: dict[str, Any]) -> tuple[Scenario, PlantModel]:
     """Scenario and plant."""
     return whole["scenario"], whole["model"]
+
+
+def begun(file: Path) -> dict[str, Any]:
+    """A run in a file; raises SnapshotError, also for a served session."""
+    whole = read(file)
+    if whole.get("kind") == "served":
+        raise SnapshotError(f"{file}: a served session has no programme to go on with: schmidt serve --from")
+    return whole
 
 
 def resume(whole: dict[str, Any], folder: Path) -> Session:

@@ -31,7 +31,7 @@ def record(folder: Path, seed: int = 3) -> str:
     scenario, model = chosen()
     recording = Recording(folder, scenario, model)
     served = Served(scenario, model, journal=recording)
-    door = CanDoor("virtual:session", 0, served.network, served.entry)
+    door = CanDoor("virtual:session", 0, served)
     recording.attach(served)
     plug = served.usb.plug("pc")
     random = Random(seed)
@@ -151,7 +151,7 @@ def test_frames_that_come_while_it_is_paused_are_kept_in_order(bench: Bench) -> 
     import can
 
     with can.Bus(interface="virtual", channel="paused") as outside:
-        bench.open(CanDoor("virtual:paused", 0, bench.served.network, bench.served.entry))
+        bench.open(CanDoor("virtual:paused", 0, bench.served))
         bench.run(5)
         heard: list[int] = []
         bench.served.network.wire.tap(

@@ -4,6 +4,7 @@ import argparse
 import time
 import warnings
 
+import scenarios  # noqa: F401  (before the other rooms, so that the library can be used)
 from tests.fuzz.doors import ALONE, DOORS, attack
 
 

@@ -19,6 +19,7 @@ from scenarios.muted import FeedError, read
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_readers import GUIDE
 from tests.fuzz import near
+from tests.fuzz.inputs import MEMORY
 
 Found = dict[str, int]
 
@@ -87,7 +88,7 @@ def _files(
     what: Callable[[Path, bytes], None], make: Callable[[Random], bytes], count: int, random: Random
 ) -> Found:
     found = {"accepted": 0, "refused": 0}
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         path = Path(folder) / "x.log"
         for _ in range(count):
             text = make(random)

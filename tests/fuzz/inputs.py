@@ -1,14 +1,18 @@
 """Hostile bytes, text and frames from a seed: mostly near misses, as plain noise is refused at once."""
 
+from pathlib import Path
 from random import Random
 
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, Device, Opcode
 
+MEMORY = "/dev/shm" if Path("/dev/shm").is_dir() else None
+"""Where files of a few lines are written by the million: a disk would take most of the time."""
 _IDENTIFIERS = [base + device for device in Device for base in (0x080, 0x100, 0x200, 0x300, 0x700)]
 _EDGES = (0, 1, 0x7F, 0x80, 0xF3, 0xF7, 0xFF)
 _WORDS = (
     "speed", "pause", "resume", "power", "status", "stop", "token", "help", "FOCUS", "AXIS_RA", "on", "off",
+    "snapshot", "../x", "/tmp/x",
     "nan", "inf", "-1", "1e400", "0", "5", "\0", "\u2028", "\ud7ff", "x" * 1200, " ", "\t",
 )  # fmt: skip
 _YAML = (

@@ -1,0 +1,52 @@
+"""A snapshot's file: a head line, the SHA-256 of what follows, and that, compressed."""
+
+from __future__ import annotations
+
+import os
+import zlib
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from host.logs.files import LogError
+from scenarios.snapshot.freeze import SnapshotError, restore, take
+
+_HEAD = b"schmidt snapshot file 1\n"
+_DIGEST = 64
+
+
+def write(whole: dict[str, Any], file: Path) -> int:
+    """Write it whole or not at all; returns its bytes. Raises SnapshotError, or LogError for the disk."""
+    body = zlib.compress(take(whole), 1)
+    data = _HEAD + sha256(body).hexdigest().encode() + b"\n" + body
+    part = file.with_name(file.name + ".part")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(data)
+        os.replace(part, file)
+    except OSError as error:
+        raise LogError(f"{file}: cannot be written: {error.strerror}") from None
+    return len(data)
+
+
+def read(file: Path) -> dict[str, Any]:
+    """What stands in a file; raises SnapshotError with one line.
+
+    The digest tells damage, not malice: a snapshot is as much to be trusted as a program.
+    """
+    try:
+        data = file.read_bytes()
+    except (OSError, ValueError) as error:
+        raise SnapshotError(f"{file}: {getattr(error, 'strerror', None) or error}") from None
+    if not data.startswith(_HEAD):
+        raise SnapshotError(f"{file}: this is no snapshot of schmidt's")
+    digest, body = data[len(_HEAD) : len(_HEAD) + _DIGEST], data[len(_HEAD) + _DIGEST + 1 :]
+    if sha256(body).hexdigest().encode() != digest or data[len(_HEAD) + _DIGEST] != ord("\n"):
+        raise SnapshotError(f"{file}: snapshot: damaged: its bytes have another digest than its head says")
+    try:
+        whole: dict[str, Any] = restore(zlib.decompress(body))
+    except zlib.error:
+        raise SnapshotError(f"{file}: this is no snapshot of schmidt's") from None
+    except SnapshotError as error:
+        raise SnapshotError(f"{file}: {error}") from None
+    return whole
