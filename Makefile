@@ -19,7 +19,7 @@ compiled: $(READY)
 	@$(BIN)/python -m scenarios.native
 
 # dist/: the wheel of this platform (manylinux where auditwheel can tell) and the pure one
-wheels: $(READY)
+wheels: $(VENV)/.wheels
 	$(BIN)/python -m scenarios.native.wheels
 
 test: lint fast slow
@@ -76,6 +76,10 @@ $(READY): pyproject.toml
 $(VENV)/.cluster: $(READY)
 	$(BIN)/python -m pip install --quiet -e ".[test,cluster]"
 	touch $@
+
+$(VENV)/.wheels: $(READY)
+	$(BIN)/pip install --quiet -e '.[test,wheels]'
+	@touch $@
 
 $(VENV)/.bench: $(READY)
 	$(BIN)/python -m pip install --quiet -e ".[test,bench]"

@@ -22,6 +22,8 @@ _PREFIX = PACKAGE.replace(".", "/")
 _REFUSED = re.compile(rf"^{_PREFIX}(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
 _ROUNDS = 5
 """A round costs some twenty seconds; when five have not been enough, something else is wrong."""
+_PROBED = ("can", "cantools", "numba", "yaml")
+"""What the short run needs beside the sources."""
 Say = Callable[[str], None]
 
 
@@ -106,8 +108,8 @@ def _modules(made: Path) -> dict[str, str]:
 def _check(made: Path, root: Path) -> None:
     """Hold a short run on the library against one without it, where that can be done: same digest or no
     library."""
-    if importlib.util.find_spec("numba") is None:
-        return  # an isolated build has nothing but the compiler
+    if any(importlib.util.find_spec(need) is None for need in _PROBED):
+        return  # an isolated build has nothing but the compilers
     plain = _python(["-m", f"{PACKAGE}scenarios.probe"], root, pure="1")
     native = _python(["-m", f"{PACKAGE}scenarios.probe", str(made)], root, pure="")
     if native.returncode:

