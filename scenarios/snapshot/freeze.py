@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections.abc import Mapping
+import sys
+import threading
+from collections.abc import Callable, Mapping
 from functools import cache
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
 from types import CellType, FunctionType
 from typing import Any
@@ -30,8 +33,18 @@ _ALLOWED = {
     "datetime": {"datetime", "timezone", "timedelta"},
     "copyreg": {"__newobj__", "_reconstructor"},
     "_codecs": {"encode"},
+    "threading": {"Condition", "RLock"},
+    "_thread": {"allocate_lock", "RLock"},
+    "logging": {"getLogger"},
+    "queue": {"Queue"},
+    "struct": {"Struct"},
 }
 """What of the standard library a snapshot is made of."""
+_LOCKS: dict[type, Callable[[], Any]] = {
+    type(make()): make for make in (threading.Lock, threading.RLock, threading.Condition)
+}
+"""`canopen` has some; between two slices nobody holds them or waits."""
+_CANOPEN, _NO_NETWORK = "canopen.network", "no CANopen network"
 _PLAIN = "snapshots need the plain source: run with SCHMIDT_PURE=1 (the same bits, slower)"
 _MAGIC = b"schmidt snapshot 1\n"
 
@@ -62,10 +75,16 @@ def _array(shape: tuple[int, ...], kind: str, data: bytes) -> np.ndarray[Any, An
     return made
 
 
+def _no_network() -> dict[str, Any]:
+    """What `canopen` puts where no network is yet: it raises whatever it is asked."""
+    canopen = sys.modules.get(_CANOPEN)
+    return {} if canopen is None else {_NO_NETWORK: canopen._UNINITIALIZED_NETWORK}
+
+
 class _Pickler(pickle.Pickler):
     def __init__(self, file: io.BytesIO, outside: Mapping[str, Any], outsiders: tuple[type, ...]) -> None:
         super().__init__(file, protocol=5)
-        self._names = {id(value): name for name, value in outside.items()}
+        self._names = {id(value): name for name, value in {**_no_network(), **outside}.items()}
         self._outsiders = outsiders
 
     def persistent_id(self, value: Any) -> str | None:
@@ -76,6 +95,8 @@ class _Pickler(pickle.Pickler):
             return Nobody, ()
         if isinstance(value, FunctionType):
             return NotImplemented if code.importable(value) else self._function(value)
+        if type(value) in _LOCKS:
+            return _LOCKS[type(value)], ()
         if isinstance(value, CellType):
             try:
                 contents = value.cell_contents
@@ -107,6 +128,8 @@ class _Unpickler(pickle.Unpickler):
         self._refused = refused
 
     def persistent_load(self, name: Any) -> Any:
+        if name == _NO_NETWORK:
+            return import_module(_CANOPEN)._UNINITIALIZED_NETWORK
         if name not in self._outside:
             raise SnapshotError(f"snapshot: it wants {name!r}, which is not here")
         return self._outside[name]
@@ -115,7 +138,7 @@ class _Unpickler(pickle.Unpickler):
         room = module.partition(".")[0]
         if module.startswith(self._refused):
             raise SnapshotError(f"snapshot: {module}.{name} is in it")
-        if room not in (*ROOMS, "numpy", "cantools") and name not in _ALLOWED.get(module, ()):
+        if room not in (*ROOMS, "numpy", "cantools", "canopen") and name not in _ALLOWED.get(module, ()):
             raise SnapshotError(f"snapshot: {module}.{name} has no business in one")
         return super().find_class(module, name)
 

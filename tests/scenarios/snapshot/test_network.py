@@ -9,10 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bus.can import Frame
 from bus.can.candump import CandumpWriter
+from bus.node import OutsideNode
 from bus.protocol import Device, Opcode
+from plant.model import load
+from plant.plant import Plant
 from scenarios.faults import KINDS
-from scenarios.network import Network
+from scenarios.network import Network, build
+from scenarios.networks import NetworkConfig
 from scenarios.snapshot import SnapshotError, restore, take
 from tests.scenarios.faults.lab import EXAMPLES, Lab
 
@@ -70,6 +75,22 @@ def test_a_bus_in_trouble_is_taken_with_its_trouble(t_ns: int, kind: str) -> Non
     lab.faults.start(kind, **EXAMPLES[kind])
     lab.network.run_until(lab.now_ns + t_ns)
     both(lab)
+
+
+@pytest.mark.parametrize("t_ns", [0, 33_333_333, 710_000_001])
+def test_boards_that_speak_canopen(t_ns: int) -> None:
+    """A master that is half way: started, a block of SDO requests under way, heartbeats on their crystals."""
+    network = build(NetworkConfig(canopen=True, name="final"), Plant(load(), 1), 1)
+    master = OutsideNode(network.queue, network.wire)
+    network.run_until(50_000_000)
+    master.arrive(Frame(0x000, b"\x01\x00"))
+    network.run_until(300_000_000)
+    for device in (Device.AXIS_RA, Device.FOCUS, Device.DISPLAY):
+        master.arrive(Frame(0x600 + device, b"\x40\x18\x10\x01" + bytes(4)))
+    network.run_until(network.queue.now_ns + t_ns)
+    again = restore(take(network))
+    assert [voice.operational for voice in again.voices.values()] == [True] * 18
+    assert fate(again, 1_100_000_000) == fate(network, 1_100_000_000)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
