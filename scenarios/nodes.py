@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
+from hashlib import sha256
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
@@ -19,12 +20,15 @@ from boards.weather import WeatherBoard
 from bus.protocol.nodes import KindError, arguments_of, declare, messages_of
 from plant.dome import DomePort
 from plant.plant import Plant
+from scenarios.model import Scenario
 from scenarios.supply import CHANNELS, Supply
 
 BOARDS: dict[str, type[DeclaredBoard]] = {
     board.KIND.name: board for board in (AuxiliaryBoard, DomeBoard, WeatherBoard, PowerBoard)
 }
 """Class by kind; `load_board` adds to it."""
+MODULE = "schmidt_board_"
+"""How the modules of users' boards are called, with a digest of where the file is."""
 
 
 class Input:
@@ -109,8 +113,13 @@ def load_board(file: Path) -> type[DeclaredBoard]:
     return board
 
 
+def board_files(scenario: Scenario) -> list[Path]:
+    """The files of the boards that a scenario brings along."""
+    return [scenario.file.parent / file for file in scenario.network.get("boards", ())]
+
+
 def _module(file: Path) -> ModuleType:
-    name = f"schmidt_board_{file.resolve().as_posix()}"
+    name = MODULE + sha256(file.resolve().as_posix().encode()).hexdigest()[:16]
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, file)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from host.logs.files import LogError
+from scenarios.nodes import board_files, load_board
 from scenarios.snapshot.freeze import SnapshotError, restore, take
 
 _HEAD = b"schmidt snapshot file 1\n"
@@ -17,7 +18,8 @@ _DIGEST = 64
 
 def write(whole: dict[str, Any], file: Path) -> int:
     """Write it whole or not at all; returns its bytes. Raises SnapshotError, or LogError for the disk."""
-    body = zlib.compress(take(whole), 1)
+    files = {path: _digest(path) for path in board_files(whole["scenario"])}
+    body = zlib.compress(take(whole | {"files": files}), 1)
     data = _HEAD + sha256(body).hexdigest().encode() + b"\n" + body
     part = file.with_name(file.name + ".part")
     try:
@@ -40,13 +42,25 @@ def read(file: Path) -> dict[str, Any]:
         raise SnapshotError(f"{file}: {getattr(error, 'strerror', None) or error}") from None
     if not data.startswith(_HEAD):
         raise SnapshotError(f"{file}: this is no snapshot of schmidt's")
-    digest, body = data[len(_HEAD) : len(_HEAD) + _DIGEST], data[len(_HEAD) + _DIGEST + 1 :]
-    if sha256(body).hexdigest().encode() != digest or data[len(_HEAD) + _DIGEST] != ord("\n"):
+    told, body = data[len(_HEAD) : len(_HEAD) + _DIGEST], data[len(_HEAD) + _DIGEST + 1 :]
+    if sha256(body).hexdigest().encode() != told or data[len(_HEAD) + _DIGEST] != ord("\n"):
         raise SnapshotError(f"{file}: snapshot: damaged: its bytes have another digest than its head says")
     try:
         whole: dict[str, Any] = restore(zlib.decompress(body))
+        for path, digest in whole["files"].items():
+            if _digest(path) != digest:
+                raise SnapshotError(f"snapshot: {path} has changed, or is another file seen from here")
+            load_board(path)
     except zlib.error:
         raise SnapshotError(f"{file}: this is no snapshot of schmidt's") from None
-    except SnapshotError as error:
+    except ValueError as error:
         raise SnapshotError(f"{file}: {error}") from None
     return whole
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of a user's board; "" for a file that is not there."""
+    try:
+        return sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""

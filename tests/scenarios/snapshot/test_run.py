@@ -1,5 +1,6 @@
 """Whole runs: on from a snapshot, every file and the digest are those of the run that was not interrupted."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from scenarios.load import convert
 from scenarios.plants import plant_model
 from scenarios.snapshot import SnapshotError
 from scenarios.snapshot.run import Order, read
-from tests.scenarios.conftest import SHORT, Command
+from tests.scenarios.conftest import ROOT, SHORT, Command
 
 FAULTS = """
 faults:
@@ -114,3 +115,19 @@ def test_a_damaged_file_is_refused(tmp_path: Path) -> None:
         file.write_bytes(wrong)
         with pytest.raises(SnapshotError, match=r"a\.snapshot: "):
             read(file)
+
+
+def test_a_board_of_ones_own_is_in_it_while_its_file_stays(tmp_path: Path, schmidt_process: Command) -> None:
+    """The page's example; the class comes from the file, whose digest the snapshot carries."""
+    blocks = re.findall(r"```\w+\n(.*?)```", (ROOT / "docs" / "new-board.md").read_text(), re.S)
+    for name, text in zip(("mirror.dbc", "mirror.py", "mirror.yaml"), blocks, strict=False):
+        (tmp_path / name).write_text(text)
+    file, one = tmp_path / "mirror.yaml", tmp_path / "one"
+    first = schmidt_process("run", file, "--out", one, "--no-report", "--snapshot-at", "1.1")
+    again = schmidt_process("run", "--from", one / "snapshot", "--out", tmp_path / "two", "--no-report")
+    assert again.returncode == 0, first.stderr + again.stderr
+    same_files(one, tmp_path / "two")
+    (tmp_path / "mirror.py").write_text(blocks[1].replace("heater = 0", "heater = 1"))
+    refused = schmidt_process("run", "--from", one / "snapshot", "--out", tmp_path / "three", "--no-report")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "mirror.py has changed" in refused.stderr
