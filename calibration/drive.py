@@ -10,6 +10,7 @@ import numpy as np
 from calibration.channels.agreement import Agreement, velocity_against_position
 from calibration.channels.balance import problem_of
 from calibration.channels.floors import floor_of
+from calibration.channels.pickup import pick_up
 from calibration.channels.problem import Problem
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.parameters import finding_of
@@ -23,6 +24,7 @@ from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.record import Record
+from calibration.inputs.stuck import check_stuck
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
@@ -48,6 +50,7 @@ class Balance:
     lacks: list[str] = field(default_factory=list)
     bounds: list[str] = field(default_factory=list)
     left: Left | None = None
+    close: str = ""  # of a delay that is neither named nor out of the question
 
 
 @dataclass
@@ -81,6 +84,7 @@ def analyse(
                 raise CalibrationInputError(
                     rig.path, f"{key}: {value:g} s is too long for a run of {r.duration_s:.4g} s"
                 )
+    check_stuck(records, rig)
     still = [g.name for g in rig.stages if not g.period]
     if still and all(r.channel != "position" for r in rig.responses):
         raise CalibrationInputError(
@@ -143,12 +147,13 @@ def _balance(
         p.floor = floor or 0.0
         return find(view, p, seed, tell)
 
-    delay, before = None, None
+    delay, before, close = None, None, ""
     if response.channel in ("effort", "current", "force") and view.dynamic:
         tell(f"{response.channel}: delay")
         when = timed(view, records, hold_out, problem, response.channel, search)
         problem, (s, scene, bounds), delay, before = when.problem, when.found, when.delay, when.before
         notes += [when.note] if when.note else []
+        close = when.close
     else:
         s, scene, bounds = search(problem)
     floor, source = floor_of(view, problem)
@@ -166,7 +171,7 @@ def _balance(
     if more.chosen:
         findings.append(finding_of(more, 0))
         together = _together(s, more)
-    findings = settle(findings, left_over(s, scene, floor), problem.channel)
+    findings = settle(findings, left_over(s, scene, floor), problem.channel) + _quick_lines(view, problem)
     kind = FORCE if response.is_force else SENSORS
     lacks = [f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)]
     return Balance(
@@ -183,7 +188,26 @@ def _balance(
         lacks,
         [*notes, *bounds],
         left_over(together, scene, floor),
+        close,
     )
+
+
+def _quick_lines(view: View, problem: Problem) -> list[Finding]:
+    """A line in the response's column that the filter takes away before any name is looked for."""
+    line = pick_up(view) if view.dynamic else None
+    if line is None:
+        return []
+    note = f"{line.frequency:.5g} Hz in the column itself: the balance's filter takes it away, no error shows it"
+    return [
+        Finding(
+            "unknown",
+            problem.channel,
+            "time",
+            frequency=line.frequency,
+            note=note,
+            parameters={"amplitude": Parameter(line.amplitude, problem.unit)},
+        )
+    ]
 
 
 def _sharpen(view: View, records: list[Record], hold_out: list[str]) -> None:

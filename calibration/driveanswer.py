@@ -80,7 +80,7 @@ def _separating(effects: list[Finding]) -> str | None:
 
 def _close(found: DriveResult) -> list[str]:
     """Candidates that had evidence and failed elsewhere."""
-    out = []
+    out = [b.close for b in found.balances if b.close]
     for b in found.balances:
         for r in b.selection.refused:
             if r.what != "every candidate" and r.why.startswith(

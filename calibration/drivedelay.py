@@ -34,13 +34,14 @@ class Timed:
     delay: Finding | None = None
     before: float | None = None
     note: str = ""
+    close: str = ""  # a delay that the log can neither name nor leave out, and what would tell
 
 
 def timed(
     view: View, records: list[Record], hold_out: list[str], problem: Problem, channel: str, find: Find
 ) -> Timed:
     """Look for a delay; keep it only when names without it do not explain as much."""
-    delay = effort_delay(scene_of(view, problem))
+    delay, close = effort_delay(scene_of(view, problem))
     if delay is not None and is_hold(delay, view.period_s):
         value = delay.parameters["delay"].value
         held = problem_of(view, records, hold_out, value)
@@ -50,7 +51,7 @@ def timed(
     plain_loop = _held_loop(view, records, hold_out, problem)
     found = find(plain_loop)
     if delay is None:
-        return Timed(plain_loop, found)
+        return Timed(plain_loop, found, close=close)
     moved = problem_of(view, records, hold_out, delay.parameters["delay"].value)
     late = find(moved)
     now, was = late[0].held.after, found[0].held.after

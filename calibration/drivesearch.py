@@ -14,7 +14,7 @@ from calibration.decide.select import Selection, select
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
-from calibration.names.unknown import flexible
+from calibration.names.unknown import flexible, moving_scale
 from calibration.prune import prune, remainders, sound, within_bounds
 
 MOST = 14  # effects: a cogging motor shows several orders
@@ -82,6 +82,7 @@ def _search(
         if kind in n.channels and n.name not in lines and not (n.name == "channel_delay" and kind == FORCE)
         for c in n.columns(scene)
     ]
+    named += moving_scale(scene)
     found: list[Candidate] = []
     s: Selection | None = None
     extra = np.zeros((len(problem.y), 0))

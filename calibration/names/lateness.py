@@ -26,8 +26,9 @@ PARTS = 5  # of the log, in each of which the delay must be seen
 ALIKE = 0.35  # of the delay: standard deviation over those parts
 
 
-def effort_delay(s: Scene) -> Finding | None:
-    """The delay of the response's column against the motion, positive when it tells of earlier times.
+def effort_delay(s: Scene) -> tuple[Finding | None, str]:
+    """The delay of the response's column against the motion, positive when it tells of earlier times; and,
+    where one stands clear of its error but changes next to nothing, what would be needed to tell.
 
     It is looked for beside loops, asymmetry, weight and friction over the speed; its size is then taken
     beside a friction curve of any smooth shape, where that can be told from it.
@@ -36,7 +37,7 @@ def effort_delay(s: Scene) -> Finding | None:
     s = _quick(s)
     p, r = s.problem, v.response
     if p.train.sum() < 20 * p.base.shape[1] or r.divide_by:
-        return None
+        return None, ""
     full = v.columns[r.channel] * r.gain
     known = p.y - s.at(full)  # what constants took off
 
@@ -48,11 +49,14 @@ def effort_delay(s: Scene) -> Finding | None:
     delay, error = _converge(s, late, rival)
     reach = LONGEST * v.period_s
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
-        return None
+        return None, ""
     before, after = _left(s, p.y, rival), _left(s, late(delay), rival)
     share = 1 - (after / before) ** 2
-    if share < MATTERS or not _everywhere(s, late(0.0), delay, rival):
-        return None
+    if not _everywhere(s, late(0.0), delay, rival):
+        return None, ""
+    if share < MATTERS:
+        sound = abs(delay) < HOLD * v.period_s + SLACK * error
+        return None, "" if sound else _too_small(r.channel, delay, error, share)
     curve = any_friction_curve(s)
     finer, spread = _converge(s, late, curve)
     if spread < abs(finer) / SIGNIFICANT and finer * delay > 0:
@@ -68,6 +72,14 @@ def effort_delay(s: Scene) -> Finding | None:
         share=share,
         note=f"the {r.channel} column is {word} against the position",
         parameters={"delay": Parameter(delay, "s", delay - half, delay + half)},
+    ), ""
+
+
+def _too_small(channel: str, delay: float, error: float, share: float) -> str:
+    """A delay that is there by its own error, and below what the log's other errors let anyone tell."""
+    return (
+        f"channel_delay of {channel}, {1e3 * delay:.2g} +- {1e3 * error:.1g} ms, was close (it takes"
+        f" {100 * max(share, 0.0):.1f} % of the held-out mean square): quicker turns and a quieter effort"
     )
 
 

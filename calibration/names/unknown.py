@@ -45,13 +45,16 @@ def smooth_functions(s: Scene) -> list[Candidate]:
         if s.force and s.both and domain in ("axis_angle", "time"):
             odd = columns * s.view.direction[s.view.rows][:, None]
             out.append(Candidate("unknown", domain, odd, labels))
-    if not s.force:
-        out += _moving_scale(s)
     return out
 
 
-def _moving_scale(s: Scene) -> list[Candidate]:
-    """Two sensors whose ratio moves with time: thermal growth errs in proportion to the place (ISO 230-3)."""
+def moving_scale(s: Scene) -> list[Candidate]:
+    """Two sensors whose ratio moves with time: thermal growth errs in proportion to the place (ISO 230-3).
+
+    It has no name in the catalogue, but stands beside the names: a gap and a delay together follow it, too.
+    """
+    if s.force:
+        return []
     knots = spline_columns(s.problem.t, SLOW)
     if knots.shape[1] == 0:
         return []

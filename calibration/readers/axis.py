@@ -13,6 +13,7 @@ from calibration.readers.drive import ARCSEC, SCALES, WRAPS
 from calibration.readers.header import number, parse_header
 from calibration.readers.plausible import check_values
 from calibration.readers.run import Array, Run
+from calibration.readers.stuck import check_stuck
 
 KNOWN = (
     "t",
@@ -76,7 +77,9 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
     scales = {key: number(path, header, key) for key in SCALES}
     raw = _check_time(path, raw, scales["sample_period_s"], start + 2)
     check_values(path, raw, scales, start + 2)
-    return Run(path.stem, path, header["session"], to_si(raw, scales), raw, header, scales)
+    si = to_si(raw, scales)
+    check_stuck(path, raw, si["t"], si["position"], factors(scales), scales["gear_ratio"], start + 2)
+    return Run(path.stem, path, header["session"], si, raw, header, scales)
 
 
 def _load(path: Path) -> str:
@@ -149,9 +152,9 @@ def unwrap(counts: Array, length: int) -> Array:
     return out
 
 
-def to_si(raw: dict[str, Array], s: dict[str, float]) -> dict[str, Array]:
-    """Counts to SI units by the declared or overridden scales."""
-    factor = {
+def factors(s: dict[str, float]) -> dict[str, float]:
+    """SI units per unit of the log, by column, from the declared or overridden scales."""
+    return {
         "t": 1.0,
         "setpoint": ARCSEC,
         "effort": 1 / s["effort_full_scale"],
@@ -166,6 +169,11 @@ def to_si(raw: dict[str, Array], s: dict[str, float]) -> dict[str, Array]:
         "temperature": 1.0,
         "focus": 1.0,
     }
+
+
+def to_si(raw: dict[str, Array], s: dict[str, float]) -> dict[str, Array]:
+    """Counts to SI units by the declared or overridden scales."""
+    factor = factors(s)
     rename = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
     out: dict[str, Array] = {}
     for name, values in raw.items():

@@ -1,0 +1,92 @@
+"""What columns alone say: one that measures nothing is refused, a line that the filter takes away is told, a
+ratio of two sensors is no gap and no delay."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.command import calibrate
+from calibration.errors import CalibrationInputError
+from tests.calibration.logs import tiny_log
+from tests.calibration.test_bad_input import column
+from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
+
+
+@pytest.mark.parametrize(("name", "place"), [("velocity", 4), ("tach_a", 7), ("tach_b", 8)])
+def test_a_rate_that_never_changes_while_the_axis_speeds_up_is_refused(
+    tmp_path: Path, name: str, place: int
+) -> None:
+    quicker = iter(np.cumsum(np.linspace(0, 4e4, 3000)).astype(int))
+    text = column(column(tiny_log(3000), 3, lambda _: str(next(quicker))), 4, lambda v: v)
+    steady = {4: "7", 7: "3", 8: "3"}
+    for at, value in steady.items():  # the other rates say something
+        text = column(text, at, lambda _, v=value, here=at: v if here == place else str(next(noise)))
+    (tmp_path / "stuck.log").write_text(text)
+    with pytest.raises(CalibrationInputError, match=rf":12: column '{name}': holds {steady[place]} in every"):
+        calibrate([tmp_path / "stuck.log"], out=tmp_path / "out")
+
+
+noise = iter(np.random.default_rng(0).integers(-5, 5, 100_000).tolist())
+
+
+def test_a_coarse_rate_of_a_steady_axis_is_not_refused(tmp_path: Path) -> None:
+    (tmp_path / "steady.log").write_text(tiny_log(3000))  # 60 counts a row: the velocity stays at 7
+    assert calibrate([tmp_path / "steady.log"], out=tmp_path / "out", plots=False) == 0
+
+
+@pytest.mark.parametrize("channel", ["effort", "velocity"])
+def test_a_drives_column_that_never_changes_is_refused(tmp_path: Path, channel: str) -> None:
+    t, x, u = motion(5.0)
+    (tmp_path / "rig.yaml").write_text(
+        FORCE.replace("\nresponse", "\n  velocity: {column: v, unit: m/s}\nresponse")
+    )
+    rows = {"effort": np.full(len(t), 3.0), "velocity": np.gradient(x, t)}
+    if channel == "velocity":
+        rows = {"effort": u, "velocity": np.zeros(len(t))}
+    table = np.column_stack([t, x, rows["effort"], rows["velocity"]])
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,x,u,v", comments="")
+    with pytest.raises(CalibrationInputError, match=f"column '{channel[0] if channel != 'effort' else 'u'}'"):
+        calibrate([tmp_path / "a.csv"], tmp_path / "rig.yaml", out=tmp_path / "out", plots=False)
+
+
+def two_sensors(scale: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, motor and a second sensor that should show 0.02 of it and shows `scale` of that."""
+    motor = 2.0 * np.sin(2 * np.pi * 0.13 * t) + 0.7 * np.sin(2 * np.pi * 0.31 * t)
+    joint = 0.02 * scale * motor + 5e-5 * np.random.default_rng(3).standard_normal(len(t))
+    return t, motor, joint
+
+
+@pytest.mark.parametrize("declared", [True, False])
+@pytest.mark.parametrize("shape", ["line", "saturates"])
+def test_a_ratio_that_grows_slowly_is_a_scale_over_time(tmp_path: Path, declared: bool, shape: str) -> None:
+    t = np.arange(0, 120, 0.01)
+    grown = t / t[-1] if shape == "line" else 1 - np.exp(-t / 40)
+    rig = SENSORS if declared else SENSORS.replace(", ratio: 0.02", "")
+    data = answer(tmp_path, rig, two_sensors(1 + 0.02 * grown, t))
+    assert [(e["name"], e["domain"]) for e in data["effects"]] == [("unknown", "time")]
+    assert data["error"]["position"]["after"] < 0.4 * data["error"]["position"]["before"]
+
+
+def test_a_ratio_that_is_not_the_declared_one_has_its_name_and_size(tmp_path: Path) -> None:
+    t = np.arange(0, 60, 0.01)
+    data = answer(tmp_path, SENSORS, two_sensors(np.full(len(t), 1.01), t))
+    assert found(data) == ["roller_ratio"]
+    assert data["effects"][0]["parameters"]["error"]["value"] == pytest.approx(0.0002, rel=0.02)
+
+
+def test_mains_on_the_efforts_column_are_told_with_their_frequency(tmp_path: Path) -> None:
+    t, x, u = motion()
+    data = answer(tmp_path, FORCE, (t, x, u + 0.1 * np.sin(2 * np.pi * 50.0 * t + 1.0)))
+    (effect,) = data["effects"]
+    assert (effect["name"], effect["domain"]) == ("unknown", "time")
+    assert effect["frequency_Hz"] == pytest.approx(50.0, abs=0.02)
+    assert effect["parameters"]["amplitude"]["value"] == pytest.approx(0.1, rel=0.05)
+
+
+def test_teeth_that_pass_quicker_than_the_filter_are_no_mains(tmp_path: Path) -> None:
+    t, x, u = motion()
+    data = answer(tmp_path, FORCE, (t, x, u + 0.3 * np.sin(2 * np.pi * x / 0.004)))
+    assert not any(e["frequency_Hz"] for e in data["effects"])
