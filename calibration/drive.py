@@ -10,25 +10,24 @@ import numpy as np
 from calibration.channels.agreement import Agreement, velocity_against_position
 from calibration.channels.balance import problem_of
 from calibration.channels.floors import floor_of
-from calibration.channels.pickup import pick_up
 from calibration.channels.problem import Problem
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
-from calibration.decide.parameters import finding_of
-from calibration.decide.select import Selection, design, select
+from calibration.decide.select import Selection
 from calibration.drivedelay import Found, left_by_the_declared, timed
 from calibration.driveleft import Left, left_over, settle
 from calibration.drivenames import as_told
 from calibration.drivesearch import find
+from calibration.driveunnamed import beyond_names, quick_lines
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
+from calibration.inputs.origin import align_counters
 from calibration.inputs.record import Record
 from calibration.inputs.stuck import check_stuck
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
-from calibration.names.unknown import smooth_functions
 
 MIN_ROWS = 200  # fewer rows than this say nothing about ten parameters
 
@@ -85,6 +84,7 @@ def analyse(
                     rig.path, f"{key}: {value:g} s is too long for a run of {r.duration_s:.4g} s"
                 )
     check_stuck(records, rig)
+    align_counters(records, rig)
     still = [g.name for g in rig.stages if not g.period]
     if still and all(r.channel != "position" for r in rig.responses):
         raise CalibrationInputError(
@@ -159,19 +159,9 @@ def _balance(
     floor, source = floor_of(view, problem)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     tell(f"{response.channel}: what no name explains")
-    # only what the catalogue leaves may be called unknown: a smooth function can imitate most of its names
-    more = select(
-        replace(problem, base=design(problem, [x.candidate for x in s.chosen])),
-        smooth_functions(scene),
-        np.random.default_rng(seed),
-        most=1,
-    )
-    s.refused += more.refused
-    together = s
-    if more.chosen:
-        findings.append(finding_of(more, 0))
-        together = _together(s, more)
-    findings = settle(findings, left_over(s, scene, floor), problem.channel) + _quick_lines(view, problem)
+    together, unnamed = beyond_names(s, scene, seed)
+    findings += unnamed
+    findings = settle(findings, left_over(s, scene, floor), problem.channel) + quick_lines(view, problem)
     kind = FORCE if response.is_force else SENSORS
     lacks = [f"{n.name}: {n.lacks(scene)}" for n in NAMES.values() if kind in n.channels and n.lacks(scene)]
     return Balance(
@@ -190,24 +180,6 @@ def _balance(
         left_over(together, scene, floor),
         close,
     )
-
-
-def _quick_lines(view: View, problem: Problem) -> list[Finding]:
-    """A line in the response's column that the filter takes away before any name is looked for."""
-    line = pick_up(view) if view.dynamic else None
-    if line is None:
-        return []
-    note = f"{line.frequency:.5g} Hz in the column itself: the balance's filter takes it away, no error shows it"
-    return [
-        Finding(
-            "unknown",
-            problem.channel,
-            "time",
-            frequency=line.frequency,
-            note=note,
-            parameters={"amplitude": Parameter(line.amplitude, problem.unit)},
-        )
-    ]
 
 
 def _sharpen(view: View, records: list[Record], hold_out: list[str]) -> None:
@@ -237,16 +209,3 @@ def _acts_on_the_drive(view: View, problem: Problem) -> bool:
         if n in ("inertia", "viscous", "coulomb")
     }
     return bool(share) and sum(share.values()) < 0 and max(share.values()) < -0.2 * min(share.values())
-
-
-def _together(s: Selection, more: Selection) -> Selection:
-    """The named effects and the unnamed function as one selection, so that table and pictures agree."""
-    share = 1 - (more.held.after / s.held.before) ** 2
-    return replace(
-        s,
-        chosen=[*s.chosen, *more.chosen],
-        classes=[*s.classes, *more.classes],
-        steps=[*s.steps, *more.steps],
-        after=more.after,
-        held=replace(s.held, after=more.held.after, share=share, z=more.held.z),
-    )

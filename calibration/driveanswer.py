@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
+from calibration.decide.thresholds import STILL_MISSING
 from calibration.decide.verdict import Verdict, judge
 from calibration.drive import Balance, DriveResult
 from calibration.drivecontrols import drive_controls
@@ -29,7 +30,7 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         controls += rows
         effects += _withdrawn(b, rows)
     effects.sort(key=lambda f: (f.name == "unknown", f.share == 0.0, -f.share))
-    verdict, separating = judge(effects, [*_short(found), *_close(found)][:4])
+    verdict, separating = judge(effects, [*_short(found), *_strange_rate(found), *_close(found)][:4])
     separating = _separating(effects) or separating if effects else separating
     lacking = [x for b in found.balances for x in b.lacks]
     first = found.balances[0]
@@ -92,6 +93,18 @@ def _close(found: DriveResult) -> list[str]:
     return list(dict.fromkeys(out))
 
 
+def _strange_rate(found: DriveResult) -> list[str]:
+    """What remains between a measured velocity and the position's rate."""
+    a = found.agreement
+    if a is None or a.left <= STILL_MISSING:
+        return []
+    return [f"{a.left:.1f} floors remain between {a.channel} and the position's rate: what makes the column"]
+
+
+def _scaled(found: DriveResult) -> list[str]:
+    return [found.agreement.scaled] if found.agreement is not None and found.agreement.scaled else []
+
+
 def _short(found: DriveResult) -> list[str]:
     return [r.why for b in found.balances for r in b.selection.refused if r.what == "every candidate"]
 
@@ -109,11 +122,11 @@ def _errors(found: DriveResult) -> dict[str, dict[str, Any]]:
                 "floor": b.floor,
             }
     a = found.agreement
-    if a is not None and a.late and np.isfinite(a.before):
+    if a is not None and (a.late or a.left > STILL_MISSING) and np.isfinite(a.before):
         out["velocity"] = {
             "unit": a.unit,
             "before": a.before,
-            "after": a.after,
+            "after": a.after if a.late else a.before,
             "floor": a.floor if np.isfinite(a.floor) else None,
         }
     return out
@@ -171,6 +184,7 @@ def _reasons(found: DriveResult) -> list[str]:
             lost = sum(b - a for a, b in gaps)
             out.append(f"{r.name}: {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, {lost:.3g} s without rows")
         out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
+    out += [*_strange_rate(found), *_scaled(found)]
     for b in found.balances:
         out.append(f"floor of {b.view.response.channel}: {b.floor_from}")
         out += _short(found)

@@ -12,6 +12,7 @@ from calibration.statistics.regression import gls
 from calibration.statistics.whitening import Mask
 
 SIGNIFICANT = 4.0  # standard errors
+SCALED = 0.01  # of the scale: less is how either rate was smoothed
 MATTERS = 0.2  # of the mean square of what the columns disagree by
 SMALLEST = 0.1  # sample periods: a shorter delay is within a reading's own window
 LONGEST = 20  # sample periods that are looked at
@@ -21,7 +22,8 @@ FEWEST = 200  # rows
 @dataclass(frozen=True)
 class Agreement:
     """`channel` against the position: late by `delay_s` +- `error_s` (one standard error); rms of the
-    difference on held-out rows before and after the delay is taken out, and the sensors' own noise."""
+    difference on held-out rows before and after the delay is taken out, and the sensors' own noise; `scale`
+    +- `scale_error`: what the channel reads of the position's rate."""
 
     channel: str
     unit: str
@@ -31,6 +33,21 @@ class Agreement:
     after: float
     floor: float
     late: bool
+    scale: float = 1.0
+    scale_error: float = 0.0
+
+    @property
+    def scaled(self) -> str:
+        """In words, when the channel is another multiple of the position's rate than one."""
+        if abs(self.scale - 1.0) < max(SIGNIFICANT * self.scale_error, SCALED):
+            return ""
+        return f"{self.channel} reads {self.scale:.4g} of the position's rate"
+
+    @property
+    def left(self) -> float:
+        """Floors that remain between the two columns; 0 where there is none."""
+        rest = self.after if self.late else self.before
+        return rest / self.floor if np.isfinite(rest) and np.isfinite(self.floor) and self.floor > 0 else 0.0
 
 
 def velocity_against_position(view: View, held: Mask) -> Agreement | None:
@@ -71,7 +88,8 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
         and abs(scale) > 0.3
     )
     unit = view.rig.columns["velocity"].unit
-    return Agreement("velocity", unit, delay, error, b, c, floor, late)
+    spread = float(np.sqrt(max(last.covariance[0, 0], 0.0)))
+    return Agreement("velocity", unit, delay, error, b, c, floor, late, float(last.beta[0]), spread)
 
 
 def _scatter(view: View, w: Array, delay: float, a: Array, v: Array, train: Mask) -> float:

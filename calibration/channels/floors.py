@@ -7,6 +7,7 @@ import numpy as np
 from calibration.channels.drivenoise import sensors_floor
 from calibration.channels.problem import Problem
 from calibration.channels.repeats import repeat_lag
+from calibration.channels.strokes import stroke_scatter
 from calibration.channels.view import View
 from calibration.readers.run import Array
 
@@ -23,6 +24,9 @@ def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:
         found = _by_lag(view, problem, e, round(lag / max(view.step, 1)))
         if found is not None:
             return found, f"repeats of the motion every {lag * view.period_s:.4g} s"
+    again = None if view.dynamic else stroke_scatter(view, e)
+    if again is not None:
+        return again, "strokes that are made again, place by place"
     noise = sensors_floor(view, problem)
     if noise is not None:
         return noise, "the columns' noise from row to row, and travel that the position does not resolve"

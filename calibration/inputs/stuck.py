@@ -35,4 +35,4 @@ def check_stuck(records: list[Record], rig: Rig) -> None:
 
 def _all(records: list[Record], channel: str) -> Array:
     x = np.concatenate([r.columns[channel] for r in records])
-    return x[np.isfinite(x)]
+    return np.asarray(x[np.isfinite(x)])

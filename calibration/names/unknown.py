@@ -42,7 +42,7 @@ def smooth_functions(s: Scene) -> list[Candidate]:
             continue
         labels = tuple((f"knot_{k}", s.unit) for k in range(columns.shape[1]))
         out.append(Candidate("unknown", domain, columns, labels))
-        if s.force and s.both and domain in ("axis_angle", "time"):
+        if s.both and domain in ("axis_angle", "time"):
             odd = columns * s.view.direction[s.view.rows][:, None]
             out.append(Candidate("unknown", domain, odd, labels))
     return out

@@ -33,6 +33,10 @@ class Scores:
         return float((1 + np.sum(self.surrogate_max >= top)) / (1 + len(self.surrogate_max)))
 
 
+KEPT = 1e-6  # of a column's sum of squares that must lie beside the base
+APART = 1e-4  # smallest eigenvalue of a block's correlations: below, two columns are one
+
+
 def orthonormal_blocks(x: Array, base: Array, widths: list[int]) -> tuple[Array, list[int]]:
     """Every candidate's columns made orthogonal to the base and orthonormal within the block.
 
@@ -49,16 +53,43 @@ def orthonormal_blocks(x: Array, base: Array, widths: list[int]) -> tuple[Array,
     for width in widths:
         block = left[:, at : at + width]
         norm = np.linalg.norm(block, axis=0)
-        good = norm > 1e-3 * before[at : at + width]
+        good = norm > np.sqrt(KEPT) * before[at : at + width]
         at += width
         block = block[:, good] / np.maximum(norm[good], 1e-300)
         if block.shape[1] > 1:
             gram = block.T @ block
             w, v = np.linalg.eigh(gram)
-            block = block @ (v[:, w > 1e-4] / np.sqrt(w[w > 1e-4]))
+            block = block @ (v[:, w > APART] / np.sqrt(w[w > APART]))
         out.append(block)
         kept.append(block.shape[1])
     return (np.hstack(out) if out else np.zeros((len(x), 0))), kept
+
+
+def taken_away(e: Array, base: Array, blocks: list[Array]) -> tuple[list[float], list[int]]:
+    """Sum of squares of `e` (n,) that every block (n, k) takes away beside the base (n, p), and how many of
+    its columns count: as with orthonormal_blocks, from inner products alone."""
+    if not blocks:
+        return [], []
+    if base.shape[1]:
+        q, _ = np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))
+        e = e - q @ (q.T @ e)
+    else:
+        q = np.zeros((len(e), 0))
+    x = np.hstack(blocks)
+    along, lost = x.T @ e, x.T @ q
+    taken, kept, at = [], [], 0
+    for b in blocks:
+        k = slice(at, at + b.shape[1])
+        at = k.stop
+        whole = b.T @ b
+        gram = whole - lost[k] @ lost[k].T
+        good = np.diag(gram) > KEPT * np.maximum(np.diag(whole), 1e-300)
+        size = np.sqrt(np.diag(gram)[good])
+        w, v = np.linalg.eigh(gram[np.ix_(good, good)] / size[:, None] / size)
+        apart = w > APART
+        taken.append(float(np.sum(((along[k][good] / size) @ v[:, apart]) ** 2 / w[apart])))
+        kept.append(int(apart.sum()))
+    return taken, kept
 
 
 def score(

@@ -19,7 +19,7 @@ from calibration.decide.heldout import FOLDS, cross_validate, folds
 from calibration.decide.parameters import pairs_by_section
 from calibration.decide.scan import look
 from calibration.statistics.regression import gls
-from calibration.statistics.surrogate import orthonormal_blocks, score
+from calibration.statistics.surrogate import orthonormal_blocks, score, taken_away
 from calibration.statistics.tails import chi2_log10
 from calibration.statistics.whitening import Whitener, fit_ar
 
@@ -171,3 +171,15 @@ def test_the_noise_of_a_column_is_found_beside_a_smooth_motion_and_a_burst() -> 
     for order in (2, 4):
         assert rough(x, order) == pytest.approx(0.3, rel=0.05)
     assert np.isnan(rough(x[:150], 2))
+
+
+def test_what_blocks_take_away_is_the_same_from_inner_products_and_from_columns() -> None:
+    rng = np.random.default_rng(0)
+    base, e = rng.standard_normal((500, 3)), rng.standard_normal(500)
+    blocks = [rng.standard_normal((500, k)) for k in (1, 2, 3)]
+    blocks.append(np.column_stack([blocks[0], 2 * blocks[0], base[:, 1]]))  # a twin, and one of the base
+    q, widths = orthonormal_blocks(np.hstack(blocks), base, [b.shape[1] for b in blocks])
+    parts = np.split((q.T @ e) ** 2, np.cumsum(widths)[:-1])
+    taken, kept = taken_away(e, base, blocks)
+    assert kept == widths == [1, 2, 3, 1]
+    assert taken == pytest.approx([p.sum() for p in parts])
