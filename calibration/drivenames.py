@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from calibration.finding import Finding
+from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 
 LINES = ("gear_eccentricity", "gear_mesh", "motor_cogging", "bearing_pass")
@@ -17,7 +17,7 @@ BRISTLE = {"m": 1e-3, "mm": 1.0}  # position unit -> a stroke that bristles may 
 
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
     """Findings of a balance of forces with the names that the log carries."""
-    named = [_wide_loop(_line(f, scene), scene) for f in findings]
+    named = [_turned_gap(_wide_loop(_line(f, scene), scene)) for f in findings]
     return _one_loop(named) if scene.force else named
 
 
@@ -47,6 +47,16 @@ def _wide_loop(f: Finding, scene: Scene) -> Finding:
         f.note = (
             f"a loop of {travel:.3g} {scene.angle_unit} after every reversal: too wide for bristles or gears"
         )
+    return f
+
+
+def _turned_gap(f: Finding) -> Finding:
+    """A gap has a width: below zero only the difference of the sensors was taken the other way round."""
+    gap = f.parameters.get("gap")
+    if f.name == "play" and f.channel == "K" and gap is not None and gap.value < 0:
+        low, high = (None if x is None else -x for x in (gap.high, gap.low))
+        f.parameters["gap"] = Parameter(-gap.value, gap.unit, low, high)
+        f.note = f"{f.note}; the column is the first sensor less the second".lstrip("; ")
     return f
 
 

@@ -15,7 +15,7 @@ from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible, moving_scale
-from calibration.prune import prune, remainders, sound, within_bounds
+from calibration.prune import prune, remainders, signed, sound, within_bounds
 
 MOST = 14  # effects: a cogging motor shows several orders
 MARGIN = 0.02  # of the cross-validated mean square (effects.md, lesson 3)
@@ -104,7 +104,7 @@ def _search(
         if not any(x.candidate.name in lines for x in s.chosen) and k > 0:
             break
     assert s is not None
-    return sound(remainders(prune(within_bounds(s, view.resolved)))), scene
+    return sound(remainders(prune(signed(within_bounds(s, view.resolved))))), scene
 
 
 def _select(

@@ -8,10 +8,12 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import compare
-from calibration.decide.select import Refusal, Selection, design, phases
+from calibration.decide.scan import Contender
+from calibration.decide.select import Refusal, Selection, design, fitted, phases
 from calibration.names.structural_mode import MOST_DAMPED
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
+from calibration.statistics.whitening import Mask
 
 PASSIVE = ("inertia", "viscous", "coulomb")  # terms that cannot be negative
 STICTION = 0.2  # a dip of friction near rest, likewise: less is how friction turns (development seed 1011)
@@ -140,17 +142,48 @@ def _held(s: Selection, chosen: list[Candidate]) -> float:
 def _without(s: Selection, k: int, why: str) -> Selection:
     gone = s.chosen[k].candidate
     keep = [j for j in range(len(s.chosen)) if j != k]
-    chosen = [s.chosen[j] for j in keep]
+    again = _refitted(s, [s.chosen[j] for j in keep])
+    return replace(
+        again,
+        classes=[s.classes[j] for j in keep],
+        steps=[s.steps[j] for j in keep],
+        refused=[*s.refused, Refusal(gone.say(), why)],
+    )
+
+
+def _refitted(s: Selection, chosen: list[Contender]) -> Selection:
     candidates = [x.candidate for x in chosen]
     x, fit = _fit(s, candidates)
     p = s.problem
     held = compare(p, p.base, s.before.beta, x, fit.beta, fit.whitener, ((), phases(p, candidates)))
-    return replace(
-        s,
-        chosen=chosen,
-        classes=[s.classes[j] for j in keep],
-        steps=[s.steps[j] for j in keep],
-        after=fit,
-        held=held,
-        refused=[*s.refused, Refusal(gone.say(), why)],
-    )
+    return replace(s, chosen=chosen, after=fit, held=held)
+
+
+def signed(s: Selection) -> Selection:
+    """Every size keeps its sign in the fit of all of them: a part of an effect that does not is left out of
+    it, and an effect without any other part goes."""
+    for _ in range(sum(x.candidate.width for x in s.chosen)):
+        sizes = fitted(s)
+        bad = next((k for k, (c, beta) in enumerate(sizes) if not c.allowed(beta)), None)
+        if bad is None:
+            break
+        c, beta = sizes[bad]
+        good = beta * c.sign > 0
+        if c.sign and good.any() and len(c.labels) == c.width:
+            part = replace(s.chosen[bad], candidate=_part(c, good))
+            s = _refitted(s, [part if j == bad else x for j, x in enumerate(s.chosen)])
+        else:
+            s = _without(s, bad, "beside the others its size comes out with a sign that physics excludes")
+    return s
+
+
+def _part(c: Candidate, good: Mask) -> Candidate:
+    """The candidate with some of its columns."""
+    whole = c.shape
+
+    def shape(p: Array) -> Array:
+        assert whole is not None
+        return whole(p)[:, good]
+
+    labels = tuple(x for x, g in zip(c.labels, good, strict=True) if g)
+    return replace(c, columns=c.columns[:, good], labels=labels, shape=shape if whole is not None else None)

@@ -8,9 +8,11 @@ import numpy as np
 from calibration.inputs.declaration import Rig
 from calibration.inputs.record import Record, Repair, quantum
 from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
 
 WORDS = tuple(2.0**k for k in range(8, 33))
 CIRCLES = (1.0, 24.0, 360.0, 2 * np.pi, 86400.0, 1296000.0, 400.0, 1000.0)
+MOVED = 3.0  # of what all but one row in a hundred move, that a row with a wrap may
 NEAR = 0.2  # of the counter's length, by which a wrap's jump may differ: what is moved in one row
 SPIKE = 12.0  # robust deviations from the neighbours' line
 LEAP = 2.5  # between the smallest spike and the largest of the rest
@@ -67,12 +69,7 @@ def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
         w for w in (WORDS if integers else CIRCLES) + ((360.0,) if integers else ()) if w >= span * 0.999
     ]
     length = min(lengths, key=lambda w: abs(w - size), default=0.0)
-    # a counter's jump is its length less what is moved in a row: never more than that and a little
-    if (
-        not length
-        or abs(length - size) > NEAR * length
-        or np.mean(np.abs(np.abs(step[jumps]) - length) < NEAR * length) < 0.9
-    ):
+    if not length or abs(length - size) > NEAR * length or not _is_counter(x, step, jumps, length):
         return raw, None
     out = raw.copy()
     out[good] = np.unwrap(x, period=length)
@@ -91,6 +88,20 @@ def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
         out[good] = np.where(high, x - length, x)
         kind, note = "signed", f"signed numbers of {length:g} values written unsigned: {length - 1:g} is -1"
     return out, Repair(kind, channel, count, length, note)
+
+
+def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:
+    """Whether jumps are a counter's and not the column's own: a counter jumps by its length less what moves
+    in a row; or the column uses it from end to end, and then a real step may fall on a wrap."""
+    moved = MOVED * float(np.quantile(np.abs(step[~jumps]), 0.99)) + 2.0 * _least_step(step)
+    if np.mean(np.abs(np.abs(step[jumps]) - length) <= min(moved, NEAR * length)) >= 0.9:
+        return True
+    return bool(length in WORDS and np.ptp(x) >= length - 1 - moved)
+
+
+def _least_step(step: Array) -> float:
+    some = np.abs(step[step != 0])
+    return float(some.min()) if len(some) else 0.0
 
 
 def _spikes(x: Array, t: Array, period: float) -> np.ndarray:

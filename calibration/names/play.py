@@ -85,6 +85,8 @@ def _between_sensors(s: Scene) -> list[Candidate]:
                 "reversal",
                 shape(np.array([gap])),
                 (("gap", s.unit),),
+                # the second sensor lags; of a difference of unknown order (ratio 0) either one may be it
+                sign=0 if s.view.response.ratio == 0 else 1,
                 least=LEAST,
                 fixed={"closing_travel": (gap, s.angle_unit)},
                 shape=shape,
