@@ -95,8 +95,7 @@ def test_teeth_that_pass_quicker_than_the_filter_are_no_mains(tmp_path: Path) ->
 def test_a_real_step_of_a_signed_effort_is_no_wrap(tmp_path: Path) -> None:
     """A drive that is switched off at -312 falls to 0: that is no counter of 360."""
     t, x, u = motion()
-    counts = np.where(t < 0.8 * t[-1], np.round(-150 + 10 * u), 0.0)
-    counts[int(0.8 * len(t)) - 1] = -312
-    counts = np.minimum(counts, 0)
+    off = 0.6 * t[-1]
+    counts = np.where(t < off, np.round(-312 * t / off + 0.1 * u), 0.0)
     rig = FORCE.replace("unit: N}\nresponse", "unit: N, scale: 0.1}\nresponse")
-    assert "log_wrap" not in found(answer(tmp_path, rig, (t, x, counts)))
+    assert "log_wrap" not in found(answer(tmp_path, rig, (t, x, np.minimum(counts, 0))))

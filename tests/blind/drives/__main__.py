@@ -66,14 +66,15 @@ def one(order: Order, seed: int, out: Path, command: str) -> dict[str, Any]:
 @click.option("--seed", type=int, default=SCORED_SEED, show_default=True, help="development seeds: 1000-1999")
 @click.option("--set", "name", type=click.Choice(sorted(SETS)), default="everything", show_default=True)
 @click.option("--only", default="", help="only cases whose key contains this")
+@click.option("--first", type=int, help="only so many cases of the set, in its order")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/blind-drives"), show_default=True)
 @click.option("--jobs", default=min(2, os.cpu_count() or 1), show_default=True)
 @click.option("--finder", "command", default=finder.COMMAND, show_default=True)
-def main(seed: int, name: str, only: str, out: Path, jobs: int, command: str) -> None:
+def main(seed: int, name: str, only: str, first: int | None, out: Path, jobs: int, command: str) -> None:
     """Blind tests on other drives. Resumes where it stopped."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    orders = [o for o in SETS[name]() if only in o.key]
+    orders = [o for o in SETS[name]() if only in o.key][:first]
     if not orders:
         raise click.ClickException(f"--only {only}: no case of the set {name} has this in its key")
     work = partial(one, seed=seed, out=out / str(seed), command=command)

@@ -1,5 +1,7 @@
 """The list of cases of a seed."""
 
+import random
+
 from tests.blind.drives.case import Order
 from tests.blind.drives.effects import OUTSIDE, WHERE
 from tests.blind.drives.families import FAMILIES
@@ -80,4 +82,17 @@ def sample() -> list[Order]:
     return everything()[::7]
 
 
-SETS = {"everything": everything, "sample": sample, "develop": develop, "quick": quick}
+def strata() -> list[Order]:
+    """Every name once, in a family and at a ratio in turn, every family and noise of nothing, every thing
+    outside; in an order drawn once, so that whatever part there is time for is a sample of all."""
+    out = nothing(1)
+    for k, (draw, kinds) in enumerate(WHERE.items()):
+        kind, ratio = kinds[k % len(kinds)], (2.0, 5.0)[k % 2]
+        out += [o for o in single((ratio,)) if o.names == (draw.__name__,) and o.kind == kind]
+    out += [o for k, o in enumerate(outside()) if k % 4 == (k // 4) % 4]
+    random.Random(ORDER).shuffle(out)
+    return out
+
+
+ORDER = 7  # of the shuffle of `strata`
+SETS = {"strata": strata, "everything": everything, "sample": sample, "develop": develop, "quick": quick}

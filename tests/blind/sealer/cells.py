@@ -1,5 +1,7 @@
 """The list of cases of a seed: nothing, one effect, two effects, outside the catalogue."""
 
+import random
+
 from tests.blind.sealer.case import Order
 from tests.blind.sealer.catalogue import APART, BY_NAME, CONFUSABLE, MONO_CLASS, OUTSIDE
 
@@ -7,6 +9,7 @@ NOTHING = 68  # of each kind: 204 in all
 RATIOS = (1.0, 2.0, 5.0)
 REPEATS = 3
 OUTSIDE_CASES = 30
+ORDER = 7  # of the shuffle of `strata`
 KINDS = ("pure", "off", "gains")
 
 
@@ -82,4 +85,14 @@ def sample() -> list[Order]:
     return everything()[::80]
 
 
-SETS = {"everything": everything, "sample": sample, "quick": quick, "develop": develop}
+def strata() -> list[Order]:
+    """A case or more of every class in an order drawn once: whatever part of it there is time for is a sample
+    of all of it."""
+    names = [o for o in single(1) if o.ratio > 1.0]  # a pair per name: ratio 2, ratio 5
+    once = [names[2 * k + (k % 2)] for k in range(len(names) // 2)]
+    out = nothing(3) + once + pairs()[::5] + outside(len(OUTSIDE))
+    random.Random(ORDER).shuffle(out)
+    return out
+
+
+SETS = {"everything": everything, "sample": sample, "strata": strata, "quick": quick, "develop": develop}
