@@ -26,6 +26,11 @@ CRTL_ACTIVE: Final = 0x40
 PROT_TX: Final = 0x80
 PROT_KINDS: Final = {"bit": 0x01, "form": 0x02, "stuff": 0x04, "crc": 0x00, "ack": 0x00}
 PROT_PLACES: Final = {"crc": 0x08, "ack": 0x19}
+OF_A_SENDER: Final = {"stuff": "bit", "crc": "form"}
+OF_A_RECEIVER: Final = {"bit": "stuff"}
+"""What one node calls an error that the other side has found first: the six dominant bits of its flag. They
+are a bit error to who sends a recessive one, a stuff error to who listens, and behind a wrong CRC they fall
+into the recessive end of frame, a form error (ISO 11898-1, error detection)."""
 WARNING: Final = 96
 """Counts from which a controller warns (ISO 11898-1; MCP2515 EFLG.EWARN)."""
 _QUIET_NS: Final = 10_000_000
@@ -80,8 +85,9 @@ class ErrorFrames:
         if error.kind == "ack" and error.sending:
             self._send(t_ns, CAN_ERR_ACK)
         else:
-            kind = PROT_KINDS[error.kind] | (PROT_TX if error.sending else 0)
-            place = PROT_PLACES.get(error.kind, 0)
+            name = (OF_A_SENDER if error.sending else OF_A_RECEIVER).get(error.kind, error.kind)
+            kind = PROT_KINDS[name] | (PROT_TX if error.sending else 0)
+            place = PROT_PLACES.get(name, 0)
             self._send(t_ns, CAN_ERR_PROT | CAN_ERR_BUSERROR, kind=kind, place=place)
 
     def _changed(self, t_ns: int, before: int) -> None:

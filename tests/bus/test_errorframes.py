@@ -6,6 +6,7 @@ import can
 import pytest
 
 from bus.can import Flip, Frame, Wire
+from bus.can.disturbance import seen_by_receiver
 from bus.can.stuck import StuckDominant
 from bus.door import Door
 from bus.pythoncan import SchmidtBus
@@ -14,7 +15,7 @@ from bus.time import EventQueue
 # Values of include/uapi/linux/can/error.h, written out: the header is the reference, not the code.
 CRTL, PROT, ACK, BUSOFF, BUSERROR, RESTARTED = 0x04, 0x08, 0x20, 0x40, 0x80, 0x100
 RX_PASSIVE, TX_PASSIVE, ACTIVE, TX_WARNING = 0x10, 0x20, 0x40, 0x08
-PROT_STUFF, PROT_TX = 0x04, 0x80
+PROT_BIT, PROT_FORM, PROT_STUFF, PROT_TX = 0x01, 0x02, 0x04, 0x80
 FRAME = Frame(0x123, b"\x00" * 8)
 
 
@@ -69,9 +70,26 @@ def test_an_error_of_somebody_else_is_a_protocol_violation(wire: Wire, bus: Schm
     wire.disturb(None)
     (message,) = errors(bus)
     assert classes([message]) == [PROT | BUSERROR]
-    assert not message.data[2] & PROT_TX
+    assert message.data[2] == PROT_STUFF  # six dominant bits of the sender, who saw its bit inverted
     assert message.data[7] == 1  # REC
     assert message.timestamp == pytest.approx(30e-6, abs=30e-6)
+
+
+@pytest.mark.parametrize(("receivers", "senders"), [("stuff", PROT_BIT), ("crc", PROT_FORM)])
+def test_a_sender_calls_a_receivers_flag_what_it_is_to_a_sender(
+    wire: Wire, bus: SchmidtBus, receivers: str, senders: int
+) -> None:
+    """One receiver sees a bit inverted. Its flag meets recessive bits at once, or, behind a wrong CRC, in the
+    end of frame."""
+    wire.attach("other")
+    frame = Frame(0x123, b"\x1f" * 8)
+    seen = {bit: seen_by_receiver(frame, bit) for bit in range(19, 90)}
+    bit = next(bit for bit, verdict in seen.items() if verdict is not None and verdict.kind == receivers)
+    wire.disturb(lambda _t, _frame, _sender: Flip(bit, "other"))
+    bus.send(can.Message(arbitration_id=0x123, is_extended_id=False, data=frame.data))
+    wire.queue.run_until(200_000)
+    wire.disturb(None)
+    assert errors(bus)[0].data[2] == PROT_TX | senders
 
 
 def test_bus_off_and_the_way_back(wire: Wire, bus: SchmidtBus) -> None:
