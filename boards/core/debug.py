@@ -21,6 +21,8 @@ _DONE, _WRONG = b"\r", b"\a"
 _VERSION: Final = b"V1013\r"
 _PLAIN: Final = frozenset(b"SsWmMZXF")
 """Set-up commands of LAWICEL adapters: there is nothing to set up, but drivers send them."""
+_PIECE: Final = re.compile(rb"[^\r]*\r|[^\r]+")
+"""Up to the end of a line: only then does the firmware do something."""
 _FRAME: Final = re.compile(rb"t([0-7][0-9A-Fa-f]{2})([0-8])((?:[0-9A-Fa-f]{2})*)")
 
 
@@ -52,6 +54,8 @@ class DebugPort:
         self.tapped = False
         self.out_ns = 0
         self.in_ns = 0
+        self.in_since_ns = 0
+        self.in_bytes = 0
         self.out: list[bytes] = []
         self.incoming: list[bytes] = []
         self.partial = b""
@@ -60,9 +64,12 @@ class DebugPort:
         """The PC sends bytes from `t_ns` on; the firmware reads a line when its last byte is through."""
         room = BUFFER_BYTES - sum(map(len, self.incoming))
         self.lost += max(0, len(data) - room)
-        for piece in data[:room].splitlines(keepends=True):
+        if self.in_ns <= t_ns:
+            self.in_since_ns, self.in_bytes = t_ns, 0
+        for piece in _PIECE.findall(data[:room]):
             self.incoming.append(piece)
-            self.in_ns = max(self.in_ns, t_ns) + self._duration_ns(len(piece))
+            self.in_bytes += len(piece)  # counted from the first on: rounded once, however they are cut
+            self.in_ns = self.in_since_ns + self._duration_ns(self.in_bytes)
             self.board.queue.at(self.in_ns, self._read)
 
     def _duration_ns(self, length: int) -> int:

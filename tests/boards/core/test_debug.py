@@ -133,3 +133,18 @@ def test_the_same_bytes_cut_anywhere_do_the_same() -> None:
         cut.port.write(cut.queue.now_ns, bytes([byte]))
     cut.queue.run_until(20 * MS)
     assert b"".join(data for _, data in cut.heard) == expected
+
+
+@pytest.mark.parametrize("length", range(12))
+def test_a_line_is_over_with_its_return_whatever_follows_and_however_it_comes(length: int) -> None:
+    """Found by a quarter of a million inputs: `C` took effect behind the line feed when it came in one piece,
+    so a reply that was on its way got out; and times were rounded piece by piece."""
+    said = b"x" * length + b"\rV\r\nV\r\r\n"
+    heard = []
+    for cuts in ([said], [said[at : at + 1] for at in range(len(said))], [said[:3], said[3:]]):
+        desk = Desk()
+        for piece in cuts:
+            desk.port.write(desk.queue.now_ns, piece)
+        desk.say(b"")
+        heard.append(desk.heard)
+    assert heard[0] == heard[1] == heard[2]
