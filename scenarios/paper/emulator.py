@@ -6,6 +6,8 @@ control effort, ADC counts), as the authors' logs did. Nothing is read from the 
 which no verdict uses.
 """
 
+from math import floor
+
 import numpy as np
 
 from boards.axis.config import rate_q16
@@ -78,9 +80,10 @@ class EmulatorBench:
     def _run(self, seconds: float, opcode: Opcode, argument: int) -> Log:
         self._rows = []
         self._command(opcode, argument)
-        missing = round(seconds / LOG_PERIOD_S) - len(self._rows)
-        self._wait(missing * LOG_PERIOD_S)
+        whole = floor(seconds / LOG_PERIOD_S + 1e-6)
+        self._wait((whole - len(self._rows)) * LOG_PERIOD_S)
         rows = np.array(self._rows, dtype=np.float64)
+        self._wait(max(0.0, seconds - whole * LOG_PERIOD_S))
         return Log(*(np.ascontiguousarray(column) for column in rows.T))
 
     def _wait(self, seconds: float) -> None:

@@ -9,13 +9,13 @@ import numpy as np
 from plant.parts import PlantModel
 from scenarios.paper.log import Array, Log
 from scenarios.paper.runs import BROKEN_AWAY
-from scenarios.paper.scales import ARCSEC, EFFORT_SCALE, GEAR_RATIO
+from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, EFFORT_SCALE, GEAR_RATIO
 
 
 @dataclass(frozen=True)
 class MapPoint:
-    """One steady state. rate: rad/s at the axis. torque: N m at the axis. spread: standard error of it, N
-    m."""
+    """One steady state. rate: rad/s at the axis. torque: N m at the axis. spread: standard error of it, N m:
+    what the fit weights it by."""
 
     rate: float
     torque: float
@@ -74,32 +74,42 @@ def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
         torque.append(float(driven.mean()))
         spread.append(float(np.std(blocks, ddof=1) / np.sqrt(10.0)))
         rate.append(float(log.rate.mean()))
+    # a steady current rests anywhere within the converter's step, and averaging does not help
+    converter = np.sqrt(2.0 / 12.0) * ADC_A_PER_COUNT * sheet.torque_constant * GEAR_RATIO
     return MapPoint(
         (rate[0] - rate[1]) / 2.0 * ARCSEC,
         (torque[0] - torque[1]) / 2.0,
-        float(np.hypot(spread[0], spread[1]) / 2.0),
+        float(np.hypot(np.hypot(spread[0], spread[1]), np.sqrt(2.0) * converter) / 2.0),
     )
 
 
 def break_away_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
     """Return the largest torque before the axis breaks away, and the rate at which it crept then.
 
-    forward, backward: effort rising from rest, either way; torque is averaged over 50 ms, against the
-    converter's steps. Friction that is ramped up slowly follows the static curve, so this is a point of the
-    map like the others.
+    forward, backward: effort rising from rest, either way. Both are means over the same WINDOW samples:
+    against the converter's steps and the encoder's, and because the rate grows fast by then. Friction that is
+    ramped up slowly follows the static curve, so this is a point of the map like the others.
     """
     found = []
+    window = np.full(WINDOW, 1.0 / WINDOW)
     for log, sign in ((forward, 1.0), (backward, -1.0)):
         free = np.nonzero(sign * log.counts > BROKEN_AWAY)[0]
-        held = slice(0, max(10, int(free[0]) if free.size else log.t_s.size))
-        torque = np.convolve(sign * drive_torque(log, sheet)[held], np.full(5, 0.2), mode="valid")
+        held = slice(0, max(WINDOW, int(free[0]) if free.size else log.t_s.size))
+        driven = sign * drive_torque(log, sheet)[held]
+        torque = np.convolve(driven, window, mode="valid")
+        rate = np.convolve(sign * log.rate[held], window, mode="valid")
         top = int(np.argmax(torque))
-        before = slice(max(0, top - 10), top + 5)
-        found.append(
-            (sign * float(log.rate[before].mean()), float(torque[top]), float(np.std(torque[before])))
-        )
-    rate, level, spread = (sum(values) / 2.0 for values in zip(*found, strict=True))
-    return MapPoint(max(rate, 0.1) * ARCSEC, level, spread)
+        found.append((float(rate[top]), float(torque[top])))
+    rate, level = (sum(values) / 2.0 for values in zip(*found, strict=True))
+    return MapPoint(max(rate, 0.1) * ARCSEC, level, BREAK_AWAY_ERROR * level)
+
+
+WINDOW = 15
+"""Samples, 150 ms."""
+BREAK_AWAY_ERROR = 0.025
+"""Share. The rate, some 10 arcsec/s, doubles within the window and is read in counts of 2.3: it is known to a
+quarter, and there the torque falls by a tenth when the rate doubles (Table 2, any exponent near 0.5).
+ASSUMPTION."""
 
 
 def friction_curve(rate: Array, parameters: Sequence[float] | Array) -> Array:
@@ -136,8 +146,8 @@ EXPONENTS = (0.5, 2.0)
 
 
 def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:
-    """Fit Table 2's four parameters and the exponent (unless it is given) to a torque-velocity map, by
-    relative least squares.
+    """Fit Table 2's four parameters and the exponent (unless it is given) to a torque-velocity map, by least
+    squares weighted with each point's standard error.
 
     Starts are a grid over vs and delta, so that the result does not depend on a guess. Raises ValueError when
     there are fewer points than parameters.
@@ -148,10 +158,11 @@ def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> F
 
     rate = np.array([p.rate for p in points])
     torque = np.array([p.torque for p in points])
+    spread = np.array([p.spread for p in points])
     bounds = EXPONENTS if exponent is None else (exponent * (1.0 - 1e-6), exponent * (1.0 + 1e-6))
 
     def misfit(x: Array) -> Array:
-        return np.asarray(friction_curve(rate, np.exp(x)) / torque - 1.0, dtype=np.float64)
+        return np.asarray((friction_curve(rate, np.exp(x)) - torque) / spread, dtype=np.float64)
 
     low = np.log([1.0, 1.0, 1e-5, bounds[0], 1.0])
     high = np.log([1e5, 1e5, 1e-1, bounds[1], 1e6])
@@ -162,11 +173,11 @@ def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> F
                 [torque.min(), torque.max(), vs, delta, max(10.0, np.ptp(torque[-3:]) / np.ptp(rate[-3:]))]
             )
             start = np.clip(start, low + 1e-9, high - 1e-9)
-            found = least_squares(misfit, start, bounds=(low, high), loss="soft_l1", f_scale=0.05)
+            found = least_squares(misfit, start, bounds=(low, high), loss="soft_l1")
             if best is None or found.cost < best.cost:
                 best = found
     assert best is not None
     values = np.exp(best.x)
-    rms = float(np.sqrt(np.mean(misfit(best.x) ** 2)) * 100.0)
+    rms = float(np.sqrt(np.mean((friction_curve(rate, values) / torque - 1.0) ** 2)) * 100.0)
     coulomb, stiction, stribeck_rate, exponent, viscous = (float(v) for v in values)
     return FrictionFit(coulomb, stiction, stribeck_rate, exponent, viscous, rms)

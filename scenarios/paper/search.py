@@ -16,7 +16,6 @@ import dataclasses
 import json
 import signal
 import sys
-from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic
@@ -24,34 +23,20 @@ from typing import Any
 
 import numpy as np
 
-from plant.model import load
-from plant.parts import PlantModel
-from scenarios.paper.compiled import CompiledBench
-from scenarios.paper.cost import Term, cost
 from scenarios.paper.log import Array
+from scenarios.paper.objective import READINGS, Enough, Objective
 from scenarios.paper.plantfile import write
-from scenarios.paper.space import SPACE, bounds, models, values, vector
-from scenarios.paper.starts import STARTS, Benches, Start
-from scenarios.paper.statics import shortfalls_of
-from scenarios.paper.together import Point, Pricer, pricer
+from scenarios.paper.space import SPACE, bounds, values, vector
+from scenarios.paper.starts import STARTS
+from scenarios.paper.together import pricer
 
-READINGS = {
-    "printed": (1.0, "{}_preload", "{}_preload_printed"),
-    "motor": (1.0 / 2.774, "{}_preload_motor_units", "{}_preload_motor_units"),
-}
-"""Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
-per unit of the table, the plant files whose declared numbers stay, and those that are written."""
 BRIDGE = "{}_preload_bridge"
 """Plant files of the reading "motor" with freewheel diodes."""
 SEARCHED = STARTS[::2]
 """Starts of a point: four of the eight that decide."""
-WORSE = 1e6
-UNREACHABLE = 1000.0
 POPULATION = 24
 SIFTED = 4096
 """Sobol points of which those that pass the statics are taken."""
-ROOM = 2.0
-"""How far beyond the best a point may cost before the rest of its rows is left out."""
 STEP_SHARE = 0.25
 """Of the points, for the short steps."""
 STEP, MOVED, AGAIN = 0.08, 0.35, 0.3
@@ -60,93 +45,6 @@ is tried again."""
 
 BATCH = 8
 """Short steps at a time, where points are run together."""
-
-
-class Enough(Exception):
-    """The search may try no more points, or need not."""
-
-
-class Objective:
-    """Cost of a search vector; keeps the best, and a record of every improvement."""
-
-    def __init__(
-        self,
-        reading: str,
-        diode: bool,
-        starts: tuple[Start, ...],
-        most: int,
-        tell: Callable[[str], None],
-        leave_out: Sequence[str] = (),
-        together: Pricer | None = None,
-    ) -> None:
-        self.scale, base, _ = READINGS[reading]
-        self.bases = {preload: load(base.format(preload)) for preload in ("low", "high")}
-        self.diode = diode
-        self.starts = starts
-        self.leave_out = leave_out
-        self.together = together
-        self.tell = tell
-        self.most = most
-        self.best = WORSE
-        self.best_x: Array | None = None
-        self.best_terms: list[Term] = []
-        self.tried = 0
-        self.room = ROOM
-
-    def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
-        """Return the two plants at a search vector."""
-        return models(self.bases, values(x), source, self.diode)
-
-    def shortfall(self, x: Array) -> float:
-        """Return by how much statics say that a point cannot be."""
-        return float(shortfalls_of(values(x), self.scale, self.diode))
-
-    def beyond(self, x: Array) -> float | None:
-        """Return the cost of a point that need not be run: outside the bounds it grows with the distance."""
-        low, high = np.array(bounds()).T
-        beyond = float(np.sum(np.maximum(0.0, low - x) + np.maximum(0.0, x - high)))
-        if beyond > 0.0:
-            return WORSE + beyond
-        failing = self.shortfall(x)
-        return UNREACHABLE * (1.0 + failing) if failing > 0.0 else None
-
-    def __call__(self, x: Array) -> float:
-        """Return the cost at `x`."""
-        known = self.beyond(x)
-        if known is not None:
-            return known
-        if self.tried >= self.most or self.best == 0.0:
-            raise Enough
-        plants = self.plants(x)
-        benches = [Benches(CompiledBench, plants, start) for start in self.starts]
-        found, terms = cost(benches, self.best + self.room, self.leave_out)
-        self._note(x, found, terms)
-        return found
-
-    def many(self, points: Array) -> Array:
-        """Return the costs of the columns of `points`, (numbers, points), run together; those that there are
-        no more points for cost WORSE."""
-        assert self.together is not None
-        known = [self.beyond(x) for x in points.T]
-        wanted = [place for place, each in enumerate(known) if each is None]
-        if wanted and (self.tried >= self.most or self.best == 0.0):
-            raise Enough
-        wanted = wanted[: self.most - self.tried]
-        stop_at, left_out = self.best + self.room, tuple(self.leave_out)
-        run = [Point(self.plants(points[:, k]), self.starts, stop_at, left_out) for k in wanted]
-        for k, (found, terms) in zip(wanted, self.together(run) if run else [], strict=True):
-            known[k] = found
-            self._note(points[:, k], found, terms)
-        return np.array([WORSE if each is None else each for each in known])
-
-    def _note(self, x: Array, found: float, terms: list[Term]) -> None:
-        self.tried += 1
-        if found < self.best:
-            self.best, self.best_x, self.best_terms = found, np.array(x), terms
-            missed = [term for term in terms if term.excess > 0.0]
-            self.tell(
-                f"{self.tried:5d} {found:7.3f}  {len(missed)} missed: " + ", ".join(t.words for t in missed)
-            )
 
 
 def population(objective: Objective, seed: int) -> Array:
@@ -180,8 +78,9 @@ def evolve(objective: Objective, seeds: tuple[int, ...]) -> None:
             )  # fmt: skip
 
 
-def descend(objective: Objective, start: Array, seed: int) -> None:
-    """Short steps from a point, each from the best so far; a step that costs more is not run to its end."""
+def descend(objective: Objective, start: Array, seed: int, spread: float = STEP) -> None:
+    """Short steps from a point, each from the best so far; a step that costs more is not run to its end.
+    spread: of a step, logarithmic."""
     random = np.random.default_rng(seed)
     low, high = np.array(bounds()).T
     objective.room = 0.0
@@ -190,7 +89,7 @@ def descend(objective: Objective, start: Array, seed: int) -> None:
     def step() -> Array:
         if helped is not None and random.random() < AGAIN:
             return np.asarray(helped * random.uniform(0.3, 1.5))
-        return np.asarray(STEP * random.standard_normal(low.size) * (random.random(low.size) < MOVED))
+        return np.asarray(spread * random.standard_normal(low.size) * (random.random(low.size) < MOVED))
 
     with suppress(Enough):
         if objective.best_x is None:
@@ -208,7 +107,9 @@ def descend(objective: Objective, start: Array, seed: int) -> None:
                 helped = taken
 
 
-def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = None) -> None:
+def search(
+    objective: Objective, seeds: tuple[int, ...], known: Array | None = None, spread: float = STEP
+) -> None:
     """Search until all points are used up or one costs nothing; the result is in `objective`."""
     most = objective.most
     if known is None:
@@ -216,7 +117,7 @@ def search(objective: Objective, seeds: tuple[int, ...], known: Array | None = N
         evolve(objective, seeds)
         known, objective.most = objective.best_x, most
     if known is not None:
-        descend(objective, known, seeds[0])
+        descend(objective, known, seeds[0], spread)
 
 
 def report(objective: Objective, seeds: tuple[int, ...], seconds: float) -> dict[str, Any]:
@@ -250,6 +151,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--no-diode", action="store_true", help="without the freewheel path")
     parser.add_argument("--start", type=Path, help="search.json to go on from")
+    parser.add_argument("--step", type=float, default=STEP, help="spread of a short step, logarithmic")
     parser.add_argument(
         "--leave-out", default="", metavar="E1,E2,...", help="rows that nothing can meet: not looked at"
     )
@@ -271,7 +173,7 @@ def main(arguments: list[str] | None = None) -> int:
     known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
     seeds = tuple(chosen.seeds)
     with suppress(KeyboardInterrupt):
-        search(objective, seeds, known)
+        search(objective, seeds, known, chosen.step)
     if objective.best_x is None:
         print("no point of the space could be run at all", file=sys.stderr)
         return 1

@@ -7,7 +7,7 @@ import pytest
 from plant.model import load
 from scenarios.paper.command import DEFAULTS
 from scenarios.paper.experiments import e01, e03, e04, e05, e11, e13, e15
-from scenarios.paper.experiments.identify import fit
+from scenarios.paper.experiments.identify import fit, second_order
 from scenarios.paper.experiments.noise import CONSTANT_ERROR, Noise
 from scenarios.paper.experiments.stickslip import stick_slips
 from scenarios.paper.rows import Row
@@ -109,10 +109,34 @@ def test_E11_a_loop_that_never_sticks_misses_the_row():
 
 @pytest.mark.parametrize(("gain", "lag", "dead"), [(1.9, 0.066, 0.0085), (3.0, 0.02, 0.03), (0.5, 0.2, 0.01)])
 def test_E10_the_identified_model_is_the_one_that_made_the_response(gain, lag, dead):
-    t = (np.arange(200) + 1.0) * 0.01
+    t = np.arange(100) * 0.01 + 0.0025  # the first row that shows the effort is 2.5 ms younger on average
     response = gain * (1.0 - np.exp(-np.maximum(0.0, t - dead) / lag))
     found = fit(response)
-    assert (found.gain, found.lag_s, found.dead_s) == pytest.approx((gain, lag, dead), rel=0.05)
+    in_the_loop = dead + 0.0025  # and half a period of holding
+    assert (found.gain, found.lag_s) == pytest.approx((gain, lag), rel=0.05)
+    assert found.dead_s == pytest.approx(in_the_loop, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "damping", "dead"), [(31.0, 0.4, 0.005), (60.0, 1.0, 0.01), (25.0, 3.0, 0.0)]
+)
+def test_E10_the_second_order_is_found_from_rows_10_ms_apart(frequency, damping, dead):
+    t = np.arange(100) * 0.01 + 0.0025
+    # by Euler's method in steps of 10 us, not by the formula of the fit
+    dt, y, v, wanted, at = 1e-5, 0.0, 0.0, [], 0
+    for moment in t:
+        while at * dt < moment:
+            force = frequency**2 * ((1.0 if at * dt >= dead else 0.0) - y) - 2.0 * damping * frequency * v
+            v += force * dt
+            y += v * dt
+            at += 1
+        wanted.append(3.0 * y)
+    found = second_order(t, np.array(wanted))
+    assert found.gain == pytest.approx(3.0, rel=0.02)
+    assert found.response(t) == pytest.approx(np.array(wanted), abs=0.01)
+    assert found.dead_s == pytest.approx(dead, abs=0.001)
+    if damping < 2.0:
+        assert (found.frequency, found.damping) == pytest.approx((frequency, damping), rel=0.03)
 
 
 def test_E10_the_rules_give_the_gains_worked_out_by_hand():

@@ -5,11 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plant.model import load, with_value
+from plant.model import load, with_effects, with_value
 from scenarios.paper.coasting import Drive, coast, drive
 from scenarios.paper.compiled import CompiledBench
+from scenarios.paper.emulator import EmulatorBench
 from scenarios.paper.experiments.e08 import SPEEDS
 from scenarios.paper.experiments.frictionmap import friction_map
+from scenarios.paper.experiments.identify import identify
 from scenarios.paper.experiments.noise import Noise
 from scenarios.paper.friction_map import (
     DataSheet,
@@ -25,7 +27,7 @@ from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.rundown import fit_run_downs
 from scenarios.paper.runs import MAP_SPEEDS, run_down
 from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, COUNT_RATE, GEAR_RATIO
-from scenarios.paper.starts import STARTS, Benches, with_inertia
+from scenarios.paper.starts import STARTS, Benches, Start, with_inertia
 from tests.paper.synthetic import current_for, log_of
 
 K = 0.8  # N m/A
@@ -110,6 +112,16 @@ def test_E8_an_axis_that_was_at_rest_is_refused():
         fit_run_downs([log_of(np.zeros(100))], [7200.0], fit, RIGID)
 
 
+def other(name):
+    """A plant that nobody tuned the methods on."""
+    model = load(f"{name}_preload_bridge")
+    for path, factor in OTHER.items():
+        part, field = path.split(".")
+        value = getattr(getattr(model.axes.ra, part), field).value * factor
+        model = with_value(model, f"axes.ra.{path}", value)
+    return with_inertia(model, 1.3)
+
+
 OTHER = {
     "friction.coulomb": 1.2,
     "friction.stiction": 0.85,
@@ -126,14 +138,7 @@ OTHER = {
 @pytest.mark.slow
 @pytest.mark.parametrize(("preload", "begin"), [("low", STARTS[1]), ("high", STARTS[6])])
 def test_E7_and_E8_find_the_numbers_of_a_plant_that_nobody_tuned_them_on(preload, begin):
-    plants = {}
-    for name in ("low", "high"):
-        model = load(f"{name}_preload_bridge")
-        for path, factor in OTHER.items():
-            part, field = path.split(".")
-            value = getattr(getattr(model.axes.ra, part), field).value * factor
-            model = with_value(model, f"axes.ra.{path}", value)
-        plants[name] = with_inertia(model, 1.3)
+    plants = {name: other(name) for name in ("low", "high")}
     benches = Benches(CompiledBench, plants, begin)
     noise = Noise(7, "other")
     noise.constant = 1.0
@@ -161,3 +166,17 @@ def test_E7_half_the_current_ripple_is_taken_off_the_peaks():
     )
     torque = drive_torque(log, DataSheet(K, 0.4, 0.1))
     assert torque == pytest.approx(np.full(n, (mean_a - mean_b) * K * GEAR_RATIO))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [CompiledBench, EmulatorBench])
+def test_E10_the_model_of_a_drive_does_not_depend_on_where_in_its_gears_it_begins(make):
+    """From four starts that no row uses: as the same drive has it whose gears run true."""
+    plant = other("low")
+    smooth = with_effects(plant, "ra", tuple(e for e in plant.axes.ra.effects if "gear" not in e.name))
+    wanted = identify(lambda: make(smooth, 1, None, Start(180.0, 1).steps))
+    for begin in (Start(101.9, 4), Start(139.2, 5), Start(188.8, 6), Start(251.5, 7)):
+        found = identify(lambda begin=begin: make(plant, begin.seed, None, begin.steps))
+        assert found.gain == pytest.approx(wanted.gain, rel=0.03)
+        assert found.lag_s == pytest.approx(wanted.lag_s, abs=0.0015)
+        assert found.dead_s == pytest.approx(wanted.dead_s, abs=0.002)

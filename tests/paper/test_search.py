@@ -5,9 +5,10 @@ from plant.model import load
 from scenarios.paper.compiled import CompiledBench
 from scenarios.paper.cost import Term, cost, worst
 from scenarios.paper.experiments import Limit
+from scenarios.paper.objective import WORSE, Objective
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.scales import GEAR_RATIO
-from scenarios.paper.search import BATCH, POPULATION, WORSE, Objective, population, search
+from scenarios.paper.search import BATCH, POPULATION, population, search
 from scenarios.paper.space import SPACE, bounds, models, values, vector
 from scenarios.paper.starts import QUICK, Benches
 from scenarios.paper.statics import (
@@ -174,14 +175,14 @@ def test_a_first_population_passes_the_statics_and_keeps_to_the_bounds():
 def test_short_steps_go_downhill_within_the_bounds_and_end_with_their_points(monkeypatch):
     """The way to a known point of the space, every logarithm counting the same."""
     goal, begin = vector(DRIVE), np.log([0.5 * (free.low + free.high) for free in SPACE])
-    monkeypatch.setattr("scenarios.paper.search.CompiledBench", None)
+    monkeypatch.setattr("scenarios.paper.objective.CompiledBench", None)
     objective = Objective("motor", True, QUICK, 600, lambda text: None)
     monkeypatch.setattr(objective, "shortfall", lambda x: 0.0)
     monkeypatch.setattr(objective, "plants", lambda x: x)
     monkeypatch.setattr(
-        "scenarios.paper.search.Benches", lambda _make, x, _start: float(np.sum((x - goal) ** 2))
+        "scenarios.paper.objective.Benches", lambda _make, x, _start: float(np.sum((x - goal) ** 2))
     )
-    monkeypatch.setattr("scenarios.paper.search.cost", lambda found, *_: (found[0], []))
+    monkeypatch.setattr("scenarios.paper.objective.cost", lambda found, *_: (found[0], []))
     search(objective, (1,), begin)
     low, high = np.array(bounds()).T
     assert objective.tried == 600

@@ -33,6 +33,9 @@ STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
 steady state."""
 ADC_FULL = 1023.0
 """Largest count of the 10-bit converter: 6.24 A."""
+BREAK_AWAYS = (0.15, 0.2, 0.3)
+"""s that each effort lasts on the way to break-away. Three, because the rate at that moment, some 10
+arcsec/s, is read in counts of 2.3 and is all that is known of the curve's steep end."""
 TRIALS = 80
 """Pairs of efforts tried at most."""
 
@@ -60,10 +63,13 @@ class Map:
 
 
 def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
-    """Measure the map: steady states in both directions, and the break-away torque as its point at rest."""
+    """Measure the map: steady states in both directions, and the break-away torques as its points near
+    rest."""
     sheet = noise.sheet(data_sheet(benches.plants[preload]))
-    ways = [noise.log(break_away(benches(preload), way)) for way in (1, -1)]
-    points = [break_away_point(ways[0], ways[1], sheet)]
+    points = []
+    for step_s in BREAK_AWAYS:
+        ways = [noise.log(break_away(benches(preload), way, step_s)) for way in (1, -1)]
+        points.append(break_away_point(ways[0], ways[1], sheet))
     left_out: list[float] = []
     slowest: tuple[Log, Log] | None = None
     for speed in reversed(MAP_SPEEDS):
