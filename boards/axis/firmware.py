@@ -217,7 +217,7 @@ class AxisBoard(PeriodicBoard):
         samples, self.samples = self.samples, []
         stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
         self.uart.send(end_ns, pack_packet(self.device_type, self.sequence, stamp, samples, self.clip))
-        self.sequence += 1
+        self.sequence = self.sequence + 1 & 0xFF
 
     def _slow(self, t_ns: int, end_ns: int) -> None:
         """The ticks between: TARGET every 250 ms, heartbeat every second, spread so that three buffers do."""

@@ -247,7 +247,8 @@ class Motion:
         elif correction < -limit:
             correction = -limit
         if -self._settle < error < self._settle and not profile.remaining:
-            self.near_ticks += 1
+            if self.near_ticks < _SETTLE_TICKS:  # 16 bits: held for six minutes it would wrap
+                self.near_ticks += 1
             if self.rate:
                 self.mode = AxisMode.TRACK
         else:

@@ -161,7 +161,7 @@ class DeclaredBoard(PeriodicBoard):
         if len(self.samples) == SAMPLES:
             stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
             self.uart.send(end_ns, pack_packet(self.device_type, self.packets, stamp, self.samples))
-            self.packets += 1
+            self.packets = self.packets + 1 & 0xFF
             self.samples = []
 
 

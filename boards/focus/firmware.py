@@ -109,7 +109,7 @@ class FocusBoard(PeriodicBoard):
         if len(self.samples) == SAMPLES:
             stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
             self.uart.send(end, pack_packet(self.device_type, self.packets, stamp, self.samples, self.clip))
-            self.packets += 1
+            self.packets = self.packets + 1 & 0xFF
             self.samples = []
         if not self.ticks % _FRAME_TICKS:
             self._index = self.index_pin(t_ns)

@@ -134,7 +134,7 @@ class PositionBoard(PeriodicBoard):
     def _packet(self, end_ns: int) -> None:
         stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
         self.uart.send(end_ns, pack_packet(self.device_type, self.packets, stamp, self.samples))
-        self.packets += 1
+        self.packets = self.packets + 1 & 0xFF
         self.samples = []
 
     def health(self) -> Health:

@@ -289,3 +289,13 @@ def test_B1_whatever_is_added_the_duty_registers_get_what_they_hold(
     assert board.fine is not None
     board.fine.drive(lab.queue.now_ns, 0, Checked(0))
     assert all(0.0 <= duty <= 1.0 for duty in lab.plant.duties)
+
+
+def test_B1_an_axis_that_holds_its_target_all_night_stays_settled() -> None:
+    """The count of ticks near the target is 16 bits on a dsPIC: 32768 ticks are 164 s."""
+    axis = motion(1 << 28)
+    axis.move(0, 0, 1 << 28, RATE_LIMIT)
+    for _ in range(40_000):
+        axis.setpoint(0, 0)
+    assert axis.settled
+    assert axis.near_ticks <= 0x7FFF
