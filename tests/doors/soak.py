@@ -122,6 +122,7 @@ class Soak:
         self.asked = self.unanswered = self.refused = self.slews = self.hang_ups = 0
         self.lost: list[str] = []
         self.memory: list[tuple[float, float]] = []
+        """(simulated s, MiB) of the emulator with its host."""
 
     def command(self) -> bytes:
         """One for a random board."""
@@ -218,8 +219,21 @@ class Soak:
 
 
 def resident_mib(pid: int) -> float:
-    """Resident set of a process, MiB."""
-    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+    """Resident sets of a process and of those it has started, MiB: the host has a process of its own."""
+    return sum(_pages(each) for each in (pid, *_children(pid))) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def _pages(pid: int) -> int:
+    return int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+
+
+def _children(pid: int) -> list[int]:
+    found = []
+    for each in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has just ended
+            if int(each.read_text().rpartition(")")[2].split()[1]) == pid:
+                found.append(int(each.parent.name))
+    return found
 
 
 def growth(memory: list[tuple[float, float]]) -> float:
@@ -301,7 +315,7 @@ def soak(folder: Path, minutes: float, speed: float, seed: int = 1) -> tuple[Soa
         f" {made.asked} commands over USB, {made.asked - made.unanswered} acknowledged ({made.refused} of"
         f" them as wrong), {made.slews} slews over LX200, {made.hang_ups} hang-ups; lost: {len(made.lost)};"
         f" {found['frames']:.0f} frames and {found['axis rows']:.0f} rows logged without a gap;"
-        f" {low:.0f} to {high:.0f} MiB, {growth(made.memory):+.1%} after the first"
+        f" {low:.0f} to {high:.0f} MiB with the host, {growth(made.memory):+.1%} after the first"
         f" {WARM_SHARE:.0%}; system load {os.getloadavg()[0]:.1f}"
     )
 
