@@ -47,7 +47,6 @@ class Consoles:
 
     def __init__(self, telescope: Telescope, bus_view: BusView, runs: Runs, token: str) -> None:
         self.live = Live(telescope)
-        runs.folder.mkdir(parents=True, exist_ok=True)
         nicegui_app.add_static_files(REPORTS, runs.folder)
         pages = {
             "/": main,

@@ -26,6 +26,10 @@ class ConsoleDoor:
         self.name = f"--console {where}"
         if not is_local(self.host) and token is None:
             self.name += f" (open it with ?token={made})"
+        try:
+            runs.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise DoorError(f"--runs {runs.folder}: cannot be made: {error.strerror}") from None
         self._host = host
         self._runs = runs
         self._consoles = Consoles(host.hosted.telescope, bus_view, runs, made)

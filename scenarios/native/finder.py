@@ -61,6 +61,7 @@ def use(library: Path = LIBRARY) -> None:
         raise ImportError(f"the compiled library {reason}; `make compiled` builds it, {PURE}=1 does without")
     if stamp is not None and reason:
         print(f"schmidt: the compiled library {reason}; running plain (`make compiled`)", file=sys.stderr)
+        os.environ[PURE] = "1"  # processes of its own run alike, and do not say it again
     elif files and not late:
         sys.meta_path.insert(0, Finder(files))
 
