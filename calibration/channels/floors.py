@@ -19,14 +19,14 @@ def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:
     """rms and how it was had: repeats of the same motion, or what the columns' own noise leaves; None when
     neither can be told. Never from the fit of an effect."""
     e = _plain_residual(problem)
+    again = None if view.dynamic else stroke_scatter(view, e)
+    if again is not None:
+        return again, "strokes that are made again, place by place"
     lag = repeat_lag(view)
     if (lag and lag % max(view.step, 1) <= 1) or lag > 50 * max(view.step, 1):
         found = _by_lag(view, problem, e, round(lag / max(view.step, 1)))
         if found is not None:
             return found, f"repeats of the motion every {lag * view.period_s:.4g} s"
-    again = None if view.dynamic else stroke_scatter(view, e)
-    if again is not None:
-        return again, "strokes that are made again, place by place"
     noise = sensors_floor(view, problem)
     if noise is not None:
         return noise, "the columns' noise from row to row, and travel that the position does not resolve"
