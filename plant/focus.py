@@ -6,13 +6,17 @@ it is evaluated when somebody looks, so the focus costs nothing on the plant's g
 """
 
 from math import exp, floor
+from typing import Final
+
+from mypy_extensions import mypyc_attr
 
 from plant.parts import FocusModel
 
-PHASES = 8  # half-step pattern of a bipolar motor
-REACH = PHASES // 2  # a rotor further away from the coils' field than this slips to the next pole
+PHASES: Final = 8  # half-step pattern of a bipolar motor
+REACH: Final = PHASES // 2  # a rotor further away from the coils' field than this slips to the next pole
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class FocusPort:
     """The pins of the focus board. Times are integer nanoseconds."""
 

@@ -41,7 +41,6 @@ _EFFORT_SCALE: Final = 3000
 """Effort on the wire and in the logs is in 1/3000 of the supply, whatever the PWM's own resolution."""
 _TARGET_TICKS: Final = 50
 _HEARTBEAT_TICKS: Final = 200
-_frame: Final = tuple.__new__
 _POWERED, _MOVING, _LIMIT, _FAULT = map(
     int, (MotionFlag.POWERED, MotionFlag.MOVING, MotionFlag.SOFT_LIMIT, MotionFlag.FAULT)
 )
@@ -200,7 +199,7 @@ class AxisBoard(PeriodicBoard):
         adc_a = self.adc.read(t_ns, 0)
         adc_b = self.adc.read(t_ns, 1)
         data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b, self.clip)
-        if not self.send(_frame(Frame, (self._identifier, data, False, False)), end_ns):
+        if not self.send(Frame(self._identifier, data), end_ns):
             self.drop()
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT

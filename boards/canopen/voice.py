@@ -102,7 +102,7 @@ class Voice(canopen.Network):
         if not self.operational:
             return True
         if frame.identifier & _BASES == HEARTBEAT_BASE:
-            frame = frame._replace(identifier=frame.identifier - HEARTBEAT_BASE + STATUS_BASE)
+            frame = frame.moved(frame.identifier - HEARTBEAT_BASE + STATUS_BASE)
         return self._send(frame, ready_ns)
 
     def send_message(self, can_id: int, data: Any, remote: bool = False) -> None:
@@ -133,7 +133,7 @@ class Voice(canopen.Network):
             if self.operational:
                 self._firmware(t_ns, frame)
         elif base == STATUS_BASE and self.operational:
-            self._firmware(t_ns, frame._replace(identifier=identifier - STATUS_BASE + HEARTBEAT_BASE))
+            self._firmware(t_ns, frame.moved(identifier - STATUS_BASE + HEARTBEAT_BASE))
         elif identifier in self.subscribers and not frame.remote:
             self.notify(identifier, bytearray(frame.data), t_ns * 1e-9)
             if not identifier:

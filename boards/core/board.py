@@ -184,10 +184,11 @@ class Board:
 
     # --- CAN --------------------------------------------------------------------------------------
     def _receive(self, t_ns: int, frame: Frame) -> None:
-        identifier, data, extended, remote = frame
+        identifier = frame.identifier
         call = self.mail.get(identifier)
-        if call is None or extended:  # an extended identifier is nobody's here
+        if call is None or frame.extended:  # an extended identifier is nobody's here
             return
+        data, remote = frame.data, frame.remote
         if len(data) == FRAME_BYTES and data[0] == identifier & 0x7F and not remote:
             call(t_ns - self.epoch_ns, data)
         elif identifier != self._command:

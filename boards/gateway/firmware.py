@@ -82,9 +82,9 @@ class GatewayBoard(PeriodicBoard):
 
     # --- bus to PC
     def _receive(self, t_ns: int, frame: Frame) -> None:
-        identifier, data, extended, remote = frame
-        if extended or remote:
+        if frame.extended or frame.remote:
             return
+        identifier, data = frame.identifier, frame.data
         if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE and identifier < _END:
             self._put(t_ns, data)
         elif identifier == self._own_command:

@@ -12,7 +12,6 @@ from bus.time import EventQueue, Oscillator
 
 TICK_NS: Final = 10_000_000
 _HEARTBEAT_TICKS: Final = 100
-_frame: Final = tuple.__new__
 
 
 class MotorVelocityBoard(PeriodicBoard):
@@ -51,7 +50,7 @@ class MotorVelocityBoard(PeriodicBoard):
         self.count = count = (self.count + delta) & 0xFFFF_FFFF
         # TACH: no flag is defined yet, byte 1 stays zero
         data = (self.device_type | count << 16 | (delta & 0xFFFF) << 48).to_bytes(8, "little")
-        if not self.send(_frame(Frame, (self._identifier, data, False, False)), end):
+        if not self.send(Frame(self._identifier, data), end):
             self.drop()
         if self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

@@ -27,7 +27,6 @@ _BAD: Final = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 _ALARM, _CRC_ERROR, _LOW, _HIGH = map(
     int, (PositionFlag.ALARM, PositionFlag.CRC_ERROR, PositionFlag.LIMIT_LOW, PositionFlag.LIMIT_HIGH)
 )
-_frame: Final = tuple.__new__
 
 
 class PositionBoard(PeriodicBoard):
@@ -111,7 +110,7 @@ class PositionBoard(PeriodicBoard):
         self.flags = flags
         ticks = self.ticks
         data = (self._age | flags << 8 | position << 16 | (ticks & 0xFF) << 56).to_bytes(8, "little")
-        if not self.send(_frame(Frame, (self._identifier, data, False, False)), end):
+        if not self.send(Frame(self._identifier, data), end):
             self.drop()
         if ticks & 1:
             self._slow(ticks, end)

@@ -107,10 +107,9 @@ def frame_bits(frame: Frame) -> int:
 
     Raises FrameError when CAN 2.0 cannot carry the frame.
     """
-    identifier, data, extended, remote = frame
-    if len(data) != 8 or extended or remote:
+    if len(frame.data) != 8 or frame.extended or frame.remote:
         return _any_bits(frame)
-    return plain_bits(identifier, data)
+    return plain_bits(frame.identifier, frame.data)
 
 
 def plain_bits(identifier: int, data: bytes) -> int:

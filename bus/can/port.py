@@ -213,11 +213,11 @@ class Port:
         """
         if not self._free:
             return False
-        identifier, data, extended, remote = frame
-        if extended or remote or len(data) != 8:
+        if frame.extended or frame.remote or len(frame.data) != 8:
             bits, key = frame_bits(frame), arbitration_key(frame)
         else:
-            bits, key = plain_bits(identifier, data), identifier << 21
+            identifier = frame.identifier
+            bits, key = plain_bits(identifier, frame.data), identifier << 21
         self._free -= 1
         self._wire._offer(key, ready_ns, self, frame, bits)
         return True

@@ -34,7 +34,7 @@ class ReportError(ValueError):
 def slot(frame: Frame) -> bytes:
     """The eight bytes `frame` takes in a report to the PC; raises ReportError for frames outside the
     protocol."""
-    identifier, data, _, _ = frame
+    identifier, data = frame.identifier, frame.data
     if len(data) != FRAME_BYTES or not 0 < data[0] < _NOT_MEASUREMENT:
         raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} has no slot in a HID report")
     base = identifier - data[0]

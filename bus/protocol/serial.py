@@ -10,10 +10,9 @@ quantities (row L3).
 
 from binascii import crc_hqx
 from collections.abc import Sequence
-from functools import partial
 from itertools import starmap
 from struct import Struct, error
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from bus.protocol.names import DECLARED, Device
 from bus.protocol.saturate import Clip, fitted, nobody
@@ -28,7 +27,6 @@ NO_SETPOINT: Final = -(1 << 31)
 _CRC_START: Final = 0xFFFF
 _head: Final = Struct("<BBI")
 _crc: Final = Struct("<H")
-_tuple: Final = tuple.__new__
 
 
 class AxisSample(NamedTuple):
@@ -100,12 +98,19 @@ class SerialError(ValueError):
 
 
 class Packet(NamedTuple):
-    """stamp: board clock at the first sample, 100 µs units, modulo 2**32; samples: 25, 10 ms apart."""
+    """stamp: board clock at the first sample, 100 µs units, modulo 2**32; rows: the numbers of 25 samples,
+    10 ms apart."""
 
     device: int
     sequence: int
     stamp: int
-    samples: tuple[Sample, ...]
+    rows: tuple[tuple[int, ...], ...]
+
+    @property
+    def samples(self) -> tuple[Sample, ...]:
+        """The same with names."""
+        kind: Any = _known(self.device)[1]
+        return tuple(kind(*row) for row in self.rows)
 
 
 def packet_bytes(device: int) -> int:
@@ -189,6 +194,4 @@ class PacketDecoder:
 
 def _decode(body: bytes) -> Packet:
     device, sequence, stamp = _head.unpack_from(body)
-    layout, kind = _known(device)
-    rows = layout.iter_unpack(body[_head.size :])
-    return Packet(device, sequence, stamp, tuple(map(partial(_tuple, kind), rows)))
+    return Packet(device, sequence, stamp, tuple(_known(device)[0].iter_unpack(body[_head.size :])))

@@ -2,11 +2,26 @@
 
 from bisect import bisect_left
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 
 class PastEventError(ValueError):
     """Somebody asked to be called at a time that has already gone by."""
+
+
+def _search(before: list[int], key: int) -> int:
+    """`bisect_left` where compiled, without its calls and comparisons of objects: half the cost."""
+    low, high = 0, len(before)
+    while low < high:
+        middle = (low + high) >> 1
+        if before[middle] < key:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+_COMPILED: Final = not hasattr(_search, "__code__")
 
 
 class EventQueue:
@@ -28,9 +43,12 @@ class EventQueue:
         """Have `call(t_ns)` made at `t_ns`; raises PastEventError when that is before `now_ns`."""
         if t_ns < self.now_ns:
             raise PastEventError(f"event at {t_ns} ns lies before the present, {self.now_ns} ns")
+        before = self._before
         key: Any = -t_ns  # compiled code makes an object of it once, not for either call
-        place = bisect_left(self._before, key)  # behind all of the same time
-        self._before.insert(place, key)
+        place = (
+            _search(before, -t_ns) if _COMPILED else bisect_left(before, key)
+        )  # behind all of the same time
+        before.insert(place, key)
         self._calls.insert(place, call)
 
     def run_until(self, t_ns: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final, cast
+from typing import Final
 
 from bus.protocol.serial import NO_SETPOINT, SAMPLE_NS, STAMP_UNIT_NS, AxisSample, Packet
 from host.logs.files import LineFile
@@ -34,6 +34,8 @@ _WRAP: Final = 1 << 32
 
 Row = tuple[float, AxisSample]
 """Board time in seconds and its sample."""
+Numbers = tuple[float, tuple[int, ...]]
+"""The same without the names of the columns."""
 Distortion = Callable[[list[Row]], list[Row]]
 """What a log effect makes of the rows of one packet."""
 
@@ -61,16 +63,15 @@ class AxisLog:
             self._turns += 1
         self._last_stamp = packet.stamp
         start = (packet.stamp + self._turns * _WRAP) * _STAMP_S
-        samples = cast(tuple[AxisSample, ...], packet.samples)
-        rows: list[Row] = [(start + index * _SAMPLE_S, sample) for index, sample in enumerate(samples)]
+        rows: list[Numbers] = [(start + index * _SAMPLE_S, row) for index, row in enumerate(packet.rows)]
         if self._distort is not None:
-            rows = self._distort(rows)
+            rows = [*self._distort([(t, AxisSample(*row)) for t, row in rows])]
         self.rows += len(rows)
         if rows:
             self.file.write(_lines(rows))
 
 
-def _lines(rows: list[Row]) -> str:
+def _lines(rows: list[Numbers]) -> str:
     """The rows of a packet as text. In one piece: there are two hundred rows a second."""
     lines = []
     for t, sample in rows:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from bus.protocol import AGE_UNIT_NS, Device, Motion, Position, unpack_tach
 from host.auxiliary import BOARDS, auxiliary, combine
@@ -10,7 +11,7 @@ from host.client import Client
 from host.rates import CURRENT_A_PER_COUNT, rate_arcsec_s
 from host.sky.mount import STEP_ARCSEC, AxisScale, Mount
 
-_AXES = (
+_AXES: Final = (
     ("ra", Device.AXIS_RA, Device.POSITION_RA, (Device.MOTOR_RA_A, Device.MOTOR_RA_B)),
     ("dec", Device.AXIS_DEC, Device.POSITION_DEC, (Device.MOTOR_DEC_A, Device.MOTOR_DEC_B)),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Final
 
 from bus.protocol import Device, Opcode, SpeedClass
 from host.client import Client, ClientError, Procedure
@@ -12,8 +13,8 @@ from host.rates import rate_q16
 from host.sky.mount import STEP_ARCSEC, Mount
 from host.sky.track import StarTrack
 
-ENCODERS = (Device.POSITION_RA, Device.POSITION_DEC)
-CLASSES = ("slew", "set", "guide", "fine")
+ENCODERS: Final = (Device.POSITION_RA, Device.POSITION_DEC)
+CLASSES: Final = ("slew", "set", "guide", "fine")
 
 
 @dataclass(frozen=True)
@@ -24,24 +25,24 @@ class Reach:
     timeout_s: float
 
 
-REACH = {
+REACH: Final = {
     "slew": Reach(300.0, 240.0),  # 180° at 2°/s and its ramps
     "set": Reach(30.0, 60.0),
     "guide": Reach(8.0, 60.0),
     "fine": Reach(3.0, 120.0),
 }
 """ASSUMPTION: each hands over within seconds of the next one's speed; fine ends well inside 10″."""
-SETTLED_S = 1.0
+SETTLED_S: Final = 1.0
 """Both axes stay inside `fine` for this long before the telescope counts as on target. ASSUMPTION."""
-REFRESH_S = 5.0
+REFRESH_S: Final = 5.0
 """Rates are sent again this often: refraction changes them by less than 0.001 ″/s meanwhile. ASSUMPTION."""
-TRIM_S = 20.0
+TRIM_S: Final = 20.0
 """A mean error is taken out over this time by way of the rate, so that nothing jerks. ASSUMPTION."""
-TRIM_ARCSEC_S = 0.1
+TRIM_ARCSEC_S: Final = 0.1
 """Largest such change of the rate: a tenth of the 1 ″/s that the paper asks for. ASSUMPTION."""
-LOST_ARCSEC = 60.0
+LOST_ARCSEC: Final = 60.0
 """An axis this far off does not follow, and no shift of its target will help. ASSUMPTION."""
-NUDGE_ARCSEC = 5.0
+NUDGE_ARCSEC: Final = 5.0
 """A mean error beyond half the 10″ objective is taken out at once. ASSUMPTION."""
 
 

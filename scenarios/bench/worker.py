@@ -6,6 +6,7 @@ processes, one plain and one compiled, are asked in turn, so that both see the s
 
 from __future__ import annotations
 
+import gc
 import json
 import sys
 import tempfile
@@ -37,6 +38,7 @@ class Worker:
         self.plant.advance(_SECOND_NS)
         self.session.recorder.flush()
         self._traffic = last_second(folder / "can.log")
+        gc.freeze()  # as `schmidt run` does; all parts have it
 
     def night(self, seconds: int) -> dict[str, float]:
         """The whole network, host and all logs; what still waits to be written is written, as a part would

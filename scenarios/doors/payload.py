@@ -10,8 +10,7 @@ _EXTENDED, _REMOTE = 1, 2
 
 def pack_frame(frame: Frame) -> bytes:
     """5 to 13 bytes."""
-    identifier, data, extended, remote = frame
-    return _head.pack(identifier, _EXTENDED * extended | _REMOTE * remote) + data
+    return _head.pack(frame.identifier, _EXTENDED * frame.extended | _REMOTE * frame.remote) + frame.data
 
 
 def unpack_frame(data: bytes) -> Frame:

@@ -14,8 +14,11 @@ FILES = (
     "host/client.py",
     "host/link.py",
     "host/logs/axis.py",
+    "host/logs/sensors.py",
+    "host/procedures/pointing.py",
     "host/serial_link.py",
     "plant/axis.py",
+    "plant/focus.py",
     "plant/plant.py",
 )
 """And these: what is called for every tick and frame."""

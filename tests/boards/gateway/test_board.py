@@ -35,7 +35,7 @@ def test_B7_frames_reach_the_pc_with_their_identifiers_restored() -> None:
     for frame in sent:
         bench.node.send(frame, 0)
     bench.queue.run_until(20 * MS)
-    assert sorted(bench.frames) == sorted(sent)
+    assert sorted(bench.frames, key=str) == sorted(sent, key=str)
     assert all(t % MS == 0 for t, _ in bench.reports)
 
 

@@ -136,7 +136,7 @@ def test_three_frames_fill_the_buffers_and_all_arrive() -> None:
     with pytest.raises(RuntimeError, match="No transmit buffer"):
         rig.can.send(Message(0x103, b""))
     rig.run(60)
-    assert sorted(rig.heard) == [Frame(0x100 + n, bytes([n])) for n in range(3)]
+    assert sorted(rig.heard, key=str) == [Frame(0x100 + n, bytes([n])) for n in range(3)]
 
 
 def test_its_filters_are_the_chips() -> None:
