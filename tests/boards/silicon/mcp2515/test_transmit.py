@@ -339,3 +339,45 @@ def test_by_errata_only_a_request_counts_not_any_write() -> None:
     bench.run()
     spi.deselect()
     assert [frame.identifier for frame in bench.heard] == [0x123]
+
+
+def test_what_became_of_a_request_stands_until_the_next_one() -> None:
+    """MLOA, ABTF: a write of TXP alone leaves them (DS20001801, TXBnCTRL bits 6 to 4)."""
+    for status, act in ((MLOA, (0x05, 0x0F, OSM, OSM)), (ABTF, (0x05, 0x0F, ABAT, ABAT))):
+        bench = Bench().start()
+        bench.spi(*act)
+        bench.load(0, 0x101)
+        bench.partner.send(Frame(0x100, b""), bench.queue.now_ns)
+        bench.spi(0x81)
+        bench.run()
+        assert bench.read(0x30) == status
+        bench.spi(0x05, 0x30, 3, 2)
+        assert bench.read(0x30) == status | 2
+        bench.spi(0x05, 0x0F, ABAT, 0)
+        bench.spi(0x81)
+        assert bench.read(0x30) == TXREQ | 2
+
+
+def test_a_request_taken_back_before_abat_is_not_one_that_abat_took() -> None:
+    bench = Bench().start()
+    bench.wire.disturb(lambda _t, _f, _s: Flip(40))
+    bench.load(0, 0x100, bytes(8))
+    bench.spi(0x81)
+    bench.run(0.03)  # it is on the bus
+    bench.spi(0x05, 0x30, TXREQ, 0)
+    bench.spi(0x05, 0x0F, ABAT, ABAT)
+    bench.run()
+    assert bench.read(0x30) == TXERR
+
+
+def test_a_frame_in_loop_back_is_not_begun_again_by_the_next_request() -> None:
+    bench = Bench().start(LOOPBACK)
+    bench.load(0, 0x100, bytes(8))
+    bench.load(2, 0x102, bytes(8), txp=3)
+    bench.spi(0x81)
+    bench.run(0.1)
+    bench.spi(0x84)
+    bench.run(0.04)  # 111 to 135 us after its start the first is through
+    assert bench.read(0x2C) & 0x1C == 0x04
+    bench.run(0.14)
+    assert bench.read(0x2C) & 0x1C == 0x14
