@@ -1,13 +1,19 @@
-"""Attacks on the pins of chips: SPI transactions of the MCP2515, clock edges and bits of an EnDat line."""
+"""Attacks on the pins of chips: SPI transactions of the MCP2515, clock edges and bits of EnDat lines."""
 
 from __future__ import annotations
 
 from random import Random
 
-from boards.silicon.endat import ClockedEncoder, ClockedMaster, EndatError
+from boards.silicon.endat import ClockedEncoder, ClockedMaster, EndatError, check
 from boards.silicon.endat import registers as at
+from boards.silicon.endat.crc import crc_bits
+from boards.silicon.endat.crc import number as as_number
+from boards.silicon.endat.encoder import Phase
+from boards.silicon.endat.master import checked
 from boards.silicon.endat.registers import MODES
-from tests.boards.silicon.test_fuzz import Rig
+from boards.silicon.mcp2515 import Mcp2515
+from bus.can import Wire
+from bus.time import EventQueue
 from tests.fuzz import near
 
 _LEAST = {0xC0: 1, 0x03: 3, 0x02: 3, 0x05: 4, 0xA0: 2, 0xB0: 2}
@@ -16,6 +22,20 @@ _LEAST |= dict.fromkeys(range(0x40, 0x46), 2) | dict.fromkeys((*range(0x90, 0x98
 buffer when chip select rises, whatever was read of it."""
 _FRESH = 500
 _MS = 1_000_000
+
+
+class Rig:
+    """A chip that always acknowledges and is answered; state() is all that SPI can see of it."""
+
+    def __init__(self) -> None:
+        self.queue = EventQueue()
+        wire = Wire(self.queue)
+        self.chip = Mcp2515(self.queue, wire.attach("chip"))
+        self.heard: list[object] = []
+        wire.attach("partner").on_receive = lambda _t, frame: self.heard.append(frame)
+
+    def state(self) -> bytes:
+        return bytes(self.chip.read(address) for address in range(0x80))
 
 
 def spi(count: int, random: Random) -> dict[str, int]:
@@ -28,7 +48,7 @@ def spi(count: int, random: Random) -> dict[str, int]:
         data = near.spi(random, [*_LEAST])
         known = len(data) >= _LEAST.get(data[0] if data else -1, 99)
         before = b"" if known else one.state()
-        if one.whole(data) != _torn(other, data, random):
+        if one.chip.transfer(data) != _torn(other, data, random):
             raise AssertionError(f"{data.hex()}: bit by bit it is another answer")
         if not known and one.state() != before:
             raise AssertionError(f"{data.hex()} is no whole instruction and changed a register")
@@ -80,6 +100,43 @@ def endat(count: int, random: Random) -> dict[str, int]:
                 raise AssertionError(f"bit {wrong} wrong, {value} on the pin, {position.value} accepted")
             found["accepted"] += 1
         t_ns = master.t_ns
+    return found
+
+
+def edges(count: int, random: Random) -> dict[str, int]:
+    """Eight edges of the clock at a time, most of them quick, now and then slow: the encoder is in a state it
+    has, its data line high or low. After a rest it is an encoder again."""
+    encoder = ClockedEncoder(lambda t_ns: t_ns)
+    t_ns = 0
+    for _ in range(count):
+        slowest = 3000 if random.random() < 0.9 else 60 * _MS
+        for _ in range(8):
+            t_ns += random.randrange(1, slowest)
+            encoder.edge(t_ns, random.randrange(2), random.randrange(2))
+            if encoder.level(t_ns) not in (0, 1) or encoder.phase not in tuple(Phase):
+                raise AssertionError("a level or a phase that is none")
+    encoder.edge(t_ns + 100 * _MS, 1, 0)
+    encoder.edge(t_ns + 200 * _MS, 0, 0)
+    if encoder.phase is not Phase.COMMAND:
+        raise AssertionError("it takes no command after a rest")
+    return {"accepted": count}
+
+
+def bits(count: int, random: Random) -> dict[str, int]:
+    """36 bits of noise: the fast check and the master's agree on CRC, position and alarm."""
+    found = {"accepted": 0, "refused": 0}
+    for _ in range(count):
+        line = [random.randrange(2) for _ in range(36)]
+        crc = line[31:]
+        position, alarm, good = check(as_number(line[:31]) | int("".join(map(str, crc)), 2) << 31)
+        try:
+            data = checked(line)
+        except EndatError:
+            data = []
+        told = (as_number(data[2:]), data[:2] != [0, 1]) if data else None
+        if (told == (position, alarm)) != good or good != (crc_bits(line[:31]) == crc):
+            raise AssertionError(f"{line}: one check takes it, the other does not")
+        found["accepted" if good else "refused"] += 1
     return found
 
 

@@ -256,8 +256,9 @@ DOORS: dict[str, Callable[[Served, int, Random], dict[str, int]]] = {
 
 ALONE: dict[str, Callable[[int, Random], dict[str, int]]] = {
     "packets": streams.packets, "debug": streams.debug, "slcan": streams.slcan, "spi": chips.spi,
-    "endat": chips.endat, "candump": files.candump, "axis-logs": files.axis_logs,
-    "guide-logs": files.guide_logs, "snapshots": frozen.snapshots, "websocket": browser.websocket,
+    "endat": chips.endat, "endat-edges": chips.edges, "endat-bits": chips.bits,
+    "candump": files.candump, "axis-logs": files.axis_logs, "guide-logs": files.guide_logs,
+    "snapshots": frozen.snapshots, "websocket": browser.websocket,
 }  # fmt: skip
 """What is attacked without a network around it, or with one of its own."""
 

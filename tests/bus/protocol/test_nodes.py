@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cantools.database import load_file
+from cantools.database import load_file, load_string
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -125,3 +125,22 @@ def test_a_dbc_that_cannot_be_is_one_line(tmp_path: Path, text: str, complaint: 
 def test_a_dbc_that_is_not_there_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(KindError, match="no such file"):
         own_messages(Kind("X", {"X": 0x7A}, tmp_path / "none.dbc"))
+
+
+def test_an_offset_missing_values_and_fields_without_limits() -> None:
+    """By hand: T = 0.5 raw - 40, unsigned; S signed; neither has bounds of its own."""
+    database = load_string(
+        'VERSION ""\nBU_: A B\nBO_ 512 X: 8 A\n SG_ T : 8|8@1+ (0.5,-40) [0|0] "" B\n'
+        ' SG_ S : 16|8@1- (1,0) [0|0] "" B\nBA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\n'
+        'BA_DEF_DEF_ "GenMsgCycleTime" 0;\nBA_ "GenMsgCycleTime" BO_ 512 250;\n',
+        "dbc",
+    )
+    codec = FrameCodec(database.messages[0])
+    assert codec.period_ns == 250_000_000
+    assert codec.pack({"T": 20.0, "S": -3}) == bytes([0, 120, 0xFD, 0, 0, 0, 0, 0])
+    assert codec.pack({}) == bytes([0, 80, 0, 0, 0, 0, 0, 0])
+    assert codec.unpack(bytes([0, 120, 0xFD, 0, 0, 0, 0, 0])) == {"T": 20.0, "S": -3}
+    told: list[int] = []
+    assert codec.pack({"T": 1e3, "S": 200}, lambda: told.append(1)) == bytes([0, 255, 127, 0, 0, 0, 0, 0])
+    assert codec.pack({"T": -41, "S": -200}, lambda: told.append(1)) == bytes([0, 0, 128, 0, 0, 0, 0, 0])
+    assert len(told) == 4

@@ -249,3 +249,26 @@ def test_pins_for_buffers_and_requests() -> None:
     chip.drive_rts_pin(1, False)
     bench.run()
     assert [frame.identifier for frame in bench.heard] == [2]
+
+
+def test_bytes_and_bits_clocked_while_chip_select_is_high_are_nobodys() -> None:
+    bench = Bench().start()
+    spi = bench.chip.spi
+    assert [spi.exchange(byte) for byte in (0x02, 0x0F, 0x80)] == [0xFF] * 3
+    assert [spi.clock(bit) for bit in (1, 1, 0)] == [1, 1, 1]
+    assert bench.read(0x0E) & 0xE0 == NORMAL
+    assert bench.read(0x0F) & 0xE0 == NORMAL
+    spi.select()
+    assert [spi.exchange(byte) for byte in (0x03, 0x2A, 0)] == [0xFF, 0xFF, 0x00]
+    spi.deselect()
+    spi.deselect()  # twice is once
+    assert bench.spi(0x03, 0x28, 0, 0, 0)[2:] == [0x82, 0xD0, 0x00]
+
+
+def test_a_byte_may_begin_in_the_middle_of_another() -> None:
+    """READ of 28h with its bits four places late: CNF3, then CNF2, straddle the bytes of the master."""
+    spi = Bench().start().chip.spi
+    spi.select()
+    assert [spi.clock(0) for _ in range(4)] == [1, 1, 1, 1]
+    assert [spi.exchange(byte) for byte in (0x32, 0x80, 0x00, 0x00)] == [0xFF, 0xF8, 0x2D, 0x00]
+    spi.deselect()
