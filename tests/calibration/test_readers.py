@@ -163,6 +163,20 @@ Guiding Ends at 2017-02-18 22:07:41
 """
 
 
+@pytest.mark.parametrize("number", ["1e308", "-3e300", "9" * 308, "1e10"])
+def test_a_distance_beyond_any_camera_is_none(tmp_path: Path, number: str) -> None:
+    """Found by a million inputs: finite numbers whose sum, or whose arc seconds, were infinite."""
+    lines = GUIDE.splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("1,"))
+    for field in (5, 6, 7, 8):
+        fields = lines[at].split(",")
+        fields[field] = number
+        text = "\n".join([*lines[:at], ",".join(fields), *lines[at + 1 :]]) + "\n"
+        with pytest.raises(CalibrationInputError, match="is not a number") as caught:
+            read_guide_log(write(tmp_path / "g.txt", text))
+        assert str(caught.value).startswith(f"{tmp_path / 'g.txt'}:{at + 1}")
+
+
 def test_a_guide_log_with_sections_drops_dither_and_settling(tmp_path: Path) -> None:
     first, second = read_guide_log(write(tmp_path / "g.txt", GUIDE))
     # raw distance plus the sum of the earlier corrections and dithers, times the pixel scale, by hand
