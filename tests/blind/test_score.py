@@ -1,10 +1,12 @@
 """Scoring: what counts as right, and what does not."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.blind import score, table
+from tests.blind.diagram import draw, points
 
 
 def effect(name: str, equivalent: tuple[str, ...] = (), **more: Any) -> dict[str, Any]:
@@ -162,3 +164,10 @@ def test_a_sure_wrong_name_is_counted_and_an_absent_probability_is_not() -> None
     lines = {line["figure"]: line["measured"] for line in table.figures([wrong, right, unsure])}
     assert lines["a wrong name with probability > 0.9, all cases"]["hits"] == 1
     assert "| 0.950 | 1 | 2 |" in table.reliability([wrong, right, unsure])
+
+
+def test_a_reliability_diagram_has_a_point_for_every_probability_said(tmp_path: Path) -> None:
+    rows = [{"sureness": [[0.9, 1.0], [0.5, 0.0]]}, {"sureness": [[0.9, 0.0]]}, {}]
+    assert points(rows) == [(0.5, 0, 1), (0.9, 1, 2)]
+    draw(points(rows), "made up", tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
