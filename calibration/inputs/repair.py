@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.inputs.declaration import Rig
-from calibration.inputs.record import Record, Repair, quantum
+from calibration.inputs.frames import lost_rows, repeated_rows
+from calibration.inputs.record import Record, Repair
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
@@ -19,7 +20,6 @@ LEAP = 2.5  # between the smallest spike and the largest of the rest
 TAIL = 20  # values below the leap, from which the tail's index is taken (Hill 1975)
 BY_CHANCE = 1e-4  # of a leap that a heavy tail makes by itself
 MOST_SPIKES = 0.01  # of rows: more is no spike but the signal
-FROZEN = 5  # rows: a column that stands still for so long while it moves before and after
 MOVING = ("position", "position2", "velocity", "reference")
 SLOW = ("supply", "temperature", "normal")  # what leaps there may be real
 AT_END = 0.002  # of rows at one extreme value, in stretches: the reading is at its end
@@ -48,7 +48,8 @@ def repair(record: Record, rig: Rig) -> None:
         if channel in ("effort", "current", "force"):
             _saturation(record, channel, x)
         record.columns[channel] = x
-    _repeats(record, rig)
+    repeated_rows(record, rig)
+    lost_rows(record)
 
 
 def _undeclared_wrap(raw: Array, channel: str) -> tuple[Array, Repair | None]:
@@ -162,26 +163,3 @@ def _saturation(record: Record, channel: str, x: Array) -> None:
         if pairs > max(AT_END * len(good), 10) and abs(end) > 0.9 * np.abs(good).max():
             note = f"{int(at.sum())} rows stay at {end:g}: the end of its range"
             record.repairs.append(Repair("saturation", channel, int(at.sum()), float(end), note))
-
-
-def _repeats(record: Record, rig: Rig) -> None:
-    """Rows in which every moving column repeats the row before while the motion goes on: a frame was lost."""
-    present = [c for c in rig.columns if c in record.columns and c not in ("time", "temperature", "supply")]
-    if len(present) < 2 or record.rows < 200:
-        return
-    same = np.ones(record.rows - 1, dtype=bool)
-    for c in present:
-        same &= np.diff(record.columns[c]) == 0
-    x = record.columns["position"]
-    usual = float(np.nanmedian(np.abs(np.diff(x))))
-    step = quantum(x[np.isfinite(x)]) or 0.0
-    if usual == 0 or usual < 4 * step or not same.any():  # a coarse column repeats itself anyway
-        return
-    quick = np.abs(np.nan_to_num(x[2:] - x[:-2])) > usual  # over two rows it moved
-    lost = np.concatenate([[False], same[:-1] & quick, [False]])
-    if not 3 <= lost.sum() <= 0.2 * record.rows:
-        return
-    for c in present:
-        record.columns[c] = np.where(lost, np.nan, record.columns[c])
-    note = f"{int(lost.sum())} rows repeat the row before while the drive moves: left out"
-    record.repairs.append(Repair("repeat", "all", int(lost.sum()), float(lost.sum()), note))

@@ -11,6 +11,7 @@ CALLED = {
     "signed": "log_wrap",
     "spike": "sample_loss",
     "repeat": "sample_loss",
+    "lost": "sample_loss",
     "saturation": "log_wrap",
 }
 FORCES = ("effort", "current", "force", "acceleration")

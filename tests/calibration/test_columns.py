@@ -10,6 +10,8 @@ import pytest
 
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.tables import read_table
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
@@ -99,3 +101,27 @@ def test_a_real_step_of_a_signed_effort_is_no_wrap(tmp_path: Path) -> None:
     counts = np.where(t < off, np.round(-312 * t / off + 0.1 * u), 0.0)
     rig = FORCE.replace("unit: N}\nresponse", "unit: N, scale: 0.1}\nresponse")
     assert "log_wrap" not in found(answer(tmp_path, rig, (t, x, np.minimum(counts, 0))))
+
+
+def test_rows_that_are_missing_here_and_there_are_told_and_change_nothing(tmp_path: Path) -> None:
+    t, x, u = motion()
+    keep = np.arange(len(t)) % 300 != 150
+    data = answer(tmp_path, FORCE, (t[keep], x[keep], u[keep]))
+    assert found(data) == ["sample_loss"]
+    assert data["effects"][0]["parameters"]["count"]["value"] == np.sum(~keep)
+
+
+def test_frames_that_repeat_are_seen_beside_a_reference_that_goes_on(tmp_path: Path) -> None:
+    t, x, u = motion()
+    at = np.arange(100, len(t) - 100, 97)
+    goal = x.copy()
+    x, u = x.copy(), u.copy()
+    quick = at[np.abs(np.gradient(goal))[at] > np.median(np.abs(np.gradient(goal)))]
+    x[at], u[at] = x[at - 1], u[at - 1]
+    rig = FORCE.replace("\nresponse", "\n  reference: {column: goal, unit: m}\nresponse")
+    (tmp_path / "rig.yaml").write_text(rig)
+    table = np.column_stack([t, x, u, goal])
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,x,u,goal", comments="", fmt="%.9g")
+    (record,) = read_table(tmp_path / "a.csv", load_rig(tmp_path / "rig.yaml"))
+    assert [r.kind for r in record.repairs] == ["repeat"]
+    assert len(quick) * 0.9 <= record.repairs[0].rows <= len(at)
