@@ -63,8 +63,10 @@ def serve(
     console = Console()
     checked_speed(speed)
     options.check()
-    if mute is not None and record is not None:
-        raise FeedError("--mute and --record: frames fed from a log are not recorded; leave one out")
+    if mute is not None and (record is not None or snapshots is not None):
+        raise FeedError(
+            "--mute with --record or --snapshots: frames fed from a log are not recorded; leave one out"
+        )
     standing = None if begun is None else _standing(begun)
     if standing is None:
         scenario, model = chosen(scenario_file, seed, plant, network)

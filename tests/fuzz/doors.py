@@ -106,11 +106,11 @@ def _can(served: Served, count: int, random: Random, datagrams: bool) -> dict[st
             if datagrams:
                 outside.into.append(inputs.datagram(random))
             else:
-                identifier, data, extended, remote = inputs.frame(random)
+                frame = inputs.frame(random)
                 outside.into.append(
                     can.Message(
-                        arbitration_id=identifier, data=None if remote else data, dlc=len(data),
-                        is_extended_id=extended, is_remote_frame=remote,
+                        arbitration_id=frame.identifier, data=None if frame.remote else frame.data,
+                        dlc=len(frame.data), is_extended_id=frame.extended, is_remote_frame=frame.remote,
                     )
                 )  # fmt: skip
             fence.poll()
