@@ -7,7 +7,7 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from math import hypot
 
-_PX = r"([+-]?(?:[0-9]{1,9}\.?[0-9]*|\.[0-9]+))(?![0-9.])"
+_PX = r"([+-]?(?:[0-9]{1,9}(?:\.[0-9]*)?|\.[0-9]+))(?![0-9.])"
 _DITHER = re.compile(rf"DITHER by {_PX}, {_PX}")
 _LOCK = re.compile(rf"[Ll]ock pos(?:ition)?\s*=\s*{_PX}, {_PX}")
 SAME_PX = 0.01  # a lock position that is written again, to PHD2's last digits

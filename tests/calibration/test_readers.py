@@ -195,6 +195,7 @@ def test_a_guide_log_with_sections_drops_dither_and_settling(tmp_path: Path) -> 
     [
         ("INFO: SET LOCK POSITION, new lock pos = 5.000, 5.000", [0, 0, 0, 1]),  # unknown before: a jump
         ("INFO: DITHER somewhere", [0, 0, 0, 1]),  # a dither that does not tell how far
+        (f"INFO: DITHER by 1.000, 0{'9' * 400}.000", [0, 0, 0, 1]),  # nor does this; it made dec infinite
         ("INFO: Server received PAUSE", [0, 0, 0, 0]),
     ],
 )
