@@ -37,6 +37,7 @@ def test_an_axis_log_is_read_in_si_units_and_header_scales_override(tmp_path: Pa
     ("change", "line", "column"),
     [
         (lambda t: t.replace("0.05,15,20", "0.05,15,twenty"), 17, "effort"),
+        (lambda t: t.replace("\n0.00,", "\n\ufeff0.00,"), 12, "t"),  # a byte order mark in the middle
         (lambda t: t.replace("\n0.20,", "\n0.02,"), 32, "t"),
         (lambda t: t.replace("\n0.07,15", "\n,15"), 19, "t"),
         (lambda t: t.replace(",position,", ",position [deg],"), 11, "position [deg]"),
