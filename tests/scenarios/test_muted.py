@@ -75,7 +75,7 @@ def test_error_frames_are_left_out_and_an_empty_remote_frame_is_read(tmp_path: P
     text = "(0.100000) can0 20000004#0004000000000000\n(0.200000) can0 211#R\n"
     (tmp_path / "a.log").write_text(text)
     (logged,) = read(tmp_path / "a.log")
-    assert logged.frame == (0x211, b"", False, True)
+    assert logged.frame == Frame(0x211, b"", remote=True)
 
 
 def test_a_served_board_is_muted_and_fed(log: Path, schmidt: Command, tmp_path: Path) -> None:
