@@ -94,6 +94,14 @@ def _held(a: Floats, b: Floats, seconds: float) -> tuple[Floats, Floats]:
     return step[:n, :n], step[:n, n:]
 
 
+def noise() -> Floats:
+    """Return the covariance of what moves the states in a tick that the model does not know."""
+    found = 1e-16 * np.eye(_SIZE)
+    found[_ANGLE, _ANGLE], found[_RATE, _RATE] = 1e-20, _ACCELERATION
+    found[_TORQUE, _TORQUE], found[_LOAD, _LOAD] = 1e-2, _DISTURBANCE
+    return found
+
+
 def design(model: PlantModel, rate: float = SIDEREAL * ARCSEC, delay_s: float = DESIGN_DELAY_S) -> Design:
     """Observer and gains for a plant at a rate, the effort coming `delay_s` after the reading."""
     a, b, per_step = _continuous(model, rate)
@@ -110,12 +118,9 @@ def design(model: PlantModel, rate: float = SIDEREAL * ARCSEC, delay_s: float = 
     cost = solve_discrete_are(ac, bc, weight, np.array([[_EFFORT]]))
     gain = np.zeros(_SIZE)
     gain[keep] = np.linalg.solve(_EFFORT + bc.T @ cost @ bc, bc.T @ cost @ ac)[0]
-    noise = 1e-16 * np.eye(_SIZE)
-    noise[_ANGLE, _ANGLE], noise[_RATE, _RATE] = 1e-20, _ACCELERATION
-    noise[_TORQUE, _TORQUE], noise[_LOAD, _LOAD] = 1e-2, _DISTURBANCE
     reads = np.zeros((1, _SIZE))
     reads[0, _ANGLE] = 1.0
-    spread = solve_discrete_are(ad.T, reads.T, noise, np.array([[_READING]]))
+    spread = solve_discrete_are(ad.T, reads.T, noise(), np.array([[_READING]]))
     correction = (spread @ reads.T / (spread[0, 0] + _READING))[:, 0]
     return Design(ad, bd[:, 0], gain, correction, per_step)
 
