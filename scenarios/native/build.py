@@ -42,7 +42,7 @@ def build(library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT) ->
     for need, hint in (("mypyc", "pip install mypy"), ("setuptools", "pip install setuptools")):
         if importlib.util.find_spec(need) is None:
             raise BuildError(f"{need} is not installed ({hint})")
-    if not _compiler():
+    if not compiler():
         raise BuildError("there is no C compiler")
     with tempfile.TemporaryDirectory(prefix="schmidt-native-") as folder:
         before = stamp.make(root)  # a file that changes while it is compiled makes the library stale
@@ -58,7 +58,8 @@ def build(library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT) ->
     return True
 
 
-def _compiler() -> bool:
+def compiler() -> bool:
+    """Whether there is a C compiler."""
     command = os.environ.get("CC") or str(sysconfig.get_config_var("CC") or "cc")
     return shutil.which(command.split()[0]) is not None
 

@@ -1,6 +1,7 @@
 """A library that does not fit is never used, and never without a word."""
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -109,11 +110,43 @@ def test_without_a_compiler_the_reason_is_one_line(tree: Path, monkeypatch: pyte
         build.build(tree / "library", root=tree)
 
 
+def test_a_machine_without_a_compiler_hears_of_it_once(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "scenarios.native"],
+        cwd=ROOT,
+        env={**os.environ, "PATH": str(tmp_path), "SCHMIDT_PURE": "1", "CC": "no-such-compiler"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert not done.stderr
+    assert done.stdout in ("", "schmidt: not compiled, running plain Python: there is no C compiler\n")
+
+
+def test_who_insists_on_a_library_that_does_not_fit_reads_one_line(tmp_path: Path) -> None:
+    program = (
+        "import sys; import scenarios.native.finder as f; f.use.__defaults__ = (__import__('pathlib')"
+        ".Path(sys.argv[1]),); import importlib, os; os.environ['SCHMIDT_PURE'] = '0';"
+        "import scenarios; importlib.reload(scenarios)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path)],
+        cwd=ROOT,
+        env={**os.environ, "SCHMIDT_PURE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("schmidt: the compiled library is not there")
+    assert done.stderr.count("\n") == 1
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_a_module_that_mypyc_refuses_stays_plain_and_the_others_are_compiled(tree: Path) -> None:
     """`in` with a starred tuple ends mypyc 2.4 in the middle; the rest must not suffer."""
-    if not build._compiler():
+    if not build.compiler():
         pytest.skip("there is no C compiler")
     (tree / "scenarios" / "probe.py").write_text("print('the same')\n")
     (tree / "scenarios" / "native").mkdir()
