@@ -83,6 +83,7 @@ def timed(folder: Path, runs: int, jobs: int, simulated_s: int) -> dict[str, flo
     out = folder / f"jobs-{jobs}-{runs}"
     words = ["campaign", str(folder / "bench.yaml"), "--out", str(out), "--jobs", str(jobs)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # users have it written
     command = [sys.executable, "-c", "from scenarios.cli import main; main()", *words]
     before, begin = _children_s(), time.perf_counter()
     subprocess.run(command, env=environment, check=True, capture_output=True)
@@ -99,9 +100,11 @@ def measure(runs: int) -> dict[str, Any]:
         folder = Path(name)
         tried = timed(folder, 1, 1, _TRIED_S)
         simulated_s = max(1, round(_TRIED_S * RUN_S / tried["runs_cpu_s"]))
+        least = timed(folder, 2, 1, 1)
         one, two = (timed(folder, runs, jobs, simulated_s) for jobs in (1, 2))
     return {
         "simulated_s": simulated_s,
+        "once_s": least["cpu_s"] - least["runs_cpu_s"],
         "one": one,
         "two": two,
         "speedup": one["wall_s"] / two["wall_s"],
@@ -130,6 +133,7 @@ def show(found: dict[str, Any]) -> None:
             f"{part['wall_s']:.1f} s wall, {part['cpu_s']:.1f} s CPU, {part['runs_cpu_s']:.1f} s in the runs"
         )
         print(f"{name}: {part['runs']:.0f} runs, {times}: overhead {part['overhead']:.1%} (<= 10 %)")
+    print(f"once a campaign with one worker, its start and report: {found['once_s']:.1f} s CPU")
     print(f"two workers over one: {found['speedup']:.2f} times by wall time (>= 1.8 on an idle machine)")
     print(f"  both busy {found['busy']:.1%} of the time; a run's CPU {found['dearer']:.2f} times that alone")
 
