@@ -39,12 +39,13 @@ def distributions(
         view = axes(figure, rows, 3, place + 1, ylabel="runs" if place % 3 == 0 else "")
         middle = np.quantile(values, [0.005, 0.995])
         bars: Any
-        _, edges, bars = view.hist(np.clip(values, *middle), bins=30, color=_BAR)
+        shown = np.clip(values, *middle)
+        _, edges, bars = view.hist(shown, bins=30, color=_BAR)
         short = name.removeprefix("metric: ")
         if short in limits:
             limit, upper = limits[short]
             for left, right, bar in zip(edges[:-1], edges[1:], bars, strict=True):
-                inside = values[(values >= left) & (values <= right)]
+                inside = values[(shown >= left) & (shown <= right)]  # the last bar holds what lies beyond it
                 if len(inside) and (inside.min() > limit if upper else inside.max() < limit):
                     bar.set_color(COLOURS["bad"])
             if middle[0] - np.ptp(middle) < limit < middle[1] + np.ptp(middle):

@@ -1,14 +1,17 @@
 """Journal, table and sensitivity: nothing is lost, nothing counted twice, intervals hold what they should."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 from scipy.stats import binomtest, rankdata
 
-from scenarios.campaign import sensitivity, table
+from scenarios.campaign import figures, sensitivity, table
 from scenarios.campaign.sensitivity import influence, share
 from scenarios.document import ScenarioError
+from scenarios.report.style import COLOURS
 
 
 def row(key: str, index: int = 0, **more: object) -> dict[str, object]:
@@ -108,3 +111,14 @@ def test_blocks_of_resamples_are_one_draw(monkeypatch: pytest.MonkeyPatch) -> No
     parts = list(sensitivity._resamples(30, 30, 3))
     assert len(parts) > 100
     assert np.array_equal(np.concatenate(parts), whole)
+
+
+def test_a_bar_of_runs_beyond_the_limit_is_red_also_the_last_one() -> None:
+    """The axis ends at the 99.5 % quantile; runs beyond it are in the last bar."""
+    figure = figures.distributions(
+        {"metric: a": [0.1] * 300 + [5.0, 50.0]}, ["metric: a"], {"a": (1.0, True)}
+    )
+    assert figure is not None
+    bars: Any = [bar for bar in figure.axes[0].patches if bar.get_height() > 0]
+    assert [bar.get_height() for bar in bars] == [300, 2]
+    assert [to_hex(bar.get_facecolor()) == COLOURS["bad"] for bar in bars] == [False, True]
