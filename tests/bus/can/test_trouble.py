@@ -1,11 +1,14 @@
 """Error confinement by ISO 11898-1 (hardware.md 3.3)."""
 
+import itertools
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bus.can import Flip, Frame, Wire
 from bus.can.bits import wire_bits
+from bus.can.length import frame_bits
 from bus.time import EventQueue
 from tests.bus.can.test_wire import listen, network
 
@@ -362,3 +365,50 @@ def test_L1_after_a_cut_frame_the_bus_is_busy_until_the_error_frame_is_over(bit:
     assert [(t_ns, frame.identifier) for t_ns, frame in log] == [
         (start + len(wire_bits(Frame(0x200, b""))) * 1000, 0x200)
     ]
+
+
+class _Told:
+    """A watcher that keeps what it is told of failures."""
+
+    def __init__(self) -> None:
+        self.failures: list[bool] = []
+
+    def failed(self, _t_ns: int, *, sending: bool) -> None:
+        self.failures.append(sending)
+
+    def ignore(self, *_args: object) -> None:
+        """Of no interest here."""
+
+    began = lost = counted = activity = ignore
+
+
+def test_a_missing_acknowledge_is_seen_in_its_slot() -> None:
+    """The frame up to the slot (without 1 + 7 + 3 bits behind it), flag 6, delimiter 8, intermission 3."""
+    queue, wire = network(1)
+    times: list[int] = []
+    wire.ports[0].on_error = lambda t_ns, error: times.append(t_ns) if error.kind == "ack" else None
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    assert {b - a for a, b in itertools.pairwise(times)} == {(frame_bits(FRAME) + 6) * 1000}
+
+
+def test_both_senders_of_the_very_same_frame_have_sent_it() -> None:
+    queue, wire = network(3)
+    for port in wire.ports[:2]:
+        port.tec = 16
+    for port in wire.ports[:2]:
+        port.send(FRAME, 0)
+    queue.run_until(1_000_000)
+    assert [port.tec for port in wire.ports] == [15, 15, 0]
+
+
+def test_a_passive_sender_that_loses_a_collision_is_told() -> None:
+    """Same identifier, other data: its recessive flag ends nothing but its own attempt."""
+    queue, wire = network(3)
+    told = _Told()
+    wire.ports[0].watcher = told  # type: ignore[assignment]
+    wire.ports[0].tec = 130
+    wire.ports[0].send(Frame(0x123, b"\xff" * 8), 0)
+    wire.ports[1].send(Frame(0x123, bytes(8)), 0)
+    queue.run_until(200_000)
+    assert told.failures == [True]
