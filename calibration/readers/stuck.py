@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.errors import CalibrationInputError
 from calibration.readers.run import Array
@@ -13,7 +14,17 @@ from calibration.readers.run import Array
 # either end of its range, and one of noise
 MISSED = 3.0
 FEWEST = 100  # rows that say how far the axis moved
+QUICKER = 10.0  # than the rows beside it: no axis speeds up so in 10 ms
+FAR = 1e-4  # rad, 20 arcsec: more than noise at rest, an eighth of the shortest counter (2^16 counts)
 WIDTH = 25  # rows (one packet, log-format.md) over which the position's own noise is averaged out of its rate
+
+
+def _leaps(x: Array) -> NDArray[np.bool_]:
+    """Whether each stretch of WIDTH rows holds a step that no motion makes: a counter that wraps early."""
+    step = np.abs(np.diff(x))
+    beside = np.maximum(np.append(step[1:], 0.0), np.insert(step[:-1], 0, 0.0))
+    before = np.concatenate([[0], np.cumsum(step > QUICKER * beside + FAR)])
+    return np.asarray(before[WIDTH:] > before[:-WIDTH])
 
 
 def check_stuck(
@@ -36,7 +47,8 @@ def check_stuck(
         return
     t, x = t[good], position[good]
     span = t[WIDTH:] - t[:-WIDTH]
-    rate = (x[WIDTH:] - x[:-WIDTH])[span > 0] / span[span > 0]
+    whole = (span > 0) & ~_leaps(x)
+    rate = (x[WIDTH:] - x[:-WIDTH])[whole] / span[whole]
     for name, motion in (
         ("velocity", rate),
         ("tach_a", rate * ratio),
