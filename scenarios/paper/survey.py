@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.paper.compiled import CompiledBench
-from scenarios.paper.cost import BY_ID, Term, worst
+from scenarios.paper.cost import BY_ID, Term, stall_term, worst
 from scenarios.paper.log import Array
 from scenarios.paper.objective import READINGS, Objective
 from scenarios.paper.space import bounds, values
@@ -26,6 +26,8 @@ from scenarios.paper.starts import STARTS, Benches
 
 ROWS = ("E1", "E2", "E3", "E4", "E5", "E6", "E9", "E12", "E13", "E14", "E15")
 """All but E7 and E8, which judge a method, and E10 and E11, which cost as much as all of these."""
+EVERY = 20
+"""Points after which what is there is written."""
 DRAWN = 1 << 15
 """Sobol points from which those that statics allow are taken."""
 
@@ -56,7 +58,8 @@ def looks(objective: Objective, points: Array, rows: Sequence[str] = ROWS) -> It
     """Yield the points with their rows, each from one start."""
     for k, x in enumerate(points):
         bench = Benches(CompiledBench, objective.plants(x), STARTS[k % len(STARTS)])
-        yield Look(values(x), {row: worst(BY_ID[row], [bench]) for row in rows})
+        found = {row: stall_term(bench) if row == "E14" else worst(BY_ID[row], [bench]) for row in rows}
+        yield Look(values(x), found)
 
 
 def _figure(term: Term) -> str:
@@ -105,20 +108,21 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     objective = Objective(chosen.reading, not chosen.no_diode, STARTS, chosen.points, print)
     points, share = draw(objective, chosen.seed)
+    circuit = "no freewheel path" if chosen.no_diode else "freewheel diodes"
+    units = "as printed" if chosen.reading == "printed" else "in N mm at the motor"
+    said, text = f"seed {chosen.seed}, {circuit}, Table 2 {units}", ""
+    chosen.out.parent.mkdir(parents=True, exist_ok=True)
     found: list[Look] = []
     for look in looks(objective, points[: chosen.points]):
         found.append(look)
-        if len(found) % 25 == 0:
+        if len(found) % EVERY == 0 or len(found) == min(chosen.points, len(points)):
+            text = markdown(found, share, said)
+            chosen.out.write_text(text, encoding="utf-8")
+            chosen.out.with_suffix(".json").write_text(json.dumps(as_json(found)) + "\n", encoding="utf-8")
             print(f"{len(found)} points", flush=True)
     if not found:
         print("no point of the space passes the statics", file=sys.stderr)
         return 1
-    circuit = "no freewheel path" if chosen.no_diode else "freewheel diodes"
-    units = "as printed" if chosen.reading == "printed" else "in N mm at the motor"
-    text = markdown(found, share, f"seed {chosen.seed}, {circuit}, Table 2 {units}")
-    chosen.out.parent.mkdir(parents=True, exist_ok=True)
-    chosen.out.write_text(text, encoding="utf-8")
-    chosen.out.with_suffix(".json").write_text(json.dumps(as_json(found)) + "\n", encoding="utf-8")
     print(text)
     return 0
 
