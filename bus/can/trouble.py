@@ -125,9 +125,10 @@ class Trouble:
 
     def _tell(self, winner: Offer, ready: list[Offer], t_ns: int) -> None:
         """Tell watchers who has begun and who has lost."""
-        if winner.port.watcher is not None:
-            winner.port.watcher.began(t_ns)
-        told = {winner.port, *(twin.port for twin in self._twins)}
+        told = [winner.port, *(twin.port for twin in self._twins)]
+        for port in told:
+            if port.watcher is not None:
+                port.watcher.began(t_ns)
         for port in dict.fromkeys(offer.port for offer in sorted(ready)):
             if port not in told and port.watcher is not None:
                 port.watcher.lost(t_ns)

@@ -1,6 +1,7 @@
 """The boards' fast CAN controller and the chip at register level put the same frames on the wire."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -26,7 +27,7 @@ def controller(port: Port, on_receive: Received) -> Mcp2515Controller:
 sends = st.lists(
     st.tuples(
         st.integers(0, 1),  # who
-        st.sampled_from([0x091, 0x100, 0x123, 0x201, 0x2FF, 0x300, 0x7FE]),
+        st.sampled_from([0x091, 0x100, 0x123, 0x201, 0x2FE, 0x300, 0x7FE]),  # + who: no two nodes send one
         st.binary(max_size=8),
         # ns to the next one, in whole bits: at once, or more than a bit later (within its first bit the fast
         # controller may still choose among its buffers, the chip has chosen; a frame that is ready within the
@@ -59,6 +60,26 @@ def test_random_traffic(traffic: list[tuple[int, int, bytes, int]]) -> None:
         queue.run_until(queue.now_ns + 10_000_000)
         logs.append(log)
     assert logs[0] == logs[1]
+
+
+@pytest.mark.parametrize("make", [CanController, controller])
+def test_two_nodes_send_one_frame_at_once_and_one_of_them_has_a_more_urgent_one(make: Any) -> None:
+    """The wire carries the frame once for both; what comes within its first bit has to wait."""
+    queue = EventQueue()
+    wire = Wire(queue)
+    log: list[int] = []
+    wire.tap(lambda _t, frame, _name: log.append(frame.identifier))
+    nodes = [make(wire.attach(name), lambda _t, _frame: None) for name in "ab"]
+    wire.attach("c")
+    nodes[0].send(Frame(0x300, b""), READY_NS)
+    nodes[1].send(Frame(0x092, b""), READY_NS)
+    nodes[1].send(Frame(0x300, b""), READY_NS)
+    nodes[0].send(Frame(0x091, b""), READY_NS)
+    queue.run_until(129_000)
+    nodes[1].send(Frame(0x092, b"x"), queue.now_ns)
+    queue.run_until(1_000_000)
+    assert log == [0x091, 0x092, 0x300, 0x092]
+    assert all(port.free_buffers == 3 for port in wire.ports[:2])
 
 
 def test_the_boards_do_not_notice(monkeypatch: pytest.MonkeyPatch) -> None:
