@@ -31,6 +31,8 @@ Output = TypeVar("Output")
 AHEAD = 3
 """Tasks handed out per worker: enough that none waits, few enough that a hundred thousand planned runs need
 no memory here."""
+_LOOK_S = 5.0
+"""How often somebody looks whether the scheduler is still there."""
 TRIES = 5
 """A task whose worker has died this often is taken to be the reason."""
 
@@ -58,9 +60,9 @@ def each(
     jobs: processes here (None: one per core; 1 still means a process of its own). scheduler: address of a
     Dask scheduler instead, such as tcp://host:8786. Inputs are drawn as workers become free. An exception of
     the task is an error of that key; a worker that dies costs its task another try. Leaving the loop early
-    cancels what has not begun and ends the workers.
+    cancels what has not begun and ends the workers. A scheduler that is gone is a ConnectionError.
     """
-    make, width = _cluster(scheduler) if scheduler else _local(jobs)
+    make, width, alive = _cluster(scheduler) if scheduler else _local(jobs)
     waiting = iter(inputs)
     lost: list[tuple[str, Input, int]] = []
     more = True
@@ -82,7 +84,10 @@ def each(
                         break
                 if not running:
                     break
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                ended = wait(running, timeout=_LOOK_S, return_when=FIRST_COMPLETED).done
+                if not ended and not alive():  # its futures will never end
+                    raise ConnectionError(f"the scheduler at {scheduler} is gone; what has ended is kept")
+                for future in ended:
                     key, given, tried = running.pop(future)
                     try:
                         yield Done(key, future.result())
@@ -107,9 +112,10 @@ def _line(error: BaseException) -> str:
 
 
 Maker = Callable[[], AbstractContextManager[Executor]]
+Alive = Callable[[], bool]
 
 
-def _local(jobs: int | None) -> tuple[Maker, int]:
+def _local(jobs: int | None) -> tuple[Maker, int, Alive]:
     """A process pool. Workers start afresh, without inherited threads and locks, and leave Ctrl-C to this
     process."""
     width = jobs or os.cpu_count() or 1
@@ -127,7 +133,7 @@ def _local(jobs: int | None) -> tuple[Maker, int]:
             raise
         pool.shutdown()
 
-    return make, width
+    return make, width, lambda: True
 
 
 def _worker() -> None:
@@ -138,7 +144,7 @@ def _worker() -> None:
     threadpool_limits(1)
 
 
-def _cluster(address: str) -> tuple[Maker, int]:
+def _cluster(address: str) -> tuple[Maker, int, Alive]:
     try:
         from distributed import Client
     except ImportError:
@@ -156,6 +162,10 @@ def _cluster(address: str) -> tuple[Maker, int]:
         try:
             yield executor
         finally:
-            executor.shutdown(wait=False)
+            if alive():
+                executor.shutdown(wait=False)
 
-    return make, width
+    def alive() -> bool:
+        return bool(client.status != "closed")
+
+    return make, width, alive
