@@ -26,9 +26,12 @@ def numbers(columns: Columns, name: str) -> Array:
 
 
 def distributions(
-    columns: Columns, metrics: list[str], limits: dict[str, tuple[float, bool]]
+    columns: Columns,
+    metrics: list[str],
+    limits: dict[str, tuple[float, bool]],
+    units: dict[str, str],
 ) -> Figure | None:
-    """A histogram per metric; a line where its limit lies, red where it is missed."""
+    """A histogram per metric, its unit below it; a line where its limit lies, red where it is missed."""
     drawn = [name for name in metrics if np.ptp(_finite(numbers(columns, name))) > 0.0][:_PANELS]
     if not drawn:
         return None
@@ -36,12 +39,13 @@ def distributions(
     figure = new_figure(2.3 * rows + 0.3)
     for place, name in enumerate(drawn):
         values = _finite(numbers(columns, name))
-        view = axes(figure, rows, 3, place + 1, ylabel="runs" if place % 3 == 0 else "")
+        short = name.removeprefix("metric: ")
+        label = "runs" if place % 3 == 0 else ""
+        view = axes(figure, rows, 3, place + 1, xlabel=units.get(short, ""), ylabel=label)
         middle = np.quantile(values, [0.005, 0.995])
         bars: Any
         shown = np.clip(values, *middle)
         _, edges, bars = view.hist(shown, bins=30, color=_BAR)
-        short = name.removeprefix("metric: ")
         if short in limits:
             limit, upper = limits[short]
             for left, right, bar in zip(edges[:-1], edges[1:], bars, strict=True):

@@ -26,12 +26,12 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     import jinja2
 
     columns = table.read(folder / table.TABLE)
-    limits = {} if plan.calibrates else _limits(plan)
+    limits, units = ({}, {}) if plan.calibrates else (_limits(plan), _units(plan))
     metrics = [name for name in columns if name.startswith("metric: ")]
     found = _influences(plan, columns, metrics)
     groups = _groups(plan, columns)
     drawn = {
-        "distributions": figures.distributions(columns, metrics, limits),
+        "distributions": figures.distributions(columns, metrics, limits, units),
         "influences": figures.influences(found, [f"input: {each.name}" for each in plan.inputs]),
         "indices": figures.indices(_indices(plan, columns, metrics), [each.name for each in plan.inputs]),
         "failures": figures.failures(columns, groups),
@@ -46,7 +46,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         plan=plan,
         runs=len(columns["key"]),
         passed=share(passed, len(columns["key"])),
-        metrics=[_summary(columns, name, limits) for name in metrics],
+        metrics=[_summary(columns, name, limits, units) for name in metrics],
         pictures=pictures,
         worst=worst,
         repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
@@ -58,6 +58,14 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
 
 def _limits(plan: Plan) -> dict[str, tuple[float, bool]]:
     return {e.name: (e.limit, e.upper) for e in convert(_document(plan, plan.base)).expectations}
+
+
+def _units(plan: Plan) -> dict[str, str]:
+    """What each expectation is measured in; nothing for a bare number."""
+    from scenarios.evaluate import KINDS
+
+    units = {e.name: KINDS[e.kind][1] for e in convert(_document(plan, plan.base)).expectations}
+    return {name: unit for name, unit in units.items() if unit != "1"}
 
 
 def _again(plan: Plan) -> str:
@@ -142,11 +150,13 @@ def _write_worst(plan: Plan, index: int, path: Path) -> None:
     path.write_text(head + yaml.safe_dump(document, sort_keys=False, allow_unicode=True), encoding="utf-8")
 
 
-def _summary(columns: Columns, name: str, limits: dict[str, tuple[float, bool]]) -> dict[str, Any]:
+def _summary(
+    columns: Columns, name: str, limits: dict[str, tuple[float, bool]], units: dict[str, str]
+) -> dict[str, Any]:
     values = numbers(columns, name)
     good = values[np.isfinite(values)]
     short = name.removeprefix("metric: ")
-    row: dict[str, Any] = {"name": short, "runs": len(good)}
+    row: dict[str, Any] = {"name": short, "unit": units.get(short, ""), "runs": len(good)}
     if len(good):
         row["quantiles"] = [f"{q:.4g}" for q in np.quantile(good, _QUANTILES)]
         row["largest"] = f"{good.max():.4g}"

@@ -116,9 +116,9 @@ def test_blocks_of_resamples_are_one_draw(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_bar_of_runs_beyond_the_limit_is_red_also_the_last_one() -> None:
     """The axis ends at the 99.5 % quantile; runs beyond it are in the last bar."""
     figure = figures.distributions(
-        {"metric: a": [0.1] * 300 + [5.0, 50.0]}, ["metric: a"], {"a": (1.0, True)}
+        {"metric: a": [0.1] * 300 + [5.0, 50.0]}, ["metric: a"], {"a": (1.0, True)}, {"a": "arcsec"}
     )
-    assert figure is not None
+    assert figure is not None and figure.axes[0].get_xlabel() == "arcsec"
     bars: Any = [bar for bar in figure.axes[0].patches if bar.get_height() > 0]
     assert [bar.get_height() for bar in bars] == [300, 2]
     assert [to_hex(bar.get_facecolor()) == COLOURS["bad"] for bar in bars] == [False, True]
