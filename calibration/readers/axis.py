@@ -78,6 +78,8 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
     raw = _check_time(path, raw, scales["sample_period_s"], start + 2)
     check_values(path, raw, scales, start + 2)
     si = to_si(raw, scales)
+    if "aux" in raw and not np.any(raw["aux"]):  # a network without that board logs 0
+        del raw["aux"], si["aux"]
     check_stuck(path, raw, si["t"], si["position"], factors(scales), scales["gear_ratio"], start + 2)
     return Run(path.stem, path, header["session"], si, raw, header, scales)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib.metadata
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ from host.alpaca.errors import (
 from host.alpaca.parameters import Parameters
 from host.telescope import AsyncDesk, Job, Refused, Snapshot, Telescope
 
+_HEARD_S, _LOOK_S = 3.0, 0.05
+"""Wall time a connection waits for the boards at most; they send every 5 to 250 ms. ASSUMPTION."""
 T = TypeVar("T")
 Get = Callable[[Any, Parameters], Any]
 Put = Callable[[Any, Parameters], Coroutine[Any, Any, Any]]
@@ -95,11 +98,27 @@ class Device:
 
 
 async def _set_connected(device: Device, given: Parameters) -> None:
+    if given.truth("Connected"):
+        await _heard(device)
     device.connected = given.truth("Connected")
 
 
 async def _connect(device: Device, _: Parameters) -> None:
+    await _heard(device)
     device.connected = True
+
+
+async def _heard(device: Device) -> None:
+    """Give boards that have just been switched on the moment they need: clients read as soon as they are
+    connected. Boards that stay silent do not hold up the connection; each reading says so."""
+    loop = asyncio.get_running_loop()
+    end_s = loop.time() + _HEARD_S
+    while loop.time() < end_s:
+        try:
+            device.state()
+            return
+        except AlpacaError:
+            await asyncio.sleep(_LOOK_S)
 
 
 async def _disconnect(device: Device, _: Parameters) -> None:
