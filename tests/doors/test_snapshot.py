@@ -21,6 +21,7 @@ from scenarios.doors.hid_report import out_report
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay, replay_rest
 from scenarios.doors.snapshots import Snapshots
+from scenarios.native.finder import compiled
 from scenarios.run import prepare, run
 from scenarios.served import chosen
 from scenarios.snapshot import SnapshotError
@@ -31,6 +32,8 @@ from tests.doors.conftest import MS, Bench
 from tests.doors.process import PROGRAM, ROOT, Serving, free_port
 from tests.fuzz import inputs
 from tests.scenarios.conftest import SHORT
+
+pytestmark = pytest.mark.skipif(compiled(), reason="snapshots need the plain source")
 
 
 def schmidt(*words: object) -> subprocess.CompletedProcess[str]:
