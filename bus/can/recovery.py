@@ -68,7 +68,7 @@ class Recovery:
         quiet = self.quiet_since_ns if wire._end_ns == _NEVER else ends_ns
         needed = min(self._back_at.values()) - self._runs
         t_ns = quiet + needed * RECOVERY_RUN_BITS * wire.bit_ns
-        wire.queue.at(max(t_ns, wire.queue.now_ns + 1), self._recover)
+        wire.queue.at(t_ns, self._recover)
 
     def _recover(self, t_ns: int) -> None:
         wire = self._wire

@@ -311,9 +311,17 @@ class Trouble:
         return wire._calls(listeners, offer.frame)
 
     def cut(self, t_ns: int) -> None:
-        """The sender went off in the middle of its frame: six recessive bits later everyone else objects."""
+        """The sender went off in the middle of its frame: six recessive bits later everyone else objects.
+
+        Unless another node is sending the very same frame: nobody notices, and it is that node's.
+        """
         wire = self._wire
         assert wire._busy
+        if self._twins:
+            twin = self._twins.pop(0)
+            wire._remove(twin)
+            wire._sending = twin
+            return
         offer, wire._busy = Offer(*wire._sending), False
         planned = offer.bits + (_OVERLOAD_BITS if self._overload else 0)
         self._overload = False
@@ -362,7 +370,7 @@ class Trouble:
         wire._await_ready()
 
     def leaves(self, port: Port) -> None:
-        """`port` is not on this wire any more."""
+        """`port` is not on this wire any more, or has lost what it had to send."""
         self._twins = [twin for twin in self._twins if twin.port is not port]
         self._recovery.drop(port)
 
@@ -374,5 +382,5 @@ class Trouble:
         """`port` was switched: counters start from zero."""
         port.tec = port.rec = 0
         port._bus_off = False
-        self._recovery.drop(port)
+        self.leaves(port)
         self.check()

@@ -200,6 +200,8 @@ class Wire:
         """Have the next start looked at when the first of those waiting is ready."""
         if self._waiting:
             earliest_ns = min(offer[2] for offer in self._waiting)
+            # Who is bus off has been ready for long: no start lies more than a bit back.
+            earliest_ns = max(earliest_ns, self.queue.now_ns - self.bit_ns)
             self._call_decide(max(self._free_ns, not_before_ns, earliest_ns))
 
     def _begin(self, winner: Entry, sof_ns: int) -> None:

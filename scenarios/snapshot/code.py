@@ -50,9 +50,9 @@ def cell() -> CellType:
     return CellType()
 
 
-def fill(cell: CellType, contents: Any) -> None:
-    """Fill it."""
-    cell.cell_contents = contents
+def fill(cell: CellType, state: tuple[Any]) -> None:
+    """Fill it. In a tuple, since pickle takes None for no state at all."""
+    (cell.cell_contents,) = state
 
 
 def function(module: str, number: int, cells: tuple[CellType, ...]) -> FunctionType:

@@ -103,7 +103,7 @@ class _Pickler(pickle.Pickler):
                 contents = value.cell_contents
             except ValueError:
                 return code.cell, ()
-            return code.cell, (), contents, None, None, code.fill
+            return code.cell, (), (contents,), None, None, code.fill
         if type(value) is np.ndarray and not value.dtype.hasobject and value.dtype.names is None:
             return _array, (value.shape, value.dtype.str, value.tobytes())
         if isinstance(value, memoryview):

@@ -28,9 +28,14 @@ def test_L3_the_sequence_of_packets_is_eight_bits_in_the_board_too() -> None:
 def test_B4_a_motors_count_wraps_at_32_bits(before: int) -> None:
     lab = Lab()
     motor = next(board for board in lab.boards if isinstance(board, MotorVelocityBoard))
+    lab.run(0.05)
+    stood = motor.qei.pin
+    motor.qei.pin = lambda t_ns: stood(0) + t_ns // 1_000_000  # a count a millisecond, ten a routine
+    lab.run(0.05)
     motor.count = before
+    ticks = motor.ticks
     lab.run(0.2)
-    assert 0 <= motor.count <= 0xFFFF_FFFF
+    assert motor.count == (before + 10 * (motor.ticks - ticks)) % 2**32
 
 
 @pytest.mark.parametrize("start", [-INT32, -32768, 0, 32767, INT32])

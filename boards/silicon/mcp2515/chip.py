@@ -120,7 +120,7 @@ class Mcp2515:
         old = self._memory[address]
         new = old & ~mask | value & mask
         if address in at.TXBCTRL:
-            self._request(at.TXBCTRL.index(address), new)
+            self._request(at.TXBCTRL.index(address), new, asked=bool(value & mask & at.TXREQ))
             return
         self._memory[address] = new
         if address == at.CANCTRL:
@@ -141,7 +141,7 @@ class Mcp2515:
         """RTS for a set of buffers."""
         for buffer in range(3):
             if buffers >> buffer & 1:
-                self._request(buffer, self._memory[at.TXBCTRL[buffer]] | at.TXREQ)
+                self._request(buffer, self._memory[at.TXBCTRL[buffer]] | at.TXREQ, asked=True)
 
     def read_status(self) -> int:
         """Flags and requests, as READ STATUS orders them."""
@@ -208,8 +208,9 @@ class Mcp2515:
         row, column = address & 0x70, address & 0x0F
         return 0x30 <= row <= 0x50 and 1 <= column <= 0x0D and bool(self._memory[row] & at.TXREQ)
 
-    def _request(self, buffer: int, value: int) -> None:
-        if value & at.TXREQ and self.spi.selected:
+    def _request(self, buffer: int, value: int, *, asked: bool) -> None:
+        """TXBnCTRL becomes `value`. asked: this instruction is what sets TXREQ."""
+        if asked and self.spi.selected:
             self._requested |= 1 << buffer
         self.transmitter.control(buffer, value)
         self._pump()

@@ -13,7 +13,8 @@ reserved."""
 
 
 class Hit(NamedTuple):
-    """A message is for a buffer: which one, and the number of the filter that took it (0 under RXM = 11)."""
+    """A message is for a buffer: which one, and the number of the filter that took it (under RXM = 11 the
+    buffer's first, ASSUMPTION)."""
 
     buffer: int
     filter: int

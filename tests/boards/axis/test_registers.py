@@ -13,7 +13,7 @@ from boards.axis.counter import CounterTorque
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
-from boards.axis.pi import IncrementalPi
+from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
@@ -59,6 +59,16 @@ def test_B1_pi_products_and_effort(kp: int, ki: int, steps: int, ticks: list[tup
     assert abs(pi._error) <= INT32
     assert pi.shift(1) in (0, 1)
     assert abs(pi.effort_q16) <= INT32
+
+
+def test_B1_a_difference_of_errors_wider_than_32_bits_saturates() -> None:
+    """From the largest error to the smallest in one tick, Kp = 1 step per count: 32 bits of it take the
+    effort from its upper end to zero, 33 would take it to the lower end."""
+    pi = IncrementalPi(1 << GAIN_SHIFT, 0, 65536)
+    pi.start(65536, RATE_LIMIT, INT16[0])
+    assert (pi.effort_q16, pi._error) == (INT32, INT32)
+    pi.step(-RATE_LIMIT, INT16[1])
+    assert (pi.effort_q16, pi._error) == (0, -INT32)
 
 
 def make(acceleration: int, top: int) -> Profile:

@@ -4,11 +4,11 @@ import pytest
 
 from bus.can import Flip, Frame, Wire
 from bus.can.bits import wire_bits
-from bus.can.partition import Partition
+from bus.can.partition import Partition, move
 from bus.can.port import BusError, Port
 from bus.can.stuck import StuckDominant
 from bus.time import EventQueue
-from tests.bus.can.test_wire import network
+from tests.bus.can.test_wire import listen, network
 
 BIT_NS = 1000
 RUNS_NS = 128 * 11 * BIT_NS
@@ -71,6 +71,84 @@ def test_L1_on_a_quiet_bus_it_is_exactly_1408_bits(start_ns: int) -> None:
     wire.ports[1].send(Frame(7, b""), queue.now_ns)
     queue.run_until(queue.now_ns + 1_000_000)
     assert heard == [Frame(7, b"")]
+
+
+def test_L1_who_is_back_hears_what_was_routed_while_it_was_off() -> None:
+    queue, wire = network(3)
+    log = listen(wire, 0)
+    due = off_in_one(queue, wire) + RUNS_NS
+    wire.ports[1].send(Frame(7, b""), queue.now_ns)
+    queue.run_until(due + 1_000_000)
+    assert (wire.ports[0].state, log) == ("active", [])
+    wire.ports[1].send(Frame(7, b""), queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+    assert [frame for _, frame in log] == [Frame(7, b"")]
+
+
+def test_L1_a_sound_bus_is_planned_again_once_the_last_is_back() -> None:
+    """A frame that is offered to a planned bus has its end in the queue at once."""
+    queue, wire = network(3)
+    queue.run_until(off_in_one(queue, wire) + 2 * RUNS_NS)
+    for node in (1, 2):  # what the error has cost is counted down
+        wire.ports[node].rec = 0
+    wire.ports[1].send(FRAME, queue.now_ns)
+    queue.run_until(queue.now_ns + 1_000_000)
+    wire.ports[1].send(FRAME, queue.now_ns)
+    assert queue.next_ns() == queue.now_ns + (LENGTH - 3) * BIT_NS
+
+
+def test_L1_who_joins_during_a_frame_has_its_tail_for_a_first_run() -> None:
+    queue, wire = network(5)
+    off_in_one(queue, wire)
+    piece = Partition(wire, [wire.ports[3], wire.ports[4]], queue.now_ns).piece
+    queue.run_until(queue.now_ns + 500_000)
+    sof = queue.now_ns
+    piece.ports[0].send(FRAME, sof)
+    queue.run_until(sof + 40 * BIT_NS)
+    move(wire.ports[0], piece, queue.now_ns)
+    tail = sof + (LENGTH - 11) * BIT_NS
+    assert back_ns(queue, piece.ports[-1], tail + 2 * RUNS_NS) == tail + RUNS_NS
+
+
+def test_L1_who_joins_takes_nothing_from_who_waits_already() -> None:
+    queue, wire = network(5)
+    first = off_in_one(queue, wire)
+    other = Wire(queue)
+    for port in (wire.ports[0], wire.ports[3]):
+        move(port, other, queue.now_ns)
+    waiting = other.ports[0]
+    begun = queue.now_ns
+    second = off_in_one(queue, wire)
+    assert second > first
+    queue.run_until(begun + 50 * 11 * BIT_NS)
+    move(wire.ports[0], other, queue.now_ns)
+    back = back_ns(queue, waiting, begun + 3 * RUNS_NS)
+    assert RUNS_NS <= back - begun < RUNS_NS + 12 * BIT_NS
+
+
+def test_L1_a_cut_is_mended_while_a_node_off_the_bus_has_a_frame_waiting() -> None:
+    queue, wire = network(4)
+    log = listen(wire, 1)
+    due = off_in_one(queue, wire) + RUNS_NS
+    cut = Partition(wire, [wire.ports[3]], queue.now_ns)
+    queue.run_until(queue.now_ns + 300_000)
+    cut.heal(queue.now_ns)
+    wire.ports[3].send(Frame(7, b""), queue.now_ns)
+    queue.run_until(due + 1_000_000)
+    assert [frame for _, frame in log] == [Frame(7, b""), FRAME]
+
+
+def test_L1_after_an_overload_frame_its_delimiter_and_intermission_are_the_first_run() -> None:
+    """Ten runs, a frame whose last bit one receiver sees dominant: ACK delimiter and EOF are eight recessive
+    bits and no run; the frame and its overload frame end with the next eleven."""
+    queue, wire = network(4)
+    quiet = off_in_one(queue, wire)
+    sof = quiet + 10 * 11 * BIT_NS
+    left = [Flip(LENGTH - 4, seen_by="n2")]
+    wire.disturb(lambda *_: left.pop() if left else None)
+    wire.ports[1].send(FRAME, sof)
+    free = sof + (LENGTH + 6 + 1 + 8) * BIT_NS
+    assert_back_at(queue, wire, free - 11 * BIT_NS + 118 * 11 * BIT_NS)
 
 
 def test_L1_on_a_busy_bus_every_frame_is_one_run() -> None:

@@ -367,7 +367,7 @@ def test_L1_after_a_cut_frame_the_bus_is_busy_until_the_error_frame_is_over(bit:
     ]
 
 
-class _Told:
+class Told:
     """A watcher that keeps what it is told of failures."""
 
     def __init__(self) -> None:
@@ -405,8 +405,8 @@ def test_both_senders_of_the_very_same_frame_have_sent_it() -> None:
 def test_a_passive_sender_that_loses_a_collision_is_told() -> None:
     """Same identifier, other data: its recessive flag ends nothing but its own attempt."""
     queue, wire = network(3)
-    told = _Told()
-    wire.ports[0].watcher = told  # type: ignore[assignment]
+    told = Told()
+    wire.ports[0].watcher = told
     wire.ports[0].tec = 130
     wire.ports[0].send(Frame(0x123, b"\xff" * 8), 0)
     wire.ports[1].send(Frame(0x123, bytes(8)), 0)

@@ -140,7 +140,34 @@ def test_an_offset_missing_values_and_fields_without_limits() -> None:
     assert codec.pack({"T": 20.0, "S": -3}) == bytes([0, 120, 0xFD, 0, 0, 0, 0, 0])
     assert codec.pack({}) == bytes([0, 80, 0, 0, 0, 0, 0, 0])
     assert codec.unpack(bytes([0, 120, 0xFD, 0, 0, 0, 0, 0])) == {"T": 20.0, "S": -3}
+    assert codec.unpack(bytes([0, 80, 100, 0, 0, 0, 0, 0])) == {"T": 0.0, "S": 100}
     told: list[int] = []
     assert codec.pack({"T": 1e3, "S": 200}, lambda: told.append(1)) == bytes([0, 255, 127, 0, 0, 0, 0, 0])
     assert codec.pack({"T": -41, "S": -200}, lambda: told.append(1)) == bytes([0, 0, 128, 0, 0, 0, 0, 0])
     assert len(told) == 4
+
+
+HAND = (
+    'VERSION ""\nBU_: A B\nBO_ 785 X: 8 A\n{}BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\n'
+    'BA_DEF_DEF_ "GenMsgCycleTime" 0;\nBA_ "GenMsgCycleTime" BO_ 785 250;\n'
+)
+
+
+def test_constants_stand_where_the_dbc_has_them() -> None:
+    """Device type 0x11 in byte 0, the kind 0xF3 in byte 1; a device field that may vary is a value."""
+    fields = ' SG_ Device : 0|8@1+ (1,0) [17|17] "" B\n SG_ Kind : 8|8@1+ (1,0) [243|243] "" B\n'
+    codec = FrameCodec(
+        load_string(HAND.format(fields + ' SG_ A : 16|8@1+ (1,0) [0|9] "" B\n'), "dbc").messages[0]
+    )
+    assert codec.pack({"A": 3}) == bytes([0x11, 0xF3, 3, 0, 0, 0, 0, 0])
+    assert codec.unpack(bytes([0x11, 0xF3, 3, 0, 0, 0, 0, 0])) == {"A": 3}
+    varied = FrameCodec(
+        load_string(HAND.format(' SG_ Device : 0|8@1+ (1,0) [17|18] "" B\n'), "dbc").messages[0]
+    )
+    assert varied.pack({"Device": 18}) == bytes([18, 0, 0, 0, 0, 0, 0, 0])
+
+
+def test_big_endian_is_refused() -> None:
+    message = load_string(HAND.format(' SG_ A : 23|8@0+ (1,0) [0|9] "" B\n'), "dbc").messages[0]
+    with pytest.raises(ValueError, match="little endian"):
+        FrameCodec(message)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from bus.can import Frame
 from bus.can.candump import CandumpWriter
+from bus.can.length import frame_bits
 from bus.node import OutsideNode
 from bus.protocol import Device, Opcode
 from plant.model import load
@@ -19,6 +20,7 @@ from scenarios.faults import KINDS
 from scenarios.network import Network, build
 from scenarios.networks import NetworkConfig
 from scenarios.snapshot import SnapshotError, restore, take
+from tests.bus.can.test_wire import network as bare
 from tests.scenarios.faults.lab import EXAMPLES, Lab
 
 AHEAD_NS = 300_000_000
@@ -75,6 +77,22 @@ def test_a_bus_in_trouble_is_taken_with_its_trouble(t_ns: int, kind: str) -> Non
     lab.faults.start(kind, **EXAMPLES[kind])
     lab.network.run_until(lab.now_ns + t_ns)
     both(lab)
+
+
+@pytest.mark.parametrize("t_ns", range(0, 130_000, 3_000))
+def test_a_frame_that_nobody_acknowledges_is_taken_with_its_error(t_ns: int) -> None:
+    """A lone node: what ends the frame waits in the queue from its first bit on, and nobody saw it first."""
+    fates = []
+    queue, wire = bare(1)
+    frame = Frame(0x123, bytes(8))
+    wire.ports[0].send(frame, 0)
+    queue.run_until(t_ns)
+    for each in (wire, restore(take(wire))):
+        each.queue.run_until(2_000_000)
+        fates.append((each.ports[0].tec, each.errors, each.bits, each.queue.next_ns()))
+    assert fates[0] == fates[1]
+    # up to the slot (without 1 + 7 + 3 bits behind it), flag 6, delimiter 8, intermission 3
+    assert fates[0][0] == 8 * (2_000_000 // (1000 * (frame_bits(frame) + 6)))
 
 
 @pytest.mark.parametrize("t_ns", [0, 33_333_333, 710_000_001])

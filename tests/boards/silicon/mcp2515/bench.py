@@ -14,7 +14,10 @@ class Bench:
     def __init__(self, bitrate: int = 1_000_000, fosc_hz: int = 16_000_000, *, errata: bool = False) -> None:
         self.queue = EventQueue()
         self.wire = Wire(self.queue, bitrate)
-        self.chip = Mcp2515(self.queue, self.wire.attach("chip"), fosc_hz, errata=errata)
+        port = self.wire.attach("chip")
+        # without errata as a user makes it: by the default
+        chip = Mcp2515(self.queue, port, fosc_hz, errata=True) if errata else None
+        self.chip = chip or Mcp2515(self.queue, port, fosc_hz)
         self.partner = self.wire.attach("partner")
         self.heard: list[Frame] = []
         self.partner.on_receive = lambda _t, frame: self.heard.append(frame)

@@ -131,6 +131,24 @@ def test_receive_modes(rxm: int, frame: Frame, taken: bool) -> None:
     assert bench.read(0x2C) == (RX0 if taken else 0)
 
 
+def test_a_standard_frame_has_no_identifier_bits_17_and_16() -> None:
+    """They stand beside SID2-0 in SIDL, and are for extended identifiers (registers 4-11 and 4-15)."""
+    high, low, _, _ = standard(0x345)
+    bench = filtered({0: (0xFF, 0xE3, 0, 0)}, {0: (high, low | 0x03, 0, 0)})
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    assert bench.read(0x2C) == RX0
+
+
+def test_with_filters_off_the_first_filter_of_the_buffer_is_named() -> None:
+    """RXM = 11 (ASSUMPTION: the data sheet leaves FILHIT open then)."""
+    bench = filtered({}, {}, rxb0=0x60 | 0x04, rxb1=0x60)
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    assert (bench.read(0x60) & 1, bench.spi(0xB0, 0)[1] & 7) == (0, 0)
+    bench = filtered({}, {}, rxb0=0x40, rxb1=0x60)
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    assert (bench.read(0x70) & 7, bench.spi(0xB0, 0)[1] & 7) == (2, 2)
+
+
 @pytest.mark.parametrize("number", [0, 1])
 def test_roll_over_and_overflow(number: int) -> None:
     every_bit = standard(0x7FF)

@@ -31,7 +31,7 @@ def test_every_triplet_of_a_driver_in_use_is_its_rate(
 
 @pytest.mark.parametrize(
     ("cnf2", "phase2"),
-    [(0x80, 3), (0x00, 2), (0x08, 2), (0x10, 3), (0x38, 8)],
+    [(0x80, 3), (0x00, 2), (0x01, 2), (0x08, 2), (0x10, 3), (0x38, 8)],
 )
 def test_without_btlmode_phase_2_is_phase_1_or_the_processing_time(cnf2: int, phase2: int) -> None:
     assert decode(16_000_000, 0, cnf2, 2).phase2 == phase2
@@ -53,6 +53,7 @@ def test_the_prescaler_and_jump_width() -> None:
         (16_000_000, (0xC1, 0x9B, 0x03), {"PS2 is not longer"}),
         (16_000_000, (0x81, 0x9B, 0x03), set()),
         (40_000_000, (0x00, 0xAC, 0x03), {"bit/s, CAN has at most"}),
+        (16_000_008, (0x00, 0xD0, 0x82), {"bit/s, CAN has at most"}),  # half a bit a second too fast
         (20_000_000, (0x00, 0x9B, 0x01), set()),
         (16_000_000, (0x01, 0x89, 0x01), {"7 TQ per bit"}),
         (16_000_000, (0x00, 0x91, 0x01), set()),

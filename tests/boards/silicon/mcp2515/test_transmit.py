@@ -381,3 +381,33 @@ def test_a_frame_in_loop_back_is_not_begun_again_by_the_next_request() -> None:
     assert bench.read(0x2C) & 0x1C == 0x04
     bench.run(0.14)
     assert bench.read(0x2C) & 0x1C == 0x14
+
+
+@pytest.mark.parametrize("way", [(0x02, 0x30, 0x03), (0x05, 0x30, 0x03, 0x03)])
+def test_errata_concern_the_request_itself_and_no_other_write_to_its_register(way: tuple[int, ...]) -> None:
+    bench = Bench(errata=True).start()
+    bench.load(0, 0x123, bytes(8))
+    bench.spi(0x81)
+    bench.run(0.03)  # it is on the bus
+    spi = bench.chip.spi
+    spi.select()
+    for byte in way:
+        spi.exchange(byte)
+    bench.run(3)
+    spi.deselect()
+    assert len(bench.heard) == 1
+
+
+def test_after_a_reset_in_the_middle_of_its_frame_the_chip_sends_again() -> None:
+    bench = Bench().start()
+    bench.load(0, 0x123, bytes(8))
+    bench.spi(0x81)
+    bench.run(0.03)
+    bench.spi(0xC0)
+    assert bench.read(0x30) == 0
+    bench.run()
+    bench.start()
+    bench.load(1, 0x124)
+    bench.spi(0x82)
+    bench.run()
+    assert [frame.identifier for frame in bench.heard] == [0x124]
