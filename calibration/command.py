@@ -18,6 +18,14 @@ from calibration.readers.guide import is_guide_log, read_guide_log
 from calibration.readers.run import Run
 
 Plots = list[dict[str, str]]
+# of the report's reasons, what the paragraph on the terminal repeats
+REMARKS = (
+    "something is still missing",
+    "times the position's rate",
+    "remain between",
+    "end of its range",
+    "leaps by",
+)
 
 
 def calibrate(
@@ -90,6 +98,7 @@ def paragraph(data: dict[str, Any], out: Path) -> str:
         parts.append(
             f"Held-out {channel}: {row['before']:.4g} -> {row['after']:.4g} {row['unit']} ({floor})."
         )
+    parts += [f"{r}." for r in data["reasons"] if any(x in r for x in REMARKS)]
     if data["separating_experiment"]:
         parts.append(f"To be sure: {data['separating_experiment']}.")
     parts.append(f"Report: {out / 'report.html'}")

@@ -157,9 +157,9 @@ def _balance(
     else:
         s, scene, bounds = search(problem)
     floor, source = floor_of(view, problem)
-    findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     tell(f"{response.channel}: what no name explains")
-    together, unnamed = beyond_names(s, scene, seed)
+    s, together, unnamed = beyond_names(s, scene, seed)
+    findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     findings += unnamed
     findings = settle(findings, left_over(s, scene, floor), problem.channel) + quick_lines(view, problem)
     kind = FORCE if response.is_force else SENSORS

@@ -30,7 +30,9 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         controls += rows
         effects += _withdrawn(b, rows)
     effects.sort(key=lambda f: (f.name == "unknown", f.share == 0.0, -f.share))
-    verdict, separating = judge(effects, [*_short(found), *_strange_rate(found), *_close(found)][:4])
+    verdict, separating = judge(
+        effects, [*_short(found), *_strange_rate(found), *_much_left(found), *_close(found)][:4]
+    )
     separating = _separating(effects) or separating if effects else separating
     lacking = [x for b in found.balances for x in b.lacks]
     first = found.balances[0]
@@ -63,7 +65,13 @@ def _withdrawn(b: Balance, rows: list[dict[str, Any]]) -> list[Finding]:
     for f in b.findings:
         place = "" if f.stage is None else f" on {f.stage}"
         said = f.name + place + (f", harmonic {f.harmonic}" if f.harmonic else "")
-        failed = [r for r in rows if r["accepted"] and r["what"].endswith(f"({said})")]
+        # a line without a stage may be told otherwise
+        line = f"in place of {f.order:.4g} (" if f.order else None
+        failed = [
+            r
+            for r in rows
+            if r["accepted"] and (r["what"].endswith(f"({said})") or (line and line in r["what"]))
+        ]
         if failed and f.name != "unknown":
             wrong = failed[0]["what"].split(" (")[0]
             f.note = f"{wrong} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
@@ -80,10 +88,15 @@ def _separating(effects: list[Finding]) -> str | None:
 
 
 def _close(found: DriveResult) -> list[str]:
-    """Candidates that had evidence and failed elsewhere."""
+    """Names that had evidence and failed elsewhere, in balances that are not at their floor already. A smooth
+    function of something is no name to look for with an experiment."""
     out = [b.close for b in found.balances if b.close]
     for b in found.balances:
+        if b.floor and b.selection.held.after <= b.floor:
+            continue
         for r in b.selection.refused:
+            if r.what.startswith("unknown"):
+                continue
             if r.what != "every candidate" and r.why.startswith(
                 ("cross-validated gain is within luck", "makes the held-out", "no held-out")
             ):
@@ -91,6 +104,16 @@ def _close(found: DriveResult) -> list[str]:
                 hint = NAMES[name].experiment if name in NAMES else "repeat the run"
                 out.append(f"{r.what} was close ({r.why}): {hint}")
     return list(dict.fromkeys(out))
+
+
+def _much_left(found: DriveResult) -> list[str]:
+    """Balances that nothing explains and that are far above their floor: not "nothing"."""
+    return [
+        f"{b.left.times:.1f} floors remain in {b.view.response.channel}, {b.left.where}: a column of what"
+        " may drive it, or one quantity changed at a time"
+        for b in found.balances
+        if b.left is not None
+    ]
 
 
 def _strange_rate(found: DriveResult) -> list[str]:

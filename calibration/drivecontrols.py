@@ -31,13 +31,14 @@ def drive_controls(b: Balance) -> list[dict[str, Any]]:
             continue
         others = [o.candidate.columns for j, o in enumerate(s.chosen) if j != k]
         for shift in (CELLS, -CELLS):
-            rate = c.order / (b.view.turn or 1.0) + shift / span
+            order = c.fixed["order"][0] if "order" in c.fixed else c.order
+            rate = order / (b.view.turn or 1.0) + shift / span
             label = p.session if c.per_run else np.zeros_like(p.session)
             wrong = replace(c, columns=sine_columns(x * rate, label), shape=None)
             fit = gls(p.y, np.hstack([p.base, *others, wrong.columns]), p.train, p.ar_order, p.block)
             out.append(
                 {
-                    "what": f"order {rate * (b.view.turn or 1.0):.4g} in place of {c.order:.4g} ({c.say()})",
+                    "what": f"order {rate * (b.view.turn or 1.0):.4g} in place of {order:.4g} ({c.say()})",
                     "accepted": bool(fit.loglik >= s.after.loglik * fit.rows / s.after.rows),
                 }
             )

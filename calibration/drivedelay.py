@@ -11,7 +11,7 @@ from calibration.channels.balance import problem_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.decide.select import Selection
-from calibration.drivesearch import scene_of
+from calibration.drivesearch import lines_over_place, scene_of
 from calibration.finding import Finding
 from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
@@ -41,7 +41,8 @@ def timed(
     view: View, records: list[Record], hold_out: list[str], problem: Problem, channel: str, find: Find
 ) -> Timed:
     """Look for a delay; keep it only when names without it do not explain as much."""
-    delay, close = effort_delay(scene_of(view, problem))
+    scene = scene_of(view, problem)
+    delay, close = effort_delay(scene, lines_over_place(scene))
     if delay is not None and is_hold(delay, view.period_s):
         value = delay.parameters["delay"].value
         held = problem_of(view, records, hold_out, value)

@@ -14,8 +14,8 @@ from calibration.decide.select import Selection, select
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
-from calibration.names.unknown import flexible, moving_scale
-from calibration.prune import prune, remainders, signed, sound, within_bounds
+from calibration.names.unknown import flexible, lost_motion, moving_scale, spring
+from calibration.prune import above, prune, remainders, signed, sound, within_bounds
 
 MOST = 14  # effects: a cogging motor shows several orders
 MARGIN = 0.02  # of the cross-validated mean square (effects.md, lesson 3)
@@ -69,6 +69,15 @@ def _flatten(scene: Scene, extra: np.ndarray) -> None:
     scene.residual = p.y - x @ beta
 
 
+def lines_over_place(scene: Scene) -> np.ndarray:
+    """Columns (n_fitted, k) of the lines that stand out over the position: along one motion teeth and slots
+    look late or early."""
+    _flatten(scene, np.zeros((len(scene.problem.y), 0)))
+    return np.hstack(
+        [np.zeros((len(scene.problem.y), 0)), *[c.columns for c in NAMES["bearing_pass"].columns(scene)]]
+    )
+
+
 def _search(
     view: View, problem: Problem, rng: np.random.Generator, tell: Callable[[str], None]
 ) -> tuple[Selection, Scene]:
@@ -82,7 +91,7 @@ def _search(
         if kind in n.channels and n.name not in lines and not (n.name == "channel_delay" and kind == FORCE)
         for c in n.columns(scene)
     ]
-    named += moving_scale(scene)
+    named += [*moving_scale(scene), *spring(scene), *lost_motion(scene)]
     found: list[Candidate] = []
     s: Selection | None = None
     extra = np.zeros((len(problem.y), 0))
@@ -104,7 +113,8 @@ def _search(
         if not any(x.candidate.name in lines for x in s.chosen) and k > 0:
             break
     assert s is not None
-    return sound(remainders(prune(signed(within_bounds(s, view.resolved))))), scene
+    s = remainders(prune(signed(within_bounds(s, view.resolved))))
+    return above(sound(signed(s))), scene  # what was left out moves the sizes of the others
 
 
 def _select(

@@ -14,27 +14,35 @@ from calibration.decide.select import Selection, design, select
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
+from calibration.prune import beside, displaced
 
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and
 # one of either flank of the teeth
 MOST = {True: 1, False: 2}
 
 
-def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, list[Finding]]:
-    """The named effects together with smooth functions, and these as findings; what was refused is added to
-    the selection of the names."""
-    together, findings = s, []
+def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Selection, list[Finding]]:
+    """The named effects that stay, the same together with smooth functions, and these as findings; what was
+    refused is added to the selection of the names."""
+    together = s
+    findings: list[Finding] = []
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
+        scene.model = np.asarray(base @ together.after.beta)
         more = select(
             replace(s.problem, base=base), smooth_functions(scene), np.random.default_rng(seed), most=1
         )
         s.refused += more.refused
         if not more.chosen:
             break
+        kept = displaced(s, more.chosen[0].candidate) if not findings else s
+        if kept is not s:
+            s, together = kept, beside(kept, more)
+            findings.append(finding_of(together, len(kept.chosen)))
+            continue
         findings.append(finding_of(more, 0))
         together = _together(together, more)
-    return together, findings
+    return s, together, findings
 
 
 def _together(s: Selection, more: Selection) -> Selection:

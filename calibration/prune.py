@@ -10,6 +10,7 @@ from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender
 from calibration.decide.select import Refusal, Selection, design, fitted, phases
+from calibration.decide.thresholds import STILL_MISSING
 from calibration.names.structural_mode import MOST_DAMPED
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls
@@ -81,6 +82,23 @@ def dominant(s: Selection) -> str:
     return name if now < nothing and nothing - alone[name] >= DOMINANT * (nothing - now) else ""
 
 
+def displaced(s: Selection, smooth: Candidate) -> Selection:
+    """Leave out a name over the domain of a smooth function that does its work: one that is worth less than
+    REMAINDER beside the function and leaves more than STILL_MISSING times the error that it alone does."""
+    if s.problem.test.sum() < 20 or smooth.domain == "axis_angle":  # imitates weights, lines
+        return s
+    for k, x in enumerate(s.chosen):
+        if x.candidate.domain != smooth.domain:
+            continue
+        chosen = [y.candidate for y in s.chosen]
+        others = [c for j, c in enumerate(chosen) if j != k]
+        trials: tuple[list[Candidate], ...] = ([], chosen, [*others, smooth], [*chosen, smooth])
+        nothing, named, alone, both = (_held(s, c) for c in trials)
+        if alone - both < REMAINDER * (nothing - both) and named > STILL_MISSING**2 * alone:
+            return _without(s, k, f"a smooth function of {smooth.domain} leaves a fraction of what it leaves")
+    return s
+
+
 def sound(s: Selection) -> Selection:
     """Names beside which a mass or friction that was positive turns negative are not believed; and none is
     when all together make the held-out error worse."""
@@ -102,12 +120,20 @@ def sound(s: Selection) -> Selection:
     return s
 
 
+def above(s: Selection) -> Selection:
+    """Names are for what is above the floor: where the declared model alone is at it, what sensors and loop
+    leave in the columns has many shapes."""
+    while s.chosen and s.held.before <= s.problem.floor:
+        s = _without(s, 0, "the declared model is at the floor without it")
+    return s
+
+
 def within_bounds(s: Selection, resolved: float) -> Selection:
     """Leave out what ended where its shape means nothing: a loop narrower than the sensor's steps, a mode
     that is no resonance. `resolved`: travel, position units."""
     bounds = {
-        "presliding": ("breakaway_travel", 0.0, resolved, "narrower than the sensor's steps show"),
-        "play": ("gap", 0.0, resolved, "narrower than the sensor's steps show"),
+        "presliding": ("breakaway_travel", -np.inf, resolved, "narrower than the sensor's steps show"),
+        "play": ("gap", -np.inf, resolved, "narrower than the sensor's steps show"),
         "structural_mode": ("damping", MOST_DAMPED, np.inf, "damped too much for a resonance"),
     }
     for name, (key, low, high, why) in bounds.items():
@@ -157,6 +183,12 @@ def _refitted(s: Selection, chosen: list[Contender]) -> Selection:
     p = s.problem
     held = compare(p, p.base, s.before.beta, x, fit.beta, fit.whitener, ((), phases(p, candidates)))
     return replace(s, chosen=chosen, after=fit, held=held)
+
+
+def beside(s: Selection, more: Selection) -> Selection:
+    """The effects of `s` and those of `more` fitted together."""
+    both = _refitted(s, [*s.chosen, *more.chosen])
+    return replace(both, classes=[*s.classes, *more.classes], steps=[*s.steps, *more.steps])
 
 
 def signed(s: Selection) -> Selection:

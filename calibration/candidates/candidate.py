@@ -45,11 +45,12 @@ class Candidate:
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
     searched: int = 0  # parameters that were searched for beside the coefficients, and must pay
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
+    apart: float | None = None  # of a line that no stage has: its order, where several may be found
 
     @property
-    def key(self) -> tuple[str, str | None, int | None]:
+    def key(self) -> tuple[str, str | None, int | None, float | None]:
         """Name and place: what a report calls the same effect."""
-        return (self.name, self.stage, self.harmonic)
+        return (self.name, self.stage, self.harmonic, self.apart)
 
     @property
     def width(self) -> int:

@@ -41,7 +41,7 @@ class Agreement:
         """In words, when the channel is another multiple of the position's rate than one."""
         if abs(self.scale - 1.0) < max(SIGNIFICANT * self.scale_error, SCALED):
             return ""
-        return f"{self.channel} reads {self.scale:.4g} of the position's rate"
+        return f"{self.channel} reads {self.scale:.4g} times the position's rate: its unit, scale or sign"
 
     @property
     def left(self) -> float:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from calibration.candidates.context import direction_of, since_reversal, turning_points
 from calibration.inputs.declaration import Response, Rig
@@ -221,6 +221,12 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
     return sigma if dynamic else max(sigma, 4.0)
 
 
+def acceleration(view: View) -> Array:
+    """Full-rate acceleration (n,), smoothed until the position's noise is a small part of it."""
+    width = _sigma(view.x, view.file, view.period_s, view.rig, True)
+    return smooth(view.second(view.x), view.segment, width)
+
+
 def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     """rms of the position's white noise, from its fourth differences, and of its rounding."""
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
@@ -284,4 +290,7 @@ def _choose_rows(view: View) -> None:
     for a, b in pieces(view.segment):
         edge[a : a + margin] = True
         edge[max(b - margin, a) : b] = True
+    # the filter carries what stands in for bad rows over to their neighbours
+    if view.dynamic and not view.ok.all():
+        edge |= maximum_filter1d(~view.ok, 2 * margin + 1)
     view.ok &= ~edge

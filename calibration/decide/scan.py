@@ -145,6 +145,6 @@ def _scored(
     evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0
     bayes = gain / effect - (candidate.width + candidate.searched) / 2 * float(np.log(fit.rows))
-    if candidate.name == "unknown":
+    if candidate.name == "unknown" and candidate.width > 1:
         bayes *= UNNAMED
     return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, at)

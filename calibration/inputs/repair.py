@@ -22,6 +22,10 @@ BY_CHANCE = 1e-4  # of a leap that a heavy tail makes by itself
 MOST_SPIKES = 0.01  # of rows: more is no spike but the signal
 MOVING = ("position", "position2", "velocity", "reference")
 SLOW = ("supply", "temperature", "normal")  # what leaps there may be real
+# times what all but one row in 200 move; leaps a file may have; rows that must lie between two, or they are
+# spikes
+LEAPS, MOST_LEAPS, SETTLED = 10.0, 3, 20
+FEWEST_ENDS = 3  # stretches at one extreme value, before it is an end of the range
 AT_END = 0.002  # of rows at one extreme value, in stretches: the reading is at its end
 
 
@@ -38,6 +42,8 @@ def repair(record: Record, rig: Rig) -> None:
                 size = found.size * abs(where.scale)
                 record.repairs.append(Repair(found.kind, channel, found.rows, size, found.note))
                 x = raw * where.scale + where.offset
+        if channel == "position":
+            x = _leaps(record, x)
         bad = _spikes(x, record.columns["t"], record.period_s)
         if channel not in SLOW and bad.any():
             size = float(np.nanmax(np.abs(x[bad] - np.nanmedian(x))))
@@ -46,7 +52,7 @@ def repair(record: Record, rig: Rig) -> None:
             record.repairs.append(Repair("spike", channel, int(bad.sum()), size, note))
             x = np.where(bad, np.nan, x)
         if channel in ("effort", "current", "force"):
-            _saturation(record, channel, x)
+            x = _saturation(record, channel, x)
         record.columns[channel] = x
     repeated_rows(record, rig)
     lost_rows(record)
@@ -133,6 +139,27 @@ def _spikes(x: Array, t: Array, period: float) -> np.ndarray:
     return bad if bad.sum() <= max(3, MOST_SPIKES * n) else np.zeros(n, dtype=bool)
 
 
+def _leaps(record: Record, x: Array) -> Array:
+    """Join a position that moves by a constant from one row to the next while the motion goes on: a counter
+    that lost its zero."""
+    step = np.diff(x)
+    size = np.abs(step[np.isfinite(step)])
+    if len(size) < 200 or np.any(np.diff(record.columns["t"]) > 2.5 * record.period_s):
+        return x
+    usual = LEAPS * float(np.quantile(size, 0.995))
+    at = np.flatnonzero(np.abs(np.nan_to_num(step)) > max(usual, 20 * _least_step(step)))
+    if not 0 < len(at) <= MOST_LEAPS or (len(at) > 1 and np.diff(at).min() <= SETTLED) or usual == 0:
+        return x
+    out = x.copy()
+    for k in at:
+        around = np.concatenate([step[max(k - 3, 0) : k], step[k + 1 : k + 4]])
+        excess = float(step[k] - np.nanmedian(around))
+        out[k + 1 :] -= excess
+        note = f"leaps by {excess:.4g} between rows {k + 1} and {k + 2}: joined"
+        record.repairs.append(Repair("leap", "position", 1, excess, note))
+    return out
+
+
 def _clear_of_tails(off: Array, n: int) -> float:
     """Size from which on values are a group of their own: heavy tails thin out, spikes leave a gap."""
     top = off.copy()
@@ -152,14 +179,22 @@ def _clear_of_tails(off: Array, n: int) -> float:
     return float("inf")
 
 
-def _saturation(record: Record, channel: str, x: Array) -> None:
-    """Note an effort that stays at one extreme value: there it says nothing of the force."""
+def _saturation(record: Record, channel: str, x: Array) -> Array:
+    """Leave out an effort that stays at one extreme value: there it says nothing of the force."""
     good = x[np.isfinite(x)]
     if len(good) < 200 or np.ptp(good) == 0 or len(np.unique(good)) < 20:
-        return
+        return x
+    out = x.copy()
     for end in (good.max(), good.min()):
         at = x == end
         pairs = int(np.sum(at[1:] & at[:-1]))
-        if pairs > max(AT_END * len(good), 10) and abs(end) > 0.9 * np.abs(good).max():
-            note = f"{int(at.sum())} rows stay at {end:g}: the end of its range"
+        times = int(np.sum(at[1:-1] & at[2:] & ~at[:-2]))  # a steady load is held once
+        if (
+            times >= FEWEST_ENDS
+            and pairs > max(AT_END * len(good), 10)
+            and abs(end) > 0.9 * np.abs(good).max()
+        ):
+            note = f"{int(at.sum())} rows stay at {end:g}: the end of its range, left out"
             record.repairs.append(Repair("saturation", channel, int(at.sum()), float(end), note))
+            out[at] = np.nan
+    return out

@@ -15,7 +15,7 @@ CALLED = {
     "saturation": "log_wrap",
 }
 FORCES = ("effort", "current", "force", "acceleration")
-SAID = {"saturation"}  # told, but no fault of the log
+SAID = {"saturation", "leap"}  # told, but no fault of the log
 FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
 FEWEST_OF_FORCE = 3  # spikes in a force: noise with heavy tails makes one or two; a position's has none
 CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise

@@ -6,6 +6,7 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
 from calibration.channels.repeats import repeat_frequency
+from calibration.channels.view import View
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 from calibration.names.sines import peaks
@@ -13,6 +14,9 @@ from calibration.readers.run import Array
 
 TURNS = 6.0  # cycles within a file before a frequency is a frequency
 ODD = (1, 3, 5, 7, 9)  # of a square wave
+# repeats of the motion in a file, below which no frequency lies between two of its multiples; then only those
+# that a repeated motion makes large are left out. ASSUMPTION: friction's corners fall off with the multiple
+FEWEST_REPEATS, STRONG = 2.5, 50
 FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine
 
 
@@ -30,7 +34,10 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     f0 = repeat_frequency(v)
     top = 0.5 / (v.period_s * max(v.step, 1))
-    avoid = np.asarray(np.arange(1, int(top / f0) + 1) * f0 if f0 else np.zeros(0), dtype=np.float64)
+    multiples = int(top / f0) if f0 else 0
+    if f0 * length < FEWEST_REPEATS:
+        multiples = min(multiples, STRONG)
+    avoid = np.asarray(np.arange(1, multiples + 1) * f0, dtype=np.float64)
     out = []
     few = len(np.unique(files)) <= FEW
     for f in peaks(s, t, length, TURNS / length, 5, avoid):
@@ -38,7 +45,7 @@ def columns(s: Scene) -> list[Candidate]:
 
             def shape(p: Array, overtones: tuple[int, ...] = overtones) -> Array:
                 at = [k for k in overtones if k * p[0] < top]
-                return np.hstack([sine_columns(t * k * p[0], files) for k in at])
+                return np.hstack([sine_columns(t * k * p[0], files) * passed(v, k * p[0]) for k in at])
 
             out.append(
                 Candidate(
@@ -57,6 +64,11 @@ def columns(s: Scene) -> list[Candidate]:
                 )
             )
     return out
+
+
+def passed(v: View, frequency: float) -> float:
+    """What the balance's filter leaves of a sine of this frequency, Hz: its columns go through it, too."""
+    return float(np.exp(-2 * (np.pi * frequency * v.sigma * v.period_s) ** 2))
 
 
 def lacks(s: Scene) -> str:

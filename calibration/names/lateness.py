@@ -26,12 +26,12 @@ PARTS = 5  # of the log, in each of which the delay must be seen
 ALIKE = 0.35  # of the delay: standard deviation over those parts
 
 
-def effort_delay(s: Scene) -> tuple[Finding | None, str]:
+def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
     """The delay of the response's column against the motion, positive when it tells of earlier times; and,
     where one stands clear of its error but changes next to nothing, what would be needed to tell.
 
-    It is looked for beside loops, asymmetry, weight and friction over the speed; its size is then taken
-    beside a friction curve of any smooth shape, where that can be told from it.
+    It is looked for beside `lines` (n_fitted, k), loops, asymmetry, weight and friction over the speed; its
+    size is then taken beside a friction curve of any smooth shape, where that can be told from it.
     """
     v = s.view
     s = _quick(s)
@@ -45,7 +45,7 @@ def effort_delay(s: Scene) -> tuple[Finding | None, str]:
         return s.at(v.delayed(full, delay)) + known
 
     # beside the friction over the speed that explains most: along one kind of ramp it looks like a delay
-    rival = min(_rivals(s), key=lambda r: _left(s, p.y, r))
+    rival = min((np.hstack([lines, r]) for r in _rivals(s)), key=lambda r: _left(s, p.y, r))
     delay, error = _converge(s, late, rival)
     reach = LONGEST * v.period_s
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
@@ -57,7 +57,7 @@ def effort_delay(s: Scene) -> tuple[Finding | None, str]:
     if share < MATTERS:
         sound = abs(delay) < HOLD * v.period_s + SLACK * error
         return None, "" if sound else _too_small(r.channel, delay, error, share)
-    curve = any_friction_curve(s)
+    curve = np.hstack([lines, any_friction_curve(s)])
     finer, spread = _converge(s, late, curve)
     if spread < abs(finer) / SIGNIFICANT and finer * delay > 0:
         error = float(np.hypot(spread, (finer - delay) / 2))  # half of what the friction curve moves it by

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
+from calibration.channels.view import acceleration
 from calibration.names.name import FORCE, SENSORS, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
@@ -14,6 +15,7 @@ PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)  # gaps that are tr
 # -log10 p between two sensors: a dozen gaps are tried, not a thousand orders (decide/accept.py);
 # set on the geared servo's output encoder
 LEAST = 6.0
+SIDES = 0.1  # of the usual acceleration: below, the driven side is between the flanks. ASSUMPTION
 GROWS = 1.5  # from one gap to the next, between two sensors
 
 
@@ -95,7 +97,28 @@ def _between_sensors(s: Scene) -> list[Candidate]:
             )
         )
         gap *= GROWS
-    return out
+    return [*out, *_thrown(s)]
+
+
+def _thrown(s: Scene) -> list[Candidate]:
+    """A driven side with little friction of its own is thrown from flank to flank by the accelerations: it
+    leads while the drive brakes."""
+    a = acceleration(s.view)
+    usual = float(np.sqrt(np.mean(a[s.view.ok] ** 2))) if s.view.ok.any() else 0.0
+    if usual == 0:
+        return []
+    return [
+        Candidate(
+            "play",
+            "reversal",
+            s.at(-np.tanh(a / (SIDES * usual)) / 2)[:, None],
+            (("gap", s.unit),),
+            sign=0 if s.view.response.ratio == 0 else 1,
+            least=LEAST,
+            searched=1,
+            twins=("shaft_compliance",),
+        )
+    ]
 
 
 def lacks(s: Scene) -> str:

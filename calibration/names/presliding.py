@@ -10,7 +10,8 @@ from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
-RADII = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.14, 0.2, 0.28, 0.36)  # of the usual stroke
+# of the usual stroke; an element of half a stroke or more never slides, which is a spring
+RADII = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.14, 0.2, 0.28, 0.36)
 FEWEST = 0.005  # of the rows within twice the radius
 
 
@@ -28,7 +29,7 @@ def columns(s: Scene) -> list[Candidate]:
         return stop_operator(v.x, v.file, radius) / radius - v.direction
 
     def one(p: Array) -> Array:
-        return element(max(float(p[0]), least, 1e-6 * stroke))
+        return element(float(np.clip(p[0], max(least, 1e-6 * stroke), RADII[-1] * stroke)))
 
     def two(p: Array) -> Array:
         return np.column_stack([one(p), one(np.maximum(p, 2 * least) / 2)])

@@ -27,6 +27,7 @@ class Scene:
     residual: Array
     wander: Array
     peaks: dict[str, list[float]] = field(default_factory=dict)
+    model: Array | None = None  # (n_fitted,) the response with all that is named, once that is known
 
     @property
     def unit(self) -> str:

@@ -18,6 +18,11 @@ PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
 TOGETHER = 24  # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple
 STANDS_OUT = 12.0  # times the spectrum around it, in power
+# of the residual's mean square: a line that takes as much needs to stand out less, because the filter, which
+# takes more of it where the drive is quick, spreads it over its neighbours. ASSUMPTION: a line is only
+# offered here, what it is worth is decided on rows that were not fitted
+LARGE, LARGE_STANDS_OUT = 0.05, 5.0
+STEP_OF_CELL = 0.1  # of a line's resolution cell, for its refinement
 HIGHEST = 4000  # cycles within the travel that are searched
 
 
@@ -126,20 +131,31 @@ def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
     for rate in peaks(s, x, s.span, FREE_TURNS / s.span, most):
         if any(abs(rate - r) * s.span < 0.8 for r in taken) or not seen(s, rate):
             continue
-        out += over_place(
-            s,
-            Candidate(
-                name,
-                "axis_angle",
-                np.zeros((len(x), 0)),
-                (("amplitude", s.unit),),
-                kind="line",
-                order=float(rate * (s.view.turn or 1.0)),
-                searched=1,
-            ),
-            rate,
+        blank = Candidate(
+            name,
+            "axis_angle",
+            np.zeros((len(x), 0)),
+            (("amplitude", s.unit),),
+            kind="line",
+            order=float(rate * (s.view.turn or 1.0)),
+            apart=float(rate),
+            searched=1,
         )
+        out += [_movable(s, c, rate) for c in over_place(s, blank, rate)]
     return out
+
+
+def _movable(s: Scene, c: Candidate, rate: float) -> Candidate:
+    """The line with an order that may move within its resolution cell: where the drive is at some places more
+    often than at others, the spectrum's peak lies beside it."""
+    turn = s.view.turn or 1.0
+
+    def shape(p: Array) -> Array:
+        near = float(np.clip(p[0] / turn, rate - 0.5 / s.span, rate + 0.5 / s.span))
+        return next(k.columns for k in over_place(s, c, near) if k.per_run == c.per_run)
+
+    order = {"order": (rate * turn, "1/turn" if s.view.turn else f"1/{s.angle_unit}")}
+    return replace(c, shape=shape, steps=(STEP_OF_CELL * turn / s.span,), fixed=order)
 
 
 def peaks(
@@ -155,7 +171,7 @@ def peaks(
         top = min(top, PER_ROW / usual)
     if top <= 2 * least:
         return []
-    power = np.zeros(0)
+    power, energy = np.zeros(0), 0.0
     low = float(z[train].min())
     cells = int(min(np.ceil(span * top * 8), 2**21))
     size = 1 << int(np.ceil(np.log2(max(2 * cells, 16))))
@@ -166,16 +182,20 @@ def peaks(
         binned = np.bincount(cell, s.residual[rows], minlength=cells)
         one = np.abs(np.fft.rfft(binned, size)) ** 2 / max(int(rows.sum()), 1)
         power = one if len(power) == 0 else power + one
+        energy += float(np.sum(s.residual[rows] ** 2))
     f = np.arange(len(power)) / (size * width)
     use = (f >= least) & (f <= top)
     if avoid is not None:
         use &= ~np.isin(np.arange(len(f)), np.flatnonzero(avoid_mask(f, avoid, 0.75 / span)))
     ratio = power / np.maximum(_around(power, max(int(12 * size * width / span), 8)), 1e-300)
     ratio[~use] = 0.0
+    large = 2 * power > LARGE * energy  # of a sine of amplitude A: A^2 / 2 over the mean square
     found: list[float] = []
     for k in np.argsort(-ratio)[: 60 * most]:
-        if ratio[k] < STANDS_OUT or len(found) >= most:
+        if ratio[k] < LARGE_STANDS_OUT or len(found) >= most:
             break
+        if ratio[k] < STANDS_OUT and not large[k]:
+            continue
         top_of = 0 < k < len(ratio) - 1 and power[k] >= power[k - 1] and power[k] >= power[k + 1]
         if top_of and all(abs(f[k] - g) * span > 1.0 for g in found):
             found.append(float(f[k]))

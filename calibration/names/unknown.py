@@ -11,6 +11,7 @@ from calibration.readers.run import Array
 
 KNOTS = 8
 SLOW = 4  # knots over time of a scale that moves
+WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the usual stroke, of the widest of several loops
 RADII = (0.002, 0.01, 0.05, 0.2)  # of the usual stroke, of the loops in a flexible fit
 
 
@@ -25,11 +26,23 @@ def domains(s: Scene) -> list[tuple[str, Array]]:
     t = v.columns.get("temperature")
     if t is not None and np.ptp(t) > 0.5:
         out.append(("temperature", t[at]))
+    if s.force and s.view.dynamic:
+        out.append(("current", _declared_force(s)))
     if not s.force:
         for channel in ("effort", "current", "force"):
             if channel in v.columns:
                 out.append(("current", s.at(v.columns[channel])))
     return out
+
+
+def _declared_force(s: Scene) -> Array:
+    """The response as declared terms and names have it (n_fitted,): a gain that depends on the effort is a
+    function of it. Not the response itself, whose noise it would share."""
+    if s.model is not None:
+        return s.model
+    p = s.problem
+    beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=1e-8)[0]
+    return np.asarray(p.base @ beta)
 
 
 def smooth_functions(s: Scene) -> list[Candidate]:
@@ -61,6 +74,37 @@ def moving_scale(s: Scene) -> list[Candidate]:
     x = s.view.x[s.view.rows]
     labels = tuple((f"scale_knot_{k}", f"{s.unit}/{s.angle_unit}") for k in range(knots.shape[1]))
     return [Candidate("unknown", "time", knots * (x - x.mean())[:, None], labels)]
+
+
+def lost_motion(s: Scene) -> list[Candidate]:
+    """Two sensors: elastoplastic elements of several widths together (Prandtl-Ishlinskii), the lost motion of
+    a strain wave gear (Ruderman, Hoffmann, Bertram 2009). One gap alone is `play`, and cheaper."""
+    from calibration.candidates.friction import stop_operator
+
+    if s.force or not s.both or s.view.response.ratio == 0:
+        return []
+    v = s.view
+    stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
+    out = []
+    for part in WIDTHS:
+        radii = [part * stroke * f for f in (1.0, 1 / 3, 1 / 9)]
+        if radii[-1] < v.resolved:
+            continue
+        full = np.column_stack([stop_operator(v.x, v.file, r) / r for r in radii])
+        labels = tuple((f"loop_of_{r:.3g}", s.unit) for r in radii)
+        out.append(Candidate("unknown", "reversal", s.at(full), labels, searched=1))
+    return out
+
+
+def spring(s: Scene) -> list[Candidate]:
+    """A force in proportion to the place of a slide (a cable chain, a bellows). It has no name in the
+    catalogue, but stands beside the names: wide loops follow it, too."""
+    if not s.force or s.view.turn or "stiffness" in (*s.view.rig.estimate, *s.view.rig.constants):
+        return []
+    x = s.view.x - s.view.x.mean()
+    return [
+        Candidate("unknown", "axis_angle", s.at(x)[:, None], (("stiffness", f"{s.unit}/{s.angle_unit}"),))
+    ]
 
 
 def flexible(s: Scene) -> Array:

@@ -12,6 +12,7 @@ from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
+from calibration.readers.axis import read_axis_log
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
@@ -21,6 +22,7 @@ from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
 def test_a_rate_that_never_changes_while_the_axis_speeds_up_is_refused(
     tmp_path: Path, name: str, place: int
 ) -> None:
+    noise = iter(np.random.default_rng(0).integers(-5, 5, 100_000).tolist())
     quicker = iter(np.cumsum(np.linspace(0, 4e4, 3000)).astype(int))
     text = column(column(tiny_log(3000), 3, lambda _: str(next(quicker))), 4, lambda v: v)
     steady = {4: "7", 7: "3", 8: "3"}
@@ -31,7 +33,24 @@ def test_a_rate_that_never_changes_while_the_axis_speeds_up_is_refused(
         calibrate([tmp_path / "stuck.log"], out=tmp_path / "out")
 
 
-noise = iter(np.random.default_rng(0).integers(-5, 5, 100_000).tolist())
+def with_aux(text: str, values: list[int]) -> str:
+    """A log with an auxiliary encoder's column."""
+    count = iter(values)
+    lines = text.splitlines()
+    at = next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    return (
+        "\n".join([*lines[:at], lines[at] + ",aux", *(f"{line},{next(count)}" for line in lines[at + 1 :])])
+        + "\n"
+    )
+
+
+def test_an_auxiliary_encoder_of_zeros_is_no_board_and_another_constant_is_stuck(tmp_path: Path) -> None:
+    """Networks without that board log 0 (docs/example is such a log)."""
+    (tmp_path / "none.log").write_text(with_aux(tiny_log(3000), [0] * 3000))
+    assert "aux" not in read_axis_log(tmp_path / "none.log").columns
+    (tmp_path / "stuck.log").write_text(with_aux(tiny_log(3000), [5] * 3000))
+    with pytest.raises(CalibrationInputError, match="column 'aux': holds 5 in every row"):
+        read_axis_log(tmp_path / "stuck.log")
 
 
 def test_a_coarse_rate_of_a_steady_axis_is_not_refused(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_rate_of_another_scale_or_sign_is_told(tmp_path: Path) -> None:
         from calibration.command import calibrate
 
         assert calibrate([folder / "a.csv"], folder / "rig.yaml", [], folder / "out", plots=False) == 0
-        assert f"velocity reads {factor:.4g} of the position's rate" in (
+        assert f"velocity reads {factor:.4g} times the position's rate" in (
             folder / "out" / "report.json"
         ).read_text().replace("-1.000", "-1").replace("1.030", "1.03")
 

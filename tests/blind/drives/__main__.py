@@ -10,23 +10,16 @@ import click
 from rich.progress import track
 
 from scenarios.campaign.executor import each
-from tests.blind import finder
 from tests.blind.drives import table
 from tests.blind.drives.cells import SETS
 from tests.blind.drives.one import one
+from tests.blind.options import options
 
 SCORED_SEED = 20261122  # opened once, on a frozen finder; development uses 1000-1999
 
 
 @click.command()
-@click.option("--seed", type=int, default=SCORED_SEED, show_default=True, help="development seeds: 1000-1999")
-@click.option("--set", "name", type=click.Choice(sorted(SETS)), default="everything", show_default=True)
-@click.option("--only", default="", help="only cases whose key contains this")
-@click.option("--first", type=int, help="only so many cases of the set, in its order")
-@click.option("--out", type=click.Path(path_type=Path), default=Path("out/blind-drives"), show_default=True)
-@click.option("--jobs", default=min(2, os.cpu_count() or 1), show_default=True)
-@click.option("--scheduler", metavar="tcp://HOST:PORT", help="a Dask scheduler whose workers see --out")
-@click.option("--finder", "command", default=finder.COMMAND, show_default=True)
+@options(SETS, SCORED_SEED, Path("out/blind-drives"))
 def main(
     seed: int,
     name: str,

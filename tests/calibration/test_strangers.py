@@ -1,0 +1,117 @@
+"""Drives that nobody tuned on: what they lack is named, or said to be in its domain; never something else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import FORCE, MASS, PERIOD, SENSORS, found, mass, motion
+from tests.calibration.test_drives import answer as answer_of
+
+LONG = 60.0
+
+
+def domains(data: dict[str, Any]) -> set[tuple[str, str]]:
+    return {(e["name"], e["domain"]) for e in data["effects"]}
+
+
+def answer(folder: Path, text: str, table: tuple[np.ndarray, ...]) -> dict[str, Any]:
+    """The report on t, x, u, the position in steps of 1e-5 as an encoder has it."""
+    t, x, u = table
+    return answer_of(folder, text, (t, np.round(x, 5), u))
+
+
+def rate(x: np.ndarray) -> np.ndarray:
+    return np.asarray(np.gradient(x, PERIOD))
+
+
+def test_two_lines_of_no_stage_are_both_found_and_are_no_delay(tmp_path: Path) -> None:
+    """A motor's slots, and a third of them, in a file without a gear table."""
+    t, x, u = motion(LONG)
+    u = u + 1.2 * np.sin(2 * np.pi * x / 0.05 + 0.5) + 0.5 * np.sin(2 * np.pi * x / 0.11 + 1.0)
+    data = answer(tmp_path, FORCE, (t, x, u))
+    assert "channel_delay" not in found(data)
+    sizes = {round(1 / e["order"], 3): e["parameters"]["amplitude"]["value"] for e in data["effects"]}
+    assert sizes[0.05] == pytest.approx(1.2, rel=0.05)
+    assert sizes[0.11] == pytest.approx(0.5, rel=0.08)
+
+
+def test_an_effort_at_the_end_of_its_range_is_not_believed(tmp_path: Path) -> None:
+    """A recorder that clips at two thirds of the largest force."""
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, np.clip(u, -4.5, 4.5)))
+    assert found(data) == []
+    assert mass(data) == pytest.approx(MASS, rel=0.05)
+    assert any("end of its range" in r for r in data["reasons"])
+
+
+def test_a_gain_that_falls_with_the_effort_is_a_function_of_it(tmp_path: Path) -> None:
+    """A motor that saturates: 5 % of its force at 4 N."""
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, u * (1 + 0.05 * (u / 4) ** 2)))
+    assert domains(data) == {("unknown", "current")}
+    assert data["error"]["torque"]["after"] < 0.5 * data["error"]["torque"]["before"]
+
+
+def test_a_spring_is_a_function_of_the_place_and_no_loop(tmp_path: Path) -> None:
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, u + 6.0 * x))
+    assert set(found(data)) == {"unknown"} and data["effects"][0]["domain"] == "axis_angle"
+    stiffness = data["effects"][0]["parameters"]["stiffness"]["value"]
+    assert stiffness == pytest.approx(6.0, rel=0.05)
+
+
+def test_a_fixed_frequency_has_the_size_before_the_filter(tmp_path: Path) -> None:
+    """The filter of 0.1 s leaves two thirds of 7.7 Hz."""
+    t, x, u = motion(LONG)
+    text = FORCE + "smooth_s: 0.1\n"
+    data = answer(tmp_path, text, (t, x, u + 0.5 * np.sin(2 * np.pi * 7.7 * t)))
+    first = data["effects"][0]
+    assert first["name"] == "command_disturbance"
+    assert first["parameters"]["amplitude"]["value"] == pytest.approx(0.5, rel=0.03)
+
+
+def test_what_no_domain_holds_is_not_nothing(tmp_path: Path) -> None:
+    """A slow random force, several times what the sensors leave."""
+    t, x, u = motion(LONG)
+    noise = np.random.default_rng(3).standard_normal(len(t))
+    slow = np.convolve(noise, np.hanning(81) / 20, "same")
+    data = answer(tmp_path, FORCE, (t, x, u + 1.5 * slow))
+    assert data["verdict"] in ("cannot tell", "unknown")
+    assert not set(found(data)) - {"unknown"}
+
+
+def test_a_position_that_leaps_is_joined(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, np.where(t > 31.0, x + 0.7, x), u))
+    assert found(data) == []
+    assert mass(data) == pytest.approx(MASS, rel=0.03)
+    assert "leaps by 0.7" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("widths", [(0.02,), (0.02, 0.06, 0.18)])
+def test_lost_motion_of_several_widths_is_no_gap(tmp_path: Path, widths: tuple[float, ...]) -> None:
+    """One elastoplastic element is a gap; three are a strain wave gear's hysteresis."""
+    t, x, _ = motion(LONG)
+    lost = np.zeros(len(x))
+    for width in widths:
+        z = 0.0
+        for k, step in enumerate(np.diff(x, prepend=x[0])):
+            z = min(max(z + step, -width), width)
+            lost[k] += 1e-4 * z / width
+    y = 0.02 * x - lost + 2e-7 * np.random.default_rng(2).standard_normal(len(t))
+    names = domains(answer(tmp_path, SENSORS, (t, x, y)))
+    assert names == ({("play", "reversal")} if len(widths) == 1 else {("unknown", "reversal")})
+
+
+def test_a_gap_that_is_thrown_from_flank_to_flank_is_play(tmp_path: Path) -> None:
+    """The driven side has hardly any friction of its own: it leads while the drive brakes."""
+    t, x, _ = motion(LONG)
+    a = rate(rate(x))
+    y = 0.02 * x - 1e-4 * np.sign(a) + 2e-7 * np.random.default_rng(2).standard_normal(len(t))
+    first = answer(tmp_path, SENSORS, (t, x, y))["effects"][0]
+    assert first["name"] == "play"
+    assert first["parameters"]["gap"]["value"] == pytest.approx(2e-4, rel=0.1)
