@@ -15,11 +15,12 @@ from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, EFFORT_SCALE, GEAR_R
 @dataclass(frozen=True)
 class MapPoint:
     """One steady state. rate: rad/s at the axis. torque: N m at the axis. spread: standard error of it, N m:
-    what the fit weights it by."""
+    what the fit weights it by. unrest: the same from its wander within the run, gears included."""
 
     rate: float
     torque: float
     spread: float
+    unrest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -64,22 +65,44 @@ def drive_torque(log: Log, sheet: DataSheet) -> Array:
     return np.asarray((a - b) * sheet.torque_constant * GEAR_RATIO, dtype=np.float64)
 
 
+def over_angle(log: Log) -> Array:
+    """Return each sample's share of the angle that a run covers.
+
+    What the gears add repeats with the angle, so its mean over whole turns is zero over the angle. Over time
+    it is not: an open loop lingers where they hold it back (0.2 % of the torque at 5 % of ripple).
+    """
+    window = np.ones(WINDOW)
+    rate = np.convolve(log.rate, window, mode="same") / np.convolve(
+        np.ones(log.rate.size), window, mode="same"
+    )
+    covered = np.maximum(0.0, rate * np.sign(rate.sum()))
+    whole = float(covered.sum())
+    share = covered / whole if whole > 0.0 else np.full(rate.size, 1.0 / rate.size)
+    return np.asarray(share, dtype=np.float64)
+
+
 def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
-    """Return the mean torque and rate of two steady runs, there and back: without acceleration half the
-    difference of the drive torques is the friction, whatever the balance of the axis adds to both."""
-    torque, spread, rate = [], [], []
+    """Return the mean torque and rate of two steady runs over the angle, there and back: without acceleration
+    half the difference of the drive torques is the friction, whatever the balance of the axis adds to both.
+
+    The standard error is that of white noise and the converter: over whole half turns the gears' part is no
+    error, though it is most of what the torque does within a run.
+    """
+    torque, rate, noise, unrest = [], [], [], []
     for log in (forward, backward):
-        driven = drive_torque(log, sheet)
+        driven, share = drive_torque(log, sheet), over_angle(log)
         blocks = [part.mean() for part in np.array_split(driven, 10)]
-        torque.append(float(driven.mean()))
-        spread.append(float(np.std(blocks, ddof=1) / np.sqrt(10.0)))
-        rate.append(float(log.rate.mean()))
+        torque.append(float(share @ driven))
+        rate.append(float(share @ log.rate))
+        noise.append(float(np.std(np.diff(driven)) / np.sqrt(2.0 * driven.size)))
+        unrest.append(float(np.std(blocks, ddof=1) / np.sqrt(10.0)))
     # a steady current rests anywhere within the converter's step, and averaging does not help
     converter = np.sqrt(2.0 / 12.0) * ADC_A_PER_COUNT * sheet.torque_constant * GEAR_RATIO
     return MapPoint(
         (rate[0] - rate[1]) / 2.0 * ARCSEC,
         (torque[0] - torque[1]) / 2.0,
-        float(np.hypot(np.hypot(spread[0], spread[1]), np.sqrt(2.0) * converter) / 2.0),
+        float(np.hypot(np.hypot(noise[0], noise[1]), np.sqrt(2.0) * converter) / 2.0),
+        float(np.hypot(np.hypot(unrest[0], unrest[1]), np.sqrt(2.0) * converter) / 2.0),
     )
 
 

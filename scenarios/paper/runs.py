@@ -9,7 +9,7 @@ import numpy as np
 from scenarios.paper.bench import Bench
 from scenarios.paper.log import Log, join
 from scenarios.paper.measures import stalled
-from scenarios.paper.scales import GEAR_RATIO
+from scenarios.paper.scales import GEAR_RATIO, LOG_PERIOD_S
 
 TRACKING = 15.0
 """arcsec/s, the paper's tracking speed (Fig. 13)."""
@@ -123,7 +123,7 @@ TRIALS = 10
 """Efforts tried on each side at most."""
 MOTOR_TURN_ARCSEC = 1_296_000.0 / GEAR_RATIO
 """arcsec of the axis in a turn of the motor."""
-OPENED_SETTLE_S, OPENED_AVERAGED_S = 12.0, 30.0
+OPENED_BEGIN_S, OPENED_SETTLE_S, OPENED_AVERAGED_S = 4.0, 12.0, 30.0
 """s: settling is slowest where friction falls with speed nearly as fast as the motor's torque."""
 BROKEN_AWAY = 20.0
 """Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
@@ -135,14 +135,32 @@ MAP_SPEEDS = (
 1."""
 
 
+MAP_AVERAGED_S, MAP_STRETCH_ARCSEC = 30.0, 36_000.0
+
+
 def map_run(bench: Bench, setpoint: float) -> Log:
     """E7: one steady state of the torque-velocity map, closed loop.
 
-    Averaged over whole half turns of the motor, 6 s at least: the gears' torques are periodic in it, and over
-    less their mean is not zero (2.3 % of the torque at 10 arcsec/s over 36 s).
+    Averaged over whole half turns of the motor: the gears' torques are periodic in it, and over less their
+    mean is not zero (2.3 % of the torque at 10 arcsec/s over 36 s). At least 30 s, for the noise of the
+    currents, but no more than 10 degrees, and 6 s.
     """
-    settle = 10.0 if abs(setpoint) < 30.0 else 6.0
-    return bench.closed_loop(setpoint, settle + whole_turns(setpoint)).after(settle)
+    settle = map_settle(setpoint)
+    at_least = max(6.0, min(MAP_AVERAGED_S, MAP_STRETCH_ARCSEC / abs(setpoint)))
+    return bench.closed_loop(setpoint, settle + whole_turns(setpoint, at_least)).after(settle)
+
+
+def map_settle(setpoint: float) -> float:
+    """Return how long a closed loop settles before a point of the map is taken, s."""
+    return 10.0 if abs(setpoint) < 30.0 else 6.0
+
+
+def map_pair(bench: Bench, setpoint: float) -> tuple[Log, Log]:
+    """E7: a steady state there and back over the same stretch: the balance of the axis changes along it. The
+    way there goes on for as long as the way back settles."""
+    there = map_run(bench, setpoint)
+    bench.closed_loop(setpoint, map_settle(setpoint))
+    return there, map_run(bench, -setpoint)
 
 
 def whole_turns(arcsec_s: float, at_least: float = 6.0) -> float:
@@ -152,14 +170,26 @@ def whole_turns(arcsec_s: float, at_least: float = 6.0) -> float:
 
 
 def opened_run(bench: Bench, begin: float, effort: int) -> Log:
-    """E7: one steady state with a fixed effort, entered from a speed that the loop holds. Averaged over whole
-    half turns at the speed at which it ends; a run that stops is returned as it is."""
-    bench.closed_loop(begin, 4.0)
+    """E7: one steady state with a fixed effort, entered from a speed that the loop holds. Averaged over the
+    last whole half turns; a run that makes none is returned as it is."""
+    bench.closed_loop(begin, OPENED_BEGIN_S)
     log = bench.open_loop(effort, OPENED_SETTLE_S + OPENED_AVERAGED_S).after(OPENED_SETTLE_S)
-    speed = abs(float(log.rate.mean()))
-    half_turn = MOTOR_TURN_ARCSEC / max(1.0, speed) / 2.0
-    whole = int(OPENED_AVERAGED_S / half_turn) * half_turn
-    return log.last(whole) if whole > 0.0 else log
+    return last_half_turns(log)
+
+
+def last_half_turns(log: Log) -> Log:
+    """Return the last whole half turns of the motor, by the encoder; all of it where there is none."""
+    gone = np.abs(np.cumsum(log.rate[::-1])) * LOG_PERIOD_S * 2.0 / MOTOR_TURN_ARCSEC
+    whole = int(gone[-1])
+    samples = int(np.searchsorted(gone, whole)) + 1
+    return log.last(samples * LOG_PERIOD_S) if whole else log
+
+
+def opened_pair(bench: Bench, begin: float, there: int, back: int) -> tuple[Log, Log]:
+    """E7: two of these, efforts `there` and `back` (negative), over the same stretch like `map_pair`."""
+    log = opened_run(bench, begin, there)
+    bench.open_loop(there, OPENED_BEGIN_S + OPENED_SETTLE_S)
+    return log, opened_run(bench, -begin, back)
 
 
 def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3000) -> Log:

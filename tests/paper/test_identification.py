@@ -25,8 +25,15 @@ from scenarios.paper.friction_map import (
 )
 from scenarios.paper.published import INERTIA, TABLE_2
 from scenarios.paper.rundown import fit_run_downs
-from scenarios.paper.runs import MAP_SPEEDS, run_down
-from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, COUNT_RATE, GEAR_RATIO
+from scenarios.paper.runs import (
+    MAP_SPEEDS,
+    MOTOR_TURN_ARCSEC,
+    last_half_turns,
+    map_pair,
+    opened_pair,
+    run_down,
+)
+from scenarios.paper.scales import ADC_A_PER_COUNT, ARCSEC, COUNT_RATE, GEAR_RATIO, LOG_PERIOD_S
 from scenarios.paper.starts import STARTS, Benches, Start, with_inertia
 from tests.paper.synthetic import current_for, log_of
 
@@ -78,6 +85,63 @@ def test_E7_a_steady_point_is_mean_torque_at_mean_rate():
     point = steady_point(forward, backward, SHEET)
     assert point.torque == pytest.approx(250.0)
     assert point.rate == pytest.approx(600.0 * ARCSEC)
+
+
+def test_E7_what_the_gears_add_over_the_angle_adds_nothing_to_a_point():
+    """Lingering where the gears hold it back, an axis meets them longer: over time their mean is 0.7 %."""
+    angle = 0.0
+    rate: list[float] = []
+    gears: list[float] = []
+    while angle < 2.0 * 2.0 * np.pi:  # two turns of ten seconds
+        speed = 1.0 + 0.1 * np.cos(angle)
+        rate.append(500.0 * speed)
+        gears.append(-25.0 * np.cos(angle))
+        angle += 2.0 * np.pi * speed / 1000.0
+    assert abs(np.mean(gears)) > 1.0
+    torque = 170.0 + np.array(gears)
+    forward = log_of(np.array(rate), current=current_for(torque, K))
+    backward = dataclasses.replace(log_of(-np.array(rate)), adc_b=current_for(torque, K) / ADC_A_PER_COUNT)
+    point = steady_point(forward, backward, SHEET)
+    assert point.torque == pytest.approx(170.0, rel=5e-4)
+    assert 5.0 * point.spread < point.unrest  # the gears are no error of the mean
+
+
+def test_E7_an_opened_run_is_cut_to_whole_half_turns_by_the_encoder():
+    """Half as fast in the first ten seconds: whole turns at the mean speed would not be whole."""
+    rate = np.repeat([400.0, 800.0], [1000, 2000])
+    kept = last_half_turns(log_of(rate))
+    turns = kept.rate.sum() * LOG_PERIOD_S / (MOTOR_TURN_ARCSEC / 2.0)
+    assert turns == pytest.approx(11.0, abs=0.005)
+    short = log_of(np.full(300, 100.0))
+    assert last_half_turns(short) is short
+
+
+class Rails:
+    """A bench whose axis is at once at its speed: where it was is all that it says."""
+
+    def __init__(self) -> None:
+        self.at = 0.0
+
+    def closed_loop(self, arcsec_s, seconds):
+        rate = np.full(round(seconds / LOG_PERIOD_S), arcsec_s)
+        where = self.at + LOG_PERIOD_S * np.cumsum(rate)
+        self.at = float(where[-1])
+        return dataclasses.replace(log_of(rate), true_rate=where)
+
+    def open_loop(self, effort, seconds):
+        return self.closed_loop(5.0 * effort, seconds)
+
+
+@pytest.mark.parametrize(
+    ("pair", "whole"),
+    [(lambda: map_pair(Rails(), 1000.0), 1.0), (lambda: opened_pair(Rails(), 500.0, 100, -100), 0.9)],
+    ids=["closed loop", "opened"],
+)
+def test_E7_there_and_back_go_over_the_same_stretch(pair, whole):
+    """The balance of the axis changes by 0.1 N m and more in a degree."""
+    (there, back) = (log.true_rate for log in pair())
+    common = min(there.max(), back.max()) - max(there.min(), back.min())
+    assert common >= whole * (there.max() - there.min()) - 20.0
 
 
 def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():

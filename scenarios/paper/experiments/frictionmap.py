@@ -24,7 +24,7 @@ from scenarios.paper.friction_map import (
 )
 from scenarios.paper.log import Log
 from scenarios.paper.measures import cycles, stalled
-from scenarios.paper.runs import MAP_SPEEDS, break_away, map_run, opened_run
+from scenarios.paper.runs import MAP_SPEEDS, break_away, map_pair, opened_pair
 from scenarios.paper.scales import ARCSEC
 from scenarios.paper.starts import Benches
 
@@ -50,7 +50,7 @@ def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
     if any(stalled(log.rate) or cycles(np.abs(log.rate), speed) for log in logs):
         return False
     off = abs(point.rate / ARCSEC / speed - 1.0)
-    return off < STEADY_RATE and point.spread < STEADY_TORQUE * point.torque
+    return off < STEADY_RATE and point.unrest < STEADY_TORQUE * point.torque
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,8 @@ def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
     slowest: tuple[Log, Log] | None = None
     for speed in reversed(MAP_SPEEDS):
         bench = benches(preload)
-        logs = (noise.log(map_run(bench, speed)), noise.log(map_run(bench, -speed)))
+        there, back = map_pair(bench, speed)
+        logs = (noise.log(there), noise.log(back))
         point = steady_point(logs[0], logs[1], sheet)
         if any(saturated(log) for log in logs):
             continue
@@ -101,10 +102,8 @@ def opened(
     efforts = [round(abs(float(log.effort.mean()))) for log in begin]
     for lower in range(1, min(TRIALS, 2 * min(efforts))):
         bench = benches(preload)
-        logs = (
-            noise.log(opened_run(bench, speed, efforts[0] - (lower + 1) // 2)),
-            noise.log(opened_run(bench, -speed, lower // 2 - efforts[1])),
-        )
+        there, back = opened_pair(bench, speed, efforts[0] - (lower + 1) // 2, lower // 2 - efforts[1])
+        logs = (noise.log(there), noise.log(back))
         point = steady_point(logs[0], logs[1], sheet)
         if point.rate <= 0.0 or not steady(point.rate / ARCSEC, point, logs):
             return
