@@ -1,8 +1,9 @@
-"""`python -m scenarios.bench.dither [--before FOLDER]`: what the spread duty costs the emulator.
+"""`python -m scenarios.bench.dither [--before FOLDER] [--count]`: what the spread duty costs the emulator.
 
 The main scenario in processes that take turns, every few simulated seconds: the paper's firmware, the spread
 duty alone, the proposed firmware; with `--before`, the paper's firmware of another checkout too. CPU time,
-plain Python; ratios are taken turn by turn, so both sides saw the same machine.
+plain Python; ratios are taken turn by turn, so both sides saw the same machine. `--count` counts instructions
+instead (valgrind), which no neighbour on the machine disturbs.
 """
 
 from __future__ import annotations
@@ -11,16 +12,19 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 
 import click
 
+from scenarios.bench import counters
+
 ROOT = Path(__file__).parents[2]
 SECONDS = 4
 """Simulated seconds of a turn."""
 WAYS = {"off": "", "spread": "spread", "fine": "fine"}
-_PROGRAM = """
+_BEGIN = """
 import sys, tempfile, time
 from pathlib import Path
 from scenarios import run
@@ -34,6 +38,8 @@ scenario, model = run.prepare(SCENARIO, **({"firmware": "fine"} if name else {})
 with tempfile.TemporaryDirectory() as folder:
     made = Session(scenario, model, Path(folder))
     made.advance(40 * 10**9)  # by then the telescope tracks
+"""
+_TURNS = """
     print("ready", flush=True)
     for line in sys.stdin:
         begin = time.process_time()
@@ -41,12 +47,18 @@ with tempfile.TemporaryDirectory() as folder:
         print(time.process_time() - begin, flush=True)
     made.recorder.close()
 """
+_COUNTED = """
+    count("on")
+    made.advance(made.network.queue.now_ns + int(sys.argv[2]) * 10**9)
+    count("off")
+    made.recorder.close()
+"""
 
 
 def _process(root: Path, name: str) -> subprocess.Popen[str]:
     environment = {**os.environ, "SCHMIDT_PURE": "1", "PYTHONPATH": str(root)}
     return subprocess.Popen(
-        [sys.executable, "-c", _PROGRAM, name], cwd=root, env=environment,
+        [sys.executable, "-c", _BEGIN + _TURNS, name], cwd=root, env=environment,
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
     )  # fmt: skip
 
@@ -59,11 +71,30 @@ def _turn(process: subprocess.Popen[str]) -> float:
     return 1e3 * float(process.stdout.readline()) / SECONDS
 
 
+def _places(before: Path | None) -> dict[str, tuple[Path, str]]:
+    """Checkout and firmware of every way."""
+    places = {name: (ROOT, firmware) for name, firmware in WAYS.items()}
+    return places if before is None else {**places, "before": (before.resolve(), "")}
+
+
+def counted(before: Path | None) -> dict[str, float]:
+    """Million instructions per simulated second, by way."""
+    seconds = counters.UNDER_VALGRIND_S
+    found = {}
+    with tempfile.TemporaryDirectory() as cache:
+        for name, (root, firmware) in _places(before).items():
+            refs = counters.under_valgrind(
+                counters.MARKS + _BEGIN + _COUNTED, [firmware, str(seconds)], root, "1", cache
+            )
+            if refs is None:
+                raise click.ClickException("nothing was counted: is valgrind installed?")
+            found[name] = refs / seconds / 1e6
+    return found
+
+
 def measure(rounds: int, before: Path | None) -> dict[str, list[float]]:
     """CPU ms per simulated second, by way and turn."""
-    places = {name: (ROOT, firmware) for name, firmware in WAYS.items()}
-    if before is not None:
-        places["before"] = (before.resolve(), "")
+    places = _places(before)
     found: dict[str, list[float]] = {name: [] for name in places}
     with ExitStack() as stack:
         running = {name: stack.enter_context(_process(*place)) for name, place in places.items()}
@@ -88,12 +119,20 @@ def ratio(one: list[float], other: list[float]) -> tuple[float, float]:
 @click.command()
 @click.option("--before", type=click.Path(exists=True, file_okay=False, path_type=Path), help="A checkout.")
 @click.option("--rounds", default=40, show_default=True)
-def main(before: Path | None, rounds: int) -> None:
+@click.option("--count", is_flag=True, help="Instructions, by valgrind, instead of CPU time.")
+def main(before: Path | None, rounds: int, count: bool) -> None:
     """Measure and print."""
+    pairs = [("spread", "off"), ("fine", "off")] + [("off", "before")] * (before is not None)
+    if count:
+        refs = counted(before)
+        for name, value in refs.items():
+            click.echo(f"{name:8s} {value:7.2f} million instructions per simulated second")
+        for one, other in pairs:
+            click.echo(f"{one} over {other}: {refs[one] / refs[other]:.4f}")
+        return
     found = measure(rounds, before)
     for name, values in found.items():
         click.echo(f"{name:8s} {statistics.median(values):7.2f} ms of CPU per simulated second")
-    pairs = [("spread", "off"), ("fine", "off")] + [("off", "before")] * (before is not None)
     for one, other in pairs:
         middle, error = ratio(found[one], found[other])
         click.echo(f"{one} over {other}: {middle:.3f} ± {error:.3f}")

@@ -57,8 +57,12 @@ def objective(
             rows.append(row)
             console.print(_aligned(line(row)), highlight=False, soft_wrap=True)
     command = shlex.join(
-        ["schmidt", "objective", *_given(compensation, count, seeds, shift_deg, seconds, steps)]
-    )
+        [
+            "schmidt", "objective",
+            *_given(compensation, count, seeds, shift_deg, seconds, steps),
+            *_chosen(plant, plant_high, only),
+        ]
+    )  # fmt: skip
     (out / "table.md").write_text(markdown(rows, command), encoding="utf-8")
     data = {"command": command, "starts_deg": angles, "rows": [row.as_json() for row in rows]}
     (out / "objective.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
@@ -79,4 +83,13 @@ def _given(
         ("--seconds", seconds, 600.0),
     ):  # fmt: skip
         words += [] if value == default else [name, f"{value:g}"]
+    return words
+
+
+def _chosen(plant: str, plant_high: str, only: str | None) -> list[str]:
+    words = []
+    for name, value, default in (
+        ("--plant", plant, LOW), ("--plant-high", plant_high, HIGH), ("--only", only, None),
+    ):  # fmt: skip
+        words += [] if value is None or value == default else [name, value]
     return words

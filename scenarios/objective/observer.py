@@ -28,9 +28,9 @@ from scenarios.objective.cases import starts
 Floats = NDArray[np.float64]
 TICK_S = 0.005
 _COUNT_RAD = TURN / 112_896_000
-_EFFORT_LIMIT = 1500.0
+EFFORT_LIMIT = 1500.0
 """PWM steps: half the supply."""
-_RAMP_S, _SETTLE_S = 10.0, 25.0
+RAMP_S, SETTLE_S = 10.0, 25.0
 """The rate is asked for slowly, so that the bristles load without a leap."""
 DESIGN_DELAY_S = 0.0025
 """From reading the encoder to the new duty; the table runs 0.1 to 4.9 ms."""
@@ -38,10 +38,10 @@ _POSITION, _EFFORT = 1e8, 1e-4
 """Weights of position, 1/rad^2, and effort, 1/step^2: the middle of a window that is narrow (the docs)."""
 _ACCELERATION, _DISTURBANCE = 1e-12, 1e3
 """Noise of rate, (rad/s)^2 per tick, and of the disturbance, (N m)^2 per tick."""
-_READING = (_COUNT_RAD / 12**0.5) ** 2
+READING = (_COUNT_RAD / 12**0.5) ** 2
 """rad^2: one count, evenly."""
 # states: axis angle and rate, bristle torque, rotor angle and rate, motor torque, disturbance, last effort
-_ANGLE, _RATE, _BRISTLE, _ROTOR, _ROTOR_RATE, _TORQUE, _LOAD, _LAST, _SIZE = range(9)
+ANGLE, _RATE, _BRISTLE, _ROTOR, _ROTOR_RATE, _TORQUE, LOAD, LAST, SIZE = range(9)
 
 
 class Design(NamedTuple):
@@ -54,7 +54,7 @@ class Design(NamedTuple):
     per_step: float
 
 
-def _continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
+def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     """Matrices at steady sliding with `rate`, rad/s; effort in PWM steps."""
     part = model.axes.ra
     f, motor, gear = part.friction, part.motor, part.gear
@@ -69,18 +69,18 @@ def _continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     share = 1.0 - model.controller.counter_split.si
     per_step = model.supply.voltage.si / model.controller.pwm_steps.si / ohm
     per_step *= motor.torque_constant.si * RATIO * share
-    a = np.zeros((_LAST, _LAST))
-    a[_ANGLE, _RATE] = a[_ROTOR, _ROTOR_RATE] = 1.0
-    a[_RATE, [_ANGLE, _RATE, _BRISTLE, _ROTOR, _ROTOR_RATE, _LOAD]] = (
+    a = np.zeros((LAST, LAST))
+    a[ANGLE, _RATE] = a[_ROTOR, _ROTOR_RATE] = 1.0
+    a[_RATE, [ANGLE, _RATE, _BRISTLE, _ROTOR, _ROTOR_RATE, LOAD]] = (
         np.array([-k, -c - f.viscous.si, -1.0, k, c, 1.0]) / load
     )
     a[_BRISTLE, _RATE], a[_BRISTLE, _BRISTLE] = sigma0 * slope / level, -sigma0 * rate / level
-    a[_ROTOR_RATE, [_ANGLE, _RATE, _ROTOR, _ROTOR_RATE, _TORQUE]] = (
+    a[_ROTOR_RATE, [ANGLE, _RATE, _ROTOR, _ROTOR_RATE, _TORQUE]] = (
         np.array([k, c, -k, -c - brake, 1.0]) / rotors
     )
     electric = motor.inductance.si / ohm
     a[_TORQUE, _TORQUE] = -1.0 / electric
-    b = np.zeros((_LAST, 1))
+    b = np.zeros((LAST, 1))
     b[_TORQUE, 0] = per_step / electric
     return a, b, per_step
 
@@ -96,32 +96,32 @@ def _held(a: Floats, b: Floats, seconds: float) -> tuple[Floats, Floats]:
 
 def noise() -> Floats:
     """Return the covariance of what moves the states in a tick that the model does not know."""
-    found = 1e-16 * np.eye(_SIZE)
-    found[_ANGLE, _ANGLE], found[_RATE, _RATE] = 1e-20, _ACCELERATION
-    found[_TORQUE, _TORQUE], found[_LOAD, _LOAD] = 1e-2, _DISTURBANCE
+    found = 1e-16 * np.eye(SIZE)
+    found[ANGLE, ANGLE], found[_RATE, _RATE] = 1e-20, _ACCELERATION
+    found[_TORQUE, _TORQUE], found[LOAD, LOAD] = 1e-2, _DISTURBANCE
     return found
 
 
 def design(model: PlantModel, rate: float = SIDEREAL * ARCSEC, delay_s: float = DESIGN_DELAY_S) -> Design:
     """Observer and gains for a plant at a rate, the effort coming `delay_s` after the reading."""
-    a, b, per_step = _continuous(model, rate)
+    a, b, per_step = continuous(model, rate)
     whole, _ = _held(a, b, TICK_S)
     rest, new = _held(a, b, TICK_S - delay_s)
     _, old = _held(a, b, delay_s)
-    ad, bd = np.zeros((_SIZE, _SIZE)), np.zeros((_SIZE, 1))
-    ad[:_LAST, :_LAST], ad[:_LAST, _LAST:], bd[:_LAST] = whole, rest @ old, new
-    bd[_LAST] = 1.0
-    keep = [n for n in range(_SIZE) if n != _LOAD]  # nobody controls the disturbance
+    ad, bd = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1))
+    ad[:LAST, :LAST], ad[:LAST, LAST:], bd[:LAST] = whole, rest @ old, new
+    bd[LAST] = 1.0
+    keep = [n for n in range(SIZE) if n != LOAD]  # nobody controls the disturbance
     ac, bc = ad[np.ix_(keep, keep)], bd[keep]
     weight = np.zeros((len(keep), len(keep)))
     weight[0, 0] = _POSITION
     cost = solve_discrete_are(ac, bc, weight, np.array([[_EFFORT]]))
-    gain = np.zeros(_SIZE)
+    gain = np.zeros(SIZE)
     gain[keep] = np.linalg.solve(_EFFORT + bc.T @ cost @ bc, bc.T @ cost @ ac)[0]
-    reads = np.zeros((1, _SIZE))
-    reads[0, _ANGLE] = 1.0
-    spread = solve_discrete_are(ad.T, reads.T, noise(), np.array([[_READING]]))
-    correction = (spread @ reads.T / (spread[0, 0] + _READING))[:, 0]
+    reads = np.zeros((1, SIZE))
+    reads[0, ANGLE] = 1.0
+    spread = solve_discrete_are(ad.T, reads.T, noise(), np.array([[READING]]))
+    correction = (spread @ reads.T / (spread[0, 0] + READING))[:, 0]
     return Design(ad, bd[:, 0], gain, correction, per_step)
 
 
@@ -134,9 +134,9 @@ def hold(
     axis, delay_ns = plant.ra, round(delay_s * 1e9)
     wanted = SIDEREAL * ARCSEC
     first = axis.incremental(0)
-    x = np.zeros(_SIZE)
+    x = np.zeros(SIZE)
     reference = 0.0
-    ticks = round((seconds + _SETTLE_S) / TICK_S)
+    ticks = round((seconds + SETTLE_S) / TICK_S)
     errors = np.empty(ticks)
     steps = model.controller.pwm_steps.si
     split = model.controller.counter_split.si
@@ -144,16 +144,16 @@ def hold(
         t_ns = tick * 5_000_000
         read = (axis.incremental(t_ns) - first + 0.5) * _COUNT_RAD
         errors[tick] = float(plant.world[0, at.RATE]) / ARCSEC - SIDEREAL
-        reference += wanted * min(1.0, tick * TICK_S / _RAMP_S) * TICK_S if tick else 0.0
-        x = x + made.correction * (read - reference - x[_ANGLE])
-        effort = float(-made.gain @ x - x[_LOAD] / made.per_step)
-        effort = max(-_EFFORT_LIMIT, min(_EFFORT_LIMIT, effort))
+        reference += wanted * min(1.0, tick * TICK_S / RAMP_S) * TICK_S if tick else 0.0
+        x = x + made.correction * (read - reference - x[ANGLE])
+        effort = float(-made.gain @ x - x[LOAD] / made.per_step)
+        effort = max(-EFFORT_LIMIT, min(EFFORT_LIMIT, effort))
         if whole_steps:
             effort = float(round(effort))
         lead, lag = ((share * abs(effort) + COUNTER_BIAS) / steps for share in (1.0, split))
         axis.drive(t_ns + delay_ns, *((lead, lag) if effort >= 0 else (lag, lead)))
         x = made.a @ x + made.b * effort
-    return errors[round(_SETTLE_S / TICK_S) :]
+    return errors[round(SETTLE_S / TICK_S) :]
 
 
 NUMBERS = (

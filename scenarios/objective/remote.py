@@ -32,12 +32,12 @@ AGES_S = (0.0015, 0.003, 0.0049)
 
 def reader(model: PlantModel, made: Design, age_s: float) -> tuple[Floats, Floats]:
     """Return what a reading of this age says of the state (a row), and the observer's correction for it."""
-    a, _, _ = observer._continuous(model, SIDEREAL * ARCSEC)
-    row = np.zeros(observer._SIZE)
-    row[: observer._LAST] = expm(-a * age_s)[observer._ANGLE]
+    a, _, _ = observer.continuous(model, SIDEREAL * ARCSEC)
+    row = np.zeros(observer.SIZE)
+    row[: observer.LAST] = expm(-a * age_s)[observer.ANGLE]
     noise = observer.noise()
-    spread = solve_discrete_are(made.a.T, row[:, None], noise, np.array([[observer._READING]]))
-    return row, np.asarray(spread @ row / (row @ spread @ row + observer._READING), dtype=np.float64)
+    spread = solve_discrete_are(made.a.T, row[:, None], noise, np.array([[observer.READING]]))
+    return row, np.asarray(spread @ row / (row @ spread @ row + observer.READING), dtype=np.float64)
 
 
 def hold(
@@ -50,23 +50,23 @@ def hold(
     plant = Plant(plant_model, seed, {"ra": start_deg / 360.0 * 2**29})
     axis, first = plant.ra, plant.ra.absolute(0)
     age_ns, delay_ns = round(age_s * 1e9), round(CALCULATED_S * 1e9)
-    x, reference, reading = np.zeros(observer._SIZE), 0.0, 0.0
-    ticks = round((seconds + observer._SETTLE_S) / TICK_S)
+    x, reference, reading = np.zeros(observer.SIZE), 0.0, 0.0
+    ticks = round((seconds + observer.SETTLE_S) / TICK_S)
     errors = np.empty(ticks)
     steps, split = plant_model.controller.pwm_steps.si, plant_model.controller.counter_split.si
     for tick in range(ticks):
         t_ns = tick * 5_000_000
         errors[tick] = float(plant.world[0, at.RATE]) / ARCSEC - SIDEREAL
-        rate = SIDEREAL * ARCSEC * min(1.0, tick * TICK_S / observer._RAMP_S)
+        rate = SIDEREAL * ARCSEC * min(1.0, tick * TICK_S / observer.RAMP_S)
         reference += rate * TICK_S if tick else 0.0
         x = x + correction * (reading - (reference - rate * age_s) - float(row @ x))
-        effort = float(-made.gain @ x - x[observer._LOAD] / made.per_step)
-        effort = max(-observer._EFFORT_LIMIT, min(observer._EFFORT_LIMIT, effort))
+        effort = float(-made.gain @ x - x[observer.LOAD] / made.per_step)
+        effort = max(-observer.EFFORT_LIMIT, min(observer.EFFORT_LIMIT, effort))
         lead, lag = ((share * abs(effort) + COUNTER_BIAS) / steps for share in (1.0, split))
         axis.drive(t_ns + delay_ns, *((lead, lag) if effort >= 0 else (lag, lead)))
         x = made.a @ x + made.b * effort
         reading = (axis.absolute(t_ns + 5_000_000 - age_ns) - first + 0.5) * STEP_RAD
-    return errors[round(observer._SETTLE_S / TICK_S) :]
+    return errors[round(observer.SETTLE_S / TICK_S) :]
 
 
 def peak(*given: object, **more: object) -> float:

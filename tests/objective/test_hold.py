@@ -1,11 +1,15 @@
 """The objective on the emulated boards: short runs of what `schmidt objective` measures, other angles."""
 
+import json
+from pathlib import Path
+
 import pytest
 
 from plant.model import load
 from scenarios.firmware import FIRMWARES
 from scenarios.objective.bench import hold
 from scenarios.objective.cases import cases, starts
+from scenarios.objective.command import objective
 from scenarios.objective.table import Row, line
 
 LOW = "low_preload_motor_units"
@@ -46,3 +50,10 @@ def test_the_table_has_the_issues_rows() -> None:
     assert [len(case.effects) for case in cases(compensation=False)].count(4) == 2
     assert any("compensated" in name for name in names)
     assert sum(case.high for case in cases(compensation=False)) == 2
+
+
+def test_the_table_names_the_command_that_repeats_it(tmp_path: Path) -> None:
+    objective(tmp_path, plant="low_preload", only="with pwm", count=1, seeds=1, seconds=1.0)
+    command = "schmidt objective --starts 1 --seeds 1 --seconds 1 --plant low_preload --only 'with pwm'"
+    assert command in (tmp_path / "table.md").read_text()
+    assert json.loads((tmp_path / "objective.json").read_text())["command"] == command
