@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,3 +33,30 @@ def feeding(mute: str | None, feed: Path | None) -> tuple[str, Path] | None:
     if (mute is None) != (feed is None):
         raise click.UsageError("--mute BOARD and --feed LOG go together")
     return None if mute is None or feed is None else (mute, feed)
+
+
+def host_doors(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Options of the doors that a host opens, beside emulated boards or alone."""
+    for option in reversed(
+        (
+            click.option(
+                "--lx200",
+                multiple=True,
+                metavar="[HOST:]PORT|pty:NAME",
+                help="LX200, for Stellarium and INDI; repeatable.",
+            ),
+            click.option(
+                "--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery."
+            ),
+            click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser."),
+            click.option(
+                "--runs",
+                type=click.Path(path_type=Path),
+                default=Path("out/console"),
+                show_default=True,
+                help="Folder of the runs recorded on the console.",
+            ),
+        )
+    ):
+        command = option(command)
+    return command

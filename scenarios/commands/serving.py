@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding
+from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding, host_doors
 
 
 @click.command(short_help="Run the boards in real time and open doors to them.")
@@ -28,21 +28,7 @@ from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, feeding
 @click.option(
     "--hid", multiple=True, metavar="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket."
 )
-@click.option(
-    "--lx200",
-    multiple=True,
-    metavar="[HOST:]PORT|pty:NAME",
-    help="LX200, for Stellarium and INDI; repeatable.",
-)
-@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
-@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
-@click.option(
-    "--runs",
-    type=click.Path(path_type=Path),
-    default=Path("out/console"),
-    show_default=True,
-    help="Folder of the runs recorded on the console.",
-)
+@host_doors
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the host's four logs.")
 @click.option("--control", metavar="[HOST:]PORT", help="Speed, pause, status, stop (see schmidt control).")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
@@ -114,21 +100,7 @@ def serve(
 @click.option(
     "--serial", multiple=True, metavar="BOARD=PORT", help="RS232 of a board, such as AXIS_RA=/dev/ttyS0."
 )
-@click.option(
-    "--lx200",
-    multiple=True,
-    metavar="[HOST:]PORT|pty:NAME",
-    help="LX200, for Stellarium and INDI; repeatable.",
-)
-@click.option("--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery.")
-@click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser.")
-@click.option(
-    "--runs",
-    type=click.Path(path_type=Path),
-    default=Path("out/console"),
-    show_default=True,
-    help="Folder of the runs recorded on the console.",
-)
+@host_doors
 @click.option("--token", help="Word that browsers of other machines must know (default: made up, printed).")
 @click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
 @click.option("--logs", type=click.Path(path_type=Path), help="Folder of the four logs.")

@@ -11,6 +11,9 @@ from pathlib import Path
 
 GROUP = "schmidt"
 """The one shared library is `schmidt__mypyc`; each module is a small file beside it."""
+_INSIDE = ("-fvisibility=hidden", "-fno-semantic-interposition", "-fno-plt")
+"""For gcc and clang: calls inside the library go straight there, not through the linker's table."""
+_BOUND = ("-Wl,-z,now",)
 
 
 def main(target: Path, files: list[str]) -> None:
@@ -27,6 +30,10 @@ def main(target: Path, files: list[str]) -> None:
         target_dir=str(target / "c"),
         group_name=GROUP,
     )
+    if sys.platform == "linux":
+        for extension in extensions:
+            extension.extra_compile_args = [*extension.extra_compile_args, *_INSIDE]
+            extension.extra_link_args = [*(extension.extra_link_args or ()), *_BOUND]
     setup(
         name="schmidt-compiled",
         ext_modules=extensions,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 from typing import NoReturn
 
 import pytest
@@ -29,6 +30,24 @@ def test_the_ticks_are_first_and_their_children_ordinary_and_afterwards_all_is_a
     except DoorError as error:
         pytest.skip(str(error))
     assert scheduler() == before
+
+
+def test_a_doors_thread_is_lifted_too_and_let_down_again() -> None:
+    """It may hold Python's lock when a tick is due."""
+    wait, up = threading.Event(), threading.Event()
+    thread = threading.Thread(target=lambda: (up.set(), wait.wait()))
+    thread.start()
+    up.wait()
+    assert thread.native_id is not None
+    try:
+        with first():
+            assert os.sched_getscheduler(thread.native_id) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR
+        assert os.sched_getscheduler(thread.native_id) == os.SCHED_OTHER
+    except DoorError as error:
+        pytest.skip(str(error))
+    finally:
+        wait.set()
+        thread.join()
 
 
 def test_what_the_system_does_not_grant_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
