@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -44,6 +45,8 @@ inputs:
 """
 RUN_S = 5.0
 """What a run is to take, CPU s."""
+_LOOP = 50_000_000
+"""Turns of an empty loop: some seconds."""
 _TRIED_S = 100
 """Simulated seconds that tell how fast this machine is today."""
 
@@ -94,6 +97,20 @@ def timed(folder: Path, runs: int, jobs: int, simulated_s: int) -> dict[str, flo
             "runs_wall_s": sum(row["wall_s"] for row in rows), "overhead": cpu_s / own_s - 1.0}  # fmt: skip
 
 
+def ceiling() -> float:
+    """What a second worker is worth to a loop that shares nothing with it: the most this machine can give."""
+    command = [sys.executable, "-c", f"for _ in range({_LOOP}): pass"]
+
+    def wall_s(count: int) -> float:
+        begin = time.perf_counter()
+        processes = [subprocess.Popen(command) for _ in range(count)]
+        for process in processes:
+            process.wait()
+        return time.perf_counter() - begin
+
+    return statistics.median(2.0 * wall_s(1) / wall_s(2) for _ in range(5))
+
+
 def measure(runs: int) -> dict[str, Any]:
     """Overhead with one worker and two, and what the second is worth."""
     with tempfile.TemporaryDirectory() as name:
@@ -109,6 +126,7 @@ def measure(runs: int) -> dict[str, Any]:
         "two": two,
         "speedup": one["wall_s"] / two["wall_s"],
         "busy": two["runs_wall_s"] / (2.0 * two["wall_s"]),
+        "ceiling": ceiling(),
         "dearer": two["runs_cpu_s"] / one["runs_cpu_s"],
     }
 
@@ -134,7 +152,8 @@ def show(found: dict[str, Any]) -> None:
         )
         print(f"{name}: {part['runs']:.0f} runs, {times}: overhead {part['overhead']:.1%} (<= 10 %)")
     print(f"once a campaign with one worker, its start and report: {found['once_s']:.1f} s CPU")
-    print(f"two workers over one: {found['speedup']:.2f} times by wall time (>= 1.8 on an idle machine)")
+    print(f"two workers over one: {found['speedup']:.2f} times by wall time (>= 1.8, idle machine;", end=" ")
+    print(f"two empty loops over one here: {found['ceiling']:.2f})")
     print(f"  both busy {found['busy']:.1%} of the time; a run's CPU {found['dearer']:.2f} times that alone")
 
 

@@ -27,15 +27,22 @@ with tempfile.TemporaryDirectory() as folder:
     made.recorder.close()
 """
 
-_UNDER_VALGRIND_S = 5
-_MARKED = """
-import os, subprocess, sys, tempfile
-from pathlib import Path
-from scenarios.bench.network import session
+UNDER_VALGRIND_S = 5
+"""Simulated seconds; valgrind is some fifty times slower than the machine."""
+MARKS = """
+import os, subprocess, sys
 def count(word):
     command = ["callgrind_control", "-i", word, str(os.getpid())]
-    if len(sys.argv) > 2:
+    if sys.argv[-1] == "x":
         subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+"""
+"""The head of a program that says what is counted: count("on"), count("off")."""
+_MARKED = (
+    MARKS
+    + """
+import tempfile
+from pathlib import Path
+from scenarios.bench.network import session
 with tempfile.TemporaryDirectory() as folder:
     made = session(Path(folder))
     count("on")
@@ -43,6 +50,7 @@ with tempfile.TemporaryDirectory() as folder:
     count("off")
     made.recorder.close()
 """
+)
 
 
 def instructions(native: bool) -> dict[str, float]:
@@ -51,26 +59,37 @@ def instructions(native: bool) -> dict[str, float]:
 
 
 def _by_valgrind(native: bool) -> dict[str, float]:
-    if shutil.which("valgrind") is None:
-        return {}
     found = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, pure in (("plain", "1"), ("compiled", "0"))[: 1 + native]:
-            environment = {
-                **os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1",
-                "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "SCHMIDT_CACHE_DIR": folder,
-            }  # fmt: skip
-            program = [sys.executable, "-c", _MARKED, str(_UNDER_VALGRIND_S)]
-            counted = ["valgrind", "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null"]
-            subprocess.run(program, env=environment, capture_output=True, check=False)  # fills the cache
-            done = subprocess.run(
-                [*counted, *program, "x"], env=environment, capture_output=True, text=True, check=False
-            )
-            refs = re.search(r"I +refs: +([\d,]+)", done.stderr)
-            if done.returncode or refs is None:
+            refs = under_valgrind(_MARKED, [str(UNDER_VALGRIND_S)], ROOT, pure, folder)
+            if refs is None:
                 return {}
-            found[name] = int(refs[1].replace(",", "")) / _UNDER_VALGRIND_S / 1e6
+            found[name] = refs / UNDER_VALGRIND_S / 1e6
     return found
+
+
+def under_valgrind(program: str, arguments: list[str], root: Path, pure: str, cache: str) -> int | None:
+    """Instructions between a program's marks; None where they cannot be counted.
+
+    root: the checkout it runs from. pure: "1" for plain Python. cache: a folder for compiled kernels, which
+    the program fills in a first run that is not counted.
+    """
+    if shutil.which("valgrind") is None:
+        return None
+    environment = {
+        **os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": str(root), "OPENBLAS_NUM_THREADS": "1",
+        "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "SCHMIDT_CACHE_DIR": cache,
+        "PYTHONHASHSEED": "0",
+    }  # fmt: skip
+    command = [sys.executable, "-c", program, *arguments]
+    counted = ["valgrind", "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null"]
+    subprocess.run(command, cwd=root, env=environment, capture_output=True, check=False)
+    done = subprocess.run(
+        [*counted, *command, "x"], cwd=root, env=environment, capture_output=True, text=True, check=False
+    )
+    refs = re.search(r"I +refs: +([\d,]+)", done.stderr)
+    return int(refs[1].replace(",", "")) if refs is not None and not done.returncode else None
 
 
 def _by_perf(native: bool) -> dict[str, float]:
