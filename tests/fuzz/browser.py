@@ -17,6 +17,8 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+from nicegui import Client
+
 from host.console.server import Consoles
 from scenarios.doors import Served
 from scenarios.doors.address import listen
@@ -66,6 +68,8 @@ _PACKETS = (
 _EACH = 50
 """Messages of one browser: some of them make the server forget it, and it is deaf to the next."""
 _FAREWELL = ("41", b"41")
+_RETURNS = 8
+"""Websockets of one page, as a browser's that lost its connection: a page costs a hundred messages."""
 
 
 class Server:
@@ -106,8 +110,8 @@ def server() -> Server:
 class Browser:
     """A websocket that has shaken hands (RFC 6455, masked with zeros; Engine.IO 4 inside)."""
 
-    def __init__(self, at: Server, path: str) -> None:
-        self.client, self.elements = at.page(path)
+    def __init__(self, at: Server, path: str, page: tuple[str, list[int]] | None = None) -> None:
+        self.client, self.elements = page or at.page(path)
         self.socket = socket.create_connection(("127.0.0.1", at.port), 60)
         self.socket.sendall(
             b"GET /_nicegui_ws/socket.io/?EIO=4&transport=websocket HTTP/1.1\r\nHost: x\r\n"
@@ -164,19 +168,26 @@ def websocket(count: int, random: Random) -> dict[str, int]:
     at = server()
     before = at.consoles.refused
     found = {"accepted": 0, "hung up": 0}
-    browser = Browser(at, "/")
+    browser, returns = Browser(at, "/"), 0
+
+    def again() -> Browser:
+        """The same page on a new websocket, as long as the server knows it; else another page."""
+        nonlocal returns
+        browser.close()
+        returns = returns + 1 if returns < _RETURNS and browser.client in Client.instances else 0
+        page = (browser.client, browser.elements) if returns else None
+        return Browser(at, random.choice(_PATHS), page)
+
     for number in range(count):
         message = _message(random, browser)
         try:
             browser.send(message)
             found["accepted"] += 1
             if number % _EACH == _EACH - 1 or message[:2] in _FAREWELL or message[:1] in ("1", b"1"):
-                browser.close()
-                browser = Browser(at, random.choice(_PATHS))
+                browser = again()
         except OSError:  # whoever breaks the protocol is hung up on
             found["hung up"] += 1
-            browser.close()
-            browser = Browser(at, random.choice(_PATHS))
+            browser = again()
         if number % 50 == 0:
             at.tick()
         if number % 2000 == 1999:

@@ -1,4 +1,4 @@
-"""Runs the tests of every target on mutants: `python -m tests.mutation [--only PART] [--sample N]`.
+"""Runs the tests of every target on mutants: `python -m tests.mutation [--only PATH] [--part K/N]`.
 
 Mutants run in forked children, so that numpy and pytest are imported once; a changed source takes its
 module's place at import. No file is written. Not in CI: some 1500 mutants take hours.
@@ -66,7 +66,8 @@ def survives(path: str, source: str, tests: tuple[str, ...]) -> bool:
         try:
             sys.meta_path.insert(0, Substitute(name, compile(source, path, "exec")))
             quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning", "--override-ini", "addopts="]
-            arguments = ["-x", "-q", "-p", "no:cacheprovider", "-m", "not slow and not guest", *quiet]
+            plain = ["--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:anyio"]
+            arguments = ["-x", "-q", *plain, "-m", "not slow and not guest", *quiet]
             code = int(pytest.main([*arguments, *tests], plugins=[FewExamples()]))
         finally:
             os._exit(code)
@@ -77,11 +78,13 @@ def main() -> None:
     """Run, print survivors as they come, and the score."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", default="", help="targets whose path contains this")
+    parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of each target's mutants")
     parser.add_argument("--sample", type=int, default=0, help="at most so many mutants of each target")
     parser.add_argument("--out", type=Path, help="file for the survivors")
     options = parser.parse_args()
+    part, parts = (int(number) for number in options.part.split("/"))
     hypothesis.settings.register_profile(
-        "mutation", max_examples=30, deadline=None, database=None, derandomize=True
+        "mutation", max_examples=15, deadline=None, database=None, derandomize=True
     )
     lines: list[str] = []
 
@@ -99,15 +102,17 @@ def main() -> None:
         started = time.monotonic()
         if not survives(path, source, tests):
             raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
-        cases = list(mutants(source))
+        cases = list(mutants(source))[part - 1 :: parts]
         if options.sample and len(cases) > options.sample:
             cases = random.Random(path).sample(cases, options.sample)
-        alive = [label for label, changed in cases if survives(path, changed, tests)]
-        total, killed = total + len(cases), killed + len(cases) - len(alive)
+        alive = 0
+        for label, changed in cases:
+            if survives(path, changed, tests):
+                alive += 1
+                tell(f"    {path}:{label}")
+        total, killed = total + len(cases), killed + len(cases) - alive
         took = time.monotonic() - started
-        tell(f"{path}: {len(cases) - len(alive)} of {len(cases)} killed ({took:.0f} s)")
-        for label in alive:
-            tell(f"    {label}")
+        tell(f"{path}: {len(cases) - alive} of {len(cases)} killed ({took:.0f} s)")
     tell(f"in all {killed} of {total} killed: {100 * killed / max(total, 1):.1f} %")
 
 
