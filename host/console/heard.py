@@ -35,8 +35,6 @@ class HeardBus:
         self._second_ns = 0
         self._bits = 0
         self._load = 0.0
-        self.unknown = 0
-        """Reports with a slot that the protocol has no place for."""
 
     def take(self, t_ns: int, report: bytes) -> None:
         """A report of the gateway, on the ticking thread."""
@@ -46,8 +44,7 @@ class HeardBus:
         try:
             frames = unpack_report(report)
         except ReportError:
-            self.unknown += 1
-            return
+            return  # the link counts it
         for frame in frames:
             self._bits += frame_bits(frame)
             self._frames.append((t_ns, frame.identifier, frame.data))
@@ -61,8 +58,8 @@ class HeardBus:
         return self._load
 
     def errors(self) -> dict[str, int]:
-        """No host hears error frames through the gateway."""
-        return {}
+        """Of the cable only: no host hears error frames through the gateway."""
+        return {"bad reports": self._client.link.bad_reports}
 
     def frames(self, most: int) -> list[SeenFrame]:
         """The last ones, by the protocol."""

@@ -50,7 +50,9 @@ def crowd(folder: Path, count: int, seconds: float, realtime: bool = False, apar
         cores(apart, server=False)
         core = max(os.sched_getaffinity(served.process.pid))
         if realtime:
-            os.sched_setaffinity(served.process.pid, {core})
+            # all of its threads: one that holds Python's lock on a core that is held up stalls the ticks, too
+            for thread in Path(f"/proc/{served.process.pid}/task").iterdir():
+                os.sched_setaffinity(int(thread.name), {core})
         with Stalls(core, folder / "stalls") if realtime else nullcontext() as stalls:
             start = served.status()
             time.sleep(seconds / 4)

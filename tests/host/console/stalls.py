@@ -19,7 +19,7 @@ from types import TracebackType
 PERIOD_S = 5e-4
 """A tenth of a tick: a stall of the 1 ms that makes a tick late cannot fall between two."""
 NOTED_S = 2e-4
-"""Twenty times what a wake-up takes here (measured: 10 µs)."""
+"""A fifth of the 1 ms that makes a tick late. ASSUMPTION."""
 
 
 class Stalls:

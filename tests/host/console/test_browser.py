@@ -121,16 +121,31 @@ def test_the_lock_greys_everything_but_the_way_out_and_the_stop(browser: Any, se
     page.close()
 
 
-def test_the_space_bar_stops_also_when_a_button_has_the_focus(browser: Any, served: Consoles) -> None:
-    """A focused Track button would start the tracking again."""
+def tracking(browser: Any, served: Consoles) -> Any:
+    """The main console of a telescope that tracks; Track has the focus."""
     page = opened(browser, served, "/")
     press(page, "Power on")
     page.get_by_text("motors on").first.wait_for()
     press(page, "Track")
     state(page, "^tracking")
+    return page
+
+
+def test_the_space_bar_stops_also_when_a_button_has_the_focus(browser: Any, served: Consoles) -> None:
+    """A focused Track button would start the tracking again."""
+    page = tracking(browser, served)
     page.keyboard.press("Space")
     state(page, "^idle")
     served.wait(served.status()["simulated_s"] + 5.0)
+    state(page, "^idle")
+    page.close()
+
+
+def test_enter_on_the_stop_stops(browser: Any, served: Consoles) -> None:
+    """The button acts when it is pressed; a key has no press, and must not be passed over."""
+    page = tracking(browser, served)
+    page.get_by_role("button", name="STOP  (space)").focus()
+    page.keyboard.press("Enter")
     state(page, "^idle")
     page.close()
 

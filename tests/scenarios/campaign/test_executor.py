@@ -2,11 +2,14 @@
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from scenarios.campaign import executor
 from scenarios.campaign.executor import each
 
 
@@ -29,6 +32,22 @@ def die_once(given: tuple[str, int]) -> int:
 def die(_: int) -> int:
     os.kill(os.getpid(), signal.SIGKILL)
     return 0
+
+
+class _Silent(Executor):
+    """Takes everything and answers nothing, as a client does whose scheduler was killed."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        return Future()
+
+
+def test_a_scheduler_that_is_gone_ends_it_with_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executor, "_LOOK_S", 0.05)
+    looks = iter([True, True])
+    monkeypatch.setattr(executor, "_cluster", lambda _address: (_Silent, 1, lambda: next(looks, False)))
+    with pytest.raises(ConnectionError, match="scheduler at tcp://gone:1 is gone; what has ended is kept"):
+        list(each(double, [("1", 1)], scheduler="tcp://gone:1"))
+    assert next(looks, None) is None  # it was waited for as long as it was there
 
 
 def test_every_key_gets_its_own_answer_or_its_own_error() -> None:

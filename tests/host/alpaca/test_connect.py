@@ -1,0 +1,55 @@
+"""Connecting waits for boards that have just been switched on, and not for ever."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import cast
+
+import pytest
+
+from host.alpaca import device as alpaca
+from host.alpaca.device import COMMON, Device, unknown
+from host.alpaca.parameters import Parameters
+from host.telescope import AsyncDesk
+
+
+class Late(Device):
+    """Says nothing the first times it is asked."""
+
+    kind = "telescope"
+
+    def __init__(self, silent: int) -> None:
+        super().__init__(cast(AsyncDesk, None))
+        self.silent = silent
+        self.asked = 0
+
+    def state(self) -> dict[str, object]:
+        self.asked += 1
+        if self.asked <= self.silent:
+            raise unknown()
+        return {}
+
+
+def connect(device: Device, name: str) -> None:
+    member = next(each for each in COMMON if each.name == name)
+    given = Parameters("Connected=True" if name == "Connected" else "", exact=True)
+    asyncio.run(device.call(member, True, given))
+
+
+@pytest.mark.parametrize("name", ["Connected", "Connect"])
+def test_a_client_is_connected_when_the_boards_have_been_heard(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(alpaca, "_LOOK_S", 0.001)
+    device = Late(silent=3)
+    connect(device, name)
+    assert device.connected and device.asked == 4
+
+
+@pytest.mark.parametrize("name", ["Connected", "Connect"])
+def test_boards_that_stay_silent_do_not_hold_it_up(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(alpaca, "_LOOK_S", 0.001)
+    monkeypatch.setattr(alpaca, "_HEARD_S", 0.02)
+    device = Late(silent=10**9)
+    connect(device, name)
+    assert device.connected and device.asked > 1
