@@ -29,6 +29,12 @@ _LOGGERS = ("engineio.server", "socketio.server", "nicegui")
 """Where the libraries tell of messages that no page sends; by default as tracebacks on the screen."""
 
 
+_COME_BACK_S = 30.0
+"""How long the server keeps the page of a browser whose connection is gone. Within that it goes on as it was;
+after it the page is loaded anew, and what was typed or pressed meanwhile is lost. (NiceGUI's own 3 s are less
+than a busy laptop is silent, or the dome's wireless network.) Keys held down are let go at once."""
+
+
 class _Counter(logging.Handler):
     """Counts instead of printing."""
 
@@ -58,7 +64,7 @@ class Consoles:
             "/calibrate": lambda shell: calibrate(shell, runs),
         }
         for path, build in pages.items():
-            ui.page(path)(_page(self.live, build))
+            ui.page(path, reconnect_timeout=_COME_BACK_S)(_page(self.live, build))
         web = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         ui.run_with(web, title="Schmidt telescope", dark=True, language="en-US", binding_refresh_interval=1.0)
         self._app = Guard(web, token)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from nicegui import ui
-from nicegui.events import KeyEventArguments
+from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from host.console.figures import summary
 from host.console.live import PERIOD_S, Live
@@ -25,6 +25,11 @@ PAGES = (
 )
 _COOKIE = "schmidt-day"
 """A browser keeps its mode from page to page."""
+_TOGGLE = f"""event => {{
+  const day = document.body.classList.toggle('day');
+  document.cookie = '{_COOKIE}=' + Number(day) + '; path=/; SameSite=Strict';
+  emit(day);
+}}"""
 _SPACE = """<script>
 for (const kind of ['keydown', 'keyup']) window.addEventListener(kind, event => {
   const at = event.target;
@@ -109,10 +114,14 @@ class Shell:
             for act in self._keys:
                 act(event)
 
-    def _toggle_day(self) -> None:
-        self.day = not self.day
-        self._show_mode()
-        ui.run_javascript(f"document.cookie = '{_COOKIE}={int(self.day)}; path=/; SameSite=Strict'")
+    def _mode_button(self) -> None:
+        """The browser itself turns to day and remembers it: at once, and with the connection lost."""
+
+        def follow(event: GenericEventArguments) -> None:
+            self.day = bool(event.args)
+            self._show_mode()  # what the server knows of the page must agree with it; the plots follow
+
+        button("Night / day").on("click", follow, js_handler=_TOGGLE)
 
     def _show_mode(self) -> None:
         ui.query("body").classes(add="day" if self.day else None, remove=None if self.day else "day")
@@ -134,7 +143,7 @@ class Shell:
                     if where == path:
                         link.props('aria-current="page"')
             state = ui.label().classes("mid grow").props('role="status"')
-            button("Night / day", on_click=self._toggle_day)
+            self._mode_button()
             lock = button("Lock", on_click=self._lock)
             self._stop_button()
             self._said = ui.label().classes("said").props('role="log" aria-label="Last answer"')

@@ -67,10 +67,11 @@ def test_memory_that_grows_after_the_start_is_told_from_memory_that_does_not() -
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_a_night_that_is_run_tells_its_own_memory_and_not_that_of_who_asks() -> None:
-    held = np.ones(48 << 20)  # 384 MiB here
+    held = np.ones(64 << 20)
     found = night.measure(0.02, quiet=True)
-    assert held.any()
-    assert 40.0 < found["peak_MiB"] < 300.0
+    # what is held here would be on top: by itself a night takes 130 MiB, and 309 on a fresh clone, where it
+    # compiles the kernels on the way
+    assert 40.0 < found["peak_MiB"] < held.nbytes / 2**20
     assert found["cpu_s"] > 0.0 and found["logs_MB"] > 0.0
 
 

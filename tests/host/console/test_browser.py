@@ -26,6 +26,9 @@ def test_axe_finds_nothing_on_any_page(browser: Any, served: Consoles, path: str
         shot(page, f"{path.strip('/') or 'main'}-{mode}")
         press(page, "Night / day")
         page.locator("body.day" if mode == "night" else "body:not(.day)").wait_for()
+    press(page, "Night / day")
+    page.reload()
+    page.locator("body.day").wait_for()  # remembered from page to page
     page.close()
     assert [(v["id"], [n["html"][:120] for n in v["nodes"][:3]]) for v in found] == []
 
