@@ -1,0 +1,2 @@
+#pragma once
+#include "esphome/core/component.h"
