@@ -41,15 +41,16 @@ def too_short(s: Selection, channel: str) -> list[str]:
     return [f"{channel}{r.why}" for r in s.refused if r.what == "every candidate"]
 
 
-def calibrated(s: Selection, skip: tuple[str, ...] = ()) -> dict[str, Parameter]:
-    """The declared model's parameters with intervals."""
+def calibrated(s: Selection, skip: tuple[str, ...] = (), model: float | None = None) -> dict[str, Parameter]:
+    """The declared model's parameters with intervals; `model`: the model's own error, of a value, where it is
+    known to be another one than `interval` takes."""
     out = {}
     blocks = max(int(s.problem.train.sum() / s.problem.block), 5)
     for k, (name, unit) in enumerate(s.problem.base_labels):
         if name in skip or name in out:
             continue
         value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
-        low, high = interval(value, error, blocks)
+        low, high = interval(value, error, blocks, None if model is None else model * value)
         out[name] = Parameter(value, unit, low, high)
     return out
 

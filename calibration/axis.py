@@ -154,6 +154,8 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
         constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
         if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
             constant = numbers.torque_constant
+        else:
+            result.scale_error = spread / abs(constant)
         per_ampere = constant * frame.scale["gear_ratio"]
         left = electrical_candidates.weakened(fitted(s), clock)
         result.collect(s)
@@ -176,7 +178,7 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
         s = select(p, candidates, rng)
         result.selections["K"] = s
         result.collect(s)
-        found, stiffness = compliance_change(s, numbers)
+        found, stiffness = compliance_change(s, numbers, result.scale_error)
         result.findings += found
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, result.held)

@@ -69,7 +69,9 @@ def torque_channel(result: AxisResult, drive: Transmission, clock: Array, rng: n
     x = design(everything, [k.candidate for k in s.chosen])
     all_rows = gls(p.y, x, everything.train, p.ar_order, p.block)
     seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
-    found, calibrated = torque_changes(torque, all_rows, x[everything.train], result.declared, seen)
+    found, calibrated = torque_changes(
+        torque, all_rows, x[everything.train], result.declared, seen, result.scale_error
+    )
     found = telling(found, everything, x, result.declared, torque.friction)
     result.findings += found if enough else []
     result.calibrated |= calibrated

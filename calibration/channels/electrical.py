@@ -40,7 +40,7 @@ class Electrical:
     problem: Problem
     duty: Array
     current: Array  # A
-    pulling: Array  # rad/s of the motor, in the way it pulls, zero when dragged
+    pulling: Array  # rad/s of the motor, wind-up included, while it turns the way it pulls, else zero
     dragged: Array  # rad/s of the motor while it is dragged backwards, else zero
     sum_power: Array  # A, sum over motors of duty times current
     lagging: Array  # 1 where the motor holds the counter torque
@@ -72,12 +72,16 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
     duty = _duties(frame, effort)
     power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
+    softness = declared.torque_constant * ratio / declared.stiffness  # rad of the axis per A
     for key, sign in (("a", 1.0), ("b", -1.0)):
         i, ti = current[key]
         volts = duty[key] * supply
         parts["y"].append(m.at(volts))
         parts["i"].append(m.at(i))
-        parts["pull"].append(np.maximum(sign * rate, 0.0))
+        # a motor is ahead of the axis by its train's wind-up: in a leap out of stiction it stands while the
+        # axis turns, and without this the constant comes out up to 0.7 % too small
+        unwinding = m.at(np.gradient(i, frame.period_s)) * softness * ratio
+        parts["pull"].append(np.where(sign * rate > 0, sign * rate + unwinding, 0.0))
         parts["drag"].append(np.maximum(-sign * rate, 0.0))
         parts["duty"].append(m.at(duty[key]))
         parts["v"].append(m.at(supply))

@@ -97,12 +97,13 @@ def seen_speeds(rate: Array, d: Declared) -> Seen:
 
 
 def torque_changes(
-    torque: Torque, after: Fit, used: Array, d: Declared, seen: Seen
+    torque: Torque, after: Fit, used: Array, d: Declared, seen: Seen, scale_error: float
 ) -> tuple[list[Finding], dict[str, Parameter]]:
     """Friction findings beyond tolerance, and every calibrated parameter with its interval.
 
     `after` is a fit whose first columns are the torque problem's base; `used` (rows, p) are its columns on
-    the fitted rows, whose speeds are `seen`.
+    the fitted rows, whose speeds are `seen`. `scale_error`: relative standard error of the N m that an ampere
+    is worth, which all of them share.
     """
     rows = len(used)
     beta, cov = after.beta, after.covariance
@@ -126,7 +127,7 @@ def torque_changes(
     speed_error = speed * float(moved["speed"][1])
 
     def span(value: float, e: float, unit: str, model: float = MODEL_ERROR) -> Parameter:
-        e = float(np.hypot(e, model * value))
+        e = float(np.linalg.norm((e, model * value, scale_error * value)))
         return Parameter(value, unit, value - reach * e, value + reach * e)
 
     calibrated = {
@@ -235,14 +236,18 @@ def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Friction
     return out
 
 
-def compliance_change(selection: Selection, d: Declared) -> tuple[list[Finding], dict[str, Parameter]]:
-    """Stiffness of one train from the wind-up line."""
+def compliance_change(
+    selection: Selection, d: Declared, scale_error: float
+) -> tuple[list[Finding], dict[str, Parameter]]:
+    """Stiffness of one train from the wind-up line; `scale_error` as in `torque_changes`."""
     value, error = float(selection.after.beta[0]), float(np.sqrt(selection.after.covariance[0, 0]))
     if value <= 0 or selection.problem.train.sum() < FEWEST_BLOCKS * selection.problem.block:
         return [], {}
     blocks = max(int(selection.problem.train.sum() / selection.problem.block), 5)
     stiffness, spread = 1 / value, error / value**2
-    reach = student_reach(blocks - 2) * float(np.hypot(spread, MODEL_ERROR * stiffness))
+    reach = student_reach(blocks - 2) * float(
+        np.linalg.norm((spread, MODEL_ERROR * stiffness, scale_error * stiffness))
+    )
     p = Parameter(stiffness, "N m/rad", stiffness - reach, stiffness + reach)
     found = []
     declared = min((d.stiffness * r for r in d.readings), key=lambda k: abs(float(np.log(stiffness / k))))
