@@ -14,6 +14,7 @@ from calibration.finding import Finding
 from calibration.readers.run import Array
 
 FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1
+KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)  # duties where the search for a dead band begins: 0.3 to 5 %
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 
@@ -22,15 +23,7 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     r, k = e.resistance, e.constant
     t = np.concatenate([clock, clock])
     out = [
-        Candidate("pwm_deadband", "command", e.supply[:, None], (("u0", "1"),), sign=1),
-        Candidate(
-            "pwm_deadband",
-            "command",
-            (e.supply * share_of_effort(e))[:, None],
-            (("u0", "1"),),
-            sign=1,
-            fixed={"before_split": (1.0, "0 behind, 1 before the split between the motors")},
-        ),
+        *dead_bands(e),
         Candidate(
             "unknown",
             "current",
@@ -59,6 +52,9 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     ]
     offset = -r * e.ampere_per_count
     each = offset * np.column_stack([e.motor == 0, e.motor == 1])
+    out.append(  # one converter reads both motors: what is wrong with it is wrong with both readings
+        Candidate("adc_offset", "current", np.full((len(e.duty), 1), offset), (("offset", "counts"),))
+    )
     out.append(Candidate("adc_offset", "current", each, (("offset_a", "counts"), ("offset_b", "counts"))))
     for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
         out += [
@@ -117,6 +113,42 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
                 )
             )
     return out
+
+
+def dead_bands(e: Electrical) -> list[Candidate]:
+    """Volts that a pulse loses to the driver, per duty lost: behind the split between the motors, or on the
+    command before it. A pulse shorter than the dead band is lost whole, which tells it from an ADC's offset
+    where duties are as small; where none is, it is the same in all rows."""
+    out = []
+    for before, share in enumerate((np.ones(len(e.duty)), share_of_effort(e))):
+        place = {"before_split": (1.0, "0 behind, 1 before the split between the motors")} if before else {}
+        split = np.where(share > 0, e.duty / np.maximum(share, 1e-9), 0.0)
+        out.append(
+            Candidate(
+                "pwm_deadband", "command", (e.supply * share)[:, None], (("u0", "1"),), sign=1, fixed=place
+            )
+        )
+        shape = _swallowed(e.supply * share, split)
+        out += [
+            Candidate(
+                "pwm_deadband",
+                "command",
+                shape(np.array([knee])),
+                (("u0", "1"),),
+                sign=1,
+                fixed={"knee": (knee, "1"), **place},
+                shape=shape,
+                steps=(0.1 * knee,),
+                searched=1,
+            )
+            for knee in KNEES
+        ]
+    return out
+
+
+def _swallowed(volts: Array, duty: Array) -> Callable[[Array], Array]:
+    """`volts` where the duty exceeds the knee, in proportion below it."""
+    return lambda p: (volts * np.minimum(duty / max(float(p[0]), 1e-4), 1.0))[:, None]
 
 
 def share_of_effort(e: Electrical) -> Array:

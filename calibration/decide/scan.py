@@ -31,6 +31,7 @@ class Contender:
     evidence: float  # -log10 p of the Wald test with block-robust covariance
     bayes: float  # log likelihood gain over the noise's design effect, less log(n)/2 per column
     gain: float  # log likelihood gain
+    effect: float  # the noise's design effect: how much more the gain is than block-robust evidence allows
     at: slice  # its columns in the fit
 
 
@@ -62,9 +63,21 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
     without = under(problem.y, base, problem.train, common)
     chosen = [_scored(problem, base, c, fit, common, without) for c, fit in fits]
     best: dict[object, Contender] = {}
-    for one in sorted(chosen, key=lambda c: -c.bayes):
+    for one in ranked(chosen):
         best.setdefault(one.candidate.key, one)
     return Look(null, list(best.values()))
+
+
+def ranked(contenders: list[Contender]) -> list[Contender]:
+    """Best first, by gain less what the coefficients cost. Gains are compared with one design effect, that of
+    the largest gain: each one's own comes of its own covariance, and two forms that explain the same would
+    differ by more than a coefficient costs."""
+    effect = max(contenders, key=lambda c: c.gain).effect
+
+    def worth(c: Contender) -> float:
+        return _bayes(c.candidate, c.gain / effect, c.fit.rows) if np.isfinite(c.bayes) else -np.inf
+
+    return sorted(contenders, key=lambda c: -worth(c))
 
 
 def _worth_fitting(problem: Problem, null: Fit, base: Array, candidates: list[Candidate]) -> list[int]:
@@ -144,7 +157,11 @@ def _scored(
     wald = float(fit.beta[at] @ np.linalg.pinv(fit.covariance[at, at], hermitian=True) @ fit.beta[at])
     evidence = float(chi2_log10(wald, candidate.width))
     effect = max(2 * gain / wald, 1.0) if wald > 0 else 1.0
-    bayes = gain / effect - (candidate.width + candidate.searched) / 2 * float(np.log(fit.rows))
-    if candidate.name == "unknown" and candidate.width > 1:
-        bayes *= UNNAMED
-    return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, at)
+    bayes = _bayes(candidate, gain / effect, fit.rows)
+    return Contender(candidate, fit, evidence, bayes if np.isfinite(evidence) else -np.inf, gain, effect, at)
+
+
+def _bayes(candidate: Candidate, gain: float, rows: int) -> float:
+    """`gain` less log(n)/2 for every coefficient and every parameter that was searched for."""
+    bayes = gain - (candidate.width + candidate.searched) / 2 * float(np.log(rows))
+    return bayes * UNNAMED if candidate.name == "unknown" and candidate.width > 1 else bayes
