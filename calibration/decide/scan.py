@@ -17,6 +17,7 @@ from calibration.statistics.whitening import Whitener
 
 UNNAMED = 0.85  # a smooth function must beat a named effect clearly: it can imitate most of them
 SURE = 4.0  # standard errors above zero for a coefficient that makes the effect what it is
+ALIKE = 0.1  # of the mean square of what two contenders add: more apart, they are two explanations
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
 COLUMNS = 32  # filtered and projected at once: what stays in a core's cache for 2e4 rows
 PLAIN = 2  # of them at least from the ranking on the residual as it is
@@ -69,15 +70,22 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
 
 
 def ranked(contenders: list[Contender]) -> list[Contender]:
-    """Best first, by gain less what the coefficients cost. Gains are compared with one design effect, that of
-    the largest gain: each one's own comes of its own covariance, and two forms that explain the same would
-    differ by more than a coefficient costs."""
-    effect = max(contenders, key=lambda c: c.gain).effect
+    """Best first by `bayes`, but of those that say the same as the first (ALIKE) the one that gains most, by
+    one design effect: each one's own, of its own covariance, differs by more than a coefficient costs."""
+    left, out = sorted(contenders, key=lambda c: -c.bayes), []
+    while left:
+        first = left[0]
+        alike = [c for c in left if np.isfinite(c.bayes) and _alike(c, first)]
+        best = max(alike, key=lambda c: _bayes(c.candidate, c.gain / first.effect, c.fit.rows), default=first)
+        out.append(best)
+        left = [c for c in left if c is not best]
+    return out
 
-    def worth(c: Contender) -> float:
-        return _bayes(c.candidate, c.gain / effect, c.fit.rows) if np.isfinite(c.bayes) else -np.inf
 
-    return sorted(contenders, key=lambda c: -worth(c))
+def _alike(one: Contender, other: Contender) -> bool:
+    """Whether what two contenders add to the model is the same but for ALIKE of its mean square."""
+    a, b = (c.candidate.columns @ c.fit.beta[c.at] for c in (one, other))
+    return one is other or float(a @ b) ** 2 > (1 - ALIKE) * float(a @ a) * float(b @ b)
 
 
 def _worth_fitting(problem: Problem, null: Fit, base: Array, candidates: list[Candidate]) -> list[int]:
