@@ -15,6 +15,7 @@ from calibration.readers.run import Array
 
 FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1
 KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)  # duties where the search for a dead band begins: 0.3 to 5 %
+SHORTEST = 0.01  # of the rows may have pulses shorter than a dead band that is taken for a constant
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 
@@ -52,9 +53,6 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
     ]
     offset = -r * e.ampere_per_count
     each = offset * np.column_stack([e.motor == 0, e.motor == 1])
-    out.append(  # one converter reads both motors: what is wrong with it is wrong with both readings
-        Candidate("adc_offset", "current", np.full((len(e.duty), 1), offset), (("offset", "counts"),))
-    )
     out.append(Candidate("adc_offset", "current", each, (("offset_a", "counts"), ("offset_b", "counts"))))
     for name, mask in (("a", e.motor == 0), ("b", e.motor == 1)):
         out += [
@@ -117,15 +115,22 @@ def electrical_effects(e: Electrical, clock: Array) -> list[Candidate]:
 
 def dead_bands(e: Electrical) -> list[Candidate]:
     """Volts that a pulse loses to the driver, per duty lost: behind the split between the motors, or on the
-    command before it. A pulse shorter than the dead band is lost whole, which tells it from an ADC's offset
-    where duties are as small; where none is, it is the same in all rows."""
+    command before it. A pulse shorter than the dead band is lost whole, which tells it from an ADC's offset.
+    Where none is as short, it is a constant, and so is what one converter reads wrong of both motors."""
     out = []
     for before, share in enumerate((np.ones(len(e.duty)), share_of_effort(e))):
         place = {"before_split": (1.0, "0 behind, 1 before the split between the motors")} if before else {}
         split = np.where(share > 0, e.duty / np.maximum(share, 1e-9), 0.0)
         out.append(
             Candidate(
-                "pwm_deadband", "command", (e.supply * share)[:, None], (("u0", "1"),), sign=1, fixed=place
+                "pwm_deadband",
+                "command",
+                (e.supply * share)[:, None],
+                (("u0", "1"),),
+                sign=1,
+                fixed=place,
+                most=float(np.quantile(split[e.problem.train], SHORTEST)),
+                twins=() if before else ("adc_offset",),
             )
         )
         shape = _swallowed(e.supply * share, split)

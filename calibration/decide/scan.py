@@ -35,6 +35,11 @@ class Contender:
     effect: float  # the noise's design effect: how much more the gain is than block-robust evidence allows
     at: slice  # its columns in the fit
 
+    @property
+    def cost(self) -> int:
+        """Coefficients, and parameters that were searched for."""
+        return self.candidate.width + self.candidate.searched
+
 
 @dataclass(frozen=True)
 class Look:
@@ -70,16 +75,28 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
 
 
 def ranked(contenders: list[Contender]) -> list[Contender]:
-    """Best first by `bayes`, but of those that say the same as the first (ALIKE) the one that gains most, by
-    one design effect: each one's own, of its own covariance, differs by more than a coefficient costs."""
+    """Best first by `bayes`, except among those that say the same as the first (ALIKE): each one's design
+    effect comes of its own covariance and differs by more than a coefficient costs."""
     left, out = sorted(contenders, key=lambda c: -c.bayes), []
     while left:
-        first = left[0]
-        alike = [c for c in left if np.isfinite(c.bayes) and _alike(c, first)]
-        best = max(alike, key=lambda c: _bayes(c.candidate, c.gain / first.effect, c.fit.rows), default=first)
+        alike = [c for c in left if np.isfinite(c.bayes) and _alike(c, left[0])]
+        best = _best_of(left[0], alike or left[:1])
         out.append(best)
         left = [c for c in left if c is not best]
     return out
+
+
+def _best_of(first: Contender, alike: list[Contender]) -> Contender:
+    """The best form of the first's effect, by its design effect; or an effect with no more coefficients that
+    gains more than that form by the filter they share, what a coefficient costs counted. A line is left
+    alone: another line beside it has an order that was searched among thousands."""
+    price = float(np.log(first.fit.rows)) / 2
+    forms = [c for c in alike if c.candidate.key == first.candidate.key]
+    form = max(forms, key=lambda c: c.gain / first.effect - price * c.cost)
+    if form.candidate.kind == "line":
+        return form
+    others = [c for c in alike if c.cost <= form.cost and c.candidate.kind != "line"]
+    return max(others, key=lambda c: c.gain - price * c.cost)
 
 
 def _alike(one: Contender, other: Contender) -> bool:

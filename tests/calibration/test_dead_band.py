@@ -57,6 +57,7 @@ def test_an_offset_is_no_dead_band_where_pulses_are_short() -> None:
 
 def test_long_pulses_cannot_tell_one_from_the_other() -> None:
     said = electrical(lost=0.004, offset=0.0, share=0.5)  # no duty below 0.4 %
-    names = {said.chosen[0].candidate.name} | {c.candidate.name for c in said.classes[0]}
+    found = said.chosen[0].candidate
+    names = {found.name, *found.twins, *(c.candidate.name for c in said.classes[0])}
     assert len(said.chosen) == 1
     assert names == {"pwm_deadband", "adc_offset"}
