@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 
 from calibration.axisresult import AxisResult
-from calibration.candidates.kinematic import lag_in_gap
+from calibration.channels.coupling import carried_on, driven_side
 from calibration.channels.frame import fill
+from calibration.channels.noise import column_noise
 from calibration.decide.delays import ELECTRICAL_S, WINDOW_DELAY_S
 from calibration.decide.heldout import predict_residual
 from calibration.decide.select import Refusal, Selection
@@ -33,8 +33,6 @@ LATE = {
 NOMINAL = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
 FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than
 RISES = 1.05  # of another channel's, that it may leave at most
-AT_END = 0.9  # of half a gap: there the coupling has crossed it
-CROSSED_ROWS = 10  # left out either side of a crossing: the wind-up that is taken off is good to a per cent
 APPLIED = ("channel_delay", "play")
 # of the mean square above the encoders' floor: a gap that leaves more than it takes is not what is there. The
 # emulator's own log at low preload, whose teeth part, has 16 % that look like a gap of the coupling
@@ -73,24 +71,26 @@ def _earlier(t: Array, x: Array, delay: float) -> Array:
 
 
 def _without_gap(result: AxisResult, gap: float) -> list[Run]:
-    """Positions less half the gap (arcsec) on the side where the motors say that the coupling lies; while
-    it crosses the gap the encoder does not see the axis, and the rows are left out."""
-    frame = result.frame
+    """Positions less half the gap (arcsec) on the side on which the coupling drives the encoder. While it
+    may cross the gap the encoder does not see the axis: the motors carry it on, the rows are `unseen`."""
+    frame, half = result.frame, gap / 2 * ARCSEC
+    reading = fill(frame.columns["position"], frame.run)[0]
+    side = driven_side(reading, frame.run, column_noise(frame).position)
     place = axis_by_motors(result)
     assert place is not None
-    error = lag_in_gap(place, frame.run, gap)
-    crossing = binary_dilation(np.abs(error) < AT_END * gap / 2, iterations=CROSSED_ROWS)
-    error = np.where(crossing, np.nan, np.sign(error) * gap / 2) * ARCSEC
+    axis = carried_on(reading + side * half, place, frame.run)
     out = []
     for k, run in enumerate(frame.runs):
         here = np.flatnonzero(frame.run == k)
         rows = here[np.isfinite(frame.clock[here])]
-        out.append(replace(run, columns={**run.columns, "position": run.columns["position"] - error[rows]}))
+        unseen = np.isnan(side[rows]).astype(float)
+        position = run.columns["position"] + (axis - reading)[rows]
+        out.append(replace(run, columns={**run.columns, "position": position, "unseen": unseen}))
     return out
 
 
 def axis_by_motors(result: AxisResult) -> Array | None:
-    """Angle of the axis (n,) arcsec by both motors' encoders less their trains' wind-up, an offset per run;
+    """Angle of the axis (n,) rad by both motors' encoders less their trains' wind-up, an offset per run;
     None without them."""
     frame, k = result.frame, result.kinematic
     if k is None or "K" not in result.selections:
@@ -102,7 +102,7 @@ def axis_by_motors(result: AxisResult) -> Array | None:
         spin = fill(frame.columns[f"motor_{key}"], frame.run)[0]
         current = fill(frame.columns[f"current_{key}"], frame.run)[0]
         turned = np.cumsum(spin) * frame.period_s / ratio
-        both.append((turned - compliance * sign * k.per_ampere * current) / ARCSEC)
+        both.append(turned - compliance * sign * k.per_ampere * current)
     return np.asarray(np.mean(both, axis=0))
 
 

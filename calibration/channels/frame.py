@@ -22,6 +22,7 @@ COLUMNS = (
     "setpoint",
     "supply",
     "temperature",
+    "unseen",  # 1 where the position is not measured but carried on from the motors; no log has it
 )
 
 

@@ -60,6 +60,9 @@ def motion_of(frame: Frame, width: int) -> Motion:
     starts = ~same
     fresh = starts.copy()
     fresh |= trusted & ~np.concatenate([[False], trusted[:-1]])
+    unseen = frame.get("unseen")
+    if unseen is not None:  # no gap of the log: the path goes on, but says nothing of accelerations
+        trusted = trusted & ~(unseen > 0)
     d = width
     ahead, behind = _shift(theta, -d), _shift(theta, d)
     acceleration = (ahead - 2 * theta + behind) / (d * dt) ** 2

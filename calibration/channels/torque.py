@@ -26,6 +26,7 @@ STEP = (
 )
 JUMP = 0.02
 SETTLE_S = 0.25  # how long such a transient lasts: a few turns of the lock-rotor mode and of the PI loop
+SLID = 3.0  # of Ts / sigma_0, the bristles' longest travel: what they held before is down to a twentieth
 DIRECTION_TRAVEL = 2e-6  # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range
 
 
@@ -69,6 +70,12 @@ def transients(frame: Frame, effort: Array) -> Mask:
     return np.asarray(near)
 
 
+def slid(m: Motion, unseen: Array, travel: float) -> Mask:
+    """Rows (n,) that lie `travel` rad of path behind the last unseen one: the bristles hold nothing of it."""
+    path = np.cumsum(np.abs(np.diff(m.theta, prepend=m.theta[0])))
+    return np.asarray(path - np.maximum.accumulate(np.where(unseen > 0, path, -np.inf)) > travel)
+
+
 def saturated(frame: Frame, current: Array) -> Mask:
     """Rows where the 10-bit converter is at its end."""
     return np.asarray(current >= 1022.5 * frame.scale["adc_A_per_count"])
@@ -107,6 +114,9 @@ def torque_problem(
     near = transients(frame, effort)
     pick = m.pick
     near |= saturated(frame, fa) | saturated(frame, fb)
+    unseen = frame.get("unseen")
+    if unseen is not None:
+        near |= ~slid(m, unseen, SLID * declared.stiction / declared.sigma_0)
     rows = (m.trusted & ta & tb)[pick] & (m.smooth(near.astype(float))[pick] < 1e-9)
     full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
     y = m.at(full) - drive.softness_s2 * m.curvature(full)[pick]
