@@ -22,6 +22,10 @@ COGGING = (
 )
 NEAR = 0.35  # resolution cells about a known order that are that order's
 ORDER_STEP = 0.05  # of a resolution cell, for the refinement of an order
+OFF = (
+    0.06,
+    0.35,
+)  # resolution cells off a stage's order at which a line is looked for that is not that stage's
 FREE = 4  # free orders tried per spectrum
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
@@ -74,10 +78,24 @@ def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: 
                 continue
             name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
             domain = "motor_angle" if stage == "motor" else "axis_angle"
-            out.append(
-                line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain)
-            )
+            one = line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain)
+            beside = off_stage(c, order, period_s) if weight is None and not extra else ()
+            out.append(replace(one, neighbours=beside))
     return out
+
+
+def off_stage(c: Context, order: float, period_s: float) -> tuple[Candidate, ...]:
+    """Lines of no shaft on either side of a stage's order, within its cell: a bearing's may lie there."""
+    turns = c.angle / c.turn
+    span = float(np.ptp(turns))
+    out = []
+    for sign in (-1.0, 1.0):
+        low, high = sorted(order + sign * off / span for off in OFF)
+        shape, o = _at_order(c, turns, period_s, (low, high)), (low + high) / 2
+        one = line(c, "bearing_pass", None, None, o, shape(np.array([o])), "axis_angle")
+        step = (ORDER_STEP / span,)
+        out.append(replace(one, searched=1, shape=shape, steps=step, fixed={"order": (o, "1/turn")}))
+    return tuple(out)
 
 
 def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6) -> list[Candidate]:

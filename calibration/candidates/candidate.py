@@ -45,6 +45,7 @@ class Candidate:
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
     searched: int = 0  # parameters that were searched for beside the coefficients, and must pay
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
+    neighbours: tuple[Candidate, ...] = ()  # lines of no stage, within the cell of this stage's order
     apart: float | None = None  # of a line that no stage has: its order, where several may be found
 
     @property

@@ -17,6 +17,7 @@ from calibration.statistics.whitening import Whitener
 
 UNNAMED = 0.85  # a smooth function must beat a named effect clearly: it can imitate most of them
 SURE = 4.0  # standard errors above zero for a coefficient that makes the effect what it is
+MORE = 0.05  # of its gain, that a line must gain beyond the stage's line next to it, to be another one
 ALIKE = 0.1  # of the mean square of what two contenders add: more apart, they are two explanations
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
 COLUMNS = 32  # filtered and projected at once: what stays in a core's cache for 2e4 rows
@@ -68,10 +69,26 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
     common = max((fit for _, fit in fits), key=lambda f: f.loglik / f.rows).whitener
     without = under(problem.y, base, problem.train, common)
     chosen = [_scored(problem, base, c, fit, common, without) for c, fit in fits]
+    order = ranked(chosen)
+    beside = _neighbours(problem, base, null, order[0], without, common)
     best: dict[object, Contender] = {}
-    for one in ranked(chosen):
+    for one in [*beside, *order]:
         best.setdefault(one.candidate.key, one)
     return Look(null, list(best.values()))
+
+
+def _neighbours(
+    problem: Problem, base: Array, null: Fit, first: Contender, without: float, common: Whitener
+) -> list[Contender]:
+    """Lines a little off the order of `first`, a stage's line, that gain clearly more than it does."""
+    out = []
+    for candidate in first.candidate.neighbours:
+        moved = refine(problem, base, null.residual, candidate, null.whitener)
+        fit = _fit_beside(problem, base, moved)
+        if fit is not None:
+            one = _scored(problem, base, moved, fit, common, without)
+            out += [one] if one.gain > (1 + MORE) * first.gain else []
+    return sorted(out, key=lambda c: -c.gain)
 
 
 def ranked(contenders: list[Contender]) -> list[Contender]:
