@@ -38,6 +38,7 @@ from calibration.channels.kinematic import (
     roller_problem,
 )
 from calibration.channels.motion import Motion, motion_of
+from calibration.channels.problem import Problem
 from calibration.channels.torque import WIDTH, Transmission
 from calibration.decide.broadband import pick_up, unexplained_volts
 from calibration.decide.delays import delay_findings
@@ -187,11 +188,16 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
         s = select(
             roller,
             kinematic_candidates.roller_effects(context, alpha, m.period_s)
-            + kinematic_candidates.subdivision(context, m),
+            + kinematic_candidates.subdivision(context, m, lags_of(roller)),
             rng,
         )
         result.selections["S"] = s
         result.collect(s)
+
+
+def lags_of(p: Problem) -> Array:
+    """What the roller channel's base makes of acceleration and jerk, s and s2."""
+    return gls(p.y, p.base, p.train, p.ar_order, p.block).beta[:2]
 
 
 def place_by_motors(k: Kinematic, m: Motion) -> Array:
@@ -249,7 +255,7 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
     if problem is not None:
-        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full)
+        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full, lags_of(problem))
         if candidates:
             s = select(problem, candidates, rng, margin=FINE_MARGIN)
             if s.chosen:

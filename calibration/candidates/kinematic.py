@@ -12,12 +12,13 @@ from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
 from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
-from calibration.channels.motion import Motion, rate_response
+from calibration.channels.motion import Motion, acceleration_of, rate_of
 from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
+RESOLVED = 0.3  # periods per row: quicker, the steps of a speed alone say what a period holds
 
 
 def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Candidate]:
@@ -203,16 +204,20 @@ def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
     return shape
 
 
-def subdivision(c: Context, m: Motion) -> list[Candidate]:
-    """Rate error of the absolute encoder's interpolation: its line count and twice it."""
-    x = 2 * np.pi * c.angle / c.turn * LINES
-    rate = c.speed * LINES  # arcsec/s per arcsec of error
-    cycles = c.speed / c.turn * LINES * m.period_s / m.width
-    parts = [
-        h * rate * rate_response(m.width, h * cycles) * g(h * x) for h in (1, 2) for g in (np.cos, np.sin)
-    ]
-    if np.mean(parts[0] != 0) < 0.02:
+def subdivision(c: Context, m: Motion, lags: Array) -> list[Candidate]:
+    """Rate error of the absolute encoder's interpolation: its line count and twice it.
+
+    It is sampled with the position, row by row, and goes through the same differences; `lags` (2,) are what
+    the channel's base makes of the position's acceleration and jerk, in which the error is, too.
+    """
+    row_s = m.period_s / m.width
+    if np.mean(np.abs(c.speed) / c.turn * LINES * row_s < RESOLVED) < 0.02:
         return []
+    parts = []
+    for wave in (g(h * LINES * m.theta) for h in (1, 2) for g in (np.cos, np.sin)):
+        bent = acceleration_of(wave, m.width, row_s)
+        late = lags[0] * bent + lags[1] * np.gradient(bent, row_s)
+        parts.append((rate_of(wave, m.width, row_s) + late)[m.pick])
     return [
         Candidate(
             "encoder_subdivision",

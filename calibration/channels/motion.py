@@ -64,14 +64,7 @@ def motion_of(frame: Frame, width: int) -> Motion:
     if unseen is not None:  # no gap of the log: the path goes on, but says nothing of accelerations
         trusted = trusted & ~(unseen > 0)
     d = width
-    ahead, behind = _shift(theta, -d), _shift(theta, d)
-    acceleration = (ahead - 2 * theta + behind) / (d * dt) ** 2
-    half = d // 2
-    slope = (
-        _shift(theta, -half - 1) + _shift(theta, -half) - _shift(theta, half) - _shift(theta, half + 1)
-    ) / 2
-    slope = slope / ((2 * half + 1) * dt) if d > 1 else (ahead - behind) / (2 * dt)
-    rate = boxcar(slope, d)
+    rate, acceleration = rate_of(theta, d, dt), acceleration_of(theta, d, dt)
     usable = trusted.copy()
     for k in range(1, d + 1):
         usable &= _shift(trusted.astype(float), -k) > 0
@@ -86,16 +79,18 @@ def motion_of(frame: Frame, width: int) -> Motion:
     return Motion(d, theta, usable, rate, acceleration, pick, fresh, starts, d * dt)
 
 
-def rate_response(width: int, cycles: Array) -> Array:
-    """What is left in `Motion.rate` of a position error that swings `cycles` times per row, per amplitude of
-    its own rate; 0 beyond 0.9 cycles per analysis sample."""
-    x = np.abs(cycles)
+def rate_of(x: Array, width: int, period_s: float) -> Array:
+    """h * x' at full rate, as `Motion.rate` is of the position; `period_s` between rows."""
+    half = width // 2
     if width == 1:
-        out = np.sinc(2 * x)
-    else:
-        comb = np.mean([np.cos(2 * np.pi * x * k) for k in range(-(width // 2), width // 2 + 1)], axis=0)
-        out = np.sinc(width * x) * np.cos(np.pi * x) * comb
-    return np.asarray(np.where(x * width < (0.45 if width == 1 else 0.9), out, 0.0))
+        return np.asarray((_shift(x, -1) - _shift(x, 1)) / (2 * period_s))
+    slope = (_shift(x, -half - 1) + _shift(x, -half) - _shift(x, half) - _shift(x, half + 1)) / 2
+    return boxcar(slope / ((2 * half + 1) * period_s), width)
+
+
+def acceleration_of(x: Array, width: int, period_s: float) -> Array:
+    """h * x'' at full rate, as `Motion.acceleration` is of the position."""
+    return np.asarray((_shift(x, -width) - 2 * x + _shift(x, width)) / (width * period_s) ** 2)
 
 
 def _shift(x: Array, by: int) -> Array:

@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from calibration.candidates.candidate import Candidate
+from calibration.candidates.context import Context
 from calibration.candidates.electrical import from_cold, weakened
+from calibration.candidates.kinematic import LINES, subdivision
 from calibration.candidates.modes import _resonance
 from calibration.channels.declared import Friction
 from calibration.channels.frame import Frame
 from calibration.channels.friction import bristle
 from calibration.channels.level import level_of
-from calibration.channels.motion import Motion, motion_of, rate_response
+from calibration.channels.motion import Motion, motion_of
 from calibration.channels.problem import Problem
 from calibration.channels.recursions import lowpass
 from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
@@ -24,6 +24,7 @@ from calibration.decide.heldout import predict_residual
 from calibration.decide.merge import merge
 from calibration.finding import Finding, Parameter
 from calibration.readers.drive import STAGES
+from calibration.statistics.regression import gls
 
 DT = 0.01
 FRICTION = Friction(2.7, 4e-4, 2.5e4, 229.0, 6700.0, 1960.0)
@@ -75,16 +76,32 @@ def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristle
     assert answer[turn + 200] == pytest.approx(-1.0, abs=0.02)
 
 
-@settings(max_examples=25, deadline=None)
-@given(cycles=st.floats(0.002, 0.25), width=st.sampled_from([1, 3]))
-def test_a_position_error_shows_in_the_rate_as_the_response_says(cycles: float, width: int) -> None:
-    k = np.arange(1200)
-    m = moved(np.sin(2 * np.pi * cycles * k), width)
-    inner = slice(40, -40)
-    own = 2 * np.pi * cycles / DT * np.cos(2 * np.pi * cycles * k)
-    expected = own * rate_response(width, np.full(len(k), cycles))
-    if cycles * width < 0.44:
-        assert np.allclose(m.rate[inner], expected[inner], atol=2e-3 * np.max(np.abs(own)))
+@pytest.mark.parametrize("width", [1, 3])
+def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width: int) -> None:
+    """The counts lag by half their window: that lag's columns are made of the position, error and all."""
+    arcsec, amplitude = np.pi / 648000, 0.02
+    t = DT * np.arange(8000)
+    rate = 200 * arcsec * (1.2 + np.sin(2 * np.pi * t / 17.0))  # 0.01 to 0.11 periods a row
+    true = np.cumsum(rate) * DT
+    m = moved(true + amplitude * arcsec * np.sin(LINES * true + 0.4), width)
+    axis = moved(true, width)
+    row = m.pick
+
+    def base(of: Motion) -> np.ndarray:
+        return np.column_stack([of.acceleration[row], np.gradient(of.acceleration, DT)[row]]) / arcsec
+
+    counted = axis.rate[row] / arcsec + base(axis) @ np.array([-2.5e-3, 8e-5])  # s, s2
+    run, valid = np.zeros(len(row), dtype=np.int64), m.trusted[row]
+    y = counted - m.rate[row] / arcsec
+    problem = Problem(
+        "S", "arcsec/s", y, base(m), [], t[row], run, run, valid, ~valid, m.period_s, ar_order=0
+    )
+    zero = np.zeros(len(row))
+    c = Context(t[row], m.theta[row], m.rate[row], zero, zero, run, run, "arcsec", "rad", 2 * np.pi, zero)
+    (one,) = subdivision(c, m, np.array([-2.5e-3, 8e-5]))
+    beta = gls(y, np.hstack([problem.base, one.columns]), valid, 0).beta
+    assert np.hypot(*beta[2:4]) == pytest.approx(amplitude, rel=0.03)
+    assert np.hypot(*beta[4:6]) < 0.1 * amplitude
 
 
 @pytest.mark.parametrize("hertz", [2.0, 6.0, 11.0])
