@@ -109,7 +109,7 @@ def test_interrupted_and_resumed_it_is_the_undisturbed_one(tmp_path: Path) -> No
 def test_workers_killed_on_a_cluster_cost_nothing(tmp_path: Path) -> None:
     """A local Dask cluster; every ten seconds one worker dies of kill -9."""
     pytest.importorskip("distributed")
-    file = write(tmp_path, 40, seconds=120)  # a second or two each: long enough for several deaths
+    file = write(tmp_path, 40, seconds=600)  # three seconds each at 300 times real time: several deaths
     whole = run(file, "--out", tmp_path / "whole", "--jobs", 2)
     assert not whole.returncode, whole.stderr
     scheduler = subprocess.Popen(
