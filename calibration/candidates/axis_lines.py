@@ -22,10 +22,9 @@ COGGING = (
 )
 NEAR = 0.35  # resolution cells about a known order that are that order's
 ORDER_STEP = 0.05  # of a resolution cell, for the refinement of an order
-OFF = (
-    0.06,
-    0.35,
-)  # resolution cells off a stage's order at which a line is looked for that is not that stage's
+# resolution cells off a stage's order, up to NEAR, from which a line beside it may be another one: it is told
+# from the stage's by its gain (decide/scan.py), this only keeps the two apart. ASSUMPTION
+OFF = 0.06
 FREE = 4  # free orders tried per spectrum
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
@@ -65,9 +64,8 @@ def line(
     )
 
 
-def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: int = 0) -> list[Candidate]:
-    """First and second harmonic of every shaft, first of every mesh; `extra` teeth for the negative
-    controls."""
+def gear_lines(c: Context, period_s: float) -> list[Candidate]:
+    """First and second harmonic of every shaft and mesh, with what may lie beside each."""
     out = []
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
@@ -78,24 +76,25 @@ def gear_lines(c: Context, period_s: float, weight: Array | None = None, extra: 
                 continue
             name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
             domain = "motor_angle" if stage == "motor" else "axis_angle"
-            one = line(c, name, stage, h, order, pair(turns * order, c, period_s, weight, order), domain)
-            beside = off_stage(c, order, period_s) if weight is None and not extra else ()
-            out.append(replace(one, neighbours=beside))
+            one = line(c, name, stage, h, order, pair(turns * order, c, period_s, None, order), domain)
+            out.append(replace(one, neighbours=off_stage(c, order, period_s)))
     return out
 
 
 def off_stage(c: Context, order: float, period_s: float) -> tuple[Candidate, ...]:
     """Lines of no shaft on either side of a stage's order, within its cell: a bearing's may lie there."""
+    span = float(np.ptp(c.angle / c.turn))
+    sides = [sorted(order + sign * off / span for off in (OFF, NEAR)) for sign in (-1.0, 1.0)]
+    return tuple(_bearing(c, period_s, (low + high) / 2, (low, high)) for low, high in sides)
+
+
+def _bearing(c: Context, period_s: float, order: float, within: tuple[float, float]) -> Candidate:
+    """A line of no stage, whose order is refined `within` these bounds."""
     turns = c.angle / c.turn
-    span = float(np.ptp(turns))
-    out = []
-    for sign in (-1.0, 1.0):
-        low, high = sorted(order + sign * off / span for off in OFF)
-        shape, o = _at_order(c, turns, period_s, (low, high)), (low + high) / 2
-        one = line(c, "bearing_pass", None, None, o, shape(np.array([o])), "axis_angle")
-        step = (ORDER_STEP / span,)
-        out.append(replace(one, searched=1, shape=shape, steps=step, fixed={"order": (o, "1/turn")}))
-    return tuple(out)
+    shape = _at_order(c, turns, period_s, within)
+    one = line(c, "bearing_pass", None, None, order, shape(np.array([order])), "axis_angle")
+    step = (ORDER_STEP / float(np.ptp(turns)),)
+    return replace(one, searched=1, shape=shape, steps=step, fixed={"order": (order, "1/turn")})
 
 
 def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6) -> list[Candidate]:
@@ -174,12 +173,7 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
             for shift in (-0.2, 0.0, 0.2):
                 o = float(order + shift / span)
                 if name == "bearing_pass":
-                    shape = _at_order(c, turns, period_s, _between(o, known, span))
-                    one = line(c, name, None, None, o, shape(np.array([o])), "axis_angle")
-                    step = (ORDER_STEP / span,)
-                    out.append(
-                        replace(one, searched=1, shape=shape, steps=step, fixed={"order": (o, "1/turn")})
-                    )
+                    out.append(_bearing(c, period_s, o, _between(o, known, span)))
                     continue
                 x = o * level.angle
                 columns = np.column_stack([level.answer(np.cos(x)), level.answer(np.sin(x))])

@@ -58,6 +58,11 @@ class Candidate:
         """Number of columns."""
         return int(self.columns.shape[1])
 
+    @property
+    def cost(self) -> int:
+        """Coefficients, and parameters that were searched for."""
+        return self.width + self.searched
+
     def allowed(self, beta: Array) -> bool:
         """Whether the coefficients respect the physical sign."""
         if np.abs(beta).max(initial=0.0) > self.most or any(beta[k] <= 0 for k in self.positive):

@@ -14,8 +14,9 @@ from calibration.finding import Finding
 from calibration.readers.run import Array
 
 FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1
-KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)  # duties where the search for a dead band begins: 0.3 to 5 %
-SHORTEST = 0.01  # of the rows may have pulses shorter than a dead band that is taken for a constant
+# duties where the search for a dead band begins; 0.3 to 5 % of a period is what bridges lose. ASSUMPTION
+KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)
+SHORTEST = 0.01  # of the rows: may have pulses shorter than a dead band taken for a constant (ASSUMPTION)
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 

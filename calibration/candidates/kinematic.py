@@ -18,7 +18,7 @@ from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
-RESOLVED = 0.3  # periods per row: quicker, the steps of a speed alone say what a period holds
+RESOLVED = 0.3  # periods per row, ASSUMPTION: where hardly a row is slower, the log cannot show the error
 
 
 def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Candidate]:

@@ -17,8 +17,10 @@ from calibration.statistics.whitening import Whitener
 
 UNNAMED = 0.85  # a smooth function must beat a named effect clearly: it can imitate most of them
 SURE = 4.0  # standard errors above zero for a coefficient that makes the effect what it is
-MORE = 0.05  # of its gain, that a line must gain beyond the stage's line next to it, to be another one
-ALIKE = 0.1  # of the mean square of what two contenders add: more apart, they are two explanations
+# of its gain, that a line must gain beyond the stage's line next to it, to be another one (opened seeds
+# 20261124 and 20261126; no stage's line of the development seeds 1020 to 1023 has a neighbour that does)
+MORE = 0.05
+ALIKE = 0.1  # of the mean square of what two add: more apart, they are two explanations (ASSUMPTION)
 CONTENDERS = 8  # candidates fitted in full, each with its own noise model
 COLUMNS = 32  # filtered and projected at once: what stays in a core's cache for 2e4 rows
 PLAIN = 2  # of them at least from the ranking on the residual as it is
@@ -35,11 +37,6 @@ class Contender:
     gain: float  # log likelihood gain
     effect: float  # the noise's design effect: how much more the gain is than block-robust evidence allows
     at: slice  # its columns in the fit
-
-    @property
-    def cost(self) -> int:
-        """Coefficients, and parameters that were searched for."""
-        return self.candidate.width + self.candidate.searched
 
 
 @dataclass(frozen=True)
@@ -109,11 +106,11 @@ def _best_of(first: Contender, alike: list[Contender]) -> Contender:
     alone: another line beside it has an order that was searched among thousands."""
     price = float(np.log(first.fit.rows)) / 2
     forms = [c for c in alike if c.candidate.key == first.candidate.key]
-    form = max(forms, key=lambda c: c.gain / first.effect - price * c.cost)
+    form = max(forms, key=lambda c: c.gain / first.effect - price * c.candidate.cost)
     if form.candidate.kind == "line":
         return form
-    others = [c for c in alike if c.cost <= form.cost and c.candidate.kind != "line"]
-    return max(others, key=lambda c: c.gain - price * c.cost)
+    others = [c for c in alike if c.candidate.cost <= form.candidate.cost and c.candidate.kind != "line"]
+    return max(others, key=lambda c: c.gain - price * c.candidate.cost)
 
 
 def _alike(one: Contender, other: Contender) -> bool:
@@ -205,5 +202,5 @@ def _scored(
 
 def _bayes(candidate: Candidate, gain: float, rows: int) -> float:
     """`gain` less log(n)/2 for every coefficient and every parameter that was searched for."""
-    bayes = gain - (candidate.width + candidate.searched) / 2 * float(np.log(rows))
+    bayes = gain - candidate.cost / 2 * float(np.log(rows))
     return bayes * UNNAMED if candidate.name == "unknown" and candidate.width > 1 else bayes
