@@ -104,7 +104,7 @@ def _frame(page: Any) -> None:
         ("Dome and weather", "/dome"), ("Bus", "/bus"), ("Calibrate", "/calibrate"), ("Main", "/"),
     ):  # fmt: skip
         page.get_by_role("link", name=name, exact=True).click()
-        page.wait_for_url(f"**{path}")
+        page.wait_for_url(f"**{path}", wait_until="commit")  # the state line comes last; "load" can be missed
         state(page, "idle|stopping|tracking")
 
 
