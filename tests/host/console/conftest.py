@@ -112,7 +112,8 @@ def opened(browser: Any, served: Consoles, path: str, used: Used | None = None) 
 def state(page: Any, pattern: str) -> None:
     """Wait until the state line says this."""
     page.wait_for_function(
-        "text => new RegExp(text).test(document.querySelector('[role=status]')?.textContent ?? '')", arg=pattern
+        "text => new RegExp(text).test(document.querySelector('[role=status]')?.textContent ?? '')",
+        arg=pattern,
     )
 
 
