@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.channels.between import unlogged_errors
 from calibration.channels.frame import Frame, fill
 from calibration.channels.motion import Motion
 from calibration.channels.problem import Problem
@@ -115,6 +116,7 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
         sensor="voltage",
     )
     problem.step = STEP * frame.scale["adc_A_per_count"] * declared.resistance
+    _between_rows(problem, frame, m, effort, supply)
     if declared.ripple is None:
         _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
@@ -135,6 +137,27 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
         error,
         frame.scale["adc_A_per_count"],
     )
+
+
+def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
+    """Add what the unlogged tick's effort differed by to the base, where the log shows it: of a ramp and a held set
+    point the likelier."""
+    logged, full = _duties(frame, effort), frame.scale["effort_full_scale"]
+    columns = []
+    for error in unlogged_errors(frame):
+        duty = _duties(frame, effort + error / full)
+        columns.append(-np.concatenate([m.at((duty[k] - logged[k]) * supply) for k in "ab"]))
+    if not columns:
+        return
+    common = gls(p.y, np.column_stack([p.base, *columns]), p.train, p.ar_order, p.block).whitener
+    bases = [np.column_stack([p.base, c]) for c in columns]
+    logliks = [under(p.y, x, p.train, common) for x in bases]
+    best = int(np.argmax(logliks))
+    fit = gls(p.y, bases[best], p.train, p.ar_order, p.block)
+    gain, error = fit.beta[-1], np.sqrt(fit.covariance[-1, -1])
+    if logliks[best] > under(p.y, p.base, p.train, common) + MORE and gain > SURE * error:
+        p.base = bases[best]
+        p.base_labels.append(("gain_between_rows", "1/3000 per count"))
 
 
 def _duties(frame: Frame, effort: Array) -> dict[str, Array]:

@@ -1,0 +1,50 @@
+"""The effort of the tick that is not logged: from the law, whether the set point is held over a row or follows a ramp."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.channels.electrical import electrical_problem
+from calibration.channels.frame import build_frame
+from calibration.channels.motion import motion_of
+from calibration.channels.torque import WIDTH
+from calibration.declaredplant import declared_numbers
+from calibration.readers.axis import read_axis_log
+from calibration.statistics.regression import gls
+from plant.loop import LATENCY_S, simulate
+from plant.model import load
+from tests.calibration.logs import COLUMNS, FORMATS, HEADER
+
+ROWS = 9000
+# arcsec/s per row, up and down again at 2400 arcsec/s2: a held set point jumps by ten counts every other tick
+RAMPS = 2400.0 * np.abs((np.arange(2 * ROWS) * 0.005 + 1.25) % 5.0 - 2.5) - 3000.0
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_the_gain_of_the_law_explains_the_volts(tmp_path: Path, held: bool) -> None:
+    model = load("low_preload")
+    wanted = RAMPS[::2] if held else RAMPS
+    log = simulate(model, "ra", ROWS * 0.01, setpoint=wanted, seed=3, start_steps=3e8)
+    path = tmp_path / "run1.log"
+    with path.open("w", encoding="utf-8") as file:
+        file.write(HEADER.format(axis="ra", minute=0) + ",".join(COLUMNS) + "\n")
+        np.savetxt(file, np.column_stack([getattr(log, c) for c in COLUMNS]), fmt=FORMATS, delimiter=",")
+    runs = [read_axis_log(path, path.read_text(encoding="utf-8"))]
+    frame = build_frame(runs)
+    e = electrical_problem(
+        frame, motion_of(frame, WIDTH), np.zeros(ROWS, dtype=bool), declared_numbers(runs, None)
+    )
+    assert e is not None
+    p = e.problem
+    names = [name for name, _ in p.base_labels]
+    at = names.index("gain_between_rows")
+    with_it = gls(p.y, p.base, p.train, p.ar_order, p.block)
+    without = gls(p.y, np.delete(p.base, at, axis=1), p.train, p.ar_order, p.block)
+    left = [np.std(f.residual[p.train]) for f in (with_it, without)]
+    # the plant file's own gain, as far as the winding follows within a tick; a whole count is in the regressor's noise
+    winding = model.axes.ra.motor
+    follows = 1 - np.exp(-(0.005 - LATENCY_S) * winding.resistance.si / winding.inductance.si)
+    expected = follows * model.controller.kp.si
+    assert with_it.beta[at] == pytest.approx(expected, rel=0.1 if held else 0.4)
+    assert left[0] < (0.6 if held else 0.97) * left[1]
