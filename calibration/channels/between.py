@@ -1,10 +1,11 @@
 """The tick that is not logged: what the loop's law made of the effort between two rows.
 
-The loop runs at 5 ms and every second tick is logged. A winding settles in 2 ms, so the current of a row belongs to
-the tick before it, whose effort is the mean of two logged ones plus the gain times how far that tick's error was from
-the mean of its neighbours. The errors are known: the absolute encoder says how far the axis went over the row, the
-incremental one what of it fell to the logged tick. Without this a set point that is held over a row, which lifts every
-other tick of a ramp, passes for a supply that gives way under load.
+The loop runs at 5 ms and every second tick is logged. A winding settles in 2 ms, so the current of a row
+belongs to the tick before it, whose effort is the mean of two logged ones plus the gain times how far that
+tick's error was from the mean of its neighbours. The errors are known: the absolute encoder says how far
+the axis went over the row, the incremental one what of it fell to the logged tick. Without this a set point
+that is held over a row, which lifts every other tick of a ramp, passes for a supply that gives way under
+load.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ LARGEST = 300.0  # counts: a rate that leaps between two rows says nothing of th
 
 
 def unlogged_errors(frame: Frame) -> list[Array]:
-    """Error (n,) of the tick before every row less the mean of its neighbours', counts; the set point followed a ramp
-    or was held between the rows. Zero in open loop and beside gaps; empty without set point or velocity."""
+    """Error (n,) of the tick before every row less the mean of its neighbours', in counts.
+
+    Two of them: the set point followed a ramp, or was held, between the rows. Zero in open loop and beside
+    gaps; none without set point or velocity.
+    """
     setpoint, velocity = frame.get("setpoint"), frame.get("velocity")
     if setpoint is None or velocity is None:
         return []

@@ -140,8 +140,8 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
 
 
 def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
-    """Add what the unlogged tick's effort differed by to the base, where the log shows it: of a ramp and a held set
-    point the likelier."""
+    """Add what the unlogged tick's effort differed by to the base, where the log shows it: of a ramp and a
+    held set point the likelier."""
     logged, full = _duties(frame, effort), frame.scale["effort_full_scale"]
     columns = []
     for error in unlogged_errors(frame):

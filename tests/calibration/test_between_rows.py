@@ -1,4 +1,4 @@
-"""The effort of the tick that is not logged: from the law, whether the set point is held over a row or follows a ramp."""
+"""The effort of the tick that is not logged, from the law: the set point held over a row, or on a ramp."""
 
 from pathlib import Path
 
@@ -42,7 +42,7 @@ def test_the_gain_of_the_law_explains_the_volts(tmp_path: Path, held: bool) -> N
     with_it = gls(p.y, p.base, p.train, p.ar_order, p.block)
     without = gls(p.y, np.delete(p.base, at, axis=1), p.train, p.ar_order, p.block)
     left = [np.std(f.residual[p.train]) for f in (with_it, without)]
-    # the plant file's own gain, as far as the winding follows within a tick; a whole count is in the regressor's noise
+    # the plant file's own gain, as far as the winding follows within a tick; whole counts dilute it
     winding = model.axes.ra.motor
     follows = 1 - np.exp(-(0.005 - LATENCY_S) * winding.resistance.si / winding.inductance.si)
     expected = follows * model.controller.kp.si
