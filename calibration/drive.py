@@ -9,6 +9,7 @@ import numpy as np
 
 from calibration.channels.agreement import Agreement, velocity_against_position
 from calibration.channels.balance import problem_of
+from calibration.channels.drivenoise import resolved_rows
 from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
@@ -145,6 +146,7 @@ def _balance(
     def search(p: Problem) -> Found:
         floor, _ = floor_of(view, p)
         p.floor = floor or 0.0
+        p.resolved = resolved_rows(view, p)
         return find(view, p, seed, tell)
 
     delay, before, close = None, None, ""

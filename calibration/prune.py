@@ -25,6 +25,9 @@ WORTH = 0.01  # of the final held-out mean square, that leaving an effect out mu
 # is worth less may be what the strongest one's formula (one sine, one time constant) leaves of it. A sixth in
 # amplitude; effects of ratio 1 beside 5 are worth 1/26 (development seed 1012, opened sample of 20261122)
 REMAINDER = 0.03
+# standard errors, and share of the held-out mean square, that names take away where the position is resolved
+# when they are more than what the sensor's steps make of the rest: most of it (ASSUMPTION)
+SURE_Z, CLEAR_SHARE = 4.0, 0.5
 # of the same, that the strongest effect takes alone: where it takes less, others are there for themselves
 DOMINANT = 0.95
 
@@ -123,9 +126,23 @@ def sound(s: Selection) -> Selection:
 def above(s: Selection) -> Selection:
     """Names are for what is above the floor: where the declared model alone is at it, what sensors and loop
     leave in the columns has many shapes."""
-    while s.chosen and s.held.before <= s.problem.floor:
+    while s.chosen and s.held.before <= s.problem.floor and not _clear_of_steps(s):
         s = _without(s, 0, "the declared model is at the floor without it")
     return s
+
+
+def _clear_of_steps(s: Selection) -> bool:
+    """Whether the names explain what is above the floor on the rows that coarse steps of the position do not
+    spoil: a floor that reversals alone have raised says nothing of the rest of the motion."""
+    p = s.problem
+    if p.resolved is None:
+        return False
+    rows, floor = p.resolved
+    part = replace(p, valid=rows)
+    chosen = [x.candidate for x in s.chosen]
+    x, _ = _fit(s, chosen)
+    held = compare(part, p.base, s.before.beta, x, s.after.beta, s.after.whitener, ((), phases(p, chosen)))
+    return held.before > floor and held.z > SURE_Z and held.share > CLEAR_SHARE
 
 
 def within_bounds(s: Selection, resolved: float) -> Selection:

@@ -10,6 +10,7 @@ from calibration.channels.problem import Problem
 from calibration.channels.recursions import stop_element
 from calibration.channels.view import View, position_noise
 from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
 
 # mean square of white noise through a Gaussian of s rows: 1 / (2 sqrt(pi) s); of its second difference:
 # 3 / (8 sqrt(pi) s^5)
@@ -26,16 +27,34 @@ def sensors_floor(view: View, p: Problem) -> float | None:
     curved = place * float(np.sqrt(CURVED / width**5)) / view.period_s**2
     if not r.is_force:
         return _of_sensors(view, place, width)
-    declared = _declared(p)
     if r.channel == "acceleration":
         if "acceleration" in view.columns:
             return _passed(view, view.columns["acceleration"] * r.gain, width)
         return float(abs(r.gain) * curved)
-    own = _passed(view, response_of(view, 0.0)[0], width)
-    if own is None:
+    known = _resolved_noise(view, p, curved, width)
+    turning = _unresolved(view, p)
+    if known is None or turning is None:
+        return known
+    return float(np.hypot(known, np.sqrt(np.mean(turning[p.valid] ** 2))))
+
+
+def resolved_rows(view: View, p: Problem) -> tuple[Mask, float] | None:
+    """Rows of a force that the position's coarse steps spoil less than the noise, and the noise's rms there;
+    None where the steps spoil nothing."""
+    if not view.response.is_force or view.response.channel == "acceleration":
         return None
-    inertia = abs(declared.get("inertia", 0.0)) * curved
-    return float(np.sqrt(own**2 + inertia**2 + _unresolved(view, p, declared.get("coulomb", 0.0)) ** 2))
+    width = max(view.sigma, 1.0)
+    curved = position_noise(view.x, view.file) * float(np.sqrt(CURVED / width**5)) / view.period_s**2
+    known, turning = _resolved_noise(view, p, curved, width), _unresolved(view, p)
+    if known is None or turning is None:
+        return None
+    return p.valid & (np.abs(turning) < known), known
+
+
+def _resolved_noise(view: View, p: Problem, curved: float, width: float) -> float | None:
+    """rms of the force's own column and of the position through the inertia."""
+    own = _passed(view, response_of(view, 0.0)[0], width)
+    return None if own is None else float(np.hypot(own, abs(_declared(p).get("inertia", 0.0)) * curved))
 
 
 def _of_sensors(view: View, place: float, width: float) -> float | None:
@@ -63,16 +82,16 @@ def _declared(p: Problem) -> dict[str, float]:
     return {n: float(b) for (n, _), b in zip(p.base_labels, beta, strict=True)}
 
 
-def _unresolved(view: View, p: Problem, coulomb: float) -> float:
-    """Friction turns within a step of the position's sensor, and no log tells where: a loop of one step after
-    every reversal, less what the declared terms take up of it."""
-    if coulomb <= 0 or not view.dynamic:
-        return 0.0
+def _unresolved(view: View, p: Problem) -> Array | None:
+    """Friction turns within a step of the position's sensor, and no log tells where: (n_fitted,) of a loop of
+    one step after every reversal, less what the declared terms take up of it. None where nothing turns."""
+    coulomb = _declared(p).get("coulomb", 0.0)
+    if coulomb <= 0 or not view.dynamic or not p.valid.any():
+        return None
     width = float(np.sqrt(12.0)) * position_noise(view.x, view.file)
     fresh = np.concatenate([[True], np.diff(view.file) != 0])
     loop = stop_element(np.ascontiguousarray(view.x), fresh, float(width)) / width - np.sign(view.since)
     column = coulomb * view.at(loop)
     rows = p.train
     beta = np.linalg.lstsq(p.base[rows], column[rows], rcond=None)[0]
-    left = (column - p.base @ beta)[p.valid]
-    return float(np.sqrt(np.mean(left**2))) if len(left) else 0.0
+    return np.asarray(column - p.base @ beta)

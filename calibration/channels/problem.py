@@ -39,6 +39,7 @@ class Problem:
     domains: dict[str, Array] = field(default_factory=dict)
     sensor: str = "torque"  # the row of report.json's error table: torque, velocity or position
     step: float = 0.0  # rms that an effect must take away: less is within the sensor's own steps
+    resolved: tuple[Mask, float] | None = None  # rows that a sensor's coarse steps do not spoil, floor there
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property

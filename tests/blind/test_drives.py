@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.blind.drives import cells, slots
+from tests.blind.drives import cells, slots, table
 from tests.blind.drives.case import Order, build, seal
 from tests.blind.drives.effects import OUTSIDE, WHERE
 from tests.blind.drives.families import FAMILIES
@@ -31,8 +31,8 @@ def test_same_seed_same_bytes_and_the_seal_is_the_hash_of_the_truth(tmp_path: Pa
 def test_every_name_is_drawn_in_its_families_and_keys_are_unique() -> None:
     orders = cells.everything()
     assert len({o.key for o in orders}) == len(orders)
-    for table in (WHERE, OUTSIDE):
-        for draw, kinds in table.items():
+    for draws in (WHERE, OUTSIDE):
+        for draw, kinds in draws.items():
             assert set(kinds) <= set(FAMILIES)
             assert {o.kind for o in orders if o.names == (draw.__name__,)} == set(kinds)
 
@@ -53,7 +53,10 @@ def test_a_pure_drive_keeps_newtons_law(kind: str) -> None:
     assert np.std(made.references[0] - rows[:, slots.X]) < 0.05 * np.std(made.references[0])
 
 
-@pytest.mark.parametrize(("name", "kind"), [("gravity_imbalance", "servo"), ("brake_drag", "belt")])
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [("gravity_imbalance", "servo"), ("brake_drag", "belt"), ("channel_delay", "ball_screw")],
+)
 def test_the_hidden_force_has_the_ratio_asked_for(name: str, kind: str) -> None:
     _, hidden, size, _ = build(Order("sized", "single", kind, (name,), 3.0, seconds=20.0), 1003)
     assert hidden is not None and size == pytest.approx(3.0, rel=0.12)
@@ -63,7 +66,7 @@ def test_scores_count_a_wrong_name_and_how_sure_it_was() -> None:
     truth = {
         "key": "k", "cell": "single", "family": "servo", "kind": "gaussian", "spoil": "",
         "effects": [{"name": "play", "class": ["play"], "channel": "K", "domain": ["reversal"], "ratio": 2.0,
-                     "in_catalogue": True}],
+                     "reached": 2.0, "in_catalogue": True}],
     }  # fmt: skip
     told = {"failure": None, "seconds": 1.0}
     report = {"verdict": "found", "error": {}, "effects": [{"name": "presliding", "probability": 0.95}]}
@@ -72,3 +75,13 @@ def test_scores_count_a_wrong_name_and_how_sure_it_was() -> None:
     report["effects"] = [{"name": "play", "probability": 0.6, "equivalent": []}]
     row = score(told, json.loads(json.dumps(report)), truth)
     assert (row["right"], row["wrong"], row["sure_and_wrong"]) == (True, 0, 0)
+
+
+def test_an_effect_that_no_such_drive_shows_is_counted_apart() -> None:
+    row = {
+        "cell": "single", "truth": "channel_delay", "family": "belt", "reached": 0.4, "right": False,
+        "wrong": 0, "said": [], "verdict": "nothing", "answered": True, "seconds": 1.0, "sure_and_wrong": 0,
+    }  # fmt: skip
+    told = table.markdown([row, {**row, "reached": 2.0, "right": True}], 1)
+    assert "| one effect, ratio ≥ 2, right name or class | ≥ 90 % | 100.0 % (2.5–100.0), 1 of 1 |" in told
+    assert "| the same, no plausible size comes to ratio 2 |  | 0.0 % (0.0–97.5), 0 of 1 |" in told

@@ -60,16 +60,27 @@ def run(
     return out
 
 
-def ratio_of(s: Sealed) -> float:
-    """rms of the hidden force beyond what inertia, friction and offset take up, over the effort's noise."""
+def ratio_of(s: Sealed, late_s: float = 0.0) -> float:
+    """rms of the hidden force beyond what inertia, friction and offset take up, over the effort's noise.
+
+    late_s: of the effort's column, whose force is then that of another moment.
+    """
     rows = np.concatenate(s.rows)
     v = rows[:, slots.V]
     own, v, a = rows[:, slots.OWN], v, rows[:, slots.A]
+    f = s.family
+    if late_s:
+        own = own + s.plant["GAIN"] * np.concatenate([_moved(r[:, slots.EFFORT], f, late_s) for r in s.rows])
     base = np.column_stack([v, np.tanh(v / s.plant["VS"]), a, np.ones(len(v))])
     left = own - base @ np.linalg.lstsq(base, own, rcond=None)[0]
-    f = s.family
     floor = s.plant["GAIN"] * np.hypot(f.noise * s.plant["TOP"], f.effort_step / np.sqrt(12.0))
     return float(np.sqrt(np.mean(left**2)) / floor)
+
+
+def _moved(effort: Array, f: Family, late_s: float) -> Array:
+    """What a late column reads, less what it would read in time."""
+    t = np.arange(len(effort)) * f.period_s
+    return np.asarray(np.interp(t - late_s, t, effort) - effort)
 
 
 def build(order: Order, seed: int) -> tuple[Sealed, Hidden | None, float, int]:
@@ -85,13 +96,15 @@ def build(order: Order, seed: int) -> tuple[Sealed, Hidden | None, float, int]:
     made = Sealed(family, plant, turn, references, run(family, plant, values, references, number))
     if hidden is None:
         return made, None, 0.0, number
-    size = ratio_of(made)
+    size = ratio_of(made, values.get("LATE", 0.0))
     for _ in range(3):
         if hidden.how != "measured" or 0.9 * order.ratio < size < 1.1 * order.ratio:
             break
-        hidden.size *= float(np.clip(order.ratio / max(size, 1e-9), 0.05, 20.0))
-        made.rows = run(family, plant, hidden.values(), references, number)
-        size = ratio_of(made)
+        wanted = hidden.size * float(np.clip(order.ratio / max(size, 1e-9), 0.05, 20.0))
+        hidden.size = min(wanted, hidden.most)
+        values = hidden.values()
+        made.rows = run(family, plant, values, references, number)
+        size = ratio_of(made, values.get("LATE", 0.0))
     return made, hidden, size, number
 
 
@@ -105,7 +118,7 @@ def seal(order: Order, seed: int, logs: Path, truths: Path) -> dict[str, Any]:
     span = len(made.rows) * order.seconds
     for k, rows in enumerate(made.rows):
         rng: Rng = np.random.default_rng([number, 7, k])
-        s = hidden.sensor if hidden else {}
+        s = {**hidden.values(), **hidden.sensor} if hidden else {}
         out = sensors.columns(rows, f, s, rng, order.noise, k * order.seconds, span, made.plant["TOP"], two)
         out = sensors.spoil(out, rng, order.spoil if k == 0 else "")
         table = np.column_stack(list(out.values()))
@@ -132,6 +145,7 @@ def truth_of(hidden: Hidden, ratio: float, size: float) -> dict[str, Any]:
     return {
         "name": hidden.name, "class": [hidden.name, *hidden.alike], "stage": None, "channel": hidden.channel,
         "domain": list(hidden.domain), "ratio": ratio, "measured_ratio": size, "parameters": {},
+        "reached": size if hidden.how == "measured" else ratio,
         "raw": {**hidden.values(), **hidden.sensor},
         "in_catalogue": not hidden.name.startswith("outside"),
     }  # fmt: skip

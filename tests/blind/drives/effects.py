@@ -17,7 +17,8 @@ class Hidden:
     """One effect: values that scale with its size, values that do not, and what counts as its name.
 
     how: "measured" (size set by its own force over the effort's noise), "given" (the ratio is in the values).
-    sensor: values that the log's columns get (sensors.py) instead of the plant.
+    sensor: values that the log's columns get (sensors.py) instead of the plant. powers: of the size, that a
+    scaled value goes with, if not 1. most: size beyond which no such drive is published.
     """
 
     name: str
@@ -29,13 +30,17 @@ class Hidden:
     alike: tuple[str, ...] = ()
     how: str = "measured"
     second: bool = False  # needs the second position column
+    powers: dict[str, float] = field(default_factory=dict)
+    most: float = math.inf
     size: float = 1.0
 
     def values(self) -> dict[str, float]:
         """The kernel's values at the present size."""
-        return {**self.fixed, **{k: v * self.size for k, v in self.scaled.items()}}
+        return {**self.fixed, **{k: v * self.size ** self.powers.get(k, 1.0) for k, v in self.scaled.items()}}
 
 
+SOFTEST = 4.0  # Hz, lowest resonance of a carriage on a long belt
+LATEST = 0.05  # s, three turns of a USB adapter's latency timer of 16 ms
 Draw = Callable[[Rng, Family, dict[str, float], float, float], Hidden]  # .., plant, turn, ratio
 
 
@@ -113,11 +118,15 @@ def command_disturbance(rng: Rng, f: Family, plant: dict[str, float], turn: floa
 
 
 def structural_mode(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
-    """A second mass behind a spring; the declared model has one mass."""
+    """A second mass behind a spring; the declared model has one mass. The softer, the larger: what the spring
+    adds to a rigid mass goes with the frequency squared."""
     second = plant["MASS"] * rng.uniform(0.2, 0.5)
     omega = TURN * rng.uniform(12.0, 30.0)
-    values = {"MASS2": second, "STIFF": second * omega**2, "DAMP": 2 * 0.03 * second * omega}
-    return Hidden("structural_mode", "T", ("time", "velocity"), {}, values, how="given")
+    return Hidden(
+        "structural_mode", "T", ("time", "velocity"),
+        {"STIFF": second * omega**2, "DAMP": 2 * 0.03 * second * omega}, {"MASS2": second},
+        powers={"STIFF": -1.0, "DAMP": -0.5}, most=(omega / (TURN * SOFTEST)) ** 2,
+    )  # fmt: skip
 
 
 def presliding(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
@@ -142,13 +151,8 @@ def stribeck_change(rng: Rng, f: Family, plant: dict[str, float], turn: float, r
 
 def channel_delay(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
     """The effort's column is late."""
-    return Hidden(
-        "channel_delay",
-        "S",
-        ("clock",),
-        sensor={"LATE": f.period_s * rng.uniform(0.6, 1.2) * ratio},
-        how="given",
-    )
+    late = f.period_s * rng.uniform(0.6, 1.2) * ratio
+    return Hidden("channel_delay", "S", ("clock",), {"LATE": late}, most=LATEST / late)
 
 
 def log_wrap(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:

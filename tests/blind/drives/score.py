@@ -34,6 +34,7 @@ def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str
     row: dict[str, Any] = {
         "key": truth["key"], "cell": truth["cell"], "family": truth["family"], "kind": truth["kind"],
         "truth": wanted["name"] if wanted else "", "ratio": wanted["ratio"] if wanted else 0.0,
+        "reached": wanted["reached"] if wanted else 0.0,
         "answered": report is not None, "failure": answer["failure"], "seconds": answer["seconds"],
         "verdict": report["verdict"] if report else None, "said": [sorted(said(e)) for e in effects],
         "probability": [e.get("probability") for e in effects],

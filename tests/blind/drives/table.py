@@ -5,11 +5,13 @@ from typing import Any
 from tests.blind.table import share, text_of
 
 Row = dict[str, Any]
+LEAST = 1.8  # ratio that a measured effect must have come to, of 2 asked for: sizes are met to a tenth
 
 
 def markdown(rows: list[Row], seed: int) -> str:
     """The table as Markdown."""
     nothing, single, outside = ([r for r in rows if r["cell"] == c] for c in ("nothing", "single", "outside"))
+    single, small = [r for r in single if r["reached"] >= LEAST], [r for r in single if r["reached"] < LEAST]
     figures = [
         (
             "nothing hidden, an effect named",
@@ -21,7 +23,8 @@ def markdown(rows: list[Row], seed: int) -> str:
             "",
             share(nothing, lambda r: any("unknown" in s for s in r["said"])),
         ),
-        ("one effect, right name or class", "≥ 90 %", share(single, lambda r: r["right"])),
+        ("one effect, ratio ≥ 2, right name or class", "≥ 90 %", share(single, lambda r: r["right"])),
+        ("the same, no plausible size comes to ratio 2", "", share(small, lambda r: r["right"])),
         ("one effect, a wrong name among those said", "", share(single, lambda r: bool(r["wrong"]))),
         ("one effect, `cannot tell` or nothing", "", share(single, lambda r: not r["said"])),
         ("outside, `unknown` in the right domain", "≥ 95 %", share(outside, lambda r: r["right"])),
