@@ -6,6 +6,7 @@ import numpy as np
 
 from calibration.answers import lacking
 from calibration.axisresult import AxisResult
+from calibration.decide.tolerance import unsettled_reading
 from calibration.readers.run import Array
 
 COLUMNS = {
@@ -25,10 +26,12 @@ def lacks(result: AxisResult) -> list[str]:
     out = [text for key in "TEKS" if key in result.selections for text in _short(result, key)]
     if "T" not in result.selections:
         out.append(COLUMNS["T"])
+    unsettled = unsettled_reading(result.calibrated.get("stiffness"), result.declared)
     if not out:
-        return []
+        return [unsettled] if unsettled else []
     rate = result.motion.rate[result.motion.pick]
-    return out + motion_lacks(rate[result.motion.trusted[result.motion.pick]])
+    out += motion_lacks(rate[result.motion.trusted[result.motion.pick]])
+    return [*out, unsettled] if unsettled else out
 
 
 def _short(result: AxisResult, key: str) -> list[str]:

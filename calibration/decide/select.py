@@ -12,6 +12,7 @@ from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse
 from calibration.decide.gate import gate
 from calibration.decide.heldout import HeldOut, compare, cross_validate
 from calibration.decide.refine import polish
+from calibration.decide.sameorder import lesser_of_one_order
 from calibration.decide.scan import Contender, Look, fit_with, look
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls, under
@@ -130,6 +131,11 @@ def select(
     if len(picks) > 1:
         for k in range(len(picks)):
             _again(problem, picks, classes, steps, k, candidates, margin, refused)
+    while (lesser := lesser_of_one_order(problem, [p.candidate for p in picks])) is not None:
+        k, other = lesser
+        why = f"its order is that of {picks[other].candidate.say()}, whose shape leaves as much"
+        refused.append(Refusal(picks[k].candidate.say(), why))
+        del picks[k], classes[k], steps[k]
     for k in range(len(picks)):
         _polish(problem, picks, k)
     before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)

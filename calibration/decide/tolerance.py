@@ -264,6 +264,24 @@ def compliance_change(
     return found, {"stiffness": p}
 
 
+def unsettled_reading(stiffness: Parameter | None, d: Declared) -> str:
+    """What keeps a stiffness from being called declared or changed: it agrees with another reading of the
+    declared number only than the first. Empty where it agrees with the first, or with none."""
+    if stiffness is None:
+        return ""
+    near = [
+        r for r in d.readings if abs(float(np.log(stiffness.value / (d.stiffness * r)))) < np.log(TOLERANCE)
+    ]
+    if not near or d.readings[0] in near:
+        return ""
+    times = stiffness.value / d.stiffness
+    return (
+        f"channel K: shaft_compliance was close: a train's stiffness of {stiffness.value:.3g} N m/rad is"
+        f" {times:.2f} of Table 1's, if that is one train's, and as declared if it is both trains': a plant file"
+        " (--plant) says which"
+    )
+
+
 def _evidence(value: float, declared: float, error: float) -> float:
     z = (value - declared) / error
     return float(min(z * z / 2 / np.log(10), 1e4))

@@ -1,0 +1,22 @@
+"""Table 1's stiffness can be read as one train's or as both trains': between the two nothing can be told."""
+
+from dataclasses import replace
+
+import pytest
+
+from calibration.decide.tolerance import unsettled_reading
+from calibration.declaredplant import TABLE_1, Declared
+from calibration.finding import Parameter
+
+TRAIN = 3.08e6  # N m/rad, paper Table 1
+PAPER = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, TRAIN, readings=TABLE_1)
+
+
+@pytest.mark.parametrize(
+    ("times", "settled"), [(1.0, True), (0.85, True), (0.5, False), (0.55, False), (2.0, True), (0.3, True)]
+)
+def test_half_of_the_declared_stiffness_is_neither_declared_nor_changed(times: float, settled: bool) -> None:
+    found = Parameter(times * TRAIN, "N m/rad", 0.99 * times * TRAIN, 1.01 * times * TRAIN)
+    assert (unsettled_reading(found, PAPER) == "") is settled
+    assert unsettled_reading(found, replace(PAPER, readings=(1.0,))) == ""  # a plant file says what it means
+    assert unsettled_reading(None, PAPER) == ""
