@@ -18,8 +18,11 @@ from calibration.statistics.regression import block_covariance
 SIGNIFICANT = 5.0  # standard errors
 MATTERS = 0.02  # of the mean square on held-out rows, beside the flexible fit
 SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output
-LONGEST = 25.0  # sample periods that are looked at
+# sample periods, and s, that are looked at: a clock is late by rows, a transport by its own time whatever the
+# row (serial and USB adapters 1 to 50 ms; ASSUMPTION: twice that)
+LONGEST, LONGEST_S = 25.0, 0.1
 ROUNDS = 5
+STARTS = 41  # delays tried before it is refined; zero is one of them
 HOLD, SLACK = 0.55, 3.0  # periods, standard errors
 QUICK = 0.2  # of the usual top speed: slower rows say nothing of a clock
 PARTS = 5  # of the log, in each of which the delay must be seen
@@ -47,12 +50,12 @@ def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
     # beside the friction over the speed that explains most: along one kind of ramp it looks like a delay
     rival = min((np.hstack([lines, r]) for r in _rivals(s)), key=lambda r: _left(s, p.y, r))
     delay, error = _converge(s, late, rival)
-    reach = LONGEST * v.period_s
+    reach = max(LONGEST * v.period_s, LONGEST_S)
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
         return None, ""
     before, after = _left(s, p.y, rival), _left(s, late(delay), rival)
     share = 1 - (after / before) ** 2
-    if not _everywhere(s, late(0.0), delay, rival):
+    if not _everywhere(s, late(delay), delay, rival):
         return None, ""
     if share < MATTERS:
         sound = abs(delay) < HOLD * v.period_s + SLACK * error
@@ -104,8 +107,8 @@ def is_hold(f: Finding, period_s: float) -> bool:
 
 def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = None) -> tuple[float, float]:
     """The delay at which nothing of it is left, and its standard error."""
-    reach = LONGEST * s.view.period_s
-    delay, error = 0.0, np.inf
+    reach = max(LONGEST * s.view.period_s, LONGEST_S)
+    delay, error = _start(s, late, more, reach), np.inf
     for _ in range(ROUNDS):
         step, error = _step(s, late(delay), more)
         delay = float(np.clip(delay + step, -reach, reach))
@@ -114,8 +117,19 @@ def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = Non
     return delay, error
 
 
+def _start(s: Scene, late: Callable[[float], Array], more: Array | None, reach: float) -> float:
+    """The delay that fits best of STARTS: a step is a tangent, which from far off leads elsewhere."""
+    q, _ = np.linalg.qr(_columns(s, more)[s.problem.train])
+
+    def left(delay: float) -> float:
+        y = late(delay)[s.problem.train]
+        return float(y @ y - np.sum((q.T @ y) ** 2))
+
+    return float(min(np.linspace(-reach, reach, STARTS), key=left))
+
+
 def _everywhere(s: Scene, y: Array, delay: float, more: Array) -> bool:
-    """A clock is late by the same time in every part of the log."""
+    """A clock is late by the same time in every part of the log; `y` is put right by `delay`."""
     p = s.problem
     x = _columns(s, more)
     rows = p.train
@@ -127,7 +141,7 @@ def _everywhere(s: Scene, y: Array, delay: float, more: Array) -> bool:
     d = d - q @ (q.T @ d)
     parts = np.array_split(np.arange(len(e)), PARTS)
     weight = np.array([float(d[k] @ d[k]) for k in parts])
-    found = np.array([float(d[k] @ e[k]) for k in parts]) / np.maximum(weight, 1e-300)
+    found = delay + np.array([float(d[k] @ e[k]) for k in parts]) / np.maximum(weight, 1e-300)
     telling = weight > 0.1 * weight.mean()  # a part in which nothing moves says nothing
     return bool(np.std(found[telling]) < ALIKE * abs(delay) and (found[telling] * delay > 0).all())
 
