@@ -43,10 +43,16 @@ def summary(data: dict[str, Any]) -> str:
 
 def _say(effect: dict[str, Any]) -> str:
     place = f" on {effect['stage']}" if effect["stage"] else ""
-    size = effect["parameters"].get("amplitude")
+    sizes = {n: x for n, x in parameters(effect) if effect["name"] != "unknown" and "phase" not in n}
+    key = "amplitude" if "amplitude" in sizes else next(iter(sizes), "")
+    size = sizes.get(key)
     period = f"period {1 / effect['frequency_Hz']:.5g} s" if effect["frequency_Hz"] else ""
-    amplitude = f"amplitude {size['value']:.3g} {size['unit']}" if size else ""
-    detail = ", ".join(x for x in (period, amplitude) if x)
+    told = (
+        f"{key.replace('_', ' ')} {size['value']:.3g} {'' if size['unit'] == '1' else size['unit']}"
+        if size
+        else ""
+    )
+    detail = ", ".join(x.strip() for x in (period, told) if x)
     return f"{effect['name']}{place}" + (f" ({detail})" if detail else "")
 
 
