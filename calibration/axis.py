@@ -40,6 +40,7 @@ from calibration.channels.kinematic import (
 from calibration.channels.motion import Motion, motion_of
 from calibration.channels.problem import Problem
 from calibration.channels.torque import WIDTH, Transmission
+from calibration.channels.windup import wind_up
 from calibration.decide.broadband import pick_up, unexplained_volts
 from calibration.decide.delays import delay_findings
 from calibration.decide.holdout import choose_held_out
@@ -136,7 +137,8 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
     frame, m, numbers = result.frame, result.motion, result.declared
     if numbers.ripple is not None and frame.get("current_a") is not None:
         undo_sampling(frame, numbers.ripple)
-    e = result.electrical = electrical_problem(frame, m, result.held, numbers)
+    softness = wind_up(frame, m, result.held, numbers)
+    e = result.electrical = electrical_problem(frame, m, result.held, numbers, softness)
     per_ampere = (e.constant if e is not None else numbers.torque_constant) * frame.scale["gear_ratio"]
     left = electrical_candidates.weakened([], clock)
     if e is not None and e.problem.train.sum() > 200:

@@ -70,6 +70,8 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
     return out
 
 
+# of the limit: with more the roller slips in steady motion, too, which is its ratio and no slip
+MOST_CHATTER = 0.5
 PLAY_TRAVELS = (0.6, 1.2, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0)  # arcsec, gaps that are tried
 
 
@@ -160,7 +162,7 @@ def _slips(w: Array, acceleration: Array) -> list[Candidate]:
         if not 0.002 < np.mean(size > limit) < 0.6:
             continue
         share = _slip(w, acceleration)
-        for chatter in (0.1 * limit, 0.5 * limit, 2.0 * limit):
+        for chatter in (0.1 * limit, MOST_CHATTER * limit):
             out.append(
                 Candidate(
                     "roller_slip",
@@ -197,7 +199,8 @@ def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
     def shape(p: Array) -> Array:
         from scipy.special import ndtr
 
-        limit, chatter = abs(float(p[0])), max(abs(float(p[1])), 1e-6)
+        limit = max(abs(float(p[0])), 1e-6)
+        chatter = float(np.clip(abs(p[1]), 1e-6, MOST_CHATTER * limit))
         share = ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter)
         return np.asarray(-w * share)[:, None]
 

@@ -12,18 +12,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from calibration.channels.frame import Frame, fill
+from calibration.channels.frame import Frame, boxcar, fill
 from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
 
 ARCSEC = 4.84813681e-6  # rad
 LARGEST = 300.0  # counts: a rate that leaps between two rows says nothing of the tick between
+SLOW_ROWS = 25  # 0.25 s: a disagreement of encoders that lasts is no tick's
 
 
 def unlogged_errors(frame: Frame) -> list[Array]:
-    """Error (n,) of the tick before every row less the mean of its neighbours', in counts.
+    """Error (n,) of the tick before every row less the mean of its neighbours', in counts: by what the axis
+    did, and by a set point that was held between the rows.
 
-    Two of them: the set point followed a ramp, or was held, between the rows. Zero in open loop and beside
-    gaps; none without set point or velocity.
+    The encoders' slow disagreement, a roller that slips or has another diameter, is taken out of the first.
+    Zero in open loop and beside gaps; none without set point or velocity.
     """
     setpoint, velocity = frame.get("setpoint"), frame.get("velocity")
     if setpoint is None or velocity is None:
@@ -33,13 +36,16 @@ def unlogged_errors(frame: Frame) -> list[Array]:
     wanted = setpoint * frame.scale["velocity_window_s"] / per_count
     moved = _step(frame, fill(frame.columns["position"], frame.run)[0] / per_count)
     slower = 0.5 * (counted + _before(frame, counted)) - (moved - counted)
-    held = -0.5 * _step(frame, wanted)
     closed = np.isfinite(wanted) & np.isfinite(_before(frame, wanted))
-    out = []
-    for error in (slower, slower + held):
-        known = closed & np.isfinite(error)
-        out.append(np.where(known & (np.abs(np.where(known, error, 0.0)) < LARGEST), error, 0.0))
-    return [np.nan_to_num(x) for x in out]
+    slower, held = (_known(x, closed) for x in (slower, -0.5 * _step(frame, wanted)))
+    return [np.where(slower != 0.0, slower - boxcar(slower, SLOW_ROWS), 0.0), held]
+
+
+def _known(x: Array, closed: Mask) -> Array:
+    """Zero where nothing is known."""
+    good = closed & np.isfinite(x)
+    good[good] = np.abs(x[good]) < LARGEST
+    return np.where(good, x, 0.0)
 
 
 def _before(frame: Frame, x: Array) -> Array:

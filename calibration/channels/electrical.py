@@ -53,8 +53,11 @@ class Electrical:
     ampere_per_count: float
 
 
-def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) -> Electrical | None:
-    """Build the E channel; None when the log lacks a current."""
+def electrical_problem(
+    frame: Frame, m: Motion, held: Mask, declared: Declared, softness: float | None = None
+) -> Electrical | None:
+    """Build the E channel; None when the log lacks a current. `softness`: rad of the axis that an ampere
+    winds a train up by, the declared one without it."""
     if frame.get("current_a") is None or frame.get("current_b") is None:
         return None
     n, ratio = len(m.pick), frame.scale["gear_ratio"]
@@ -73,7 +76,8 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
     duty = _duties(frame, effort)
     power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
-    softness = declared.torque_constant * ratio / declared.stiffness  # rad of the axis per A
+    if softness is None:
+        softness = declared.torque_constant * ratio / declared.stiffness
     for key, sign in (("a", 1.0), ("b", -1.0)):
         i, ti = current[key]
         volts = duty[key] * supply
@@ -140,24 +144,20 @@ def electrical_problem(frame: Frame, m: Motion, held: Mask, declared: Declared) 
 
 
 def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
-    """Add what the unlogged tick's effort differed by to the base, where the log shows it: of a ramp and a
-    held set point the likelier."""
-    logged, full = _duties(frame, effort), frame.scale["effort_full_scale"]
-    columns = []
-    for error in unlogged_errors(frame):
-        duty = _duties(frame, effort + error / full)
-        columns.append(-np.concatenate([m.at((duty[k] - logged[k]) * supply) for k in "ab"]))
-    if not columns:
-        return
-    common = gls(p.y, np.column_stack([p.base, *columns]), p.train, p.ar_order, p.block).whitener
-    bases = [np.column_stack([p.base, c]) for c in columns]
-    logliks = [under(p.y, x, p.train, common) for x in bases]
-    best = int(np.argmax(logliks))
-    fit = gls(p.y, bases[best], p.train, p.ar_order, p.block)
-    gain, error = fit.beta[-1], np.sqrt(fit.covariance[-1, -1])
-    if logliks[best] > under(p.y, p.base, p.train, common) + MORE and gain > SURE * error:
-        p.base = bases[best]
-        p.base_labels.append(("gain_between_rows", "1/3000 per count"))
+    """Add what the unlogged tick's effort differed by to the base, as far as the log shows it: by the motion,
+    and by a set point that was held between the rows."""
+    logged = _duties(frame, effort)
+    for error, label in zip(
+        unlogged_errors(frame), ("gain_between_rows", "gain_of_held_set_point"), strict=False
+    ):
+        duty = _duties(frame, effort + error / frame.scale["effort_full_scale"])
+        column = -np.concatenate([m.at((duty[k] - logged[k]) * supply) for k in "ab"])
+        base = np.column_stack([p.base, column])
+        fit = gls(p.y, base, p.train, p.ar_order, p.block)
+        gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
+        if gained > MORE and fit.beta[-1] > SURE * np.sqrt(fit.covariance[-1, -1]):
+            p.base = base
+            p.base_labels.append((label, "1/3000 per count"))
 
 
 def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
