@@ -186,10 +186,9 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, result.held)
     if roller is not None:
-        alpha = m.acceleration[m.pick]
         s = select(
             roller,
-            kinematic_candidates.roller_effects(context, alpha, m.period_s)
+            kinematic_candidates.roller_effects(context, m)
             + kinematic_candidates.subdivision(context, m, lags_of(roller)),
             rng,
         )

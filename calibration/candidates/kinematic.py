@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -13,7 +14,7 @@ from calibration.candidates.context import Context
 from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.motion import Motion, acceleration_of, rate_of
-from calibration.readers.drive import STAGES
+from calibration.readers.drive import ARCSEC, STAGES
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
@@ -112,13 +113,14 @@ def lag_in_gap(moved: Array, run: NDArray[np.int64], gap: float) -> Array:
     return -stop_operator(moved, run, 0.5 * gap)
 
 
-def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Candidate]:
+def roller_effects(c: Context, m: Motion) -> list[Candidate]:
     """Candidates of velocity minus rate in arcsec/s; `c.speed` in rad/s."""
+    period_s = m.period_s
     w = c.speed * 206264.806
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
     out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
-    out += _slips(w, acceleration)
+    out += _slips(m)
     for h in (1, 2):
         order = STAGES["roller"] * h
         if span * order > 0.8:
@@ -149,62 +151,67 @@ def roller_effects(c: Context, acceleration: Array, period_s: float) -> list[Can
     return out
 
 
-def _slips(w: Array, acceleration: Array) -> list[Candidate]:
+def _slips(m: Motion) -> list[Candidate]:
     """Travel lost while the axis accelerates harder than a limit: a share of it, or as much as the limit is
-    exceeded."""
-    size = np.abs(acceleration)
-
-    def excess(p: Array) -> Array:
-        return np.asarray((-np.sign(w) * np.maximum(size - p[0], 0.0) * 206264.806)[:, None])
-
-    out = []
+    exceeded. Row by row: the analysis' means would round off what is beyond a limit."""
+    row_s = m.period_s / m.width
+    rate, acceleration = rate_of(m.theta, 1, row_s), acceleration_of(m.theta, 1, row_s)
+    size, out = np.abs(m.acceleration[m.pick]), []
+    forms = ((_share(rate, acceleration), "creep", "1"), (_excess(rate, acceleration), "slip", "s"))
     for limit in (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02):
         if not 0.002 < np.mean(size > limit) < 0.6:
             continue
-        share = _slip(w, acceleration)
-        for chatter in (0.1 * limit, MOST_CHATTER * limit):
+        for (lost, name, unit), part in itertools.product(forms, (0.1, MOST_CHATTER)):
+            shape = _seen(m, lost)
+            chatter = part * limit
             out.append(
                 Candidate(
                     "roller_slip",
                     "velocity",
-                    share(np.array([limit, chatter])),
-                    (("creep", "1"),),
+                    shape(np.array([limit, chatter])),
+                    ((name, unit),),
                     stage="roller",
                     fixed={"limit": (limit, "rad/s2"), "chatter": (chatter, "rad/s2")},
                     sign=1,
-                    shape=share,
+                    shape=shape,
                     steps=(0.1 * limit, 0.2 * chatter),
                 )
             )
-        out.append(
-            Candidate(
-                "roller_slip",
-                "velocity",
-                excess(np.array([limit])),
-                (("slip", "s"),),
-                stage="roller",
-                fixed={"limit": (limit, "rad/s2")},
-                sign=1,
-                shape=excess,
-                steps=(0.1 * limit,),
-            )
-        )
     return out
 
 
-def _slip(w: Array, acceleration: Array) -> Callable[[Array], Array]:
-    """Rate lost, per unit of creep, for p = (limit, rms of the acceleration within a row): the share of a
-    row's time beyond the limit."""
+def _seen(m: Motion, lost: Callable[[float, float], Array]) -> Callable[[Array], Array]:
+    """Rate lost (n_analysis, 1), arcsec/s per unit, for p = (limit, rms of the acceleration within a row)."""
 
     def shape(p: Array) -> Array:
-        from scipy.special import ndtr
-
         limit = max(abs(float(p[0])), 1e-6)
         chatter = float(np.clip(abs(p[1]), 1e-6, MOST_CHATTER * limit))
-        share = ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter)
-        return np.asarray(-w * share)[:, None]
+        return np.asarray(-m.at(lost(limit, chatter))[:, None] / ARCSEC)
 
     return shape
+
+
+def _share(rate: Array, acceleration: Array) -> Callable[[float, float], Array]:
+    """Of the rate, the share of a row's time beyond the limit."""
+    from scipy.special import ndtr
+
+    return lambda limit, chatter: (
+        rate * (ndtr((acceleration - limit) / chatter) + ndtr((-acceleration - limit) / chatter))
+    )
+
+
+def _excess(rate: Array, acceleration: Array) -> Callable[[float, float], Array]:
+    """The acceleration beyond the limit, mean over a row, against the motion."""
+    from scipy.special import ndtr
+
+    size = np.abs(acceleration)
+
+    def lost(limit: float, chatter: float) -> Array:
+        z = (size - limit) / chatter
+        beyond = chatter * (np.exp(-np.minimum(z * z, 1e3) / 2) / np.sqrt(2 * np.pi) + z * ndtr(z))
+        return np.asarray(np.sign(rate) * beyond)
+
+    return lost
 
 
 def subdivision(c: Context, m: Motion, lags: Array) -> list[Candidate]:
