@@ -23,6 +23,7 @@ from calibration.readers.run import Array
 from calibration.statistics.regression import gls, under
 from calibration.statistics.whitening import Mask
 
+APART = 0.75  # counts of the tachometer per row, five times what rounding leaves after the means (0.15)
 CLIPPED = (
     4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
 )
@@ -97,7 +98,8 @@ def electrical_problem(
         expected = (volts - emf) / declared.resistance  # only to tell which rows should carry current
         bad |= expected < CLIPPED * frame.scale["adc_A_per_count"]
         crossing = np.abs(np.sign(m.rate)) < 0.5
-        parts["ok"].append((m.smooth((bad | crossing).astype(float))[m.pick] < 1e-9).astype(float))
+        off = _off_its_teeth(frame, m, key, rate + sign * unwinding)
+        parts["ok"].append(((m.smooth((bad | crossing).astype(float))[m.pick] < 1e-9) & ~off).astype(float))
         parts["power"].append(power)
         parts["lags"].append((sign * m.at(effort) < 0).astype(float))
     c = {k: np.concatenate(v) for k, v in parts.items()}
@@ -141,6 +143,19 @@ def electrical_problem(
         error,
         frame.scale["adc_A_per_count"],
     )
+
+
+def _off_its_teeth(frame: Frame, m: Motion, key: str, spin: Array) -> Mask:
+    """Analysis rows in which a motor turns otherwise than the axis makes it (`spin`, rad/s, its wind-up
+    included): it crosses the play, and its back-EMF is its own."""
+    if frame.get(f"motor_{key}") is None:
+        return np.zeros(len(spin), dtype=bool)
+    count = 2 * np.pi / frame.scale["tach_counts_per_turn"] / frame.period_s
+    own, known = fill(frame.columns[f"motor_{key}"], frame.run)
+    off: Mask = known[m.pick] & (np.abs(m.at(own) - spin) > APART * count)
+    off[1:] |= off[:-1].copy()
+    off[:-1] |= off[1:].copy()
+    return off
 
 
 def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:

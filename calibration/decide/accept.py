@@ -13,6 +13,8 @@ from calibration.statistics.regression import Fit
 MARGIN = 0.05
 # for what a rigid balance misses of a compliant drive
 LUCK = 2.0  # z of the cross-validated gain over blocks
+NOISE = 0.02  # of the cross-validated mean square: that level (effects.md, lesson 3)
+PLAINLY = 0.25  # of the held-out mean square, unfiltered (ASSUMPTION)
 HANDICAP = 0.12  # of the mean square: an unnamed function must do more than a named one
 LEAST_EVIDENCE = (
     10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
@@ -39,7 +41,7 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
     least = max(HANDICAP, margin) if contender.candidate.name == "unknown" else margin
     if contender.evidence < (contender.candidate.least or LEAST_EVIDENCE):
         return f"too little evidence (-log10 p = {contender.evidence:.1f})"
-    if inside.share < least:
+    if inside.share < least and not _plain(contender, inside, held):
         return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
     if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
@@ -48,6 +50,13 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
     if held.share < -WORSE:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
     return ""
+
+
+def _plain(contender: Contender, inside: HeldOut, held: HeldOut) -> bool:
+    """Whether a name that gains little behind the noise's filter takes much of the held-out error as it is: a
+    steady effect is in the filter, which is made of what it leaves."""
+    named = contender.candidate.name != "unknown"
+    return named and inside.share > NOISE and inside.z > 2 * LUCK and held.share > PLAINLY
 
 
 def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
