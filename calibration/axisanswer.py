@@ -16,7 +16,7 @@ from calibration.axislacks import absent_columns, lacks
 from calibration.axisresult import AxisResult
 from calibration.corrected.making import Facts
 from calibration.decide.controls import controls
-from calibration.decide.merge import merge
+from calibration.decide.merge import merge, traces
 from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.passive import sound
 from calibration.decide.select import Selection
@@ -66,6 +66,7 @@ def axis_answer(
         return v, [], title
     result = analyse(runs, hold_out, tell=tell, plant=plant)
     named = merge(result.findings)
+    lost = traces(result.findings, named)
     tried = _controls(result, named)
     effects, withdrawn = withdraw(named, tried)
     effects, against = sound(effects, result.selections)
@@ -79,7 +80,7 @@ def axis_answer(
         separating=separating,
         not_identifiable=not_identifiable(result),
         thresholds=gate_rows(result.selections),
-        refused=[*withdrawn, *result.refused, *refusals(result.selections)],
+        refused=[*withdrawn, *lost, *result.refused, *refusals(result.selections)],
         controls=tried,
         earned=AXIS_EARNED,
     )

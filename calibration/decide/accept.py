@@ -7,6 +7,7 @@ import numpy as np
 from calibration.channels.problem import Problem
 from calibration.decide.heldout import HeldOut
 from calibration.decide.scan import Contender
+from calibration.readers.run import Array
 from calibration.statistics.regression import Fit
 
 # of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
@@ -21,6 +22,9 @@ LEAST_EVIDENCE = (
 )
 # of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
 BURST = 0.05
+# of a value, standard error: what the declared model itself is wrong by along a measured motion. From
+# development logs, where estimates scatter by this much about the truth when noise alone would allow a tenth
+MODEL_ERROR = 0.03
 WORSE = 0.001  # of the held-out mean square: rounding, not harm
 # of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
 # short logs would be named with confidence they do not have
@@ -66,6 +70,18 @@ def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
     taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
     if taken < problem.step**2:
         return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
+    return ""
+
+
+def within_model(problem: Problem, plain: Array, null: Fit, contender: Contender) -> str:
+    """Why a further effect is too small beside those that are taken: their own shapes are wrong by as much;
+    or empty. `plain` (n,) is what the declared terms alone leave."""
+    rows = problem.train
+    left = [float(np.mean(e[rows] ** 2)) for e in (plain, null.residual, contender.fit.residual)]
+    others, taken = left[0] - left[1], left[1] - left[2]
+    if taken < MODEL_ERROR**2 * others:
+        part = 100 * np.sqrt(max(taken, 0.0) / others)
+        return f"takes {part:.1f} % of what the others take, which is within their own error"
     return ""
 
 

@@ -73,6 +73,13 @@ def merge(findings: list[Finding]) -> list[Finding]:
     return sorted(out, key=lambda f: -(f.share + min(f.evidence, 1000.0) / 1e5))
 
 
+def traces(findings: list[Finding], kept: list[Finding]) -> list[tuple[str, str, str]]:
+    """Refusals (channel, what, why) of the names that `merge` took for traces of others."""
+    names = {f.name for f in kept}
+    why = f"taken for a trace of {', '.join(sorted(names))}"
+    return [(f.channel, f.name, why) for f in findings if f.name not in names]
+
+
 def _resolve_gain(findings: list[Finding]) -> list[Finding]:
     """A torque that is too large on one motor: the electrical channel says whether its reading or its
     magnets."""
@@ -158,11 +165,7 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
     for f in findings:
         names = CONSEQUENCES.get((f.name, f.channel), ())
         for k, other in enumerate(findings):
-            if (
-                other is not f
-                and other.name in names
-                and (other.share <= max(f.share, 0.3) or other.name == "wind_torque")
-            ):
+            if other is not f and other.name in names and _small_beside(f, other):
                 drop.add(k)
     explained = max((f.share for f in findings if f.channel == "T" and f.name != "wind_torque"), default=0.0)
     for k, other in enumerate(findings):
@@ -175,6 +178,16 @@ def _consequences(findings: list[Finding]) -> list[Finding]:
         if other.name == "structural_mode" and other.parameters["damping"].value > 0.145:
             drop.add(k)
     return [f for k, f in enumerate(findings) if k not in drop]
+
+
+def _small_beside(f: Finding, other: Finding) -> bool:
+    """Whether `other` can be a trace of `f`. In one channel both were fitted together: what is more than a
+    remainder there is an effect of its own. Wind has no columns and is never more than what is left."""
+    if other.name == "wind_torque":
+        return True
+    if f.channel == other.channel == "T":
+        return other.share < SUPERFLUOUS * f.share
+    return other.share <= max(f.share, 0.3)
 
 
 def _remainders(findings: list[Finding]) -> list[Finding]:

@@ -8,18 +8,16 @@ import numpy as np
 from scipy.special import chndtrix
 
 from calibration.candidates.candidate import Candidate
+from calibration.decide.accept import MODEL_ERROR
 from calibration.decide.refine import slopes
 from calibration.decide.scan import Contender
 from calibration.decide.select import Selection
+from calibration.decide.unseen import unseen
 from calibration.finding import Finding, Parameter
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.tails import student_reach
 
-# of a value, standard error: what the declared model itself is wrong by along a measured motion. From
-# development logs,
-# where estimates scatter by this much about the truth when the noise alone would allow a tenth of it
-MODEL_ERROR = 0.03
 STEP_ERROR = 0.15  # of a nonlinear parameter's small step, likewise
 
 
@@ -65,6 +63,10 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
         error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
         low, high = interval(value, error, blocks, STEP_ERROR * candidate.steps[k])
         out[name] = Parameter(value, unit, low, high)
+    stretch = unseen(problem, candidate)
+    if stretch is not None:
+        out["onset"] = Parameter(*candidate.fixed["onset"], *stretch)
+        out |= {"ramp": Parameter(*candidate.fixed["ramp"])} if "ramp" in out else {}
     return out
 
 

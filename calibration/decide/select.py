@@ -8,12 +8,13 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
-from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_step
+from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_model, within_step
 from calibration.decide.gate import gate
 from calibration.decide.heldout import HeldOut, compare, cross_validate
 from calibration.decide.refine import polish
 from calibration.decide.sameorder import lesser_of_one_order
 from calibration.decide.scan import Contender, Look, fit_with, look
+from calibration.decide.unseen import settled
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls, under
 from calibration.statistics.surrogate import Scores
@@ -110,13 +111,16 @@ def select(
         )
         refused += [Refusal("every candidate", why), *_closest(problem, left)]
         left = []
+    plain = left_by_base(problem)
     while len(picks) < most and left:
         base = design(problem, [p.candidate for p in picks])
         now = look(problem, base, left)
         taken = None
-        for contender in now.contenders[:4]:
+        for one in now.contenders[:4]:
+            contender = settled(problem, base, one)
             inside, held = judge(problem, now, picks, contender)
             why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
+            why = why or within_model(problem, plain, now.null, contender)
             if not why:
                 taken = contender
                 break
@@ -167,6 +171,11 @@ def select(
     return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
 
 
+def left_by_base(problem: Problem) -> Array:
+    """What the declared terms alone leave, (n,)."""
+    return gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block).residual
+
+
 def _closest(problem: Problem, candidates: list[Candidate]) -> list[Refusal]:
     """The candidate that would have been looked at first, had the rows been enough."""
     room = problem.base.shape[1] + max(c.width for c in candidates)
@@ -205,8 +214,7 @@ def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
         under(problem.y, np.hstack([base, c.columns]), problem.train, common)
         for c in (found.candidate, picks[k].candidate)
     )
-    if now > was:
-        picks[k] = found
+    picks[k] = settled(problem, base, found if now > was else picks[k])
 
 
 def _again(
@@ -225,7 +233,8 @@ def _again(
     base = design(problem, [p.candidate for p in others])
     taken = {p.candidate.key for p in others}
     now = look(problem, base, [c for c in candidates if c.key not in taken])
-    for contender in now.contenders[:3]:
+    for one in now.contenders[:3]:
+        contender = settled(problem, base, one)
         inside, held = judge(problem, now, others, contender)
         if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
             continue

@@ -1,0 +1,60 @@
+"""A step between two fitted runs: its onset is the whole stretch, and the held-out run does not suffer."""
+
+import numpy as np
+import pytest
+
+from calibration.candidates.candidate import Candidate
+from calibration.channels.problem import Problem
+from calibration.decide.parameters import parameters_of
+from calibration.decide.select import select
+from calibration.decide.unseen import unseen
+
+# three runs of 100 s with pauses of 20 s; the middle one is held out
+CLOCK = np.concatenate([np.arange(0, 100, 0.03) + 120.0 * k for k in range(3)])
+RUN = np.repeat(np.arange(3), len(CLOCK) // 3)
+SIZE = 2.0
+
+
+def problem(onset: float, seed: int = 1) -> Problem:
+    """White noise of 0.5 about a step of SIZE at `onset`."""
+    y = SIZE * (onset < CLOCK) + 0.5 * np.random.default_rng(seed).standard_normal(len(CLOCK))
+    wave = np.sin(CLOCK)[:, None]
+    return Problem(
+        "T", "N m", y, wave, [("wave", "N m")], CLOCK, RUN, np.zeros_like(RUN), CLOCK >= 0, RUN == 1, 0.03
+    )
+
+
+def step(at: float) -> Candidate:
+    """A step of its own time."""
+
+    def shape(p: np.ndarray) -> np.ndarray:
+        return np.asarray((p[0] < CLOCK).astype(float))[:, None]
+
+    return Candidate(
+        "brake_drag",
+        "time",
+        shape(np.array([at])),
+        (("torque", "N m"),),
+        fixed={"onset": (at, "s")},
+        shape=shape,
+        steps=(6.0,),
+    )
+
+
+@pytest.mark.parametrize("onset", [110.0, 225.0])
+@pytest.mark.parametrize("tried", [105.0, 150.0, 170.0, 235.0])
+def test_any_onset_in_the_pause_is_told_as_the_stretch(onset: float, tried: float) -> None:
+    s = select(problem(onset), [step(tried)], np.random.default_rng(0))
+    assert [c.candidate.name for c in s.chosen] == ["brake_drag"]
+    assert s.held.after == pytest.approx(0.5, rel=0.05)
+    told = parameters_of(s, 0)["onset"]
+    assert told.low == pytest.approx(100.0, abs=0.5) and told.high == pytest.approx(240.0, abs=0.5)
+
+
+def test_a_step_that_fitted_rows_see_has_no_stretch() -> None:
+    p = problem(50.0)
+    assert unseen(p, step(50.0)) is None
+    s = select(p, [step(48.0)], np.random.default_rng(0))
+    told = parameters_of(s, 0)["onset"]
+    assert told.value == pytest.approx(50.0, abs=1.0) and told.low is not None and told.high is not None
+    assert told.low < 50.0 < told.high < 60.0
