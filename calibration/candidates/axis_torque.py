@@ -158,6 +158,7 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                         "time",
                         columns,
                         (("fraction", "1"),),
+                        most=1.0,
                         shape=shape,
                         steps=(0.02 * span, 0.08 * max(part, 0.1) * span),
                         fixed={"onset": (float(at), "s"), "ramp": (part * span, "s")},

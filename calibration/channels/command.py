@@ -27,6 +27,7 @@ ARCSEC_PER_RAD = 206264.806
 STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position loop adds is more
 REGIME = 51  # rows over which the set point's kind is told
 CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
+EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
 
@@ -198,7 +199,10 @@ def pulses(problem: Problem, e: Array) -> Pulses | None:
     rows = problem.train
     x = np.where(rows, e, 0.0)
     sigma = 1.4826 * float(np.median(np.abs(x[rows]))) or 1.0
-    spikes = np.where(np.abs(x) > 5.0 * sigma, np.sign(x), 0.0)
+    limit = 5.0 * sigma
+    if (high := np.abs(x[np.abs(x) > limit])).size:  # between its edges a pulse moves the integrator, too
+        limit = max(limit, EDGE * float(np.quantile(high, 0.9)))
+    spikes = np.where(np.abs(x) > limit, np.sign(x), 0.0)
     count = int(np.abs(spikes).sum())
     if count < 12:
         return None
