@@ -17,6 +17,7 @@ from calibration.channels.between import unlogged_errors
 from calibration.channels.frame import Frame, fill
 from calibration.channels.motion import Motion
 from calibration.channels.problem import Problem
+from calibration.channels.register import register_error
 from calibration.channels.torque import STEP, saturated, transients
 from calibration.declaredplant import Declared
 from calibration.readers.run import Array
@@ -123,6 +124,7 @@ def electrical_problem(
     )
     problem.step = STEP * frame.scale["adc_A_per_count"] * declared.resistance
     _between_rows(problem, frame, m, effort, supply)
+    _held_register(problem, frame, m, effort, supply)
     if declared.ripple is None:
         _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
@@ -167,19 +169,37 @@ def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Ar
     ):
         duty = _duties(frame, effort + error / frame.scale["effort_full_scale"])
         column = -np.concatenate([m.at((duty[k] - logged[k]) * supply) for k in "ab"])
-        base = np.column_stack([p.base, column])
-        fit = gls(p.y, base, p.train, p.ar_order, p.block)
-        gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
-        if gained > MORE and fit.beta[-1] > SURE * np.sqrt(fit.covariance[-1, -1]):
-            p.base = base
-            p.base_labels.append((label, "1/3000 per count"))
+        _adopt(p, column, label)
+
+
+def _held_register(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
+    """Add a lagging register that waits for a whole step to the base, where the log shows it."""
+    off = register_error(frame, effort, _share(frame)) * supply / frame.scale["effort_full_scale"]
+    column = -np.concatenate([m.at(np.where(s * effort < 0, off, 0.0)) for s in (1.0, -1.0)])
+    _adopt(p, column, "held_counter_register")
+
+
+def _adopt(p: Problem, column: Array, label: str) -> None:
+    """Add a column to the base whose coefficient is surely positive, if it explains more than chance."""
+    base = np.column_stack([p.base, column])
+    fit = gls(p.y, base, p.train, p.ar_order, p.block)
+    gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
+    if gained > MORE and fit.beta[-1] > SURE * np.sqrt(fit.covariance[-1, -1]):
+        p.base = base
+        p.base_labels.append((label, "1"))
+
+
+def _share(frame: Frame) -> Array:
+    """Counter torque of every row, of the effort."""
+    share = np.full(len(frame.t), frame.scale["counter_torque"])
+    for k, r in enumerate(frame.runs):
+        share[frame.run == k] = r.scales["counter_torque"]
+    return share
 
 
 def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
     """Duty of each motor, 0..1: the effort on the one that leads, the counter torque's share on the other."""
-    share = np.full(len(effort), frame.scale["counter_torque"])
-    for k, r in enumerate(frame.runs):
-        share[frame.run == k] = r.scales["counter_torque"]
+    share = _share(frame)
     return {
         "a": np.where(effort > 0, effort, -share * effort),
         "b": np.where(effort > 0, share * effort, -effort),
@@ -189,14 +209,15 @@ def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
 def mean_currents(frame: Frame, e: Electrical, beta: Array) -> None:
     """Turn sampled currents into mean ones, in place, by what `_sampling` found; `beta` is the E channel's
     fit."""
-    names = [name for name, _ in e.problem.base_labels]
-    if "current_ripple" not in names:
+    found = dict(zip((name for name, _ in e.problem.base_labels), beta, strict=False))
+    if "conversion_offset" not in found:
         return
-    at, volts, full = names.index("current_ripple"), frame.scale["supply_V"], frame.scale["adc_A_per_count"]
+    ripple, offset = found.get("current_ripple", 0.0), found["conversion_offset"]
+    volts, full = frame.scale["supply_V"], frame.scale["adc_A_per_count"]
     duty = _duties(frame, fill(frame.columns["effort"], frame.run)[0])
     for key in "ab":
         i, d = frame.columns[f"current_{key}"], duty[key]
-        wrong = beta[at] * volts * d * (1 - d) - beta[at + 1] * full
+        wrong = ripple * volts * d * (1 - d) - offset * full
         sound = (i > 0) & ~saturated(frame, i)
         frame.columns[f"current_{key}"] = np.where(sound, i - wrong / beta[0], i)
 
@@ -255,6 +276,14 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
     if (as_good and sound(beta, error)) or (both > other + MORE and sound(beta2, error2)):
         p.base = np.column_stack([p.base, ripple, offset])
         p.base_labels += [("current_ripple", "1"), ("conversion_offset", "ohm")]
+        return
+    # efforts that hardly differ leave the ripple to the resistance, but not the half count
+    rounded, beta3, error3 = fit(offset)
+    counts = float(beta3[at] / beta3[0])
+    sure = TRUNCATION[0] < counts < TRUNCATION[1] and beta3[at] > SURE * error3[at]
+    if sure and rounded > without + MORE and fit(sag)[0] - rounded < AS_GOOD * (rounded - without):
+        p.base = np.column_stack([p.base, offset])
+        p.base_labels += [("conversion_offset", "ohm")]
 
 
 def _twice(x: NDArray[Any]) -> NDArray[Any]:
