@@ -112,6 +112,7 @@ def _pass(
         },
         {"a": f.torque_a, "b": f.torque_b},
         m.period_s,
+        drive.softness_s2,
     )
     offsets = ("adc_offset",) if result.electrical is not None and "adc_offset" not in forced else ()
     candidates: list[Candidate] = [

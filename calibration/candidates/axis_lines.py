@@ -26,6 +26,9 @@ ORDER_STEP = 0.05  # of a resolution cell, for the refinement of an order
 # from the stage's by its gain (decide/scan.py), this only keeps the two apart. ASSUMPTION
 OFF = 0.06
 FREE = 4  # free orders tried per spectrum
+DAMPING = (
+    0.1  # of a rotor on its train, of critical: ASSUMPTION, as the plant files' (docs of their gear damping)
+)
 TOP = 3000.0  # cycles per axis turn up to which an order of no shaft is looked for
 
 
@@ -36,6 +39,7 @@ class Motors:
     turns: dict[str, Array]
     torque: dict[str, Array]
     period_s: float
+    softness_s2: float = 0.0  # a rotor's inertia over its train's stiffness
 
 
 def pair(turns: Array, c: Context, period_s: float, weight: Array | None = None, order: float = 1.0) -> Array:
@@ -46,6 +50,17 @@ def pair(turns: Array, c: Context, period_s: float, weight: Array | None = None,
     w = slow if weight is None else slow * weight
     x = 2 * np.pi * turns
     return np.column_stack([w * np.cos(x), w * np.sin(x)])
+
+
+def through_train(columns: Array, c: Context, order: float, softness_s2: float) -> Array:
+    """What the axis gets of a torque that acts on a rotor: cos and sin (n, 2) behind the rotor on its train,
+    whose resonance a line comes near while the motor is quick. Quasi-static in the speed."""
+    rate = 2 * np.pi * np.abs(c.speed) / c.turn * order
+    damping = 2j * DAMPING * rate * np.sqrt(softness_s2)
+    gain = (1 + damping) / (1 + damping - rate**2 * softness_s2)
+    real, turned = gain.real, gain.imag * np.sign(c.speed)
+    cos, sin = columns.T
+    return np.column_stack([real * cos - turned * sin, turned * cos + real * sin])
 
 
 def line(
@@ -109,7 +124,12 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
     x = np.where(rows, e, 0.0)
     for n in range(2, COGGING + 1):
         order = n * ratio
-        plain = {k: pair(motors.turns[k] * n, c, motors.period_s, None, order) for k in "ab"}
+        plain = {
+            k: through_train(
+                pair(motors.turns[k] * n, c, motors.period_s, None, order), c, order, motors.softness_s2
+            )
+            for k in "ab"
+        }
         if not rows.any() or np.mean(plain["a"][:, 0] ** 2) < 0.02:
             continue
         for name in found:

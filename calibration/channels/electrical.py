@@ -277,11 +277,12 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
         p.base = np.column_stack([p.base, ripple, offset])
         p.base_labels += [("current_ripple", "1"), ("conversion_offset", "ohm")]
         return
-    # efforts that hardly differ leave the ripple to the resistance, but not the half count
+    # efforts that hardly differ leave the ripple to the resistance, but not the half count of a converter
+    # that rounds down; a supply must explain twice as much to be heard instead
     rounded, beta3, error3 = fit(offset)
     counts = float(beta3[at] / beta3[0])
     sure = TRUNCATION[0] < counts < TRUNCATION[1] and beta3[at] > SURE * error3[at]
-    if sure and rounded > without + MORE and fit(sag)[0] - rounded < AS_GOOD * (rounded - without):
+    if sure and rounded > without + MORE and fit(sag)[0] - rounded < rounded - without:
         p.base = np.column_stack([p.base, offset])
         p.base_labels += [("conversion_offset", "ohm")]
 
