@@ -88,8 +88,9 @@ def electrical_problem(
         # a motor is ahead of the axis by its train's wind-up: in a leap out of stiction it stands while the
         # axis turns, and without this the constant comes out up to 0.7 % too small
         unwinding = m.at(np.gradient(i, frame.period_s)) * softness * ratio
-        parts["pull"].append(np.where(sign * rate > 0, sign * rate + unwinding, 0.0))
-        parts["drag"].append(np.maximum(-sign * rate, 0.0))
+        own = sign * rate + unwinding
+        parts["pull"].append(np.maximum(own, 0.0))
+        parts["drag"].append(np.maximum(-own, 0.0))
         parts["duty"].append(m.at(duty[key]))
         parts["v"].append(m.at(supply))
         slope = np.gradient(volts, frame.period_s)
@@ -125,6 +126,9 @@ def electrical_problem(
     problem.step = STEP * frame.scale["adc_A_per_count"] * declared.resistance
     _between_rows(problem, frame, m, effort, supply)
     _held_register(problem, frame, m, effort, supply)
+    # turned against its pull, a leading motor's back-EMF drives its current where the bridge lets it
+    driving = -np.where(c["lags"] > 0, 0.0, c["drag"])
+    _adopt(problem, driving, "emf_of_a_dragged_leader", "N m/A", declared.torque_constant / 2)
     if declared.ripple is None:
         _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
@@ -179,14 +183,15 @@ def _held_register(p: Problem, frame: Frame, m: Motion, effort: Array, supply: A
     _adopt(p, column, "held_counter_register")
 
 
-def _adopt(p: Problem, column: Array, label: str) -> None:
-    """Add a column to the base whose coefficient is surely positive, if it explains more than chance."""
+def _adopt(p: Problem, column: Array, label: str, unit: str = "1", least: float = 0.0) -> None:
+    """Add a column to the base whose coefficient is surely positive and above `least`, if it explains more
+    than chance."""
     base = np.column_stack([p.base, column])
     fit = gls(p.y, base, p.train, p.ar_order, p.block)
     gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
-    if gained > MORE and fit.beta[-1] > SURE * np.sqrt(fit.covariance[-1, -1]):
+    if gained > MORE and fit.beta[-1] > max(SURE * np.sqrt(fit.covariance[-1, -1]), least):
         p.base = base
-        p.base_labels.append((label, "1"))
+        p.base_labels.append((label, unit))
 
 
 def _share(frame: Frame) -> Array:
