@@ -285,7 +285,7 @@ def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: floa
     # efforts that hardly differ leave the ripple to the resistance, but not the half count of a converter
     # that rounds down; a supply must explain twice as much to be heard instead
     rounded, beta3, error3 = fit(offset)
-    counts = float(beta3[at] / beta3[0])
+    counts = float(beta3[at] / beta3[0]) if beta3[0] > 0 else 0.0
     sure = TRUNCATION[0] < counts < TRUNCATION[1] and beta3[at] > SURE * error3[at]
     if sure and rounded > without + MORE and fit(sag)[0] - rounded < rounded - without:
         p.base = np.column_stack([p.base, offset])

@@ -32,6 +32,7 @@ def constant(stiffness: float) -> float:
     columns = {"effort": effort, "position": axis, "current_a": current, "current_b": lagging}
     columns = {name: column[::FINE] for name, column in columns.items()}  # what a log has of it
     scale = {"gear_ratio": RATIO, "supply_V": V, "counter_torque": SHARE, "adc_A_per_count": 0.0061}
+    scale["effort_full_scale"] = 3000.0
     zero = np.zeros(ROWS, dtype=np.int64)
     frame = Frame([], DT, t[::FINE], np.zeros(ROWS), zero, zero, columns, scale)
     m = motion_of(frame, WIDTH)
