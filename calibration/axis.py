@@ -26,11 +26,7 @@ from calibration.candidates import kinematic as kinematic_candidates
 from calibration.candidates.context import Context
 from calibration.channels.clock import clock_findings, repair_wraps
 from calibration.channels.command import command_candidates, command_problem, pulses
-from calibration.channels.electrical import (
-    electrical_problem,
-    mean_currents,
-    undo_sampling,
-)
+from calibration.channels.electrical import electrical_problem
 from calibration.channels.frame import Frame, build_frame, fill
 from calibration.channels.kinematic import (
     Kinematic,
@@ -39,6 +35,7 @@ from calibration.channels.kinematic import (
 )
 from calibration.channels.motion import Motion, motion_of
 from calibration.channels.problem import Problem
+from calibration.channels.sampling import mean_currents, undo_sampling
 from calibration.channels.torque import WIDTH, Transmission
 from calibration.channels.windup import wind_up
 from calibration.decide.broadband import pick_up, unexplained_volts
@@ -153,7 +150,7 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
             rng,
         )
         result.selections["E"] = s
-        mean_currents(frame, e, s.after.beta)
+        mean_currents(frame, p, s.after.beta)
         constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
         if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
             constant = numbers.torque_constant

@@ -13,26 +13,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.channels.between import unlogged_errors
+from calibration.channels.bridge import adopt, between_rows, held_register
+from calibration.channels.duties import duties
 from calibration.channels.frame import Frame, fill
 from calibration.channels.motion import Motion
 from calibration.channels.problem import Problem
-from calibration.channels.register import register_error
+from calibration.channels.sampling import add_sampling
 from calibration.channels.torque import STEP, saturated, transients
 from calibration.declaredplant import Declared
 from calibration.readers.run import Array
-from calibration.statistics.regression import gls, under
+from calibration.statistics.regression import gls
 from calibration.statistics.whitening import Mask
 
 APART = 0.75  # counts of the tachometer per row, five times what rounding leaves after the means (0.15)
 CLIPPED = (
     4.0  # counts expected: below it the converter's noise is cut off at zero and its mean is not the current
 )
-RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
-TRUNCATION = (0.25, 0.8)  # counts that a converter which rounds down reads too low, 0.5 at even spread
-SURE = 4.0  # standard errors
-MORE = 25.0  # log likelihood that the converter must explain beyond what a supply that gives way explains
-AS_GOOD = 0.1  # of its gain, that it may explain less where it is to stand for all of it
 
 
 @dataclass
@@ -76,7 +72,7 @@ def electrical_problem(
     }
     rate = m.rate[m.pick] * ratio
     current = {k: fill(frame.columns[f"current_{k}"], frame.run) for k in "ab"}
-    duty = _duties(frame, effort)
+    duty = duties(frame, effort)
     power = m.at(duty["a"] * current["a"][0] + duty["b"] * current["b"][0])
     if softness is None:
         softness = declared.torque_constant * ratio / declared.stiffness
@@ -124,13 +120,13 @@ def electrical_problem(
         sensor="voltage",
     )
     problem.step = STEP * frame.scale["adc_A_per_count"] * declared.resistance
-    _between_rows(problem, frame, m, effort, supply)
-    _held_register(problem, frame, m, effort, supply)
+    between_rows(problem, frame, m, effort, supply)
+    held_register(problem, frame, m, effort, supply)
     # turned against its pull, a leading motor's back-EMF drives its current where the bridge lets it
     driving = -np.where(c["lags"] > 0, 0.0, c["drag"])
-    _adopt(problem, driving, "emf_of_a_dragged_leader", "N m/A", declared.torque_constant / 2)
+    adopt(problem, driving, "emf_of_a_dragged_leader", "N m/A", declared.torque_constant / 2)
     if declared.ripple is None:
-        _sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
+        add_sampling(problem, c["duty"], c["v"], c["power"], frame.scale["adc_A_per_count"])
     fit = gls(problem.y, problem.base, problem.train, 4, problem.block)
     error = float(np.sqrt(fit.covariance[1, 1]))
     motor = np.concatenate([np.zeros(n), np.ones(n)])
@@ -162,134 +158,6 @@ def _off_its_teeth(frame: Frame, m: Motion, key: str, spin: Array) -> Mask:
     off[1:] |= off[:-1].copy()
     off[:-1] |= off[1:].copy()
     return off
-
-
-def _between_rows(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
-    """Add what the unlogged tick's effort differed by to the base, as far as the log shows it: by the motion,
-    and by a set point that was held between the rows."""
-    logged = _duties(frame, effort)
-    for error, label in zip(
-        unlogged_errors(frame), ("gain_between_rows", "gain_of_held_set_point"), strict=False
-    ):
-        duty = _duties(frame, effort + error / frame.scale["effort_full_scale"])
-        column = -np.concatenate([m.at((duty[k] - logged[k]) * supply) for k in "ab"])
-        _adopt(p, column, label)
-
-
-def _held_register(p: Problem, frame: Frame, m: Motion, effort: Array, supply: Array) -> None:
-    """Add a lagging register that waits for a whole step to the base, where the log shows it."""
-    off = register_error(frame, effort, _share(frame)) * supply / frame.scale["effort_full_scale"]
-    column = -np.concatenate([m.at(np.where(s * effort < 0, off, 0.0)) for s in (1.0, -1.0)])
-    _adopt(p, column, "held_counter_register")
-
-
-def _adopt(p: Problem, column: Array, label: str, unit: str = "1", least: float = 0.0) -> None:
-    """Add a column to the base whose coefficient is surely positive and above `least`, if it explains more
-    than chance."""
-    base = np.column_stack([p.base, column])
-    fit = gls(p.y, base, p.train, p.ar_order, p.block)
-    gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
-    if gained > MORE and fit.beta[-1] > max(SURE * np.sqrt(fit.covariance[-1, -1]), least):
-        p.base = base
-        p.base_labels.append((label, unit))
-
-
-def _share(frame: Frame) -> Array:
-    """Counter torque of every row, of the effort."""
-    share = np.full(len(frame.t), frame.scale["counter_torque"])
-    for k, r in enumerate(frame.runs):
-        share[frame.run == k] = r.scales["counter_torque"]
-    return share
-
-
-def _duties(frame: Frame, effort: Array) -> dict[str, Array]:
-    """Duty of each motor, 0..1: the effort on the one that leads, the counter torque's share on the other."""
-    share = _share(frame)
-    return {
-        "a": np.where(effort > 0, effort, -share * effort),
-        "b": np.where(effort > 0, share * effort, -effort),
-    }
-
-
-def mean_currents(frame: Frame, e: Electrical, beta: Array) -> None:
-    """Turn sampled currents into mean ones, in place, by what `_sampling` found; `beta` is the E channel's
-    fit."""
-    found = dict(zip((name for name, _ in e.problem.base_labels), beta, strict=False))
-    if "conversion_offset" not in found:
-        return
-    ripple, offset = found.get("current_ripple", 0.0), found["conversion_offset"]
-    volts, full = frame.scale["supply_V"], frame.scale["adc_A_per_count"]
-    duty = _duties(frame, fill(frame.columns["effort"], frame.run)[0])
-    for key in "ab":
-        i, d = frame.columns[f"current_{key}"], duty[key]
-        wrong = ripple * volts * d * (1 - d) - offset * full
-        sound = (i > 0) & ~saturated(frame, i)
-        frame.columns[f"current_{key}"] = np.where(sound, i - wrong / beta[0], i)
-
-
-def undo_sampling(frame: Frame, ripple: float) -> None:
-    """Turn sampled currents into mean ones, in place, by what a plant file declares.
-
-    `ripple` in A/V: at the falling edge the current is ripple V d (1 - d) above its mean; a converter that
-    rounds down reads half a count too low.
-    """
-    duty = _duties(frame, fill(frame.columns["effort"], frame.run)[0])
-    for key in "ab":
-        i, d = frame.columns[f"current_{key}"], duty[key]
-        wrong = ripple * frame.scale["supply_V"] * d * (1 - d) - 0.5 * frame.scale["adc_A_per_count"]
-        sound = (i > 0) & ~saturated(frame, i)
-        frame.columns[f"current_{key}"] = np.where(sound, i - wrong, i)
-
-
-def _sampling(p: Problem, duty: Array, supply: Array, power: Array, ampere: float) -> None:
-    """Add how the converter samples to the base, where the log shows it.
-
-    Sampled at the falling edge of the PWM (paper 3.3) the current reads V d (1-d) / (2 L f) above its mean,
-    and a
-    converter that rounds down half a count below. Both are declared, both are bounded; a log sampled
-    otherwise keeps
-    its base, and what looks like a ripple but fits better as a supply that gives way is left to that effect.
-    """
-    ripple, offset = -supply * duty * (1 - duty), np.full(len(duty), ampere)
-    sag = duty * power
-
-    def fit(*columns: Array) -> tuple[float, Array, Array]:
-        x = np.column_stack([p.base, *columns])
-        f = gls(p.y, x, p.train, p.ar_order, p.block)
-        loglik = under(p.y, x, p.train, common)
-        return loglik, f.beta, np.sqrt(np.maximum(np.diag(f.covariance), 1e-300))
-
-    richest = np.column_stack([p.base, ripple, offset, sag])
-    common = gls(p.y, richest, p.train, p.ar_order, p.block).whitener
-
-    at = p.base.shape[1]
-
-    def sound(beta: Array, error: Array) -> bool:
-        counts = float(beta[at + 1] / beta[0])
-        return bool(
-            RIPPLE[0] < beta[at] < RIPPLE[1]
-            and TRUNCATION[0] < counts < TRUNCATION[1]
-            and beta[at] > SURE * error[at]
-            and beta[at + 1] > SURE * error[at + 1]
-        )
-
-    other = fit(sag, offset)[0]
-    without = fit()[0]
-    alone, beta, error = fit(ripple, offset)
-    both, beta2, error2 = fit(ripple, offset, sag)
-    as_good = other - alone < AS_GOOD * (alone - without)
-    if (as_good and sound(beta, error)) or (both > other + MORE and sound(beta2, error2)):
-        p.base = np.column_stack([p.base, ripple, offset])
-        p.base_labels += [("current_ripple", "1"), ("conversion_offset", "ohm")]
-        return
-    # efforts that hardly differ leave the ripple to the resistance, but not the half count of a converter
-    # that rounds down; a supply must explain twice as much to be heard instead
-    rounded, beta3, error3 = fit(offset)
-    counts = float(beta3[at] / beta3[0]) if beta3[0] > 0 else 0.0
-    sure = TRUNCATION[0] < counts < TRUNCATION[1] and beta3[at] > SURE * error3[at]
-    if sure and rounded > without + MORE and fit(sag)[0] - rounded < rounded - without:
-        p.base = np.column_stack([p.base, offset])
-        p.base_labels += [("conversion_offset", "ohm")]
 
 
 def _twice(x: NDArray[Any]) -> NDArray[Any]:
