@@ -1,6 +1,5 @@
 """What the boards, bridges and converters of the plant do to a row's volts is declared, and no effect."""
 
-
 import numpy as np
 import pytest
 
