@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plant.loop import simulate
+from plant.loop import LogColumns, simulate
 from plant.model import default_files, load, with_effects
 from plant.parts import EffectModel, Number
 
@@ -48,12 +48,16 @@ def write_logs(
         wanted = manoeuvre(kind)
         log = simulate(model, "ra", len(wanted) * 0.01, setpoint=wanted, seed=k + 1, start_steps=start)
         start = float(log.position[-1])
-        path = folder / f"run{k + 1}.log"
-        with path.open("w", encoding="utf-8") as file:
-            file.write(HEADER.format(axis="ra", minute=2 * k) + ",".join(COLUMNS) + "\n")
-            np.savetxt(file, np.column_stack([getattr(log, c) for c in COLUMNS]), fmt=FORMATS, delimiter=",")
-        paths.append(path)
+        paths.append(folder / f"run{k + 1}.log")
+        write_log(paths[-1], log, 2 * k)
     return paths
+
+
+def write_log(path: Path, log: LogColumns, minute: int = 0) -> None:
+    """Write one run of the right ascension axis."""
+    with path.open("w", encoding="utf-8") as file:
+        file.write(HEADER.format(axis="ra", minute=minute) + ",".join(COLUMNS) + "\n")
+        np.savetxt(file, np.column_stack([getattr(log, c) for c in COLUMNS]), fmt=FORMATS, delimiter=",")
 
 
 def tiny_log(rows: int = 40, **changes: str) -> str:

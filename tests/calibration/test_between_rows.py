@@ -14,7 +14,7 @@ from calibration.readers.axis import read_axis_log
 from calibration.statistics.regression import gls
 from plant.loop import simulate
 from plant.model import load
-from tests.calibration.logs import COLUMNS, FORMATS, HEADER
+from tests.calibration.logs import write_log
 
 ROWS = 9000
 # arcsec/s per row, up and down again at 2400 arcsec/s2: a held set point jumps by ten counts every other tick
@@ -27,9 +27,7 @@ def test_the_gain_of_the_law_explains_the_volts(tmp_path: Path, held: bool) -> N
     wanted = RAMPS[::2] if held else RAMPS
     log = simulate(model, "ra", ROWS * 0.01, setpoint=wanted, seed=3, start_steps=3e8)
     path = tmp_path / "run1.log"
-    with path.open("w", encoding="utf-8") as file:
-        file.write(HEADER.format(axis="ra", minute=0) + ",".join(COLUMNS) + "\n")
-        np.savetxt(file, np.column_stack([getattr(log, c) for c in COLUMNS]), fmt=FORMATS, delimiter=",")
+    write_log(path, log)
     runs = [read_axis_log(path, path.read_text(encoding="utf-8"))]
     frame = build_frame(runs)
     e = electrical_problem(

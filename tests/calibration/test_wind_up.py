@@ -14,7 +14,7 @@ from calibration.declaredplant import declared_numbers
 from calibration.readers.axis import read_axis_log
 from plant.loop import simulate
 from plant.model import PlantModel, load
-from tests.calibration.logs import COLUMNS, FORMATS, HEADER, manoeuvre
+from tests.calibration.logs import manoeuvre, write_log
 
 
 def softer(model: PlantModel, times: float) -> PlantModel:
@@ -30,9 +30,7 @@ def test_the_encoders_tell_it(tmp_path: Path, times: float) -> None:
     wanted = manoeuvre("ramp")
     log = simulate(model, "ra", len(wanted) * 0.01, setpoint=wanted, seed=4, start_steps=3e8)
     path = tmp_path / "run1.log"
-    with path.open("w", encoding="utf-8") as file:
-        file.write(HEADER.format(axis="ra", minute=0) + ",".join(COLUMNS) + "\n")
-        np.savetxt(file, np.column_stack([getattr(log, c) for c in COLUMNS]), fmt=FORMATS, delimiter=",")
+    write_log(path, log)
     runs = [read_axis_log(path, path.read_text(encoding="utf-8"))]
     frame = build_frame(runs)
     found = wind_up(
