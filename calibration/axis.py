@@ -105,10 +105,11 @@ def _look(
     rng = np.random.default_rng(seed)
     frame = build_frame(runs)
     held, held_names = choose_held_out(frame, hold_out)
+    stamps = clock_findings(frame)  # takes repeated rows out: they are no motion
     m = motion_of(frame, WIDTH)
     numbers = declared_numbers(runs, plant)
     result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
-    result.findings += clock_findings(frame)
+    result.findings += stamps
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
     tell("electrical channel")
     per_ampere, left = _electrical(result, clock, rng)

@@ -33,6 +33,7 @@ LATE = {
 NOMINAL = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
 FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than
 RISES = 1.05  # of another channel's, that it may leave at most
+MUCH, AT_MOST = 0.5, 1.15  # where one channel's falls below half, what another's may rise to (ASSUMPTION)
 APPLIED = ("channel_delay", "play")
 # of the mean square above the encoders' floor: a gap that leaves more than it takes is not what is there. The
 # emulator's own log at low preload, whose teeth part, has 16 % that look like a gap of the coupling
@@ -172,8 +173,10 @@ def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal |
     """None when the held-out error falls once the effect is applied; else why it was not the effect."""
     after = {k: s.held.before for k, s in again.selections.items() if k in before}
     falls = [k for k, a in after.items() if a < FALLS * before[k]]
-    rises = [k for k, a in after.items() if a > RISES * before[k]]
-    if falls and not rises:
+    rises = [k for k, a in after.items() if a > max(RISES * before[k], again.floors.get(k, 0.0))]
+    # rows are left out where a gap stood: what the others leave is another sample of the same
+    much = min((a / before[k] for k, a in after.items() if before[k] > 0), default=1.0) < MUCH
+    if falls and not [k for k in rises if not much or after[k] > AT_MOST * before[k]]:
         return None
     said = ", ".join(f"{k} {before[k]:.3g} to {a:.3g}" for k, a in after.items())
     return Refusal(f.name, f"applied, the held-out error does not fall: {said}")

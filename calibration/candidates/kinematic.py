@@ -73,6 +73,7 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
 
 # of the limit: with more the roller slips in steady motion, too, which is its ratio and no slip
 MOST_CHATTER = 0.5
+MOST_LIMIT = 0.1  # rad/s2: three times what the axis is asked for (2 deg/s2, paper)
 PLAY_TRAVELS = (0.6, 1.2, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0)  # arcsec, gaps that are tried
 
 
@@ -184,7 +185,7 @@ def _seen(m: Motion, lost: Callable[[float, float], Array]) -> Callable[[Array],
     """Rate lost (n_analysis, 1), arcsec/s per unit, for p = (limit, rms of the acceleration within a row)."""
 
     def shape(p: Array) -> Array:
-        limit = max(abs(float(p[0])), 1e-6)
+        limit = float(np.clip(abs(p[0]), 1e-6, MOST_LIMIT))
         chatter = float(np.clip(abs(p[1]), 1e-6, MOST_CHATTER * limit))
         return np.asarray(-m.at(lost(limit, chatter))[:, None] / ARCSEC)
 

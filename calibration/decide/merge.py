@@ -31,7 +31,7 @@ CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
         "unknown",
     ),
     ("channel_delay", "S"): ("structural_mode", "roller_slip", "unknown", "damaged_tooth", "wind_torque"),
-    ("sample_loss", "S"): ("wind_torque", "channel_delay"),
+    ("sample_loss", "S"): ("wind_torque", "channel_delay", "roller_slip"),
     ("clock_jitter", "S"): ("roller_slip", "damaged_tooth", "unknown"),
     ("log_wrap", "S"): (
         "encoder_eccentricity",
