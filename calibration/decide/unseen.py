@@ -1,9 +1,9 @@
 """A step in time that no fitted row saw: it may lie anywhere between two of them.
 
 Between the runs that are fitted lie pauses, and the run that is held out. All onsets there fit alike, and
-which of them a search stops at is rounding. Somebody who changes a drive does it while it stands: the step
-is put at either end of the stretch, whichever the held-out rows agree with. That is one choice of two made
-on held-out rows, and the interval of the onset is the whole stretch.
+which of them a search stops at is rounding. The step is put at that one of PLACES over the stretch with
+which the held-out rows agree best: one choice of nine made on held-out rows, like the phase of a line that
+is every run's own. The interval of the onset is the whole stretch.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender
 from calibration.readers.run import Array
 
+PLACES = 9  # over a stretch, both ends among them
 ALIKE = 0.01  # of the columns' rms on fitted rows
 SHORTEST, LONGEST, FINE = 2.0, 1e4, 0.25  # s: a stretch worth the name, its reach, and how finely it is told
 
@@ -44,14 +45,14 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
 
 
 def settled(problem: Problem, base: Array, contender: Contender) -> Contender:
-    """The contender with its step at that end of an unseen stretch which leaves less on held-out rows."""
+    """The contender with its step where in an unseen stretch it leaves least on held-out rows."""
     c = contender.candidate
     stretch = unseen(problem, c)
     if stretch is None or c.shape is None or not problem.test.any():
         return contender
     names, fit = list(c.fixed)[: len(c.steps)], contender.fit
     tried = [contender]
-    for onset in stretch:
+    for onset in np.linspace(*stretch, PLACES).tolist():
         p = _with(names, _as_step(c), onset)
         fixed = {**c.fixed, **{n: (float(v), c.fixed[n][1]) for n, v in zip(names, p, strict=True)}}
         tried.append(replace(contender, candidate=replace(c, columns=c.shape(p), fixed=fixed)))
