@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.channels.slowoffset import SLOW
 from calibration.decide.parameters import interval
 from calibration.decide.select import CLOSEST, Selection
 from calibration.decide.verdict import Verdict
@@ -47,7 +48,7 @@ def calibrated(s: Selection, skip: tuple[str, ...] = (), model: float | None = N
     out = {}
     blocks = max(int(s.problem.train.sum() / s.problem.block), 5)
     for k, (name, unit) in enumerate(s.problem.base_labels):
-        if name in skip or name in out:
+        if name in (*skip, SLOW) or name in out:
             continue
         value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
         low, high = interval(value, error, blocks, None if model is None else model * value)

@@ -21,7 +21,7 @@ from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.passive import sound
 from calibration.decide.select import Selection
 from calibration.decide.thresholds import AXIS_EARNED
-from calibration.decide.tolerance import MODEL_ERROR
+from calibration.decide.tolerance import ELECTRICAL_ERROR
 from calibration.decide.verdict import Verdict, judge
 from calibration.decide.withdraw import withdraw
 from calibration.finding import Finding
@@ -86,7 +86,7 @@ def axis_answer(
     )
     v.calibrated = dict(result.calibrated)
     if "E" in result.selections:
-        v.calibrated |= calibrated(result.selections["E"], ("electrical_lag",), MODEL_ERROR)
+        v.calibrated |= calibrated(result.selections["E"], ("electrical_lag",), ELECTRICAL_ERROR)
     for key, s in result.selections.items():
         if key in SENSORS and np.isfinite(s.held.before):
             v.error[SENSORS[key]] = error_row(s, result.floors.get(key))

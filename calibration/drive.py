@@ -12,12 +12,13 @@ from calibration.channels.balance import problem_of
 from calibration.channels.drivenoise import resolved_rows
 from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
+from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.select import Selection
 from calibration.drivedelay import Found, left_by_the_declared, timed
 from calibration.driveleft import Left, left_over, settle
 from calibration.drivenames import as_told
-from calibration.drivesearch import find
+from calibration.drivesearch import find, scene_of
 from calibration.driveunnamed import beyond_names, quick_lines
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
@@ -142,6 +143,14 @@ def _balance(
             f"{response.channel}: points against the motion, so it is what acts on the drive, or the position"
             " counts the other way; its sign is turned here, and so are the signs of what is found in it"
         )
+    if view.dynamic:
+        view.slow_offset, rms = offset_order(view, problem, scene_of(view, problem).wander)
+        problem = problem_of(view, records, hold_out)
+        if view.slow_offset:
+            notes.append(
+                f"{response.channel}: its offset wanders by {rms:.2g} {response.unit} rms within a file; fitted"
+                f" anew in every file, by {view.slow_offset} slow functions of time, as the offset is"
+            )
 
     def search(p: Problem) -> Found:
         floor, _ = floor_of(view, p)

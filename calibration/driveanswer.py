@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
+from calibration.channels.slowoffset import SLOW
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.decide.verdict import Verdict, judge
 from calibration.drive import Balance, DriveResult
@@ -184,7 +185,7 @@ def _missing(b: Balance) -> list[str]:
     out = [
         n
         for n, v in zip(names, size, strict=False)
-        if v == 0 and not any(x.startswith(n + ":") for x in b.bounds)
+        if v == 0 and n != SLOW and not any(x.startswith(n + ":") for x in b.bounds)
     ]
     at = np.flatnonzero(size > 0)
     z = columns[:, at] / size[at]
@@ -192,7 +193,7 @@ def _missing(b: Balance) -> list[str]:
     inverse = np.linalg.pinv(gram, hermitian=True)
     likeness = np.abs(gram) - np.eye(len(at))
     for k, v in enumerate(np.diag(inverse)):
-        if v > INFLATION and at[k] < len(names):
+        if v > INFLATION and at[k] < len(names) and names[at[k]] != SLOW:
             out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
     return out
 

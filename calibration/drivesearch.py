@@ -15,7 +15,7 @@ from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible, lost_motion, moving_scale, spring
-from calibration.prune import above, prune, remainders, signed, sound, within_bounds
+from calibration.prune import above, more_than_an_offset, prune, remainders, signed, sound, within_bounds
 
 MOST = 14  # effects: a cogging motor shows several orders
 MARGIN = 0.02  # of the cross-validated mean square (effects.md, lesson 3)
@@ -114,7 +114,9 @@ def _search(
             break
     assert s is not None
     s = remainders(prune(signed(within_bounds(s, view.resolved))))
-    return above(sound(signed(s))), scene  # what was left out moves the sizes of the others
+    return above(
+        more_than_an_offset(sound(signed(s)), view)
+    ), scene  # what was left out moves the sizes of the others
 
 
 def _select(

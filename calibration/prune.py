@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
+from calibration.channels.slowoffset import slowness, with_slow_offset
+from calibration.channels.view import View
 from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender
 from calibration.decide.select import Refusal, Selection, design, fitted, phases
@@ -123,12 +125,31 @@ def sound(s: Selection) -> Selection:
     return s
 
 
+def more_than_an_offset(s: Selection, view: View) -> Selection:
+    """Leave out what an offset that wanders in its place, without any of the drive's motion, predicts as well
+    on held-out rows: along a few moves a walk follows the direction."""
+    if not view.dynamic or s.problem.test.sum() < 20:
+        return s
+    wandering = with_slow_offset(s.problem, view, 2 * view.slow_offset or slowness(view))
+    for k in reversed(range(len(s.chosen))):
+        others = [x.candidate for j, x in enumerate(s.chosen) if j != k]
+        if _held(replace(s, problem=wandering), others) <= _held(s, [x.candidate for x in s.chosen]):
+            s = _without(s, k, "an offset that wanders slowly leaves as little")
+    return s
+
+
 def above(s: Selection) -> Selection:
     """Names are for what is above the floor: where the declared model alone is at it, what sensors and loop
     leave in the columns has many shapes."""
-    while s.chosen and s.held.before <= s.problem.floor and not _clear_of_steps(s):
+    while s.chosen and not is_above(s):
         s = _without(s, 0, "the declared model is at the floor without it")
     return s
+
+
+def is_above(s: Selection) -> bool:
+    """Whether the declared model leaves more than the floor, of all held-out rows or of those that coarse
+    steps of the position do not spoil."""
+    return s.held.before > s.problem.floor or _clear_of_steps(s)
 
 
 def _clear_of_steps(s: Selection) -> bool:

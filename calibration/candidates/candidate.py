@@ -34,7 +34,7 @@ class Candidate:
     order: float | None = None
     frequency: float | None = None
     sign: int = 0  # +1: every coefficient must be positive; -1 negative; 0 free
-    most: float = np.inf  # magnitude beyond which a coefficient means nothing
+    most: float | tuple[float, ...] = np.inf  # magnitude beyond which a coefficient (each) means nothing
     least: float = 0.0  # -log10 p below which this form is not believed; 0: as every other
     positive: tuple[int, ...] = ()  # coefficients that must be positive
     fixed: dict[str, tuple[float, str]] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Candidate:
 
     def allowed(self, beta: Array) -> bool:
         """Whether the coefficients respect the physical sign."""
-        if np.abs(beta).max(initial=0.0) > self.most or any(beta[k] <= 0 for k in self.positive):
+        if np.any(np.abs(beta) > self.most) or any(beta[k] <= 0 for k in self.positive):
             return False
         return self.sign == 0 or bool(np.all(np.sign(beta) * self.sign >= 0))
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.channels.problem import Problem
+from calibration.channels.slowoffset import with_slow_offset
 from calibration.channels.view import View
 from calibration.inputs.record import Record
 from calibration.readers.run import Array
@@ -55,7 +56,7 @@ def problem_of(view: View, records: list[Record], hold_out: list[str], delay_s: 
     )
     if not response.is_force:  # an incremental sensor starts anywhere: every file has its own offset
         problem.fresh = np.column_stack([(session == k).astype(float) for k in np.unique(session)])
-    return problem
+    return with_slow_offset(problem, view, view.slow_offset)
 
 
 def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:

@@ -59,6 +59,7 @@ class View:
     dynamic: bool  # the balance holds accelerations
     turn: float | None  # position units per turn
     slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
+    slow_offset: int = 0  # cosines per file by which the response's offset wanders
     standstill: float = 0.0  # speed, position units per s, below which the direction fades
     speed: Array = field(default_factory=lambda: np.zeros(0))  # smoothed, for what is not linear in it
     direction: Array = field(default_factory=lambda: np.zeros(0))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calibration.channels.problem import Problem
 from calibration.readers.run import Array
-from calibration.statistics.regression import solve
+from calibration.statistics.regression import leverage, solve
 from calibration.statistics.whitening import Mask, Whitener
 
 
@@ -128,7 +128,9 @@ def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
 def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
     """Score two designs on training rows they were not fitted to, in FOLDS folds of pieces in time.
 
-    Not a number where the rows make fewer than two folds: nothing could then be predicted.
+    Rows that the other folds' fit tells less of than they do themselves (leverage above one: a place that no
+    other fold has been to) test nothing and are left out. Not a number where what is left makes fewer than
+    two folds.
     """
     rows = problem.train
     use = whitener.usable(rows)
@@ -141,14 +143,20 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
         return nothing
     y = whitener.apply(np.where(rows, problem.y, 0.0))[use]
     left: list[Array] = []
+    told = np.ones(len(y), dtype=bool)
     for x in (x0, x1):
         w = whitener.apply(np.where(rows[:, None], x, 0.0))[use]
         e = np.empty(len(y))
         for k in dealt:
             out = fold == k
             e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
+            if x is x1:
+                told[out] = leverage(w[~out], w[out]) <= 1.0
         left.append(e)
-    e0, e1 = left
+    if told.sum() < 100 or len(np.unique(fold[told])) < 2:
+        return nothing
+    e0, e1, fold = left[0][told], left[1][told], fold[told]
+    dealt = np.unique(fold)
     b, a = float(np.sqrt(np.mean(e0**2))), float(np.sqrt(np.mean(e1**2)))
     gains = [float(np.sum((e0**2 - e1**2)[fold == k])) for k in dealt]
     return HeldOut(

@@ -17,18 +17,20 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     one, speed = np.abs(s.view.direction), np.abs(s.view.speed)
     per = f"{s.unit} s/{s.angle_unit}"
-    most = 1.0 * s.declared.get("coulomb", np.inf) or np.inf  # beyond it, friction would push one way
+    # beyond the declared friction itself, it would push one way
+    most = tuple(max(s.declared.get(n, np.inf), 0.0) or np.inf for n in ("coulomb", "viscous"))
     label = (("coulomb_asymmetry", s.unit), ("viscous_asymmetry", per))
     out = []
     # where nothing stands still, a constant is the offset of the base
     if np.std(s.at(one)) > 0.02:
         c = s.at(one)[:, None]
-        out.append(Candidate("friction_asymmetry", "velocity", c, label[:1], most=most))
+        out.append(Candidate("friction_asymmetry", "velocity", c, label[:1], most=most[0]))
     if np.std(speed) > VARIES * np.mean(speed):
-        out.append(Candidate("friction_asymmetry", "velocity", s.at(speed)[:, None], label[1:]))
+        grows = s.at(speed)[:, None]
+        out.append(Candidate("friction_asymmetry", "velocity", grows, label[1:], most=most[1]))
         if len(out) > 1:
             both = s.at(np.column_stack([one, speed]))
-            out.append(Candidate("friction_asymmetry", "velocity", both, label))
+            out.append(Candidate("friction_asymmetry", "velocity", both, label, most=most))
     return out
 
 

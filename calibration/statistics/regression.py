@@ -27,13 +27,24 @@ class Fit:
 
 def solve(x: Array, y: Array) -> Array:
     """Least squares through scaled normal equations; columns without weight get a zero coefficient."""
+    inv, scale = _inverse_gram(x)
+    return np.asarray(inv @ ((x / scale).T @ y) / scale)
+
+
+def leverage(x: Array, at: Array) -> Array:
+    """(m,): variance of what a fit on rows x (n, p) predicts at rows `at` (m, p), of the noise's."""
+    inv, scale = _inverse_gram(x)
+    z = at / scale
+    return np.asarray(np.einsum("ij,ij->i", z @ inv, z))
+
+
+def _inverse_gram(x: Array) -> tuple[Array, Array]:
     scale = np.sqrt(np.einsum("ij,ij->j", x, x))
     scale[scale == 0] = 1.0
     gram = (x / scale).T @ (x / scale)
     w, v = np.linalg.eigh(gram)
     keep = w > 1e-11 * max(w.max(), 1e-300) if len(w) else w > 0
-    inv = (v[:, keep] / w[keep]) @ v[:, keep].T
-    return np.asarray(inv @ ((x / scale).T @ y) / scale)
+    return np.asarray((v[:, keep] / w[keep]) @ v[:, keep].T), scale
 
 
 def gls(y: Array, x: Array, valid: Mask, order: int, block: int = 200, rounds: int = 2) -> Fit:
