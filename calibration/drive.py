@@ -148,8 +148,8 @@ def _balance(
         problem = problem_of(view, records, hold_out)
         if view.slow_offset:
             notes.append(
-                f"{response.channel}: its offset wanders by {rms:.2g} {response.unit} rms within a file; fitted"
-                f" anew in every file, by {view.slow_offset} slow functions of time, as the offset is"
+                f"{response.channel}: its offset wanders by {rms:.2g} {response.unit} rms within a file;"
+                f" {view.slow_offset} slow functions of time are fitted anew in every file, as the offset is"
             )
 
     def search(p: Problem) -> Found:

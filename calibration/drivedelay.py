@@ -62,8 +62,9 @@ def timed(
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
     if before <= plain_loop.floor:  # names are for what is above it
         p = delay.parameters["delay"]
-        what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close (the declared model is at the floor"
-        return Timed(plain_loop, found, close=f"{what} without it): quicker turns and a quieter effort")
+        what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
+        why = "the declared model is at the floor without it"
+        return Timed(plain_loop, found, close=f"{what} ({why}): quicker turns and a quieter effort")
     telling = was**2 - now**2 > max(EARNS * was**2, least)
     if telling or (simpler and now < was):
         return Timed(moved, late, delay, before)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.blind.sealer import declared as d
-from tests.blind.sealer import draw, drive_runs, manoeuvres, rates, slots
+from tests.blind.sealer import draw, drive_runs, manoeuvres, measure, rates, slots
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +44,20 @@ def test_steady_state_voltage_is_ohm_and_back_emf(drive: draw.Drive) -> None:
     spin = 3600.0 * d.ARCSEC * d.GEAR_RATIO
     assert volt_a == pytest.approx(v["RA"] * float(np.mean(trace["i_a"][half])) + v["KA"] * spin, rel=2e-3)
     assert volt_b == pytest.approx(v["RB"] * float(np.mean(trace["i_b"][half])), rel=5e-3)
+
+
+def test_what_recalibration_takes_up_has_no_ratio(drive: draw.Drive) -> None:
+    """Drag that is there from the start is Coulomb friction; from the middle on it is an effect. Below
+    break-away, where the bristle hardly knows its level, it is neither."""
+    back_and_forth = [(0.0, 0.5), (600.0, 8.0), (-200.0, 8.0), (15.0, 8.0), (0.0, 2.0), (3600.0, 8.0)]
+    runs = [manoeuvres.closed("test", back_and_forth)]
+
+    def size(begin: float) -> float:
+        values = {"BRAKE_T": 15.0, "BRAKE_T0": begin}
+        return measure.ratios(drive, drive_runs.run_all(drive, runs, values, 1), values, 1)["T"]
+
+    assert size(-1.0) < 0.2
+    assert size(17.0) > 2.0
 
 
 def free(values: dict[str, float]) -> tuple[slots.Array, slots.Array, slots.Array]:

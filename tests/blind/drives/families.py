@@ -40,8 +40,9 @@ def near(rng: Rng, value: float, factor: float = 1.6) -> float:
 def friction(
     rng: Rng, coulomb: float, viscous: float, stribeck: float, break_away: float
 ) -> dict[str, float]:
-    """Friction about published figures; the bristle gives way after `break_away` of travel, less than a step of
-    the sensor: where nothing is hidden, it is the Coulomb and viscous friction that the rig file declares."""
+    """Friction about published figures; the bristle gives way after `break_away` of travel, less than a step
+    of the sensor: where nothing is hidden, it is the Coulomb and viscous friction that the rig file declares.
+    """
     c = near(rng, coulomb)
     return {
         "COUL": c, "STIC": c, "VISC": near(rng, viscous), "VS": near(rng, stribeck),

@@ -50,7 +50,7 @@ def sine(on: float, order: float, angle: float, phase: float) -> float:
 
 @compiled
 def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
-    """Levels of friction: warm-up, preload, position, load, brake."""
+    """Levels of friction: warm-up, preload, position, load, brake; what they add beside the bristle's part."""
     q[r_.Q_BREAKAWAY] = q[r_.Q_VISCOUS] = q[r_.Q_LEVEL] = 1.0
     q[r_.Q_COULOMB_ADD] = 0.0
     if not friction_effects(p):
@@ -61,17 +61,11 @@ def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
     q[r_.Q_BREAKAWAY] = 1.0 + pre
     q[r_.Q_VISCOUS] = 1.0 + pre
     q[r_.Q_LEVEL] = 1.0 + warm
-    plain = r_.friction_level(s[1], q, p)
     add = p[p_.LOADF] * load + p[p_.BRAKE_T] * onset(t, p[p_.BRAKE_T0], 0.0)
     add += p[p_.POSF_A] * math.sin(p[p_.POSF_ORDER] * s[0] + p[p_.POSF_PH])
     q[r_.Q_COULOMB_ADD] = add
-    level = r_.friction_level(s[1], q, p)
-    bend = p[p_.SIG0] * s[8] / level
     sign = 1.0 if s[1] > 0.0 else -1.0
-    x = abs(s[1]) / p[p_.VS]
-    fade = math.exp(-(x ** p[p_.DELTA]))
-    own = add + plain * warm / (1.0 + warm) + p[p_.TS] * pre * fade + sign * p[p_.ASYM_C] * plain
-    e[0] -= bend * own + p[p_.SIG2] * s[1] * (pre + sign * p[p_.ASYM_V])
+    e[0] -= p[p_.SIG2] * s[1] * (pre + sign * p[p_.ASYM_V])
 
 
 @compiled

@@ -6,6 +6,7 @@ import numpy as np
 
 from tests.blind.sealer import held as h_
 from tests.blind.sealer import rates as r_
+from tests.blind.sealer import shadow as f_
 from tests.blind.sealer import slots as p_
 from tests.blind.sealer.compiled import compiled
 from tests.blind.sealer.slots import Array
@@ -48,13 +49,17 @@ def simulate(
     state and memory are advanced in place.
     """
     ticks = command.shape[0]
-    rows = np.zeros(((ticks + 1) // 2, p_.O_DUTY_B + 1))
+    rows = np.zeros(((ticks + 1) // 2, len(p_.OUT_NAMES)))
     ring = np.zeros((6, RING))
     held = np.zeros(r_.HELD)
     scratch = np.zeros((4, r_.STATES))
     work = np.zeros(r_.STATES)
     own = np.zeros(4)
     own_sum = np.zeros(5)
+    bristles = np.zeros(f_.SHADOWS)
+    figures = np.zeros(4)
+    figures_sum = np.zeros(4)
+    rubs = h_.friction_effects(p)
     duty = np.zeros(2)
     next_duty = np.zeros(2)
     step = p[p_.TICK] / SUBSTEPS
@@ -112,13 +117,20 @@ def simulate(
             for i in range(4):
                 out[p_.O_E_TORQUE + i] = own_sum[i] / (2 * SUBSTEPS)
             out[p_.O_E_ROLLER] = own_sum[4] / 2.0
+            for i in range(4):
+                out[p_.O_F_COULOMB + i] = figures_sum[i] / (2 * SUBSTEPS)
             own_sum[:] = 0.0
+            figures_sum[:] = 0.0
         for sub in range(SUBSTEPS):
             if sub == EARLY:
                 duty[0], duty[1] = next_duty[0], next_duty[1]
             t = p[p_.T_SESSION] + tick * p[p_.TICK] + sub * step
             own[:] = 0.0
             h_.hold_friction(t, state, held, p, own)
+            if rubs:
+                f_.shadow(step, state, held, p, bristles, own, figures)
+                for i in range(4):
+                    figures_sum[i] += figures[i]
             h_.hold_axis(state, memory, torque[tick], held, p, own)
             h_.hold_motors(t, burst[tick], state, memory, duty, held, p, own)
             before = state[0]

@@ -69,7 +69,9 @@ def ratios(drive: Drive, traces: list[Trace], v: dict[str, float], seed: int) ->
             extra = extra + v["MAINS"] * 0.7 * d.ADC_A_PER_COUNT * np.resize([1.0, -1.0], len(omega))
         torque = torque + sign * drive.values["KA"] * d.GEAR_RATIO * extra
         volts[s] = volts[s] - drive.values["RA"] * extra
-    out["T"] = left(torque, [way, omega, fade, alpha]) / floor["T"]
+    figures = [join(traces, f"f_{name}") for name in ("coulomb", "stiction", "stiffness", "stribeck")]
+    friction = figures if np.any(figures) else [way, fade]  # of a friction effect: along its own motion
+    out["T"] = left(torque, [*friction, omega, alpha]) / floor["T"]
     spins = {"A": np.maximum(omega, 0) * d.GEAR_RATIO, "B": np.maximum(-omega, 0) * d.GEAR_RATIO}
     out["E"] = max(left(volts[s], [currents[s], spins[s]]) / floor["E"] for s in "AB")
     kin = join(traces, "e_kin")

@@ -129,11 +129,13 @@ INDEX: Final = {name: place for place, name in enumerate(NAMES)}
 OUT_NAMES: Final = (
     "setpoint", "effort", "velocity", "theta", "theta_log", "phi_a", "phi_b", "i_a", "i_b", "i_a_log",
     "i_b_log", "omega", "e_torque", "e_kin", "e_volt_a", "e_volt_b", "e_roller", "duty_a", "duty_b",
+    "f_coulomb", "f_stiction", "f_stiffness", "f_stribeck",
 )  # fmt: skip
 OUT: Final = {name: place for place, name in enumerate(OUT_NAMES)}
 (
     O_SETPOINT, O_EFFORT, O_VELOCITY, O_THETA, O_THETA_LOG, O_PHI_A, O_PHI_B, O_I_A, O_I_B, O_I_A_LOG,
     O_I_B_LOG, O_OMEGA, O_E_TORQUE, O_E_KIN, O_E_VOLT_A, O_E_VOLT_B, O_E_ROLLER, O_DUTY_A, O_DUTY_B,
+    O_F_COULOMB, O_F_STICTION, O_F_STIFFNESS, O_F_STRIBECK,
 ) = range(len(OUT_NAMES))  # fmt: skip
 
 
