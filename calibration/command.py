@@ -25,6 +25,7 @@ REMARKS = (
     "remain between",
     "end of its range",
     "leaps by",
+    "its offset wanders",
 )
 
 

@@ -50,6 +50,7 @@ class Balance:
     before: float | None = None  # held-out error before the delay was taken out
     lacks: list[str] = field(default_factory=list)
     bounds: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # what was settled before any name
     left: Left | None = None
     close: str = ""  # of a delay that is neither named nor out of the question
 
@@ -187,7 +188,8 @@ def _balance(
         delay,
         before,
         lacks,
-        [*notes, *bounds],
+        bounds,
+        notes,
         left_over(together, scene, floor),
         close,
     )

@@ -210,6 +210,7 @@ def _reasons(found: DriveResult) -> list[str]:
         out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
     out += [*_strange_rate(found), *_scaled(found)]
     for b in found.balances:
+        out += b.notes
         out.append(f"floor of {b.view.response.channel}: {b.floor_from}")
         out += _short(found)
         if not np.any(np.abs(b.view.direction) > 0.5):

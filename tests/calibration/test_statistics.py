@@ -144,6 +144,19 @@ def test_every_fold_holds_rows_and_short_logs_are_predicted_too(rows: int, runs:
     assert score.share == pytest.approx(1 - 0.09 / 1.09, abs=0.05)  # variance of what was added over all
 
 
+def test_places_that_no_other_fold_has_been_to_test_nothing() -> None:
+    rng = np.random.default_rng(8)
+    n = 6000
+    x = rng.standard_normal((n, 1))
+    lonely = np.zeros((n, 2))  # one stretch of 1.5 s, which lies in one fold
+    lonely[300:450, 0], lonely[300:450, 1] = 1.0, np.linspace(0.0, 1.0, 150)
+    # next to nothing of either elsewhere: the other folds give them coefficients without meaning
+    lonely[450:] = 1e-4 * rng.standard_normal((n - 450, 2))
+    p = regression(x[:, 0] + 3.0 * lonely[:, 0] + 0.3 * rng.standard_normal(n), np.ones((n, 1)), 0.01)
+    score = cross_validate(p, p.base, np.hstack([p.base, x, lonely]), Whitener(np.zeros(0)))
+    assert score.share == pytest.approx(1 - 0.09 / 1.09, abs=0.05)
+
+
 def test_an_exact_line_gains_through_one_filter_though_its_own_residual_is_whitened_by_another() -> None:
     rng = np.random.default_rng(4)
     t = np.arange(3000) * 0.01

@@ -50,7 +50,7 @@ def sine(on: float, order: float, angle: float, phase: float) -> float:
 
 @compiled
 def hold_friction(t: float, s: Array, q: Array, p: Array, e: Array) -> None:
-    """Levels of friction: warm-up, preload, position, load, brake; what they add beside the bristle's part."""
+    """Levels of friction: warm-up, preload, position, load, brake; what viscous ones add."""
     q[r_.Q_BREAKAWAY] = q[r_.Q_VISCOUS] = q[r_.Q_LEVEL] = 1.0
     q[r_.Q_COULOMB_ADD] = 0.0
     if not friction_effects(p):

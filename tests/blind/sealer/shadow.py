@@ -1,5 +1,5 @@
-"""Bristles along the drive's own motion, beside the one that drives it: what a friction effect adds to the torque
-of that motion, and what calibrated figures that are one per cent larger would.
+"""Bristles along the drive's own motion, beside the one that drives it: what a friction effect adds to the
+torque of that motion, and what calibrated figures that are one per cent larger would.
 
 A share of the friction is not it: below break-away the bristle hardly knows its level, and what an effect
 adds there is nothing.
@@ -33,8 +33,8 @@ def follow(z: float, h: float, omega: float, stiffness: float, g: float) -> floa
 
 @compiled
 def shadow(h: float, s: Array, q: Array, p: Array, z: Array, e: Array, f: Array) -> None:
-    """Advance the shadows z (SHADOWS,) by h seconds; what the effects add goes to e[0], what larger figures do
-    to f (4,), N m."""
+    """Advance the shadows z (SHADOWS,) by h seconds; what the effects add goes to e[0], what larger
+    figures do to f (4,), N m."""
     omega, stiffness = s[1], p[p_.SIG0]
     tc, ts, vs, delta = p[p_.TC], p[p_.TS], p[p_.VS], p[p_.DELTA]
     z[WITH] = follow(z[WITH], h, omega, stiffness, r_.friction_level(omega, q, p))
