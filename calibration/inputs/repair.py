@@ -167,7 +167,7 @@ def _clear_of_tails(off: Array, n: int) -> float:
         top[off < np.roll(off, shift)] = 0.0
     most = max(int(MOST_SPIKES * n), 3)
     largest = np.sort(top)[::-1][: most + 1 + TAIL]
-    surest, limit = 1.0, float("inf")
+    limit = float("inf")
     for k in range(1, min(most + 1, len(largest) - TAIL)):
         rest = largest[k : k + TAIL + 1]
         if rest[0] <= 0 or rest[-1] <= 0:
@@ -175,9 +175,8 @@ def _clear_of_tails(off: Array, n: int) -> float:
         leap = largest[k - 1] / rest[0]
         tail = float(np.mean(np.log(rest[:-1] / rest[-1])))  # Hill's estimate of 1 / the tail's index
         # the k largest of a power law all lie `leap` above the next with this probability (Renyi)
-        sure = k * np.log(leap) / max(-np.log(BY_CHANCE) * tail, 1e-12)
-        if leap > LEAP and sure > surest:  # a spike among larger ones leaves a leap above itself, too
-            surest, limit = sure, float(rest[0])
+        if leap > LEAP and k * np.log(leap) > -np.log(BY_CHANCE) * tail:
+            limit = float(rest[0])  # and on: spikes among larger ones leave a leap above themselves, too
     return limit
 
 

@@ -76,9 +76,10 @@ def test_a_sound_drive_gets_no_name_and_its_numbers(tmp_path: Path) -> None:
         assert data["calibrated"][name]["value"] == pytest.approx(truth, rel=0.03)
 
 
-@pytest.mark.parametrize("sizes", [(0.2, -0.2, 0.2, 0.2, -0.2), (0.2, -0.25, 0.2, 0.3, -0.02)])
+@pytest.mark.parametrize("sizes", [(0.2, -0.2, 0.2, 0.2, -0.2), (0.2, -0.25, 0.2, 0.3, -0.05)])
 def test_spikes_are_bad_samples_and_the_mass_stays(tmp_path: Path, sizes: tuple[float, ...]) -> None:
     t, x, u = motion()
+    x = np.round(x / 1e-5) * 1e-5
     x[[800, 1700, 2600, 3500, 4400]] += np.array(sizes)  # one far smaller than the next is a spike, too
     data = answer(tmp_path, FORCE, (t, x, u))
     assert found(data) == ["sample_loss"]
