@@ -56,6 +56,9 @@ ROTORS = (39.0, 780.0)
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
 )
+# times what the rounding of the effort leaves of its change, before a law of its own is looked for: below, a
+# law that fits better is how small numbers round (the plant's own logs: 1.0; a wrong gain: 1.9 and more)
+LEAST_LAW = 1.2
 SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
 PULSES = 8.0  # a quarter of the regular spikes: 32 of them
 LEAST_COMMAND = (
@@ -215,6 +218,8 @@ def _command(result: AxisResult, rng: np.random.Generator) -> None:
     p, setpoint = command
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
     s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
+    if s.chosen and s.chosen[0].candidate.name == "unknown" and s.held.before < LEAST_LAW * p.floor:
+        s = select(p, [], rng)
     result.selections["U"] = s
     if not s.chosen or s.chosen[0].candidate.kind != "line" or largest_amplitude(s) > LEAST_COMMAND:
         result.collect(s)

@@ -9,6 +9,8 @@ import numpy as np
 from calibration.axisresult import AxisResult
 from calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
 from calibration.candidates.candidate import Candidate
+from calibration.candidates.in_every_run import in_every_run
+from calibration.channels.declared import Friction
 from calibration.channels.frame import fill
 from calibration.channels.level import level_of
 from calibration.channels.motion import Motion
@@ -18,7 +20,7 @@ from calibration.decide.broadband import wind
 from calibration.decide.select import Selection, design, select
 from calibration.decide.sizes import white_noise
 from calibration.decide.tolerance import seen_speeds, telling, torque_changes
-from calibration.finding import Finding
+from calibration.finding import Finding, Parameter
 from calibration.names import NAMES
 from calibration.names.own import own_candidates
 from calibration.readers.run import Array
@@ -75,6 +77,25 @@ def torque_channel(result: AxisResult, drive: Transmission, clock: Array, rng: n
     found = telling(found, everything, x, result.declared, torque.friction)
     result.findings += found if enough else []
     result.calibrated |= calibrated
+    for f in result.findings:
+        to_calibrated(f, torque.friction, calibrated)
+
+
+# sizes that are parts of a friction, and of which: the effect's column was made with the fit's own before the
+# effect was known, which a large change has bent
+PARTS = {
+    ("preload_change", "fraction"): "viscous",
+    ("friction_warmup", "amplitude"): "coulomb",
+    ("friction_asymmetry", "coulomb_asymmetry"): "coulomb",
+    ("friction_asymmetry", "viscous_asymmetry"): "viscous",
+}
+
+
+def to_calibrated(f: Finding, used: Friction, calibrated: dict[str, Parameter]) -> None:
+    """Turn sizes that are parts of the friction `used` into parts of the calibrated one."""
+    for (name, size), whole in PARTS.items():
+        if f.name == name and size in f.parameters and whole in calibrated and calibrated[whole].value > 0:
+            f.parameters[size] = f.parameters[size].times(getattr(used, whole) / calibrated[whole].value)
 
 
 def _pass(
@@ -119,6 +140,7 @@ def _pass(
         *(x for x in axis_torque.direction_effects(c, f) if x.name not in offsets),
         *axis_torque.angle_effects(c),
         *axis_torque.slow_effects(c, f),
+        *in_every_run(f),
         *axis_lines.gear_lines(c, m.period_s),
         *axis_lines.motor_lines(c, motors, null.residual, p.train),
         *modes.structural_modes(m, frame.run),

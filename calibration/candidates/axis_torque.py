@@ -18,7 +18,6 @@ from calibration.readers.run import Array
 # of a current's gain error: one motor's torque is most of the torque, and would explain itself
 LARGEST_GAIN = 0.5
 PASSIVE = 1.0  # of the friction itself: a larger asymmetry would drive the axis in one direction
-ONSETS_IN_RUN = 19  # tried within the longest run
 
 
 @dataclass
@@ -119,7 +118,7 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
         if tau > 3 * span:
             continue
         for viscous in (True, False):
-            shape = _warmup(f, since, full, viscous)
+            shape = warmup(f, since, full, viscous)
             out.append(
                 Candidate(
                     "friction_warmup",
@@ -146,7 +145,6 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
                 steps=(0.02 * span,),
             )
         )
-    out += _in_every_run(f)
     for at in np.linspace(-0.4, 0.95, 19) * span + low:
         for part in (0.02, 0.2, 0.5, 1.0):
             shape = _ramp(f)
@@ -180,37 +178,10 @@ def slow_effects(c: Context, f: Friction) -> list[Candidate]:
     return out
 
 
-def _in_every_run(f: Friction) -> list[Candidate]:
-    """A brake whose onset comes at the same time of every run; only where there are several runs."""
-    motion = f.level.motion
-    starts = np.union1d([0], np.flatnonzero(motion.starts))
-    if len(starts) < 2:
-        return []
-    index = np.arange(len(motion.theta))
-    first = starts[np.searchsorted(starts, index, side="right") - 1]
-    since = (index - first) * motion.period_s / motion.width
-    shape = _onset_at(f, since)
-    longest = float(since.max())
-    return [
-        Candidate(
-            "brake_drag",
-            "time",
-            shape(np.array([at])),
-            (("torque", "N m"),),
-            fixed={"onset_in_run": (float(at), "s")},
-            shape=shape,
-            steps=(0.02 * longest,),
-        )
-        for at in np.linspace(0.05, 0.95, ONSETS_IN_RUN) * longest
-        if 0.02 < np.mean(since > at) < 0.98
-    ]
+def warmup(f: Friction, since: Array, full: Array, viscous: bool) -> Callable[[Array], Array]:
+    """Torque of a relative rise that decays with the time since the start, s: `since` (n_analysis,), `full`
+    (n,); with the viscous friction, or the bristles' alone."""
 
-
-def _onset_at(f: Friction, since: Array) -> Callable[[Array], Array]:
-    return lambda p: f.level.answer((since > p[0]).astype(float))[:, None]
-
-
-def _warmup(f: Friction, since: Array, full: Array, viscous: bool) -> Callable[[Array], Array]:
     def shape(p: Array) -> Array:
         tau = max(float(p[0]), 1.0)
         out = f.level.answer(f.level.steady * np.exp(-full / tau))

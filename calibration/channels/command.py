@@ -27,6 +27,7 @@ ARCSEC_PER_RAD = 206264.806
 STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position loop adds is more
 REGIME = 51  # rows over which the set point's kind is told
 CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
+ROUNDING = float(np.sqrt(2 / 12))  # 1/3000: of a change between two efforts, each in whole steps
 EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
@@ -88,6 +89,7 @@ def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Proble
         ar_order=4,
         block_s=3.0,
         sensor="command",
+        floor=ROUNDING if np.allclose(u, np.round(u), atol=0.01, equal_nan=True) else 0.0,
     )
     return problem, np.nan_to_num(setpoint) * 206264.806
 

@@ -38,7 +38,9 @@ def plain(f: Finding, facts: Facts) -> Made:
 def warmup(f: Finding, facts: Facts) -> Made:
     """friction_warmup: F (1 + a e^(-t/tau)) is the plant's depth -a."""
     made = Made()
-    made.add(f.name, facts, {"depth": -value(f, "amplitude"), "time_constant": value(f, "tau")})
+    tau = value(f, "tau", value(f, "tau_in_run"))
+    made.add(f.name, facts, {"depth": -value(f, "amplitude"), "time_constant": tau})
+    _comes_in_every_run(f, made)
     if "stiction_rise" in f.parameters:
         made.remarks.append("friction_warmup: the plant scales Tc, Ts and sigma2 alike, by the rise of Tc")
     return made
@@ -49,19 +51,24 @@ def preload(f: Finding, facts: Facts) -> Made:
     made = Made()
     values = {
         "change": value(f, "fraction"),
-        "start": value(f, "onset"),
+        "start": value(f, "onset", value(f, "onset_in_run")),
         "duration": value(f, "ramp", 0.01),
     }
     made.add(f.name, facts, values)
+    _comes_in_every_run(f, made)
     return made
+
+
+def _comes_in_every_run(f: Finding, made: Made) -> None:
+    if {"onset_in_run", "tau_in_run"} & set(f.parameters):
+        made.remarks.append(f"{f.name}: it comes in every run, the plant has it from its own start on")
 
 
 def brake(f: Finding, facts: Facts) -> Made:
     """brake_drag: a drag that goes away is one that was there from the start, of friction that was less."""
     made = Made()
     torque, onset = value(f, "torque"), value(f, "onset", value(f, "onset_in_run"))
-    if "onset_in_run" in f.parameters:
-        made.remarks.append("brake_drag: it comes in every run, the plant has it from its own start on")
+    _comes_in_every_run(f, made)
     if torque >= 0.0:
         made.add(f.name, facts, {"torque": torque, "start": onset, "duration": 1e6})
     else:

@@ -13,27 +13,32 @@ from calibration.finding import Finding, Parameter
 from calibration.finding import middle as middle_of
 from calibration.readers.run import Array
 from calibration.statistics.tails import rms_interval, variance_log10
-from calibration.statistics.whitening import autocovariance
+from calibration.statistics.whitening import Mask, autocovariance
 
 MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
 EVEN = 0.17  # that quotient in white noise, see WIND
 WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
 PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
+LONGEST_S = 20.0  # over which half of the variance is looked for
+# reversals, and the correlation of a second before with the second after: friction has -1, wind is positive
+FEWEST_TURNS, OVER = 3, 0.3
 SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
 # amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
 COUNTS = 0.8
 
 
-def slow_ratio(e: Array, problem: Problem, white: float) -> float:
-    """rms of means over MEAN_S, over the white noise's rms per sample, while the axis slides."""
-    rows = problem.train & (np.abs(problem.base[:, 1]) > SLIDING)
+def slow_ratio(e: Array, problem: Problem, white: float, rows: Mask, fewest: int = 21) -> float | None:
+    """rms of means over MEAN_S, over the white noise's rms per sample, while the axis slides; None where
+    there are fewer means."""
+    rows = rows & (np.abs(problem.base[:, 1]) > SLIDING)
     size = max(round(MEAN_S / problem.period_s), 2)
     n = len(e) // size * size
     ok = rows[:n].reshape(-1, size).mean(axis=1) > 0.9
     means = np.where(rows, e, 0.0)[:n].reshape(-1, size).mean(axis=1)[ok]
-    return float(np.sqrt(np.mean(means**2)) / max(white, 1e-12)) if len(means) > 20 else 0.0
+    return float(np.sqrt(np.mean(means**2)) / max(white, 1e-12)) if len(means) >= fewest else None
 
 
+FEWEST_HELD = 8  # means of held-out rows that must show the same
 STEPS = 2.0  # of problem.step
 BURSTS = 5.0  # kurtosis; a few hundred gusts of Gaussian wind scatter by 0.3 about 3
 VOLTS = 2.0  # rms of the volts left over the quiet noise
@@ -83,30 +88,34 @@ def _contrast(power: Array, turns: Array) -> float:
 
 def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     """A stationary, broadband, slow torque that no domain explains."""
-    ratio = slow_ratio(e, problem, white)
-    if ratio < WIND:
-        return None
-    r = autocovariance(e, problem.train, 40)
+    ratio = slow_ratio(e, problem, white, problem.train)
+    held = slow_ratio(e, problem, white, problem.test, FEWEST_HELD)
+    if ratio is None or ratio < WIND or (held is not None and held < max(WIND, ratio / 2)):
+        return None  # what blows, blows on held-out rows, too
+    r = autocovariance(e, problem.train, max(round(LONGEST_S / problem.period_s), 40))
     variance = max(float(r[1] + 0.5 * (r[1] - r[2])), 1e-9)
-    late = int(np.argmax(r < 0.5 * variance)) or 20
-    corner = np.log(2) / (2 * np.pi * late * problem.period_s)
+    below = np.flatnonzero(r < 0.5 * variance)
+    corner = np.log(2) / (2 * np.pi * max(int(below[0]), 1) * problem.period_s) if len(below) else None
     sigma = float(np.sqrt(variance))
     if sigma < STEPS * problem.step:
         return None  # two converters' rounding that a steady motion does not average out
     tails = kurtosis(e[problem.train])
+    turns_over = follows_direction(e, problem)
     evidence = variance_log10((ratio / EVEN) ** 2, problem.train.sum() * problem.period_s / MEAN_S)
-    if tails > BURSTS:
+    if tails > BURSTS or turns_over:
+        bursts = f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3)"
         return Finding(
             "unknown",
             "T",
-            "time",
+            "velocity" if turns_over else "time",
             evidence=evidence,
             share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
-            note=f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3) that no angle, speed or "
-            "reversal explains",
+            note="torque that turns over with the direction: friction of no kind that has a name"
+            if turns_over
+            else f"{bursts} that no angle, speed or reversal explains",
             parameters={"rms": Parameter(*_with_unit(e[problem.train], problem.block))},
         )
-    turns = max(float(problem.train.sum()) * problem.period_s * corner, 4.0)
+    turns = max(float(problem.train.sum()) * problem.period_s * (corner or 0.0), 4.0)
     half = 1.96 * sigma / np.sqrt(2 * turns)
     return Finding(
         "wind_torque",
@@ -116,9 +125,28 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
         share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
         parameters={
             "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
-            "corner": Parameter(float(corner), "Hz"),  # half of the variance is gone: no error known
-        },
+        }
+        # half of the variance is gone: no error known
+        | ({} if corner is None else {"corner": Parameter(float(corner), "Hz")}),
     )
+
+
+def follows_direction(e: Array, problem: Problem) -> bool:
+    """Whether a torque turns over where the motion does: wind goes on as it was."""
+    rate = problem.base[:, 1]
+    size = max(round(MEAN_S / problem.period_s), 2)
+    rows = np.flatnonzero(problem.train & (np.abs(rate) > SLIDING))
+    turns = np.flatnonzero(
+        (rate[rows[1:]] * rate[rows[:-1]] < 0) & (problem.run[rows[1:]] == problem.run[rows[:-1]])
+    )
+    pairs = [
+        (float(e[rows[max(k + 1 - size, 0) : k + 1]].mean()), float(e[rows[k + 1 : k + 1 + size]].mean()))
+        for k in turns.tolist()
+    ]
+    if len(pairs) < FEWEST_TURNS:
+        return False
+    a, b = np.array(pairs).T
+    return bool(float(a @ b) < -OVER * np.sqrt(float(a @ a) * float(b @ b)))
 
 
 def _with_unit(e: Array, block: int) -> tuple[float, str, float, float]:

@@ -20,7 +20,7 @@ def columns(s: Scene) -> list[Candidate]:
     weight = v.direction * s.friction
     out = _cooling(s, weight, v.clock - float(v.clock.min()), "tau")
     if len(np.unique(v.file)) > 1:
-        out += _cooling(s, weight, v.t, "tau_in_each_run")
+        out += _cooling(s, weight, v.t, "tau_in_run")
     t = v.columns.get("temperature")
     if t is not None and np.ptp(t) > LEAST_K:
         column = s.at(weight * (t - t.mean()))[:, None]

@@ -17,8 +17,8 @@ def steps(s: Scene, name: str, weight: Array, label: tuple[str, str], sign: int)
     every file."""
     v = s.view
     out = []
-    for clock, where in ((v.clock - v.clock.min(), "onset"), (v.t, "onset_in_each_run")):
-        if where == "onset_in_each_run" and len(np.unique(v.file)) < 2:
+    for clock, where in ((v.clock - v.clock.min(), "onset"), (v.t, "onset_in_run")):
+        if where == "onset_in_run" and len(np.unique(v.file)) < 2:
             continue
         span = float(clock.max())
 
