@@ -26,6 +26,7 @@ REMARKS = (
     "end of its range",
     "leaps by",
     "its offset wanders",
+    "of the declared one",
 )
 
 

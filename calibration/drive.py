@@ -16,6 +16,7 @@ from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.select import Selection
 from calibration.drivedelay import Found, left_by_the_declared, timed
+from calibration.drivelaw import Law, look_at_law
 from calibration.driveleft import Left, left_over, settle
 from calibration.drivenames import as_told
 from calibration.drivesearch import find, scene_of
@@ -65,6 +66,7 @@ class DriveResult:
     sensors: list[Finding]  # of columns and clocks, before any balance
     agreement: Agreement | None
     clock: str  # what the files' starts are taken from
+    law: Law | None = None  # of a declared controller
 
 
 def analyse(
@@ -108,7 +110,9 @@ def analyse(
     sensors = repairs_found(records)
     if agreement is not None and agreement.late:
         sensors.append(_late(agreement))
-    return DriveResult(rig, records, balances, sensors, agreement, clock)
+    tell("command: the controller's law")
+    law = look_at_law(balances[0].view, balances[0].problem, seed)
+    return DriveResult(rig, records, balances, sensors, agreement, clock, law)
 
 
 def _late(a: Agreement) -> Finding:

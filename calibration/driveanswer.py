@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
+from calibration.channels.law import DELAY
 from calibration.channels.slowoffset import SLOW
+from calibration.decide.select import Selection
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.decide.verdict import Verdict, judge
 from calibration.drive import Balance, DriveResult
@@ -17,6 +19,7 @@ from calibration.names import NAMES
 
 STRONG = 6.0  # -log10 p of a refused candidate that is told as having been close
 ROW = {"T": "torque", "K": "position"}
+SAME_HZ = 0.02  # of a frequency: two lines are one
 INFLATION = 30.0  # of a parameter's variance by its neighbours: over five times the error it would have alone
 
 
@@ -30,6 +33,8 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         rows = drive_controls(b)
         controls += rows
         effects += _withdrawn(b, rows)
+    if found.law is not None:
+        effects += [f for f in found.law.findings if not _told(f, effects)]
     effects.sort(key=lambda f: (f.name == "unknown", f.share == 0.0, -f.share))
     verdict, separating = judge(
         effects, [*_short(found), *_strange_rate(found), *_much_left(found), *_close(found)][:4]
@@ -47,12 +52,27 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         controls,
         separating,
         [*_reasons(found), *(f"not looked for: {x}" for x in lacking)],
-        gate_rows({_channel(b): b.selection for b in found.balances}),
-        refusals({_channel(b): b.selection for b in found.balances}),
+        gate_rows(_selections(found)),
+        refusals(_selections(found)),
     )
+    if found.law is not None:
+        v.calibrated |= calibrated(found.law.selection, ("law_offset", DELAY), 0.0)
     from calibration.report.drivepictures import pictures
 
     return v, pictures(found, GATE) if plots else [], found.rig.name
+
+
+def _told(line: Finding, effects: list[Finding]) -> bool:
+    """Whether a line of the command is one of a balance: then the motion does not know of it either."""
+    return line.frequency is not None and any(
+        f.frequency is not None and abs(f.frequency - line.frequency) < SAME_HZ * line.frequency
+        for f in effects
+    )
+
+
+def _selections(found: DriveResult) -> dict[str, Selection]:
+    law = {} if found.law is None else {"U": found.law.selection}
+    return {_channel(b): b.selection for b in found.balances} | law
 
 
 def _channel(b: Balance) -> str:
@@ -145,6 +165,10 @@ def _errors(found: DriveResult) -> dict[str, dict[str, Any]]:
                 "after": held.after,
                 "floor": b.floor,
             }
+    if found.law is not None:
+        held, unit = found.law.selection.held, found.law.selection.problem.unit
+        if np.isfinite(held.before):
+            out["command"] = {"unit": unit, "before": held.before, "after": held.after, "floor": None}
     a = found.agreement
     if a is not None and (a.late or a.left > STILL_MISSING) and np.isfinite(a.before):
         out["velocity"] = {
@@ -209,6 +233,7 @@ def _reasons(found: DriveResult) -> list[str]:
             out.append(f"{r.name}: {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, {lost:.3g} s without rows")
         out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
     out += [*_strange_rate(found), *_scaled(found)]
+    out += found.law.notes if found.law is not None else []
     for b in found.balances:
         out += b.notes
         out.append(f"floor of {b.view.response.channel}: {b.floor_from}")

@@ -45,9 +45,16 @@ def _declaration(rig: Rig) -> str:
         f"{g.name} {g.period:g} {rig.columns['position'].unit}" if g.period else f"{g.name} {g.period_s:g} s"
         for g in rig.stages
     )
+    law = rig.controller
+    gains = ", ".join(f"{k} = {v:g}" for k, v in law.gains.items()) if law else ""
     parts = [rig.name, f"explains {what}", f"estimates {', '.join(rig.estimate) or 'its usual terms'}"]
     return "\n".join(
-        [*parts, *([f"knows {known}"] if known else []), *([f"stages {stages}"] if stages else [])]
+        [
+            *parts,
+            *([f"knows {known}"] if known else []),
+            *([f"stages {stages}"] if stages else []),
+            *([f"controlled by a {law.law}, {gains}"] if law else []),
+        ]
     )
 
 

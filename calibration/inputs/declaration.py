@@ -54,6 +54,14 @@ class Response:
 
 
 @dataclass(frozen=True)
+class Controller:
+    """The loop's law and its gains: `pid` (p, i, d) or `cascade` (position, velocity)."""
+
+    law: str
+    gains: dict[str, float]
+
+
+@dataclass(frozen=True)
 class Rig:
     """A rig file, checked. `constants` are known coefficients of the model's terms, by the term's name."""
 
@@ -73,4 +81,5 @@ class Rig:
     analyse_period_s: float | None
     turn: float | None  # position units per turn
     sample_period_s: float | None
+    controller: Controller | None = None
     raw: dict[str, Any] = field(default_factory=dict)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Column, Response, Rig
+from calibration.inputs.declaration import Column, Controller, Response, Rig
 from calibration.inputs.stages import stages_of
 from calibration.inputs.yamltext import load_yaml
 
@@ -94,8 +94,32 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         analyse_period_s=data.get("analyse_period_s"),
         turn=data.get("turn"),
         sample_period_s=data.get("sample_period_s"),
+        controller=_controller(data.get("controller")),
         raw=data,
     )
+
+
+def _controller(given: dict[str, Any] | None) -> Controller | None:
+    if given is None:
+        return None
+    return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()})
+
+
+#: gains that a law must have, and those that it may
+GAINS = {"pid": ({"p"}, {"p", "i", "d"}), "cascade": ({"position", "velocity"}, {"position", "velocity"})}
+
+
+def _check_controller(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:
+    law, gains = data["controller"]["law"], set(data["controller"]["gains"])
+    must, may = GAINS[law]
+    for name in sorted(must - gains):
+        refuse(f"controller.gains: '{name}' is missing; a {law} has it")
+    for name in sorted(gains - may):
+        refuse(f"controller.gains.{name}: a {law} has none; it has {', '.join(sorted(may))}")
+    if "reference" not in columns or "effort" not in columns:
+        refuse("controller: needs the columns reference and effort, which the law connects")
+    if columns["reference"].unit != columns["position"].unit:
+        refuse("columns.reference.unit: must be the position's for a controller; give a scale")
 
 
 def _check(
@@ -134,6 +158,8 @@ def _check(
             refuse(f"response.divide_by: '{r.divide_by}' is not among the columns ({have})")
         if channels.count(r.channel) > 1:
             refuse(f"response: '{r.channel}' is given twice")
+    if "controller" in data:
+        _check_controller(data, columns, refuse)
     _check_model(data, columns, responses, refuse)
     _check_runs(data, refuse)
 
@@ -157,6 +183,8 @@ def _check_model(
     used |= {r.channel for r in responses} | {r.divide_by for r in responses if r.divide_by}
     if any(r.channel == "position2" for r in responses):
         used |= {"effort", "force", "current"}
+    if "controller" in data:
+        used.add("effort")
     for name in columns:
         if name not in used:
             refuse(f"columns.{name}: nothing uses it with this response; leave it out")

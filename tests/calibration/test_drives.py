@@ -49,13 +49,13 @@ def motion(seconds: float = 30.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, x, force + 0.02 * np.random.default_rng(1).standard_normal(len(t))
 
 
-def answer(folder: Path, text: str, *tables: tuple[np.ndarray, ...]) -> dict[str, Any]:
-    """The report on tables of t, x, u."""
+def answer(folder: Path, text: str, *tables: tuple[np.ndarray, ...], header: str = "t,x,u") -> dict[str, Any]:
+    """The report on tables of t, x, u, or what `header` says."""
     (folder / "rig.yaml").write_text(text)
     logs = []
     for k, table in enumerate(tables):
         logs.append(folder / f"run{k}.csv")
-        np.savetxt(logs[-1], np.column_stack(table), delimiter=",", header="t,x,u", comments="", fmt="%.9g")
+        np.savetxt(logs[-1], np.column_stack(table), delimiter=",", header=header, comments="", fmt="%.9g")
     assert calibrate(logs, folder / "rig.yaml", [], folder / "out", plots=False) == 0
     data: dict[str, Any] = json.loads((folder / "out" / "report.json").read_text())
     return data

@@ -33,6 +33,16 @@ def names(data: dict[str, Any]) -> set[str]:
     return {n for e in data["effects"] for n in (e["name"], *e["equivalent"])}
 
 
+def test_the_command_of_emps_is_what_its_published_controller_makes_of_it(tmp_path: Path) -> None:
+    """kp and kv stand in the data file: 160.18 1/s and 243.45 V s/m; the effort reaches 4.3 V."""
+    data = report(tmp_path, "emps/DATA_EMPS.mat", "emps")
+    gains = data["calibrated"]
+    assert gains["gain_of_rate"]["value"] == pytest.approx(243.45, rel=1e-3)
+    assert gains["gain_of_error"]["value"] == pytest.approx(160.18 * 243.45, rel=1e-3)
+    assert data["error"]["command"]["after"] < 0.001  # V
+    assert not any(e["channel"] == "S" and e["name"] != "channel_delay" for e in data["effects"])
+
+
 def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_be_named(
     tmp_path: Path,
 ) -> None:
