@@ -63,6 +63,8 @@ def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Param
         error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
         low, high = interval(value, error, blocks, STEP_ERROR * candidate.steps[k])
         out[name] = Parameter(value, unit, low, high)
+    if "ramp" in out and out["ramp"].value < 0.0:  # any length below a second is a step of one
+        out["ramp"] = Parameter(0.0, out["ramp"].unit)
     stretch = unseen(problem, candidate)
     if stretch is not None:
         out["onset"] = Parameter(*candidate.fixed["onset"], *stretch)

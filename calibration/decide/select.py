@@ -14,7 +14,7 @@ from calibration.decide.heldout import HeldOut, compare, cross_validate
 from calibration.decide.refine import polish
 from calibration.decide.sameorder import lesser_of_one_order
 from calibration.decide.scan import Contender, Look, fit_with, look
-from calibration.decide.unseen import settled
+from calibration.decide.unseen import never_begins, settled
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls, under
 from calibration.statistics.surrogate import Scores
@@ -121,6 +121,7 @@ def select(
             inside, held = judge(problem, now, picks, contender)
             why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
             why = why or within_model(problem, plain, now.null, contender)
+            why = why or never_begins(problem, contender.candidate)
             if not why:
                 taken = contender
                 break
@@ -237,6 +238,8 @@ def _again(
         contender = settled(problem, base, one)
         inside, held = judge(problem, now, others, contender)
         if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
+            continue
+        if never_begins(problem, contender.candidate):
             continue
         if contender.candidate.key != picks[k].candidate.key:
             refused.append(

@@ -44,6 +44,20 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
     return (low, high) if high - low > SHORTEST else None
 
 
+def never_begins(problem: Problem, c: Candidate) -> str:
+    """Why a change in time is none: over the whole log, held-out rows included, it is what it would be had it
+    come long before; or empty."""
+    names = list(c.fixed)[: len(c.steps)]
+    if "onset" not in names or c.shape is None:
+        return ""
+    at, rows = _as_step(c), problem.valid
+    before = c.shape(_with(names, at, at[names.index("onset")] - LONGEST))[rows]
+    size = float(np.sqrt(np.mean(c.columns[rows] ** 2)))
+    if float(np.sqrt(np.mean((before - c.columns[rows]) ** 2))) >= ALIKE * size:
+        return ""
+    return "it came before the log begins: that is how the drive is, and no change"
+
+
 def settled(problem: Problem, base: Array, contender: Contender) -> Contender:
     """The contender with its step where in an unseen stretch it leaves least on held-out rows."""
     c = contender.candidate

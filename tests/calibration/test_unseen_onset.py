@@ -7,7 +7,7 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.decide.parameters import parameters_of
 from calibration.decide.select import select
-from calibration.decide.unseen import unseen
+from calibration.decide.unseen import never_begins, unseen
 
 # three runs of 100 s with pauses of 20 s; the middle one is held out
 CLOCK = np.concatenate([np.arange(0, 100, 0.03) + 120.0 * k for k in range(3)])
@@ -58,3 +58,11 @@ def test_a_step_that_fitted_rows_see_has_no_stretch() -> None:
     told = parameters_of(s, 0)["onset"]
     assert told.value == pytest.approx(50.0, abs=1.0) and told.low is not None and told.high is not None
     assert told.low < 50.0 < told.high < 60.0
+
+
+def test_a_step_that_came_before_the_log_is_no_change() -> None:
+    """A constant that the base lacks is what such a step would take: it is not one."""
+    p = problem(-50.0)
+    s = select(p, [step(-20.0)], np.random.default_rng(0))
+    assert s.chosen == [] and any("before the log begins" in r.why for r in s.refused)
+    assert never_begins(p, step(-20.0)) and not never_begins(p, step(50.0))
