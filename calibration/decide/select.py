@@ -144,6 +144,10 @@ def select(
     for k in range(len(picks)):
         _polish(problem, picks, k)
     before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
+    while (bad := unphysical(problem, picks)) is not None:
+        why = "beside the others its size comes out with a sign that physics excludes"
+        refused.append(Refusal(picks[bad].candidate.say(), why))
+        del picks[bad], classes[bad], steps[bad]
     after = _fit(problem, picks)
     scores = gate(problem, before, after, candidates, problem.base, rng)
     keep = [p.evidence >= scores.threshold for p in picks]
@@ -198,6 +202,18 @@ def _fit(problem: Problem, picks: list[Contender]) -> Fit:
         problem.ar_order,
         problem.block,
     )
+
+
+def unphysical(problem: Problem, picks: list[Contender]) -> int | None:
+    """Place of an effect whose size in the joint fit its own bounds exclude; None where all are within."""
+    beta, at = _fit(problem, picks).beta, problem.base.shape[1]
+    for k, pick in enumerate(picks):
+        here = beta[at : at + pick.candidate.width]
+        some = pick.candidate.sign and np.any(here * pick.candidate.sign > 0)  # may lose a part: prune.signed
+        if not pick.candidate.allowed(here) and not some:
+            return k
+        at += pick.candidate.width
+    return None
 
 
 def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
