@@ -18,7 +18,7 @@ from calibration.decide.select import Selection
 from calibration.drivedelay import Found, left_by_the_declared, timed
 from calibration.drivelaw import Law, look_at_law
 from calibration.driveleft import Left, left_over, settle
-from calibration.drivenames import as_told
+from calibration.drivenames import as_told, of_calibrated
 from calibration.drivesearch import find, scene_of
 from calibration.driveunnamed import beyond_names, quick_lines
 from calibration.errors import CalibrationInputError
@@ -176,6 +176,8 @@ def _balance(
     tell(f"{response.channel}: what no name explains")
     s, together, unnamed = beyond_names(s, scene, seed)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
+    final = {n: float(b) for (n, _), b in zip(problem.base_labels, s.after.beta, strict=False)}
+    findings = of_calibrated(findings, scene, final)
     findings += unnamed
     findings = settle(findings, left_over(s, scene, floor), problem.channel) + quick_lines(view, problem)
     kind = FORCE if response.is_force else SENSORS

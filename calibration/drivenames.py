@@ -21,6 +21,23 @@ def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
     return _one_loop(named) if scene.force else named
 
 
+def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]) -> list[Finding]:
+    """Sizes that are parts of the friction were fitted beside the one from before the effect was known, which
+    a large effect has bent: told as parts of the `final` one (coefficients by the term's name)."""
+    coulomb = max(final.get("coulomb", 0.0), 0.0)
+    whole = {"relative_rise_of_coulomb": (scene.declared.get("coulomb", 0.0), coulomb)}
+    speed = np.abs(scene.view.speed[scene.view.ok])
+    if coulomb > 0 and len(speed):
+        after = float(np.mean(coulomb + max(final.get("viscous", 0.0), 0.0) * speed))
+        before = float(np.mean(scene.friction[scene.view.ok]))
+        whole |= {k: (before, after) for k in ("relative_rise", "relative_change", "relative_per_degree")}
+    for f in findings:
+        for size, (before, after) in whole.items():
+            if size in f.parameters and before > 0 and after > 0:
+                f.parameters[size] = f.parameters[size].times(before / after)
+    return findings
+
+
 def _line(f: Finding, scene: Scene) -> Finding:
     """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
     if f.name == "bearing_pass" and f.order:

@@ -20,8 +20,9 @@ EVEN = 0.17  # that quotient in white noise, see WIND
 WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
 PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
 LONGEST_S = 20.0  # over which half of the variance is looked for
-# reversals, and the correlation of a second before with the second after: friction has -1, wind is positive
-FEWEST_TURNS, OVER = 3, 0.3
+# reversals, and the correlation of a second before with the second after: friction has -1, slow wind is
+# positive, and quick wind scatters by 1 / sqrt(reversals) about zero
+FEWEST_TURNS, OVER, LUCK = 3, 0.6, 3.0
 SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
 # amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
 COUNTS = 0.8
@@ -146,7 +147,8 @@ def follows_direction(e: Array, problem: Problem) -> bool:
     if len(pairs) < FEWEST_TURNS:
         return False
     a, b = np.array(pairs).T
-    return bool(float(a @ b) < -OVER * np.sqrt(float(a @ a) * float(b @ b)))
+    over = min(max(OVER, LUCK / np.sqrt(len(pairs))), 0.95)
+    return bool(float(a @ b) < -over * np.sqrt(float(a @ a) * float(b @ b)))
 
 
 def _with_unit(e: Array, block: int) -> tuple[float, str, float, float]:

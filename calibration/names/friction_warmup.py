@@ -14,23 +14,29 @@ LEAST_K = 0.5  # of temperature before its coefficient means anything
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Friction times exp(-time / tau), on the clock that all files share or from the start of every file, or
-    times the temperature."""
+    """Friction, or what of it knows no speed, times exp(-time / tau), on the clock that all files share or
+    from the start of every file, or times the temperature."""
     v = s.view
     weight = v.direction * s.friction
-    out = _cooling(s, weight, v.clock - float(v.clock.min()), "tau")
-    if len(np.unique(v.file)) > 1:
-        out += _cooling(s, weight, v.t, "tau_in_run")
+    weights = {"relative_rise": weight}
+    if s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0:
+        weights["relative_rise_of_coulomb"] = v.direction * s.declared["coulomb"]
+    out = []
+    for label, w in weights.items():
+        out += _cooling(s, w, v.clock - float(v.clock.min()), label, "tau")
+        if len(np.unique(v.file)) > 1:
+            out += _cooling(s, w, v.t, label, "tau_in_run")
     t = v.columns.get("temperature")
     if t is not None and np.ptp(t) > LEAST_K:
         column = s.at(weight * (t - t.mean()))[:, None]
-        label = (("relative_per_degree", "1/K"),)
-        out.append(Candidate("friction_warmup", "temperature", column, label, sign=-1))
+        per_degree = (("relative_per_degree", "1/K"),)
+        out.append(Candidate("friction_warmup", "temperature", column, per_degree, sign=-1))
     return out
 
 
-def _cooling(s: Scene, weight: Array, since: Array, name: str) -> list[Candidate]:
-    """`weight` (full rate) times exp(-since / tau) for the time constants that are tried."""
+def _cooling(s: Scene, weight: Array, since: Array, label: str, name: str) -> list[Candidate]:
+    """`weight` (full rate) times exp(-since / tau) for the time constants that are tried; `label` is the
+    size's name, `name` the time constant's."""
     span = float(since.max()) or 1.0
 
     def full(p: Array) -> Array:
@@ -42,7 +48,7 @@ def _cooling(s: Scene, weight: Array, since: Array, name: str) -> list[Candidate
             "friction_warmup",
             "time",
             shape(np.array([part * span])),
-            (("relative_rise", "1"),),
+            ((label, "1"),),
             fixed={name: (part * span, "s")},
             sign=1,
             shape=shape,
