@@ -30,7 +30,7 @@ def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]
     if coulomb > 0 and len(speed):
         after = float(np.mean(coulomb + max(final.get("viscous", 0.0), 0.0) * speed))
         before = float(np.mean(scene.friction[scene.view.ok]))
-        whole |= {k: (before, after) for k in ("relative_rise", "relative_change", "relative_per_degree")}
+        whole |= dict.fromkeys(("relative_rise", "relative_change", "relative_per_degree"), (before, after))
     for f in findings:
         for size, (before, after) in whole.items():
             if size in f.parameters and before > 0 and after > 0:

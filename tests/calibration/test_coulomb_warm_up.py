@@ -1,4 +1,4 @@
-"""Friction that warms up without its viscous part, in every file anew: named alone, with its size and time."""
+"""Friction that warms up without its viscous part, anew in every file: named alone, with size and time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from tests.calibration.test_drives import COULOMB, FORCE, answer, found, motion
 
 
-@pytest.mark.parametrize("rise", [0.1, 0.4])
+@pytest.mark.parametrize("rise", [0.25, 0.4])
 def test_the_coulomb_part_alone_warms_up(tmp_path: Path, rise: float) -> None:
     tables = []
     for k in range(3):

@@ -172,7 +172,7 @@ def test_play_between_two_encoders(tmp_path: Path) -> None:
     ("old", "new", "says"),
     [
         ("scale: 2e-7", "scale: 2e-7, scale: 1", "'scale' is given twice"),
-        ("estimate:", "controller: {law: P}\nestimate:", "unknown field 'controller'"),
+        ("estimate:", "regulator: {law: P}\nestimate:", "unknown field 'regulator'"),
         ("unit: N}\nresponse", "unit: N}\n  current: {column: i, unit: A}\nresponse", "nothing uses it"),
         (
             "estimate: [inertia",
