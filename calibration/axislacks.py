@@ -36,7 +36,7 @@ def lacks(result: AxisResult) -> list[str]:
 
 def _short(result: AxisResult, key: str) -> list[str]:
     s = result.selections[key]
-    if key == "T" and not s.candidates:
+    if key == "T" and not s.looked_at:
         return ["channel T: too little sliding to tell a torque from the bristles' history"]
     return lacking(s, f"channel {key}: ")
 

@@ -9,9 +9,10 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit
-from calibration.statistics.surrogate import Scores, orthonormal_blocks, score
+from calibration.statistics.surrogate import Scores, orthonormal_blocks, score, together
 
 DRAWS = 400  # surrogates
+COLUMNS = 64  # filtered and projected at once
 LEVEL = 0.99  # of the surrogate maximum; aim: at most 1 % false alarms
 
 
@@ -32,6 +33,21 @@ def gate(
     e = w.apply(np.where(train, null.residual, 0.0))[use]
     noise = w.apply(np.where(train, final.residual, 0.0))[use]
     b = w.apply(np.where(train[:, None], base, 0.0))[use]
-    x = w.apply(np.where(train[:, None], np.hstack([c.columns for c in candidates]), 0.0))[use]
-    q, widths = orthonormal_blocks(x, b, [c.width for c in candidates])
-    return score(e, noise, q, widths, problem.block, DRAWS, rng, LEVEL)
+    edges = len(range(0, len(e), problem.block))
+    signs = rng.choice([-1.0, 1.0], size=(DRAWS, edges))
+    parts = []
+    for some in _handfuls(candidates):  # all at once would be the largest array of the whole analysis
+        x = w.apply(np.where(train[:, None], np.hstack([c.columns for c in some]), 0.0))[use]
+        q, widths = orthonormal_blocks(x, b, [c.width for c in some])
+        parts.append(score(e, noise, q, widths, problem.block, signs))
+    return together(parts, LEVEL)
+
+
+def _handfuls(candidates: list[Candidate]) -> list[list[Candidate]]:
+    """The candidates in their order, some COLUMNS columns at a time."""
+    out: list[list[Candidate]] = [[]]
+    for c in candidates:
+        if sum(x.width for x in out[-1]) >= COLUMNS:
+            out.append([])
+        out[-1].append(c)
+    return out

@@ -43,7 +43,7 @@ class Selection:
     after: Fit
     held: HeldOut
     scores: Scores
-    candidates: list[Candidate]
+    looked_at: int  # candidates: their columns are the largest arrays, and are not kept
     refused: list[Refusal] = field(default_factory=list)
     steps: list[HeldOut] = field(default_factory=list)
 
@@ -173,7 +173,7 @@ def select(
         after.whitener,
         ((), phases(problem, [p.candidate for p in picks])),
     )
-    return Selection(problem, picks, classes, before, after, held, scores, candidates, refused, steps)
+    return Selection(problem, picks, classes, before, after, held, scores, len(candidates), refused, steps)
 
 
 def left_by_base(problem: Problem) -> Array:

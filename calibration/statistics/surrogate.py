@@ -92,30 +92,42 @@ def taken_away(e: Array, base: Array, blocks: list[Array]) -> tuple[list[float],
     return taken, kept
 
 
-def score(
-    e: Array,
-    noise: Array,
-    q: Array,
-    widths: list[int],
-    block: int,
-    draws: int,
-    rng: np.random.Generator,
-    level: float = 0.99,
-) -> Scores:
-    """Scores of the whitened residual `e` on the orthonormal blocks `q`; surrogates are made of `noise`.
+@dataclass(frozen=True)
+class Part:
+    """-log10 p and chi2 gain of some candidates (k,), and -log10 p of every draw's (draws, k)."""
+
+    value: Array
+    gain: Array
+    nulls: Array
+
+
+def together(parts: list[Part], level: float) -> Scores:
+    """The scores of all candidates; the threshold is a quantile of the largest over all of them."""
+    largest = np.max(
+        [p.nulls.max(axis=1) if p.nulls.shape[1] else np.zeros(len(p.nulls)) for p in parts], axis=0
+    )
+    return Scores(
+        np.concatenate([p.value for p in parts]),
+        np.concatenate([p.gain for p in parts]),
+        float(np.quantile(largest, level)),
+        largest,
+    )
+
+
+def score(e: Array, noise: Array, q: Array, widths: list[int], block: int, signs: Array) -> Part:
+    """Scores of the whitened residual `e` on the orthonormal blocks `q`; surrogates are made of `noise` with
+    the `signs` (draws, blocks of rows).
 
     `noise` is what is left once the effects found so far are out of the residual: an effect must not raise
-    its own
-    threshold. Every score is a Wald statistic with the covariance of the block sums of `noise`.
+    its own threshold. Every score is a Wald statistic with the covariance of the block sums of `noise`.
     """
     edges = np.arange(0, len(e), block)
     total = q.T @ e
     parts = np.add.reduceat(q * noise[:, None], edges, axis=0)
-    signs = rng.choice([-1.0, 1.0], size=(draws, len(edges)))
     null = signs @ parts
     floor = (float(np.mean(noise**2)) if len(noise) else 0.0) or 1.0  # no row may be usable at all
     value, gain = np.zeros(len(widths)), np.zeros(len(widths))
-    nulls = np.zeros((draws, len(widths)))
+    nulls = np.zeros((len(signs), len(widths)))
     at = 0
     for k, width in enumerate(widths):
         if width == 0:
@@ -130,5 +142,4 @@ def score(
     dof = np.maximum(np.array(widths), 1)
     value = chi2_log10(gain, dof)
     value[np.array(widths) == 0] = 0.0
-    largest = chi2_log10(nulls, dof[None, :]).max(axis=1) if len(widths) else np.zeros(draws)
-    return Scores(value, gain, float(np.quantile(largest, level)), largest)
+    return Part(value, gain, chi2_log10(nulls, dof[None, :]))

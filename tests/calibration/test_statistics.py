@@ -19,7 +19,7 @@ from calibration.decide.heldout import FOLDS, cross_validate, folds
 from calibration.decide.parameters import pairs_by_section
 from calibration.decide.scan import look
 from calibration.statistics.regression import gls
-from calibration.statistics.surrogate import orthonormal_blocks, score, taken_away
+from calibration.statistics.surrogate import orthonormal_blocks, score, taken_away, together
 from calibration.statistics.tails import chi2_log10
 from calibration.statistics.whitening import Whitener, fit_ar
 
@@ -76,7 +76,8 @@ def test_the_surrogate_threshold_holds_its_level_on_coloured_noise() -> None:
             ]
         )
         q, widths = orthonormal_blocks(columns, np.ones((n, 1)), [2] * 60)
-        s = score(e, e, q, widths, 200, 200, rng)
+        signs = rng.choice([-1.0, 1.0], size=(200, n // 200))
+        s = together([score(e, e, q, widths, 200, signs)], 0.99)
         alarms += s.value.max() > s.threshold
     assert alarms <= 5  # 1 % of 60 is 0.6; naive chi2 thresholds alarm in all of them
 
