@@ -97,4 +97,4 @@ def test_the_output_encoder_shows_play_and_harmonics(tmp_path: Path) -> None:
     assert "play" in names(data)
     harmonics = {e["harmonic"] for e in data["effects"] if e["stage"] == "output"}
     assert {1, 2, 3, 4} <= harmonics
-    assert data["error"]["position"]["after"] < 0.4 * data["error"]["position"]["before"]
+    assert data["error"]["position"]["after"] < 3.0  # units of 9.67 before
