@@ -14,7 +14,7 @@ from calibration.decide.select import Selection, design, select
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
-from calibration.prune import beside, displaced, is_above
+from calibration.prune import beside, displaced
 
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and
 # one of either flank of the teeth
@@ -33,7 +33,7 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
             replace(s.problem, base=base), smooth_functions(scene), np.random.default_rng(seed), most=1
         )
         s.refused += more.refused
-        if not more.chosen or not is_above(beside(together, more)):
+        if not more.chosen:
             break
         kept = displaced(s, more.chosen[0].candidate) if not findings else s
         if kept is not s:

@@ -58,6 +58,8 @@ def smooth_functions(s: Scene) -> list[Candidate]:
         if s.both and domain in ("axis_angle", "time"):
             odd = columns * s.view.direction[s.view.rows][:, None]
             out.append(Candidate("unknown", domain, odd, labels))
+        if s.force and s.view.dynamic and domain == "axis_angle":
+            out.append(Candidate("unknown", domain, columns * _declared_force(s)[:, None], labels))
     return out
 
 
