@@ -20,7 +20,7 @@ from calibration.readers.run import Array
 # ASSUMPTION, one half by that reasoning; looked at on development seeds and the opened seed 20261122
 MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: balances of forces of 144 sealed drives without an
-# effect stay below 1.4 (seeds 1036 and 1038; one whose fitted files go one way only apart), two sensors below 2
+# effect stay below 1.4 (seeds 1036 and 1038; one whose fitted files go one way only apart)
 TELLING = 1.6
 
 
@@ -37,7 +37,8 @@ class Left:
 
 
 def left_over(s: Selection, scene: Scene, floor: float | None) -> Left | None:
-    """What is left beyond TELLING or STILL_MISSING floors; None where it is less, or the floor is not known."""
+    """What is left beyond TELLING floors of a force, STILL_MISSING of sensors; None where it is less, or no
+    floor is known."""
     held, times = s.held, TELLING if scene.force else STILL_MISSING
     if not floor or not np.isfinite(held.after) or held.after <= times * floor:
         return None
