@@ -44,6 +44,10 @@ def pictures(found: DriveResult, gate_text: str) -> list[dict[str, str]]:
             }
         )
         out.append({"image": draw.gate_plot(s, "Is anything there at all?"), "alt": gate_text})
+    if found.law is not None:
+        title = "Held-out command less its declared law, before and after"
+        alt = "Rows nothing was fitted to; the law's gains are those of the fitted rows"
+        out.append({"image": draw.trace_plot(found.law.selection, title), "alt": alt})
     return out
 
 

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from calibration.candidates.orders import order_spectrum
-from calibration.decide.select import Selection
+from calibration.decide.heldout import predict_residual
+from calibration.decide.select import Selection, design, phases
 from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
 
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
 
@@ -187,17 +189,22 @@ def _mark(ax: Any, lines: dict[str, float], ticks: list[float]) -> None:
         ax.axvline(at, ymax=0.05, color=RED, lw=1.2)
 
 
+def held_residuals(selection: Selection, rows: Mask) -> tuple[Array, Array]:
+    """What the declared model and what the effects with it leave on `rows`; a line whose phase is every run's
+    own has that run's, as in the error table."""
+    p, chosen = selection.problem, [c.candidate for c in selection.chosen]
+    before = predict_residual(p, p.base, selection.before.beta, rows)
+    x = design(p, chosen)
+    return before, predict_residual(p, x, selection.after.beta, rows, phases(p, chosen))
+
+
 def trace_plot(selection: Selection, title: str) -> str:
     """Held-out residual before and after over time; gaps between held-out spans are closed and marked."""
     p = selection.problem
     rows = p.test if p.test.any() else p.valid
     if rows.sum() < 3:
         return nothing_to_draw(title, "no held-out rows in this channel")
-    from calibration.decide.heldout import predict_residual
-
-    x = np.hstack([p.base, *[c.candidate.columns for c in selection.chosen]])
-    before = predict_residual(p, p.base, selection.before.beta, rows)
-    after = predict_residual(p, x, selection.after.beta, rows)
+    before, after = held_residuals(selection, rows)
     t, run = p.t[rows], p.run[rows]
     gap = (np.diff(t) > 5 * p.period_s) | (np.diff(t) < 0) | (np.diff(run) != 0)
     step = np.where(gap, 0.0, np.diff(t))

@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from calibration.command import calibrate
+from calibration.decide.select import Selection
 from calibration.errors import CalibrationInputError
 from calibration.inputs.rigfile import load_rig
+from calibration.report import plots
 from tests.calibration.test_drives import answer
 
 PERIOD_S = 0.001
@@ -91,6 +94,21 @@ def test_another_gain_than_the_declared_one_is_told(tmp_path: Path) -> None:
     (found,) = of_the_command(data)
     assert found["name"] == "unknown" and found["note"].startswith("controller: gain_d is 40")
     assert any("+3" in r and "of the declared one" in r for r in data["reasons"])
+
+
+def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its picture's error is the table's: the line has the held-out file's own phase."""
+    drawn: list[Selection] = []
+    draw = plots.trace_plot
+    monkeypatch.setattr(plots, "trace_plot", lambda s, title: (drawn.append(s), draw(s, title))[1])
+    report(tmp_path, RIG, hertz=3.7)
+    logs = sorted(tmp_path.glob("run*.csv"))
+    assert calibrate(logs, tmp_path / "rig.yaml", [], tmp_path / "pictures") == 0
+    page = (tmp_path / "pictures" / "report.html").read_text()
+    assert "the law's gains are those of the fitted rows" in page.replace("&#39;", "'")
+    law = drawn[-1]
+    after = plots.held_residuals(law, law.problem.test)[1]
+    assert np.sqrt(np.mean(after**2)) == pytest.approx(law.held.after) and law.held.after < 0.05
 
 
 @pytest.mark.parametrize(
