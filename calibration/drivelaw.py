@@ -3,23 +3,21 @@ gains that are others or follow the speed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate, sine_columns
+from calibration.candidates.candidate import Candidate
 from calibration.channels.law import declared_terms, law_problem
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
-from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection, select
 from calibration.finding import Finding
-from calibration.readers.run import Array
+from calibration.harmonics import findings_of
+from calibration.names import NAMES
+from calibration.names.scene import Scene
 from calibration.statistics.regression import gls
 
-LINES = 3  # frequencies that are offered
-PERIODS = 3.0  # of a disturbance in the shortest file, at least
-MARGIN = 0.05  # of the cross-validated mean square, as for every name (decide/accept.py)
 ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' declared numbers
 TOLD = 0.02  # of a declared gain, and two standard errors: what is told beside it
 PARTS = (0.25, 0.5, 0.75)  # of the moving rows, below whose speed the gains may be others
@@ -39,9 +37,8 @@ def look_at_law(view: View, balance: Problem, seed: int) -> Law | None:
     if view.rig.controller is None:
         return None
     p = law_problem(view, balance, view.rig.controller)
-    e = gls(p.y, p.base, p.train, p.ar_order, p.block).residual
-    s = select(p, [*_lines(p, e), *_by_speed(view, p)], np.random.default_rng(seed), margin=MARGIN)
-    out = Law(s, [finding_of(s, k) for k in range(len(s.chosen))])
+    s = select(p, [*_lines(view, p), *_by_speed(view, p)], np.random.default_rng(seed))
+    out = Law(s, [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
     for f in out.findings:
         f.domain = "command" if f.name == "unknown" else f.domain
         f.note = f.note or "in front of the logged effort: the law makes no such command"
@@ -69,44 +66,13 @@ def _gains(law: Law, declared: dict[str, float]) -> None:
             )
 
 
-def _lines(p: Problem, e: Array) -> list[Candidate]:
-    """Sines of a fixed frequency, with a phase of every file's own."""
-    files = [p.train & (p.session == k) for k in np.unique(p.session)]
-    shortest = min((int(f.sum()) for f in files if f.any()), default=0) * p.period_s
-    size = 1 << int(max(np.count_nonzero(p.session == k) for k in np.unique(p.session)) - 1).bit_length()
-    hertz = np.fft.rfftfreq(size, p.period_s)
-    score = np.zeros(len(hertz))
-    for k in np.unique(p.session):
-        mine = p.session == k
-        score += np.abs(np.fft.rfft(np.where(p.train, e, 0.0)[mine], size)) ** 2
-    score[hertz * shortest < PERIODS] = 0.0
-    out = []
-    for _ in range(LINES):
-        k = int(np.argmax(score))
-        f0 = float(hertz[k])
-        score[max(k - 8, 0) : k + 9] = 0.0
-        if f0 == 0.0:
-            break
-
-        def shape(at: Array) -> Array:
-            return sine_columns(p.t * float(at[0]), p.session)
-
-        out.append(
-            Candidate(
-                "command_disturbance",
-                "time",
-                shape(np.array([f0])),
-                (("amplitude", p.unit),),
-                kind="line",
-                frequency=f0,
-                fixed={"frequency": (f0, "Hz")},
-                shape=shape,
-                steps=(0.5 / (size * p.period_s),),
-                per_run=True,
-                searched=1,
-            )
-        )
-    return out
+def _lines(view: View, p: Problem) -> list[Candidate]:
+    """The lines that a balance of forces is offered, of what the law leaves; no mode of a plant is among the
+    names of a command."""
+    e = gls(p.y, p.base, p.train, p.ar_order, p.block).residual
+    scene = Scene(view, p, {}, e, np.zeros((len(p.y), 0)))
+    found = NAMES["command_disturbance"].columns(scene)
+    return [replace(c, labels=(("amplitude", p.unit),), twins=()) for c in found]
 
 
 def _by_speed(view: View, p: Problem) -> list[Candidate]:

@@ -78,7 +78,7 @@ def offset_order(view: View, problem: Problem, flexible: Array) -> tuple[int, fl
     sign = np.sign(view.direction[view.rows])[:, None]
     none = np.zeros((len(problem.y), 0))
     left, before = _held(problem, none, slow), _held(problem, none, none)
-    others = (_held(problem, flexible, none), _held(problem, none, slow * sign))
+    others = (before, _held(problem, flexible, none), _held(problem, none, slow * sign))
     if left > (1 - TELLING) * min(others) or _line(view, problem, order) < LINE * left:
         return 0, 0.0
     return order, float(np.sqrt(before - left))

@@ -29,9 +29,9 @@ controller: {law: pid, gains: {p: 900, i: 2000, d: 40}, source: this test}
 """
 
 
-def loop(seed: int, hertz: float = 0.0, slow: float = 1.0) -> tuple[np.ndarray, ...]:
-    """Time, position, effort and reference of 2 kg with friction behind a PID; a sine of 0.4 N at `hertz` and
-    gains that are `slow` times as large below 0.1 m/s act in front of the logged effort."""
+def loop(seed: int, hertz: float = 0.0, slow: float = 1.0, square: bool = False) -> tuple[np.ndarray, ...]:
+    """Time, position, effort and reference of 2 kg with friction behind a PID; a sine (or a square) of 0.4 N
+    at `hertz` and gains that are `slow` times as large below 0.1 m/s act in front of the logged effort."""
     t = np.arange(0.0, 20.0, PERIOD_S)
     r = 0.2 * np.sin(2 * np.pi * 0.21 * t + seed) + 0.05 * np.sin(2 * np.pi * 0.83 * t)
     rng = np.random.default_rng(seed)
@@ -46,7 +46,8 @@ def loop(seed: int, hertz: float = 0.0, slow: float = 1.0) -> tuple[np.ndarray, 
         last = e
         law = GAINS["p"] * e + GAINS["i"] * whole + GAINS["d"] * rate
         quick = k == 0 or abs(r[k] - r[k - 1]) > 0.1 * PERIOD_S
-        u[k] = (1.0 if quick else slow) * law + 0.4 * np.sin(2 * np.pi * hertz * t[k] + seed)
+        wave = np.sin(2 * np.pi * hertz * t[k] + seed)
+        u[k] = (1.0 if quick else slow) * law + 0.4 * (np.sign(wave) if square else wave)
         for _ in range(4):
             force = u[k] - 4.0 * v - 3.0 * np.tanh(v / 1e-3)
             v += force / 2.0 * PERIOD_S / 4
@@ -54,7 +55,7 @@ def loop(seed: int, hertz: float = 0.0, slow: float = 1.0) -> tuple[np.ndarray, 
     return t, x, u, r
 
 
-def report(folder: Path, rig: str, **changes: float) -> dict[str, Any]:
+def report(folder: Path, rig: str, **changes: Any) -> dict[str, Any]:
     return answer(folder, rig, *[loop(k, **changes) for k in range(3)], header="t,x,u,r")
 
 
