@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from calibration.answers import GATE, Answer, calibrated, gate_rows, refusals
-from calibration.channels.law import DELAY
 from calibration.channels.slowoffset import SLOW
 from calibration.decide.select import Selection
 from calibration.decide.thresholds import STILL_MISSING
@@ -56,7 +55,7 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         refusals(_selections(found)),
     )
     if found.law is not None:
-        v.calibrated |= calibrated(found.law.selection, ("law_offset", DELAY), 0.0)
+        v.calibrated |= found.law.gains
     from calibration.report.drivepictures import pictures
 
     return v, pictures(found, GATE) if plots else [], found.rig.name

@@ -8,88 +8,125 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
-from calibration.channels.law import declared_terms, law_problem
+from calibration.channels.law import Command, command_of, declared_terms
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
+from calibration.decide.parameters import interval
 from calibration.decide.select import Selection, select
-from calibration.finding import Finding
+from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
-from calibration.names import NAMES
+from calibration.names.command_disturbance import lines, multiples_of_the_motion
 from calibration.names.scene import Scene
+from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 
 ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' declared numbers
-TOLD = 0.02  # of a declared gain, and two standard errors: what is told beside it
+TOLD, CLEAR = 0.02, 5.0  # of a declared gain, and standard errors: less is not told
+BEFORE = "in front of the logged effort: the law makes no such command"
+FORWARD = "follows the reference, not the error: a feed-forward that the rig file does not declare?"
 PARTS = (0.25, 0.5, 0.75)  # of the moving rows, below whose speed the gains may be others
 
 
 @dataclass
 class Law:
-    """The command's selection, what was found, and what is told of the gains."""
+    """The command's selection, its gains, what was found, and what is told of the gains."""
 
     selection: Selection
+    gains: dict[str, Parameter]
     findings: list[Finding] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
 def look_at_law(view: View, balance: Problem, seed: int) -> Law | None:
     """None where the rig file declares no controller."""
-    if view.rig.controller is None:
+    law = view.rig.controller
+    if law is None:
         return None
-    p = law_problem(view, balance, view.rig.controller)
-    s = select(p, [*_lines(view, p), *_by_speed(view, p)], np.random.default_rng(seed))
-    out = Law(s, [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
+    c = command_of(view, balance, law)
+    s = select(
+        c.problem, [*_lines(view, c), *_by_speed(view, c), _forward(view, c)], np.random.default_rng(seed)
+    )
+    out = Law(s, _gains(c), [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
     for f in out.findings:
+        forward = f.domain == "reference"
         f.domain = "command" if f.name == "unknown" else f.domain
-        f.note = f.note or "in front of the logged effort: the law makes no such command"
+        f.note = f.note or (FORWARD if forward else BEFORE)
     if not any(f.name == "unknown" for f in out.findings):  # else the law has no one set of gains
-        _gains(out, declared_terms(view.rig.controller))
+        _tell(out, c, declared_terms(law))
     return out
 
 
-def _gains(law: Law, declared: dict[str, float]) -> None:
+def _gains(c: Command) -> dict[str, Parameter]:
+    """The gains as parameters: a law is computed exactly, so their error is the log's alone."""
+    blocks = max(int(c.problem.train.sum() / c.problem.block), 5)
+    out = {}
+    for k, (name, unit) in enumerate(c.labels):
+        value, error = float(c.gains[k]), float(np.sqrt(max(c.covariance[k, k], 0.0)))
+        out[name] = Parameter(value, unit, *interval(value, error, blocks, 0.0))
+    return out
+
+
+def _tell(law: Law, c: Command, declared: dict[str, float]) -> None:
     """Tell gains that are not the declared ones; beyond a fifth it is a finding."""
-    s = law.selection
-    for k, (name, unit) in enumerate(s.problem.base_labels):
-        if name not in declared or declared[name] == 0:
+    for k, (name, unit) in enumerate(c.labels):
+        value, error = float(c.gains[k]), float(np.sqrt(max(c.covariance[k, k], 0.0)))
+        off = value - declared[name]
+        if declared[name] == 0 or abs(off) < TOLD * abs(declared[name]) or abs(off) < CLEAR * error:
             continue
-        value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
-        part = value / declared[name] - 1.0
-        if abs(part) < TOLD or abs(value - declared[name]) < 2 * error:
-            continue
+        part = off / declared[name]
         text = f"controller: {name} is {value:.4g} {unit} ({100 * part:+.1f} % of the declared one)"
         law.notes.append(text)
-        if abs(part) > ANOTHER and abs(value - declared[name]) > 5 * error:
-            evidence = ((value - declared[name]) / max(error, 1e-300)) ** 2 / 4.6
-            law.findings.append(
-                Finding("unknown", "S", "command", evidence=min(evidence, 1e4), share=1.0, note=text)
-            )
+        if abs(part) > ANOTHER:
+            evidence = min((off / max(error, 1e-300)) ** 2 / 4.6, 1e4)
+            law.findings.append(Finding("unknown", "S", "command", evidence=evidence, share=1.0, note=text))
 
 
-def _lines(view: View, p: Problem) -> list[Candidate]:
+def _lines(view: View, law: Command) -> list[Candidate]:
     """The lines that a balance of forces is offered, of what the law leaves; no mode of a plant is among the
     names of a command."""
+    p = law.problem
     e = gls(p.y, p.base, p.train, p.ar_order, p.block).residual
     scene = Scene(view, p, {}, e, np.zeros((len(p.y), 0)))
-    found = NAMES["command_disturbance"].columns(scene)
-    return [replace(c, labels=(("amplitude", p.unit),), twins=()) for c in found]
+
+    def follow(view: View, length_s: float, top_hz: float) -> Array:
+        """Frequencies of the motion, at which the law's command is larger than what is left of it."""
+        multiples = multiples_of_the_motion(view, length_s, top_hz)
+        t, command = view.t[view.rows], law.follows @ law.gains
+        return multiples[[_power(p, t, command, f) > _power(p, t, e, f) for f in multiples]]
+
+    return [replace(c, labels=(("amplitude", p.unit),), twins=()) for c in lines(scene, follow)]
 
 
-def _by_speed(view: View, p: Problem) -> list[Candidate]:
+def _power(p: Problem, t: Array, y: Array, hertz: float) -> float:
+    """Of a line in the training rows, any phase in every file."""
+    wave = np.where(p.train, y, 0.0) * np.exp(-2j * np.pi * hertz * t)
+    _, file = np.unique(p.session, return_inverse=True)
+    return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
+
+
+def _by_speed(view: View, c: Command) -> list[Candidate]:
     """Gains that are others below a speed (gain scheduling); it has no name in the catalogue."""
-    speed = np.abs(view.speed[view.rows])
-    width = len(declared_terms(view.rig.controller)) if view.rig.controller is not None else 0
+    speed, p = np.abs(view.speed[view.rows]), c.problem
     moving = speed[p.train & (speed > view.slow)]
     if len(moving) < 100:
         return []
-    labels = tuple((f"{name}_below", unit) for name, unit in p.base_labels[:width])
+    labels = tuple((f"{name}_below", unit) for name, unit in c.labels)
     return [
         Candidate(
             "unknown",
             "velocity",
-            p.base[:, :width] * (speed < limit)[:, None],
+            c.follows * (speed < limit)[:, None],
             labels,
             fixed={"speed_limit": (float(limit), f"{view.angle_unit}/s")},
         )
         for limit in np.quantile(moving, PARTS)
     ]
+
+
+def _forward(view: View, c: Command) -> Candidate:
+    """A feed-forward that the file does not declare, beside the gains that had to stand for it."""
+    rate = f"{view.unit} s/{view.angle_unit}"
+    labels = [(f"{name}_beside", unit) for name, unit in c.labels]
+    labels += [("rate_feedforward", rate), ("acceleration_feedforward", rate.replace(" s/", " s2/"))]
+    labels += [("friction_feedforward", view.unit)]
+    return Candidate("unknown", "reference", np.hstack([c.follows, c.forward]), tuple(labels))

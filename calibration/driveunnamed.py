@@ -29,9 +29,8 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
         scene.model = np.asarray(base @ together.after.beta)
-        more = select(
-            replace(s.problem, base=base), smooth_functions(scene), np.random.default_rng(seed), most=1
-        )
+        offered = [replace(c, apart=float(k)) for k, c in enumerate(smooth_functions(scene))]  # one by one
+        more = select(replace(s.problem, base=base), offered, np.random.default_rng(seed), most=1)
         s.refused += more.refused
         if not more.chosen:
             break

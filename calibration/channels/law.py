@@ -10,60 +10,122 @@ passed; what the law cannot make of reference and position acts in front of the 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.signal import lfilter
 
 from calibration.channels.problem import Problem
 from calibration.channels.view import View, pieces
 from calibration.inputs.declaration import Controller
 from calibration.readers.run import Array
+from calibration.statistics.regression import block_covariance, solve
 
-DELAY = "law_delay"  # nuisances: the effort's row, and the rate that the law uses
+# of the command's rms: less is the rounding of a log's numbers and the order of a law's own sums. ASSUMPTION;
+# EMPS, whose law is published, is left with 0.0003
+LEAST = 0.003
+LAGS = (3, 10, 30, 100, 300, 1000)  # rows: of the first-order lags that the reference is seen through
 
 
-def law_problem(view: View, balance: Problem, law: Controller) -> Problem:
-    """The command as a regression on the balance's rows; base: the law's terms, an offset, how late the
-    effort's row is and how late the rate. A controller's integral begins anew, and with any offset, in every
-    file."""
-    effort, x = view.columns["effort"], view.x
-    error = view.columns["reference"] - x
-    labels: list[tuple[str, str]] = []
-    unit, place = view.rig.columns["effort"].unit, view.angle_unit
+@dataclass(frozen=True)
+class Command:
+    """The command less its law, as a problem whose base is an offset per file; `gains` (k,) with their
+    covariance (k, k) in the law's order of `labels`; `follows` (n_fitted, k): the law's terms, as far as
+    they follow the reference; `forward` (n_fitted, 3): what a feed-forward of rate, acceleration and friction
+    would add."""
+
+    problem: Problem
+    labels: list[tuple[str, str]]
+    gains: Array
+    covariance: Array
+    follows: Array
+    forward: Array
+
+
+def command_of(view: View, balance: Problem, law: Controller) -> Command:
+    """The law's gains from two-stage least squares, and what it leaves of the effort.
+
+    A disturbance of the command moves the drive, and the error that the law sees has it, too: least squares
+    would read it into the gains. The reference does not know of it, so only what follows the reference counts
+    (instruments: Van den Hof 1998; Janot, Gautier, Brunot 2019 for a drive's own parameters).
+    """
+    effort, x, reference = view.columns["effort"], view.x, view.columns["reference"]
+    labels, full = _terms(view, law, reference - x)
+    declared = sum((g * c for g, c in zip(declared_terms(law).values(), full, strict=True)), np.zeros(len(x)))
     if law.law == "cascade":
-        full = [error, -view.rate(x)]
-        labels = [("gain_of_error", f"{unit}/{place}"), ("gain_of_rate", f"{unit} s/{place}")]
-        declared = law.gains["velocity"] * (law.gains["position"] * full[0] + full[1])
+        late = [-view.rate(declared), view.second(x)]
+    elif "d" in law.gains:  # its rate holds no more than this: a delay of all is read as a smaller gain_d
+        late = [-view.second(reference - x)]
     else:
-        terms = {"p": error, "i": _integral(view, error), "d": view.rate(error)}
-        per = {"p": f"{unit}/{place}", "i": f"{unit}/({place} s)", "d": f"{unit} s/{place}"}
-        full = [terms[k] for k in law.gains]
-        labels = [(f"gain_{k}", per[k]) for k in law.gains]
-        declared = sum((law.gains[k] * terms[k] for k in law.gains), np.zeros(len(x)))
-    rates = [view.second(x)] if law.law == "cascade" else [-view.second(error)] if "d" in law.gains else []
-    base = view.at(np.column_stack([*full, np.ones(len(x)), -view.rate(declared), *rates]))
-    labels += [("law_offset", unit), (DELAY, "s"), *[(DELAY, f"{unit} s2/{place}") for _ in rates]]
-    offsets = np.column_stack([(balance.session == k).astype(float) for k in np.unique(balance.session)])
+        late = [-view.rate(declared)]
+    terms_at = view.at(np.column_stack([*full, *late]))
+    files = np.column_stack([(balance.session == k).astype(float) for k in np.unique(balance.session)])
+    ok = view.ok[view.rows]
+    train = ok & ~balance.held
     p = replace(
         balance,
         channel="S",
-        unit=unit,
+        unit=view.rig.columns["effort"].unit,
         y=view.at(effort),
-        base=base,
-        base_labels=labels,
-        valid=view.ok[view.rows],
-        fresh=offsets,
+        base=files,
+        base_labels=[("law_offset", view.rig.columns["effort"].unit)] * files.shape[1],
+        valid=ok,
+        fresh=files,
         floor=0.0,
-        step=0.0,
+        step=LEAST * float(np.std(view.at(effort)[train])) if train.any() else 0.0,
         resolved=None,
         sensor="command",
     )
-    if "i" in law.gains and offsets.shape[1] > 1:
-        first = int(np.searchsorted(np.unique(p.session), p.session[p.train][0])) if p.train.any() else 0
-        others = np.delete(offsets, first, axis=1)
-        p.base = np.hstack([p.base, others])
-        p.base_labels = [*labels, *[("law_offset", unit)] * others.shape[1]]
-    return p
+    z = np.hstack([view.at(_known(view, reference)), files])
+    follows = z @ np.column_stack([solve(z[train], c[train]) for c in terms_at.T])
+    design = np.hstack([follows, files])
+    beta = solve(design[train], p.y[train])
+    k, own, rate = len(labels), terms_at.shape[1], view.rate(reference)
+    left = p.y - np.hstack([terms_at, files]) @ beta
+    covariance = block_covariance(design[train], left[train], p.block)[:k, :k]
+    p.y = p.y - terms_at @ beta[:own]
+    forward = [rate, view.rate(rate), np.sign(rate)]
+    return Command(p, labels, beta[:k], covariance, follows[:, :k], view.at(np.column_stack(forward)))
+
+
+def _terms(view: View, law: Controller, error: Array) -> tuple[list[tuple[str, str]], list[Array]]:
+    """Labels with unit, and full-rate columns, of the gains."""
+    unit, place = view.rig.columns["effort"].unit, view.angle_unit
+    per = {"p": f"{unit}/{place}", "i": f"{unit}/({place} s)", "d": f"{unit} s/{place}"}
+    per |= {"of_error": per["p"], "of_rate": per["d"]}
+    per |= {"rate_feedforward": per["d"], "acceleration_feedforward": f"{unit} s2/{place}"}
+    forward = view.rate(view.columns["reference"])
+    terms = {
+        "p": lambda: error,
+        "i": lambda: _integral(view, error),
+        "d": lambda: view.rate(error),
+        "of_error": lambda: error,
+        "of_rate": lambda: -view.rate(view.x),
+        "rate_feedforward": lambda: forward,
+        "acceleration_feedforward": lambda: view.rate(forward),
+    }
+    names = [name.removeprefix("gain_") for name in declared_terms(law)]
+    return [(f"gain_{k}", per[k]) for k in names], [terms[k]() for k in names]
+
+
+def _known(view: View, reference: Array) -> Array:
+    """(n, m): what a loop makes of its reference and of friction that follows it: both, their rates, and both
+    behind lags."""
+    rate = view.rate(reference)
+    out = [_integral(view, reference)]
+    for drive in (reference, np.sign(rate)):
+        out += [drive, view.rate(drive), view.second(drive)]
+        out += [_lagged(view, drive, steps * view.period_s) for steps in LAGS]
+    return np.column_stack(out)
+
+
+def _lagged(view: View, drive: Array, lag_s: float) -> Array:
+    """Behind a first-order lag, beginning settled."""
+    keep = np.exp(-view.period_s / lag_s)
+    out = np.zeros_like(drive)
+    for a, b in pieces(view.segment):
+        out[a:b] = lfilter([1.0 - keep], [1.0, -keep], drive[a:b], zi=[keep * drive[a]])[0]
+    return out
 
 
 def _integral(view: View, error: Array) -> Array:
@@ -74,8 +136,9 @@ def _integral(view: View, error: Array) -> Array:
 
 
 def declared_terms(law: Controller) -> dict[str, float]:
-    """The declared size of every term of the law, by its label in the base."""
+    """The declared size of every term of the law, by its label."""
+    gains = dict(law.gains)
     if law.law == "cascade":
-        velocity = law.gains["velocity"]
-        return {"gain_of_error": velocity * law.gains["position"], "gain_of_rate": velocity}
-    return {f"gain_{k}": v for k, v in law.gains.items()}
+        velocity = gains.pop("velocity")
+        gains = {"of_error": velocity * gains.pop("position"), "of_rate": velocity} | gains
+    return {f"gain_{k}": v for k, v in gains.items()}

@@ -69,7 +69,7 @@ def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
     rows = problem.train
     taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
     if taken < problem.step**2:
-        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than a sensor's step"
+        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than its columns are sure to ({problem.step:.2g})"
     return ""
 
 
@@ -91,6 +91,8 @@ def equivalents(problem: Problem, contenders: list[Contender], best: Contender) 
     out = []
     for other in contenders:
         if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
+            continue
+        if other.candidate.name == best.candidate.name == "unknown":
             continue
         if other.candidate.width > best.candidate.width:
             continue  # a richer form always fits as well

@@ -55,7 +55,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Controller:
-    """The loop's law and its gains: `pid` (p, i, d) or `cascade` (position, velocity)."""
+    """The loop's law and its gains: `pid` (p, i, d) or `cascade` (position, velocity), and what is fed forward."""
 
     law: str
     gains: dict[str, float]

@@ -105,8 +105,12 @@ def _controller(given: dict[str, Any] | None) -> Controller | None:
     return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()})
 
 
+FORWARD = {"rate_feedforward", "acceleration_feedforward"}
 #: gains that a law must have, and those that it may
-GAINS = {"pid": ({"p"}, {"p", "i", "d"}), "cascade": ({"position", "velocity"}, {"position", "velocity"})}
+GAINS = {
+    "pid": ({"p"}, {"p", "i", "d"} | FORWARD),
+    "cascade": ({"position", "velocity"}, {"position", "velocity"} | FORWARD),
+}
 
 
 def _check_controller(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
@@ -26,21 +28,25 @@ def columns(s: Scene) -> list[Candidate]:
     Multiples of the frequency at which the motion repeats itself are left out: whatever follows the motion
     has them.
     """
+    return lines(s, multiples_of_the_motion, large_first=False)
+
+
+def lines(
+    s: Scene, avoided: Callable[[View, float, float], Array], large_first: bool = True
+) -> list[Candidate]:
+    """`columns` without the frequencies that `avoided` gives for the shortest file's length, s, and the
+    highest frequency, Hz."""
     v = s.view
     files = s.problem.session
     t = v.t[v.rows]
     length = min(float(t[files == k].max()) for k in np.unique(files))
     if length <= 0:
         return []
-    f0 = repeat_frequency(v)
     top = 0.5 / (v.period_s * max(v.step, 1))
-    multiples = int(top / f0) if f0 else 0
-    if f0 * length < FEWEST_REPEATS:
-        multiples = min(multiples, STRONG)
-    avoid = np.asarray(np.arange(1, multiples + 1) * f0, dtype=np.float64)
+    avoid = avoided(v, length, top)
     out = []
     few = len(np.unique(files)) <= FEW
-    for f in peaks(s, t, length, TURNS / length, 5, avoid):
+    for f in peaks(s, t, length, TURNS / length, 5, avoid, large_first):
         for overtones in ((1,), ODD) if few and 3 * f < top else ((1,),):
 
             def shape(p: Array, overtones: tuple[int, ...] = overtones) -> Array:
@@ -64,6 +70,15 @@ def columns(s: Scene) -> list[Candidate]:
                 )
             )
     return out
+
+
+def multiples_of_the_motion(v: View, length_s: float, top_hz: float) -> Array:
+    """Frequencies, Hz, that whatever follows the motion has."""
+    f0 = repeat_frequency(v)
+    multiples = int(top_hz / f0) if f0 else 0
+    if f0 * length_s < FEWEST_REPEATS:
+        multiples = min(multiples, STRONG)
+    return np.asarray(np.arange(1, multiples + 1) * f0, dtype=np.float64)
 
 
 def passed(v: View, frequency: float) -> float:

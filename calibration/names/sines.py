@@ -159,10 +159,17 @@ def _movable(s: Scene, c: Candidate, rate: float) -> Candidate:
 
 
 def peaks(
-    s: Scene, z: Array, span: float, least: float, most: int, avoid: Array | None = None
+    s: Scene,
+    z: Array,
+    span: float,
+    least: float,
+    most: int,
+    avoid: Array | None = None,
+    large_first: bool = False,
 ) -> list[float]:
     """Frequencies over z (cycles per unit of z, `least` and up) where the residual's spectrum stands out,
-    summed over sessions; those of `avoid` left out."""
+    summed over sessions; those of `avoid` left out. `large_first`: a square's fundamental stands out less
+    than its overtones, because its own flanks are around it."""
     train = s.problem.train
     top = HIGHEST / span
     step = np.abs(np.diff(z[train]))
@@ -191,7 +198,8 @@ def peaks(
     ratio[~use] = 0.0
     large = 2 * power > LARGE * energy  # of a sine of amplitude A: A^2 / 2 over the mean square
     found: list[float] = []
-    for k in np.argsort(-ratio)[: 60 * most]:
+    first = ~large if large_first else np.zeros(len(f), dtype=bool)
+    for k in np.lexsort((-ratio, first, ratio < LARGE_STANDS_OUT))[: 60 * most]:
         if ratio[k] < LARGE_STANDS_OUT or len(found) >= most:
             break
         if ratio[k] < STANDS_OUT and not large[k]:

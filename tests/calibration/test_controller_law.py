@@ -29,12 +29,16 @@ controller: {law: pid, gains: {p: 900, i: 2000, d: 40}, source: this test}
 """
 
 
-def loop(seed: int, hertz: float = 0.0, slow: float = 1.0, square: bool = False) -> tuple[np.ndarray, ...]:
+def loop(
+    seed: int, hertz: float = 0.0, slow: float = 1.0, square: bool = False, forward: float = 0.0
+) -> tuple[np.ndarray, ...]:
     """Time, position, effort and reference of 2 kg with friction behind a PID; a sine (or a square) of 0.4 N
-    at `hertz` and gains that are `slow` times as large below 0.1 m/s act in front of the logged effort."""
+    at `hertz`, gains that are `slow` times as large below 0.1 m/s, and `forward` kg times the reference's
+    acceleration act in front of the logged effort."""
     t = np.arange(0.0, 20.0, PERIOD_S)
     r = 0.2 * np.sin(2 * np.pi * 0.21 * t + seed) + 0.05 * np.sin(2 * np.pi * 0.83 * t)
     rng = np.random.default_rng(seed)
+    ahead = forward * np.gradient(np.gradient(r, PERIOD_S), PERIOD_S)
     x = np.zeros(len(t))
     u = np.zeros(len(t))
     at, v, whole, last = r[0], 0.0, 0.0, 0.0
@@ -47,7 +51,7 @@ def loop(seed: int, hertz: float = 0.0, slow: float = 1.0, square: bool = False)
         law = GAINS["p"] * e + GAINS["i"] * whole + GAINS["d"] * rate
         quick = k == 0 or abs(r[k] - r[k - 1]) > 0.1 * PERIOD_S
         wave = np.sin(2 * np.pi * hertz * t[k] + seed)
-        u[k] = (1.0 if quick else slow) * law + 0.4 * (np.sign(wave) if square else wave)
+        u[k] = (1.0 if quick else slow) * law + ahead[k] + 0.4 * (np.sign(wave) if square else wave)
         for _ in range(4):
             force = u[k] - 4.0 * v - 3.0 * np.tanh(v / 1e-3)
             v += force / 2.0 * PERIOD_S / 4
@@ -71,6 +75,19 @@ def test_a_sound_loop_keeps_its_law_and_gets_its_gains(tmp_path: Path) -> None:
     assert data["error"]["command"]["after"] < 0.1  # N, of 5 N
 
 
+def test_a_quick_disturbance_has_its_size_before_the_filter(tmp_path: Path) -> None:
+    """The filter of the balance leaves four fifths of it (`smooth_s` says how wide it is)."""
+    (found,) = of_the_command(report(tmp_path, RIG + "smooth_s: 0.02\n", hertz=26.3))
+    assert found["frequency_Hz"] == pytest.approx(26.3, abs=0.02)
+    assert found["parameters"]["amplitude"]["value"] == pytest.approx(0.4, rel=0.05)
+
+
+def test_a_square_is_one_disturbance(tmp_path: Path) -> None:
+    (found,) = of_the_command(report(tmp_path, RIG, hertz=1.3, square=True))
+    assert found["name"] == "command_disturbance" and found["equivalent"] == []
+    assert found["parameters"]["amplitude"]["value"] == pytest.approx(0.4 * 4 / np.pi, rel=0.05)
+
+
 def test_a_disturbance_of_the_command_is_seen_where_the_balance_of_forces_cannot(tmp_path: Path) -> None:
     """It moves the slide, so that force and motion agree."""
     data = report(tmp_path, RIG, hertz=3.7)
@@ -88,6 +105,18 @@ def test_a_disturbance_of_the_command_is_seen_where_the_balance_of_forces_cannot
 def test_gains_that_follow_the_speed_are_unknown_over_the_command(tmp_path: Path) -> None:
     found = of_the_command(report(tmp_path, RIG, slow=0.7))
     assert [(f["name"], f["domain"]) for f in found] == [("unknown", "command")]
+
+
+def test_a_feed_forward_is_unknown_until_it_is_declared(tmp_path: Path) -> None:
+    (found,) = of_the_command(report(tmp_path, RIG, forward=1.5))
+    assert (found["name"], found["domain"]) == ("unknown", "command")
+    assert "feed-forward" in found["note"]
+    declared = tmp_path / "declared"
+    declared.mkdir()
+    data = report(declared, RIG.replace("d: 40}", "d: 40, acceleration_feedforward: 1.4}"), forward=1.5)
+    assert of_the_command(data) == []
+    gain = data["calibrated"]["gain_acceleration_feedforward"]
+    assert gain["value"] == pytest.approx(1.5, rel=0.02) and gain["unit"] == "N s2/m"
 
 
 def test_another_gain_than_the_declared_one_is_told(tmp_path: Path) -> None:
@@ -117,7 +146,11 @@ def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.Monkey
     [
         ("law: pid", "law: cascade", "'position' is missing"),
         ("p: 900, ", "", "'p' is missing"),
-        ("d: 40}", "d: 40, velocity: 2}", "a pid has none; it has d, i, p"),
+        (
+            "d: 40}",
+            "d: 40, velocity: 2}",
+            "a pid has none; it has acceleration_feedforward, d, i, p, rate_feedforward",
+        ),
         ("  reference: {column: r, unit: m}\n", "", "needs the columns reference and effort"),
         ("{column: r, unit: m}", "{column: r, unit: mm}", "must be the position's"),
         ("law: pid", "law: pd", "'pd' is not one of pid, cascade"),

@@ -51,7 +51,7 @@ def test_emps_has_asymmetric_friction_stribeck_and_a_period_whose_stage_cannot_b
     assert names(data) & {"stribeck_change", "presliding"}
     delay = next(e for e in data["effects"] if e["name"] == "channel_delay")["parameters"]["delay"]
     assert delay["low"] < -0.0007 < delay["high"] or abs(delay["value"] + 0.0007) < 0.0001  # 0.7 ms
-    assert data["error"]["torque"]["after"] < 1.6
+    assert data["error"]["torque"]["after"] < 0.9  # all that is named; 0.96 without the function over speed
     line = next(e for e in data["effects"] if e["order"] and 350 < e["order"] < 450)
     assert 1 / line["order"] == pytest.approx(0.0025, rel=0.01)
     assert line["stage"] is None and len(line["equivalent"]) > 1
