@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.channels.declared import DECLARED, paper_start
+from calibration.readers.drive import TRAIN_STIFFNESS
 from calibration.readers.run import Array, Run
 
 SIGMA_0 = 5.9e6  # N m/rad; design.md, the near miss that reaches the paper's rows together
@@ -45,20 +46,20 @@ class Declared:
 
 def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
     """From `plant`, from the project's plant file for the emulator's own logs, else from the paper's
-    tables."""
+    tables and the first log's header."""
     axis, preload = runs[0].header["axis"], runs[0].header.get("preload", "low")
     note = runs[0].header.get("note", "").lower()
     own = note.startswith(OWN)
     if plant is None and not own:
-        d = DECLARED[preload]
+        d, said = DECLARED[preload], runs[0].header.get(TRAIN_STIFFNESS)
         return Declared(
             d["coulomb"],
             d["stiction"],
             d["stribeck_speed"],
             d["viscous"],
             SIGMA_0,
-            STIFFNESS[axis],
-            readings=TABLE_1,
+            float(said) if said else STIFFNESS[axis],
+            readings=(1.0,) if said else TABLE_1,
             start=paper_start(preload),
         )
     from plant.model import default_files, load

@@ -43,9 +43,8 @@ def look_at_law(view: View, balance: Problem, seed: int) -> Law | None:
     if law is None:
         return None
     c = command_of(view, balance, law)
-    s = select(
-        c.problem, [*_lines(view, c), *_by_speed(view, c), _forward(view, c)], np.random.default_rng(seed)
-    )
+    offered = [*_lines(view, c), *_by_speed(view, c), _forward(view, c)]
+    s = select(c.problem, offered, np.random.default_rng(seed))
     out = Law(s, _gains(c), [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
     for f in out.findings:
         forward = f.domain == "reference"

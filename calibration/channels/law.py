@@ -96,16 +96,16 @@ def _terms(view: View, law: Controller, error: Array) -> tuple[list[tuple[str, s
     per |= {"rate_feedforward": per["d"], "acceleration_feedforward": f"{unit} s2/{place}"}
     forward = view.rate(view.columns["reference"])
     terms = {
-        "p": lambda: error,
-        "i": lambda: _integral(view, error),
-        "d": lambda: view.rate(error),
-        "of_error": lambda: error,
-        "of_rate": lambda: -view.rate(view.x),
-        "rate_feedforward": lambda: forward,
-        "acceleration_feedforward": lambda: view.rate(forward),
+        "p": error,
+        "i": _integral(view, error),
+        "d": view.rate(error),
+        "of_error": error,
+        "of_rate": -view.rate(view.x),
+        "rate_feedforward": forward,
+        "acceleration_feedforward": view.rate(forward),
     }
     names = [name.removeprefix("gain_") for name in declared_terms(law)]
-    return [(f"gain_{k}", per[k]) for k in names], [terms[k]() for k in names]
+    return [(f"gain_{k}", per[k]) for k in names], [terms[k] for k in names]
 
 
 def _known(view: View, reference: Array) -> Array:

@@ -69,7 +69,8 @@ def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
     rows = problem.train
     taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
     if taken < problem.step**2:
-        return f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away, less than its columns are sure to ({problem.step:.2g})"
+        taken_rms = f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away"
+        return f"{taken_rms}, less than its columns are sure to ({problem.step:.2g})"
     return ""
 
 

@@ -55,7 +55,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Controller:
-    """The loop's law and its gains: `pid` (p, i, d) or `cascade` (position, velocity), and what is fed forward."""
+    """The loop's law, `pid` (p, i, d) or `cascade` (position, velocity), and its gains, feed-forward too."""
 
     law: str
     gains: dict[str, float]

@@ -29,6 +29,10 @@ SCALES: dict[str, tuple[float, str]] = {
     "gear_ratio": (113 / 27 * 123 / 21 * 250 / 17, "motor turns per axis turn; paper 3.2"),
 }
 
+#: header key of a declared number that Table 1 gives in a way that can be read twice, and what it is
+TRAIN_STIFFNESS = "train_stiffness_Nm_per_rad"
+DECLARABLE: dict[str, str] = {TRAIN_STIFFNESS: "N m/rad at the axis of one motor's gear train"}
+
 #: counter lengths, in counts, of the columns that wrap
 WRAPS: dict[str, int] = {"position": 2**29, "aux": 2**17}
 

@@ -6,7 +6,7 @@ import difflib
 from pathlib import Path
 
 from calibration.errors import CalibrationInputError
-from calibration.readers.drive import SCALES
+from calibration.readers.drive import DECLARABLE, SCALES
 
 REQUIRED = ("format", "axis", "sample_period_s", "session", "loop", "start_utc")
 FORMAT = "axis-log 1"
@@ -51,7 +51,7 @@ def _check(path: Path, header: dict[str, str], at: dict[str, int]) -> None:
         raise CalibrationInputError(
             path, f"'preload' is '{header['preload']}', must be low or high", at["preload"]
         )
-    for key in SCALES:
+    for key in (*SCALES, *DECLARABLE):
         if key in header:
             number(path, header, key, at[key])
 
@@ -60,12 +60,13 @@ def number(path: Path, header: dict[str, str], key: str, line: int | None = None
     """The header's value of a scale, or the declared one; a value that is no positive number is an error."""
     if key not in header:
         return SCALES[key][0]
+    what = SCALES[key][1] if key in SCALES else DECLARABLE[key]
     try:
         value = float(header[key])
     except ValueError:
         raise CalibrationInputError(
-            path, f"'{key}' is '{header[key]}', must be a plain number ({SCALES[key][1]})", line
+            path, f"'{key}' is '{header[key]}', must be a plain number ({what})", line
         ) from None
     if not (value > 0 or (key == "counter_torque" and value == 0)) or value > 1e12:
-        raise CalibrationInputError(path, f"'{key}' is {value}, must be positive ({SCALES[key][1]})", line)
+        raise CalibrationInputError(path, f"'{key}' is {value}, must be positive ({what})", line)
     return value

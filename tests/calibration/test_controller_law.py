@@ -149,7 +149,7 @@ def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.Monkey
         (
             "d: 40}",
             "d: 40, velocity: 2}",
-            "a pid has none; it has acceleration_feedforward, d, i, p, rate_feedforward",
+            "a pid has none; it has acceleration_feedforward, d, i",
         ),
         ("  reference: {column: r, unit: m}\n", "", "needs the columns reference and effort"),
         ("{column: r, unit: m}", "{column: r, unit: mm}", "must be the position's"),

@@ -1,12 +1,16 @@
 """Table 1's stiffness can be read as one train's or as both trains': between the two nothing can be told."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from calibration.decide.tolerance import unsettled_reading
-from calibration.declaredplant import TABLE_1, Declared
+from calibration.declaredplant import TABLE_1, Declared, declared_numbers
+from calibration.errors import CalibrationInputError
 from calibration.finding import Parameter
+from calibration.readers.axis import read_axis_log
+from tests.calibration.test_readers import tiny_log, write
 
 TRAIN = 3.08e6  # N m/rad, paper Table 1
 PAPER = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, TRAIN, readings=TABLE_1)
@@ -20,3 +24,15 @@ def test_half_of_the_declared_stiffness_is_neither_declared_nor_changed(times: f
     assert (unsettled_reading(found, PAPER) == "") is settled
     assert unsettled_reading(found, replace(PAPER, readings=(1.0,))) == ""  # a plant file says what it means
     assert unsettled_reading(None, PAPER) == ""
+
+
+def test_a_header_settles_it(tmp_path: Path) -> None:
+    said = tiny_log().replace("# supply_V: 24\n", "# supply_V: 24\n# train_stiffness_Nm_per_rad: 1.54e6\n")
+    bare, declared = (
+        declared_numbers([read_axis_log(write(tmp_path / name, text))], None)
+        for name, text in (("a.log", tiny_log()), ("b.log", said))
+    )
+    assert (bare.stiffness, bare.readings) == (TRAIN, TABLE_1)
+    assert (declared.stiffness, declared.readings) == (1.54e6, (1.0,))
+    with pytest.raises(CalibrationInputError, match="'train_stiffness_Nm_per_rad' is 'soft', must be"):
+        read_axis_log(write(tmp_path / "c.log", said.replace("1.54e6", "soft")))

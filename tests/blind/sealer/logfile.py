@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.blind.sealer import declared as d
 from tests.blind.sealer.draw import Drive
 from tests.blind.sealer.manoeuvres import Run
 from tests.blind.sealer.sensors import Columns
@@ -26,6 +27,7 @@ def write(path: Path, run: Run, drive: Drive, out: Columns) -> None:
         "preload": drive.preload,
         "counter_torque": f"{drive.values['COUNTER']:g}",
         "supply_V": "24",
+        "train_stiffness_Nm_per_rad": f"{d.AXES[drive.axis].stiffness:g}",  # declared, whatever is hidden
     }
     lines = [f"# {key}: {value}" for key, value in head.items()]
     names = list(out)
