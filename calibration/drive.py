@@ -21,6 +21,7 @@ from calibration.driveleft import Left, left_over, settle
 from calibration.drivenames import as_told, of_calibrated
 from calibration.drivesearch import find, scene_of
 from calibration.driveunnamed import beyond_names, quick_lines
+from calibration.drivevolts import Electric, look_at_volts
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
@@ -67,6 +68,7 @@ class DriveResult:
     agreement: Agreement | None
     clock: str  # what the files' starts are taken from
     law: Law | None = None  # of a declared controller
+    electric: Electric | None = None  # where volts and current are logged
 
 
 def analyse(
@@ -112,7 +114,9 @@ def analyse(
         sensors.append(_late(agreement))
     tell("command: the controller's law")
     law = look_at_law(balances[0].view, balances[0].problem, seed)
-    return DriveResult(rig, records, balances, sensors, agreement, clock, law)
+    tell("voltage: winding and back-EMF")
+    electric = look_at_volts(balances[0].view, balances[0].problem, seed)
+    return DriveResult(rig, records, balances, sensors, agreement, clock, law, electric)
 
 
 def _late(a: Agreement) -> Finding:

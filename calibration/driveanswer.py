@@ -13,6 +13,7 @@ from calibration.decide.thresholds import STILL_MISSING
 from calibration.decide.verdict import Verdict, judge
 from calibration.drive import Balance, DriveResult
 from calibration.drivecontrols import drive_controls
+from calibration.driveleft import Left
 from calibration.finding import Finding
 from calibration.names import NAMES
 
@@ -34,12 +35,15 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         effects += _withdrawn(b, rows)
     if found.law is not None:
         effects += [f for f in found.law.findings if not _told(f, effects)]
+    if found.electric is not None:
+        effects += found.electric.findings
     effects.sort(key=lambda f: (f.name == "unknown", f.share == 0.0, -f.share))
     verdict, separating = judge(
         effects, [*_short(found), *_strange_rate(found), *_much_left(found), *_close(found)][:4]
     )
     separating = _separating(effects) or separating if effects else separating
     lacking = [x for b in found.balances for x in b.lacks]
+    lacking += [] if found.electric is None else found.electric.lacks
     first = found.balances[0]
     v = Verdict(
         verdict,
@@ -56,6 +60,8 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
     )
     if found.law is not None:
         v.calibrated |= found.law.gains
+    if found.electric is not None:
+        v.calibrated |= calibrated(found.electric.named)
     from calibration.report.drivepictures import pictures
 
     return v, pictures(found, GATE) if plots else [], found.rig.name
@@ -71,7 +77,8 @@ def _told(line: Finding, effects: list[Finding]) -> bool:
 
 def _selections(found: DriveResult) -> dict[str, Selection]:
     law = {} if found.law is None else {"U": found.law.selection}
-    return {_channel(b): b.selection for b in found.balances} | law
+    volts = {} if found.electric is None else {"E": found.electric.selection}
+    return {_channel(b): b.selection for b in found.balances} | law | volts
 
 
 def _channel(b: Balance) -> str:
@@ -129,11 +136,18 @@ def _close(found: DriveResult) -> list[str]:
 def _much_left(found: DriveResult) -> list[str]:
     """Balances that nothing explains and that are far above their floor: not "nothing"."""
     return [
-        f"{b.left.times:.1f} floors remain in {b.view.response.channel}, {b.left.where}: a column of what"
+        f"{left.times:.1f} floors remain in {where}, {left.where}: a column of what"
         " may drive it, or one quantity changed at a time"
-        for b in found.balances
-        if b.left is not None
+        for where, left in _left(found)
     ]
+
+
+def _left(found: DriveResult) -> list[tuple[str, Left]]:
+    """Column, and what remains beyond its floors."""
+    out = [(b.view.response.channel, b.left) for b in found.balances if b.left is not None]
+    if found.electric is not None and found.electric.left is not None:
+        out.append(("voltage", found.electric.left))
+    return out
 
 
 def _strange_rate(found: DriveResult) -> list[str]:
@@ -168,6 +182,9 @@ def _errors(found: DriveResult) -> dict[str, dict[str, Any]]:
         held, unit = found.law.selection.held, found.law.selection.problem.unit
         if np.isfinite(held.before):
             out["command"] = {"unit": unit, "before": held.before, "after": held.after, "floor": None}
+    if found.electric is not None and np.isfinite(found.electric.selection.held.before):
+        held, floor = found.electric.selection.held, found.electric.balance.floor
+        out["electrical"] = {"unit": "V", "before": held.before, "after": held.after, "floor": floor}
     a = found.agreement
     if a is not None and (a.late or a.left > STILL_MISSING) and np.isfinite(a.before):
         out["velocity"] = {
@@ -233,14 +250,14 @@ def _reasons(found: DriveResult) -> list[str]:
         out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
     out += [*_strange_rate(found), *_scaled(found)]
     out += found.law.notes if found.law is not None else []
+    out += found.electric.notes if found.electric is not None else []
     for b in found.balances:
         out += b.notes
         out.append(f"floor of {b.view.response.channel}: {b.floor_from}")
         out += _short(found)
         if not np.any(np.abs(b.view.direction) > 0.5):
             out.append("the position does not move")
-        if b.left is not None:
-            where = f"{b.left.where} ({100 * b.left.share:.0f} % of it)" if b.left.domain else b.left.where
-            much = f"{b.left.times:.1f} floors remain in {b.view.response.channel}"
-            out.append(f"{much}, {where}: something is still missing")
+    for column, left in _left(found):
+        where = f"{left.where} ({100 * left.share:.0f} % of it)" if left.domain else left.where
+        out.append(f"{left.times:.1f} floors remain in {column}, {where}: something is still missing")
     return out

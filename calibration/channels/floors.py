@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from calibration.channels.drivenoise import sensors_floor
@@ -15,9 +17,12 @@ FEWEST = 50  # rows that have a partner
 AGREE = 0.005  # of the range, that a repeated motion may differ from the first
 
 
-def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:
-    """rms and how it was had: repeats of the same motion, or what the columns' own noise leaves; None when
-    neither can be told. Never from the fit of an effect."""
+def floor_of(
+    view: View, problem: Problem, noise_of: Callable[[], float | None] | None = None
+) -> tuple[float | None, str]:
+    """rms and how it was had: repeats of the same motion, or what the columns' own noise leaves (`noise_of`,
+    where they are others than a force's and a position's); None when neither can be told. Never from the fit
+    of an effect."""
     e = _plain_residual(problem)
     again = None if view.dynamic else stroke_scatter(view, e)
     if again is not None:
@@ -27,9 +32,10 @@ def floor_of(view: View, problem: Problem) -> tuple[float | None, str]:
         found = _by_lag(view, problem, e, round(lag / max(view.step, 1)))
         if found is not None:
             return found, f"repeats of the motion every {lag * view.period_s:.4g} s"
-    noise = sensors_floor(view, problem)
+    noise = noise_of() if noise_of is not None else sensors_floor(view, problem)
     if noise is not None:
-        return noise, "the columns' noise from row to row, and travel that the position does not resolve"
+        travel = "" if noise_of is not None else ", and travel that the position does not resolve"
+        return noise, f"the columns' noise from row to row{travel}"
     return None, "the motion does not repeat itself, and the columns' noise cannot be told"
 
 

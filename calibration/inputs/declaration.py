@@ -82,4 +82,5 @@ class Rig:
     turn: float | None  # position units per turn
     sample_period_s: float | None
     controller: Controller | None = None
+    supply_V: float | None = None  # what a duty of one gives
     raw: dict[str, Any] = field(default_factory=dict)

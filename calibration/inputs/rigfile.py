@@ -95,6 +95,7 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         turn=data.get("turn"),
         sample_period_s=data.get("sample_period_s"),
         controller=_controller(data.get("controller")),
+        supply_V=data.get("supply_V"),
         raw=data,
     )
 
@@ -124,6 +125,27 @@ def _check_controller(data: dict[str, Any], columns: dict[str, Column], refuse: 
         refuse("controller: needs the columns reference and effort, which the law connects")
     if columns["reference"].unit != columns["position"].unit:
         refuse("columns.reference.unit: must be the position's for a controller; give a scale")
+
+
+def _check_electrical(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:
+    """Volts are measured, or a duty of a supply; a balance of them needs the current."""
+    for name in ("voltage", "duty"):
+        if name in columns and "current" not in columns:
+            refuse(
+                f"columns.{name}: a balance of volts needs the current; give columns.current or leave it out"
+            )
+    if "voltage" in columns and "duty" in columns:
+        refuse("columns.duty: the voltage is given; leave one of the two out")
+    if "duty" in columns and ("supply" in columns) == ("supply_V" in data):
+        refuse("columns.duty: needs what a duty of 1 gives, a column of the supply or supply_V, and only one")
+    if "duty" not in columns and "supply_V" in data:
+        refuse("supply_V: is for a column of the duty; leave it out")
+    for name, unit in (("voltage", "V"), ("duty", "1"), ("current", "A")):
+        if name in columns and {"voltage", "duty"} & set(columns) and columns[name].unit != unit:
+            refuse(
+                f"columns.{name}.unit: '{columns[name].unit}', must be {unit} for a balance of volts;"
+                " give a scale"
+            )
 
 
 def _check(
@@ -164,6 +186,7 @@ def _check(
             refuse(f"response: '{r.channel}' is given twice")
     if "controller" in data:
         _check_controller(data, columns, refuse)
+    _check_electrical(data, columns, refuse)
     _check_model(data, columns, responses, refuse)
     _check_runs(data, refuse)
 
@@ -189,6 +212,8 @@ def _check_model(
         used |= {"effort", "force", "current"}
     if "controller" in data:
         used.add("effort")
+    if {"voltage", "duty"} & set(columns):
+        used |= {"voltage", "duty", "current"}
     for name in columns:
         if name not in used:
             refuse(f"columns.{name}: nothing uses it with this response; leave it out")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from calibration.candidates.candidate import Candidate
 from calibration.names.scene import Scene
 
-FORCE, SENSORS = "force", "sensors"
+FORCE, SENSORS, VOLTS = "force", "sensors", "volts"
 
 
 def _nothing_lacks(_: Scene) -> str:
@@ -31,10 +31,10 @@ class OwnFormula:
 class Name:
     """One name of the catalogue.
 
-    channels: kinds of balance it can be seen in ("force", "sensors"). columns: its candidates along a motion;
-    lacks: what a log would need to show it, empty when it has all. twins: names that look alike; experiment:
-    what tells them apart. own: its columns are the effect's formula; the telescope's axis and the plant file
-    need nothing else.
+    channels: kinds of balance it can be seen in ("force", "sensors", "volts"). columns: its candidates along
+    a motion; lacks: what a log would need to show it, empty when it has all. twins: names that look alike;
+    experiment: what tells them apart. own: its columns are the effect's formula; the telescope's axis and the
+    plant file need nothing else.
     """
 
     name: str

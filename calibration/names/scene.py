@@ -59,6 +59,11 @@ class Scene:
         return [*shared, (own, True)]
 
     @property
+    def volts(self) -> bool:
+        """True for an electrical balance."""
+        return self.view.response.channel == "voltage"
+
+    @property
     def both(self) -> bool:
         """True when the drive goes both ways."""
         d = self.view.direction[self.view.ok]

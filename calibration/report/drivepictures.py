@@ -48,6 +48,10 @@ def pictures(found: DriveResult, gate_text: str) -> list[dict[str, str]]:
         title = "Held-out command less its declared law, before and after"
         alt = "Rows nothing was fitted to; the law's gains are those of the fitted rows"
         out.append({"image": draw.trace_plot(found.law.selection, title), "alt": alt})
+    if found.electric is not None:
+        title = "Held-out volts less winding and back-EMF, before and after"
+        alt = "Rows nothing was fitted to"
+        out.append({"image": draw.trace_plot(found.electric.selection, title), "alt": alt})
     return out
 
 
