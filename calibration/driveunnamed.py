@@ -29,7 +29,9 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
         scene.model = np.asarray(base @ together.after.beta)
-        offered = [replace(c, apart=float(k)) for k, c in enumerate(smooth_functions(scene))]  # one by one
+        offered = smooth_functions(scene)
+        if scene.force:  # one by one; of two sensors what is left of the best is no second function
+            offered = [replace(c, apart=float(k)) for k, c in enumerate(offered)]
         more = select(replace(s.problem, base=base), offered, np.random.default_rng(seed), most=1)
         s.refused += more.refused
         if not more.chosen:
