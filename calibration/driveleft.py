@@ -15,6 +15,7 @@ from calibration.finding import Finding
 from calibration.names.scene import Scene
 from calibration.names.unknown import domains
 from calibration.readers.run import Array
+from calibration.statistics.whitening import Mask
 
 # of the mean square above the floor: names that leave more than they take are not what the log mostly holds.
 # ASSUMPTION, one half by that reasoning; looked at on development seeds and the opened seed 20261122
@@ -22,6 +23,7 @@ MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: balances of forces of 144 sealed drives without an
 # effect stay below 1.4 (seeds 1036 and 1038; one whose fitted files go one way only apart)
 TELLING = 1.6
+FEWEST = 60  # rows that are not fitted, where the position is resolved
 
 
 @dataclass(frozen=True)
@@ -37,15 +39,34 @@ class Left:
 
 
 def left_over(s: Selection, scene: Scene, floor: float | None) -> Left | None:
-    """What is left beyond TELLING floors of a force, STILL_MISSING of sensors; None where it is less, or no
-    floor is known."""
-    held, times = s.held, TELLING if scene.force else STILL_MISSING
-    if not floor or not np.isfinite(held.after) or held.after <= times * floor:
+    """What is left beyond TELLING floors of a force, STILL_MISSING of sensors; of a force also what is left
+    beyond STILL_MISSING floors where the position is resolved, because the floor of all rows holds what a
+    coarse sensor may hide. None where it is less, or no floor is known."""
+    held, p = s.held, s.problem
+    if not floor or not np.isfinite(held.after):
         return None
-    part = (held.after**2 - floor**2) / max(held.before**2 - floor**2, floor**2)
-    found = Left(held.after / floor, float(part))
+    rows, before, after = p.valid, held.before, held.after
+    if after <= (TELLING if scene.force else STILL_MISSING) * floor:
+        if not scene.force or p.resolved is None or (p.test & p.resolved[0]).sum() < FEWEST:
+            return None
+        rows, floor = p.resolved
+        test = p.test & rows
+        before = _rms(predict_residual(p, p.base, s.before.beta, test, []))
+        after = _rms(_residual(s)[test])
+        if after <= STILL_MISSING * floor:
+            return None
+    part = (after**2 - floor**2) / max(before**2 - floor**2, floor**2)
+    return _where(s, scene, rows, Left(after / floor, float(part)))
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2)))
+
+
+def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
+    """`found` with the domain whose bin means take most of what is left of `rows`."""
     e = _residual(s)
-    train, test = s.problem.train, s.problem.test
+    train, test = s.problem.train & rows, s.problem.test & rows
     sign = np.sign(scene.view.direction[scene.view.rows])
     for domain, x, words in _places(scene):
         for shape, how in ((e, ""), (e * sign, ", against the motion"), (np.abs(e), ", in size")):

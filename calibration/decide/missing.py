@@ -11,7 +11,8 @@ from calibration.decide.thresholds import STILL_MISSING
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
-BINS = 24  # of a domain, each with as many rows as the next
+BINS, FEWEST_BINS = 24, 8  # of a domain, each with as many rows as the next
+ROWS = 10  # per bin
 LEAST_SHARE = 0.1  # of the mean square, explained on rows the means are not made of, before a domain is named
 
 
@@ -34,9 +35,10 @@ def lives_in(s: Selection, domains: dict[str, Array]) -> str:
 def domain_share(e: Array, x: Array, train: Mask, test: Mask) -> float:
     """Share of the mean square of `e` (n,) on `test` rows that its bin means over `x` (n,), made on `train`
     rows, take away; 0 where the rows are too few."""
-    if train.sum() < 10 * BINS or test.sum() < 10 * BINS or np.ptp(x[train]) == 0:
+    bins = int(min(BINS, train.sum() // ROWS, test.sum() // ROWS))
+    if bins < FEWEST_BINS or np.ptp(x[train]) == 0:
         return 0.0
-    edges = np.unique(np.quantile(x[train], np.linspace(0, 1, BINS + 1)[1:-1]))
+    edges = np.unique(np.quantile(x[train], np.linspace(0, 1, bins + 1)[1:-1]))
     place = np.searchsorted(edges, x)
     count = np.maximum(np.bincount(place[train], minlength=len(edges) + 1), 1)
     means = np.bincount(place[train], e[train], len(edges) + 1) / count
