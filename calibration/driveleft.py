@@ -39,24 +39,28 @@ class Left:
 
 
 def left_over(s: Selection, scene: Scene, floor: float | None) -> Left | None:
-    """What is left beyond TELLING floors of a force, STILL_MISSING of sensors; of a force also what is left
-    beyond STILL_MISSING floors where the position is resolved, because the floor of all rows holds what a
-    coarse sensor may hide. None where it is less, or no floor is known."""
+    """What is left beyond TELLING floors of a force, STILL_MISSING of sensors; of a force first where the
+    position is resolved: the floor of all rows holds what a coarse sensor may hide. None where it is less, or
+    no floor is known."""
     held, p = s.held, s.problem
     if not floor or not np.isfinite(held.after):
         return None
-    rows, before, after = p.valid, held.before, held.after
-    if after <= (TELLING if scene.force else STILL_MISSING) * floor:
-        if not scene.force or p.resolved is None or (p.test & p.resolved[0]).sum() < FEWEST:
-            return None
-        rows, floor = p.resolved
+    if scene.force and p.resolved is not None:
+        rows, noise = p.resolved
         test = p.test & rows
-        before = _rms(predict_residual(p, p.base, s.before.beta, test, []))
-        after = _rms(_residual(s)[test])
-        if after <= STILL_MISSING * floor:
-            return None
-    part = (after**2 - floor**2) / max(before**2 - floor**2, floor**2)
-    return _where(s, scene, rows, Left(after / floor, float(part)))
+        if test.sum() >= FEWEST:
+            before = _rms(predict_residual(p, p.base, s.before.beta, test))
+            after = _rms(_residual(s)[test])
+            if after > STILL_MISSING * noise:
+                return _where(s, scene, rows, Left(after / noise, _part(before, after, noise)))
+    if held.after <= (TELLING if scene.force else STILL_MISSING) * floor:
+        return None
+    return _where(s, scene, p.valid, Left(held.after / floor, _part(held.before, held.after, floor)))
+
+
+def _part(before: float, after: float, floor: float) -> float:
+    """Of what was above the floor."""
+    return (after**2 - floor**2) / max(before**2 - floor**2, floor**2)
 
 
 def _rms(x: Array) -> float:
@@ -64,17 +68,27 @@ def _rms(x: Array) -> float:
 
 
 def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
-    """`found` with the domain whose bin means take most of what is left of `rows`."""
-    e = _residual(s)
-    train, test = s.problem.train & rows, s.problem.test & rows
+    """`found` with the domain whose bin means take most of what is left of `rows`, file by file from the
+    others' means: one file may hardly have been where it lives."""
+    e, p = _residual(s), s.problem
+    rows = rows & p.valid
+    files = [p.session == k for k in np.unique(p.session[rows])]
+    test = rows & p.held
+    by_file = [(rows & ~f, rows & f) for f in files] if len(files) > 2 else []
     sign = np.sign(scene.view.direction[scene.view.rows])
     for domain, x, words in _places(scene):
         for shape, how in ((e, ""), (e * sign, ", against the motion"), (np.abs(e), ", in size")):
-            z = shape - float(np.mean(shape[train])) if how == ", in size" else shape
-            share = domain_share(z, x, train, test)
+            z = shape - float(np.mean(shape[rows])) if how == ", in size" else shape
+            share = max(domain_share(z, x, p.train & rows, test), _over_files(z, x, by_file))
             if share > max(found.share, LEAST_SHARE):
                 found = Left(found.times, found.part, domain, f"over {words}{how}", share)
     return found
+
+
+def _over_files(z: Array, x: Array, folds: list[tuple[Mask, Mask]]) -> float:
+    weight = [float(np.sum(z[test] ** 2)) for _, test in folds]
+    shares = [domain_share(z, x, train, test) for train, test in folds]
+    return float(np.average(shares, weights=weight)) if sum(weight) > 0 else 0.0
 
 
 def _places(scene: Scene) -> list[tuple[str, Array, str]]:
