@@ -10,7 +10,8 @@ from calibration.channels.pickup import pick_up
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.decide.parameters import finding_of
-from calibration.decide.select import Selection, design, select
+from calibration.decide.select import Selection, design, phases, select
+from calibration.driveleft import left_over
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
@@ -26,13 +27,17 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
     refused is added to the selection of the names."""
     together = s
     findings: list[Finding] = []
+    if scene.force and s.chosen and s.problem.floor and left_over(s, scene, s.problem.floor) is None:
+        return s, s, []  # the names leave what is not called missing either
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
         scene.model = np.asarray(base @ together.after.beta)
         offered = smooth_functions(scene)
         if scene.force:  # one by one; of two sensors what is left of the best is no second function
             offered = [replace(c, apart=float(k)) for k, c in enumerate(offered)]
-        more = select(replace(s.problem, base=base), offered, np.random.default_rng(seed), most=1)
+        own = tuple(phases(s.problem, [x.candidate for x in together.chosen]))
+        beside_names = replace(s.problem, base=base, base_phases=own)
+        more = select(beside_names, offered, np.random.default_rng(seed), most=1)
         s.refused += more.refused
         if not more.chosen:
             break

@@ -40,6 +40,7 @@ class Problem:
     sensor: str = "torque"  # the row of report.json's error table: torque, velocity or position
     step: float = 0.0  # rms that an effect must take away: less is within the sensor's own steps
     resolved: tuple[Mask, float] | None = None  # rows that a sensor's coarse steps do not spoil, floor there
+    base_phases: tuple[slice, ...] = ()  # columns of `base` whose phase is every run's own
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property

@@ -69,7 +69,7 @@ def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
 
 def phases(problem: Problem, chosen: list[Candidate]) -> list[slice]:
     """Columns of `design` whose phase is every run's own."""
-    out, at = [], problem.base.shape[1]
+    out, at = list(problem.base_phases), problem.base.shape[1]
     for c in chosen:
         if c.per_run:
             out.append(slice(at, at + c.width))
@@ -171,7 +171,7 @@ def select(
         design(problem, [p.candidate for p in picks]),
         after.beta,
         after.whitener,
-        ((), phases(problem, [p.candidate for p in picks])),
+        (problem.base_phases, phases(problem, [p.candidate for p in picks])),
     )
     return Selection(problem, picks, classes, before, after, held, scores, len(candidates), refused, steps)
 
