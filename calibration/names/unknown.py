@@ -64,18 +64,27 @@ def smooth_functions(s: Scene) -> list[Candidate]:
 
 
 def moving_scale(s: Scene) -> list[Candidate]:
-    """Two sensors whose ratio moves with time: thermal growth errs in proportion to the place (ISO 230-3).
+    """Two sensors whose ratio moves with time, steadily or by a smooth function: thermal growth errs in
+    proportion to the distance from where it is held (ISO 230-3), which no sensor knows the place of: a drift
+    goes with it.
 
     It has no name in the catalogue, but stands beside the names: a gap and a delay together follow it, too.
     """
     if s.force:
         return []
-    knots = spline_columns(s.problem.t, SLOW)
-    if knots.shape[1] == 0:
-        return []
     x = s.view.x[s.view.rows]
-    labels = tuple((f"scale_knot_{k}", f"{s.unit}/{s.angle_unit}") for k in range(knots.shape[1]))
-    return [Candidate("unknown", "time", knots * (x - x.mean())[:, None], labels)]
+    x = x - x.mean()
+    t = s.problem.t
+    span = float(np.ptp(t)) or 1.0
+    out = []
+    for name, shape in (("drift", ((t - t.min()) / span)[:, None]), ("knot", spline_columns(t, SLOW))):
+        width = shape.shape[1]
+        labels = [(f"scale_{name}_{k}", f"{s.unit}/{s.angle_unit}") for k in range(width)]
+        labels += [(f"offset_{name}_{k}", s.unit) for k in range(width)]
+        if width:
+            columns = np.hstack([shape * x[:, None], shape])
+            out.append(Candidate("unknown", "time", columns, tuple(labels)))
+    return out
 
 
 def lost_motion(s: Scene) -> list[Candidate]:
