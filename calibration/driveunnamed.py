@@ -27,8 +27,10 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
     refused is added to the selection of the names."""
     together = s
     findings: list[Finding] = []
-    if scene.force and s.chosen and s.problem.floor and left_over(s, scene, s.problem.floor) is None:
-        return s, s, []  # the names leave what is not called missing either
+    floor = s.problem.floor
+    enough = bool(floor) and (bool(s.chosen) or s.held.before <= floor)  # names, or nothing above the floor
+    if scene.force and enough and left_over(s, scene, floor) is None:
+        return s, s, []
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
         scene.model = np.asarray(base @ together.after.beta)
