@@ -15,9 +15,8 @@ from calibration.decide.parameters import interval
 from calibration.decide.select import Selection, select
 from calibration.finding import Finding, Parameter
 from calibration.harmonics import findings_of
-from calibration.names.command_disturbance import lines, multiples_of_the_motion
+from calibration.names.command_disturbance import lines
 from calibration.names.scene import Scene
-from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 
 ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' declared numbers
@@ -86,21 +85,8 @@ def _lines(view: View, law: Command) -> list[Candidate]:
     p = law.problem
     e = gls(p.y, p.base, p.train, p.ar_order, p.block).residual
     scene = Scene(view, p, {}, e, np.zeros((len(p.y), 0)))
-
-    def follow(view: View, length_s: float, top_hz: float) -> Array:
-        """Frequencies of the motion, at which the law's command is larger than what is left of it."""
-        multiples = multiples_of_the_motion(view, length_s, top_hz)
-        t, command = view.t[view.rows], law.follows @ law.gains
-        return multiples[[_power(p, t, command, f) > _power(p, t, e, f) for f in multiples]]
-
-    return [replace(c, labels=(("amplitude", p.unit),), twins=()) for c in lines(scene, follow)]
-
-
-def _power(p: Problem, t: Array, y: Array, hertz: float) -> float:
-    """Of a line in the training rows, any phase in every file."""
-    wave = np.where(p.train, y, 0.0) * np.exp(-2j * np.pi * hertz * t)
-    _, file = np.unique(p.session, return_inverse=True)
-    return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
+    found = lines(scene, law.follows @ law.gains)
+    return [replace(c, labels=(("amplitude", p.unit),), twins=()) for c in found]
 
 
 def _by_speed(view: View, c: Command) -> list[Candidate]:

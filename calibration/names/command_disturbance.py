@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from calibration.candidates.candidate import Candidate, sine_columns
@@ -25,17 +23,17 @@ FEW = 4  # files: with more, every file's own phase costs too many columns for m
 def columns(s: Scene) -> list[Candidate]:
     """Sines of a fixed frequency, alone and with a square wave's overtones; every file has its own phase.
 
-    Multiples of the frequency at which the motion repeats itself are left out: whatever follows the motion
-    has them.
+    Multiples of the frequency at which the motion repeats itself are left out, where the declared force has
+    more of them than what it leaves: whatever follows the motion has them.
     """
-    return lines(s, multiples_of_the_motion, large_first=False)
+    p = s.problem
+    beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=1e-8)[0]
+    return lines(s, p.base @ beta, large_first=False)
 
 
-def lines(
-    s: Scene, avoided: Callable[[View, float, float], Array], large_first: bool = True
-) -> list[Candidate]:
-    """`columns` without the frequencies that `avoided` gives for the shortest file's length, s, and the
-    highest frequency, Hz."""
+def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]:
+    """`columns` without multiples of the motion's frequency that `follows` (n_fitted,), what follows the
+    motion, has more of."""
     v = s.view
     files = s.problem.session
     t = v.t[v.rows]
@@ -43,7 +41,8 @@ def lines(
     if length <= 0:
         return []
     top = 0.5 / (v.period_s * max(v.step, 1))
-    avoid = avoided(v, length, top)
+    multiples = multiples_of_the_motion(v, length, top)
+    avoid = multiples[[_power(s, follows, f) > _power(s, s.residual, f) for f in multiples]]
     out = []
     few = len(np.unique(files)) <= FEW
     for f in peaks(s, t, length, TURNS / length, 5, avoid, large_first):
@@ -70,6 +69,14 @@ def lines(
                 )
             )
     return out
+
+
+def _power(s: Scene, y: Array, hertz: float) -> float:
+    """Of a line of `y` (n_fitted,) in the training rows, any phase in every file."""
+    p, t = s.problem, s.view.t[s.view.rows]
+    wave = np.where(p.train, y, 0.0) * np.exp(-2j * np.pi * hertz * t)
+    _, file = np.unique(p.session, return_inverse=True)
+    return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
 
 
 def multiples_of_the_motion(v: View, length_s: float, top_hz: float) -> Array:

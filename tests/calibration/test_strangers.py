@@ -115,3 +115,52 @@ def test_a_gap_that_is_thrown_from_flank_to_flank_is_play(tmp_path: Path) -> Non
     first = answer(tmp_path, SENSORS, (t, x, y))["effects"][0]
     assert first["name"] == "play"
     assert first["parameters"]["gap"]["value"] == pytest.approx(2e-4, rel=0.1)
+
+
+def test_an_encoder_that_bows_away_more_and_more_is_a_ratio_that_moves(tmp_path: Path) -> None:
+    """In proportion to the place and to the time; neither sensor knows where it is held."""
+    t, x, _ = motion(LONG)
+    y = 0.02 * x + 3e-3 * (t / LONG) * (x + 0.25) + 2e-7 * np.random.default_rng(2).standard_normal(len(t))
+    data = answer(tmp_path, SENSORS, (t, x, y))
+    assert domains(data) == {("unknown", "time")}
+    assert data["error"]["position"]["after"] < 0.05 * data["error"]["position"]["before"]
+
+
+def test_a_small_delay_below_the_floor_is_not_named(tmp_path: Path) -> None:
+    """Half a percent of the force's noise: the declared model is at the floor without it."""
+    t, x, u = motion(LONG)
+    noise = 0.5 * np.random.default_rng(4).standard_normal(len(t))
+    late = np.interp(t - 0.004, t, u) + noise
+    data = answer(tmp_path, FORCE, (t, x, late))
+    assert "channel_delay" not in found(data)
+
+
+def test_a_gain_that_follows_the_place_is_a_function_of_it(tmp_path: Path) -> None:
+    """A motor whose winding is worse at one end of its travel."""
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, u * (1 + 0.3 * np.clip(x - 0.1, 0.0, None))))
+    assert domains(data) == {("unknown", "axis_angle")}
+    assert data["error"]["torque"]["after"] < 0.5 * data["error"]["torque"]["before"]
+
+
+def test_a_line_keeps_its_phase_beside_an_unnamed_function(tmp_path: Path) -> None:
+    """Three files, so that the line of the one that is held out has a phase nobody fitted."""
+    tables = []
+    for k in range(3):
+        t, x, u = motion(LONG / 2)
+        weak = u * (1 + 0.3 * np.clip(x - 0.1, 0.0, None))
+        tables.append((t, np.round(x, 5), weak + 0.8 * np.sin(2 * np.pi * 5.43 * t + 2.0 * k)))
+    data = answer_of(tmp_path, FORCE, *tables)
+    assert {"command_disturbance", "unknown"} <= set(found(data))
+    assert data["error"]["torque"]["after"] < 0.2 * data["error"]["torque"]["before"]
+
+
+@pytest.mark.parametrize("hertz", [1.487, 3.71, 5.43])
+def test_a_fixed_frequency_beside_a_multiple_of_the_motion_is_found(tmp_path: Path, hertz: float) -> None:
+    """Motion that repeats itself every 8 s has a multiple every 0.12 Hz; most frequencies are near one."""
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, u + 0.5 * np.sin(2 * np.pi * hertz * t)))
+    first = data["effects"][0]
+    assert first["name"] == "command_disturbance"
+    assert first["frequency_Hz"] == pytest.approx(hertz, abs=0.01)
+    assert first["parameters"]["amplitude"]["value"] == pytest.approx(0.5, rel=0.06)
