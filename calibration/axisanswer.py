@@ -97,7 +97,8 @@ def axis_answer(
     v.closed_loop = again.rows
     short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
-    v.reasons += [*absent_columns(result), *still_missing(result, v)]
+    v.remarks = still_missing(result, v)
+    v.reasons += [*absent_columns(result), *v.remarks]
     pictures = _plots(result, effects) if plots else []
     if plots and again.log is not None:
         pictures.append(replay_picture(again))

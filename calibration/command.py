@@ -18,16 +18,6 @@ from calibration.readers.guide import is_guide_log, read_guide_log
 from calibration.readers.run import Run
 
 Plots = list[dict[str, str]]
-# of the report's reasons, what the paragraph on the terminal repeats
-REMARKS = (
-    "something is still missing",
-    "times the position's rate",
-    "remain between",
-    "end of its range",
-    "leaps by",
-    "its offset wanders",
-    "of the declared one",
-)
 
 
 def calibrate(
@@ -70,7 +60,7 @@ def calibrate(
         )
         tell("writing the report")
         write_report(verdict, pictures, title, runs, out)
-    print(paragraph(as_dict(verdict), out))
+    print(paragraph(as_dict(verdict), verdict.remarks, out))
     return 0
 
 
@@ -82,7 +72,7 @@ def show_rig(rig: Path, logs: list[Path], out: Path | None = None) -> str:
     return show(rig, logs, out)
 
 
-def paragraph(data: dict[str, Any], out: Path) -> str:
+def paragraph(data: dict[str, Any], remarks: list[str], out: Path) -> str:
     """The verdict in words, for the terminal."""
     from calibration.report.page import summary
 
@@ -100,7 +90,7 @@ def paragraph(data: dict[str, Any], out: Path) -> str:
         parts.append(
             f"Held-out {channel}: {row['before']:.4g} -> {row['after']:.4g} {row['unit']} ({floor})."
         )
-    parts += [f"{r}." for r in data["reasons"] if any(x in r for x in REMARKS)]
+    parts += [f"{r}." for r in remarks]
     if data["separating_experiment"]:
         parts.append(f"To be sure: {data['separating_experiment']}.")
     parts.append(f"Report: {out / 'report.html'}")

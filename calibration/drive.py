@@ -53,6 +53,7 @@ class Balance:
     lacks: list[str] = field(default_factory=list)
     bounds: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # what was settled before any name
+    remarks: list[str] = field(default_factory=list)  # likewise, what no reader should miss
     left: Left | None = None
     close: str = ""  # of a delay that is neither named nor out of the question
 
@@ -144,7 +145,7 @@ def _balance(
     if view.dynamic:
         _sharpen(view, records, hold_out)
     problem = problem_of(view, records, hold_out)
-    notes = []
+    notes, remarks = [], []
     if _acts_on_the_drive(view, problem):
         view.response = replace(response, gain=-response.gain)
         problem = problem_of(view, records, hold_out)
@@ -156,7 +157,7 @@ def _balance(
         view.slow_offset, rms = offset_order(view, problem, scene_of(view, problem).wander)
         problem = problem_of(view, records, hold_out)
         if view.slow_offset:
-            notes.append(
+            remarks.append(
                 f"{response.channel}: its offset wanders by {rms:.2g} {response.unit} rms within a file;"
                 f" {view.slow_offset} slow functions of time are fitted anew in every file, as the offset is"
             )
@@ -200,6 +201,7 @@ def _balance(
         lacks,
         bounds,
         notes,
+        remarks,
         left_over(together, scene, floor),
         close,
     )

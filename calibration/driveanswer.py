@@ -17,6 +17,7 @@ from calibration.driveleft import Left
 from calibration.finding import Finding
 from calibration.names import NAMES
 
+REMARKED = ("saturation", "leap")  # repairs that change what a reader thinks the log is
 STRONG = 6.0  # -log10 p of a refused candidate that is told as having been close
 ROW = {"T": "torque", "K": "position"}
 SAME_HZ = 0.02  # of a frequency: two lines are one
@@ -54,9 +55,10 @@ def drive_answer(found: DriveResult, plots: bool) -> Answer:
         [x for b in found.balances for x in [*_missing(b), *b.bounds]],
         controls,
         separating,
-        [*_reasons(found), *(f"not looked for: {x}" for x in lacking)],
-        gate_rows(_selections(found)),
-        refusals(_selections(found)),
+        [*_reasons(found), *_remarks(found), *(f"not looked for: {x}" for x in lacking)],
+        _remarks(found),
+        thresholds=gate_rows(_selections(found)),
+        refused=refusals(_selections(found)),
     )
     if found.law is not None:
         v.calibrated |= found.law.gains
@@ -247,9 +249,7 @@ def _reasons(found: DriveResult) -> list[str]:
         if gaps:
             lost = sum(b - a for a, b in gaps)
             out.append(f"{r.name}: {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, {lost:.3g} s without rows")
-        out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
-    out += [*_strange_rate(found), *_scaled(found)]
-    out += found.law.notes if found.law is not None else []
+        out += [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs if x.kind not in REMARKED]
     out += found.electric.notes if found.electric is not None else []
     for b in found.balances:
         out += b.notes
@@ -257,6 +257,15 @@ def _reasons(found: DriveResult) -> list[str]:
         out += _short(found)
         if not np.any(np.abs(b.view.direction) > 0.5):
             out.append("the position does not move")
+    return out
+
+
+def _remarks(found: DriveResult) -> list[str]:
+    """What no reader of the verdict should miss: the terminal repeats it."""
+    out = [f"{r.name}, {x.channel}: {x.note}" for r in found.records for x in r.repairs if x.kind in REMARKED]
+    out += [*_strange_rate(found), *_scaled(found)]
+    out += found.law.notes if found.law is not None else []
+    out += [r for b in found.balances for r in b.remarks]
     for column, left in _left(found):
         where = f"{left.where} ({100 * left.share:.0f} % of it)" if left.domain else left.where
         out.append(f"{left.times:.1f} floors remain in {column}, {where}: something is still missing")

@@ -54,8 +54,8 @@ def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: b
         _worm_controls(found),
         separating,
         list(dict.fromkeys([*(n for r in runs for n in r.notes), *found.notes, *too_short(s, "")])),
-        gate_rows({"position": s}),
-        refusals({"position": s}),
+        thresholds=gate_rows({"position": s}),
+        refused=refusals({"position": s}),
     )
     return v, _guide_plots(found) if plots else [], title
 

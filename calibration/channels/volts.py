@@ -21,6 +21,7 @@ PASSED = 1.0 / (2.0 * np.sqrt(np.pi))  # mean square of white noise through a Ga
 # of the volts' rms: smaller is what meters and a duty's rounding are sure to. ASSUMPTION: shunt amplifiers
 # and voltage dividers have 0.1 to 1 % of full scale
 LEAST = 0.002
+LAG = "inductance_with_lag"  # a current that is read T late adds R T to it
 FEWEST = 200  # rows that are fitted
 
 
@@ -65,7 +66,7 @@ def volts_balance(view: View, balance: Problem) -> Volts | None:
         unit="V",
         y=view.at(volts),
         base=view.at(np.column_stack([i, view.rate(view.x), view.rate(i)])),
-        base_labels=[("resistance", "ohm"), ("torque_constant", f"V s/{place}"), ("inductance", "H")],
+        base_labels=[("resistance", "ohm"), ("torque_constant", f"V s/{place}"), (LAG, "H")],
         valid=valid,
         fresh=None,
         floor=0.0,

@@ -46,7 +46,8 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float =
     if contender.evidence < (contender.candidate.least or LEAST_EVIDENCE):
         return f"too little evidence (-log10 p = {contender.evidence:.1f})"
     if inside.share < least and not _plain(contender, inside, held):
-        return f"cross-validated mean square changes by {-100 * inside.share:.1f} % only"
+        by = f"{'falls' if inside.share > 0 else 'grows'} by {100 * abs(inside.share):.1f} %"
+        return f"cross-validated mean square {by}{' only' if inside.share > 0 else ''}"
     if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
     if not np.isfinite(held.after):

@@ -30,6 +30,7 @@ class Verdict:
     controls: list[dict[str, Any]] = field(default_factory=list)
     separating: str | None = None
     reasons: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)  # of the reasons, what the terminal repeats
     thresholds: dict[str, dict[str, float]] = field(default_factory=dict)
     refused: list[tuple[str, str, str]] = field(default_factory=list)
     closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
