@@ -22,8 +22,8 @@ pytestmark = [
 ]
 
 
-def report(out: Path, log: str) -> dict[str, Any]:
-    assert calibrate([DATA / log], None, [], out, plots=False) == 0
+def report(out: Path, log: str, rig: Path | None = None) -> dict[str, Any]:
+    assert calibrate([DATA / log], rig, [], out, plots=False) == 0
     data: dict[str, Any] = json.loads((out / "report.json").read_text())
     assert not any(c["accepted"] for c in data["controls"])
     return data
@@ -77,3 +77,12 @@ def test_a_transfer_gear_is_found_in_a_log_with_32_dithers(tmp_path: Path) -> No
     assert [1 / e["frequency_Hz"] for e in data["effects"]] == [pytest.approx(122.2, rel=2e-3)]
     assert data["effects"][0]["stage"] == "transfer gear of 122.2 s"
     assert data["error"]["position"]["after"] < 1.6
+
+
+def test_a_mount_is_declared_by_a_rig_file_too(tmp_path: Path) -> None:
+    """One wheel instead of the family's two; the transfer gear keeps its name and its period."""
+    rig = Path(__file__).parents[2] / "calibration" / "rigs" / "heq5_phd2.yaml"
+    data = report(tmp_path, "performance_dataset06.txt", rig)
+    assert "transfer" in {e["stage"] for e in data["effects"]}
+    assert not {e["name"] for e in data["effects"]} - {"gear_eccentricity", "unknown"}
+    assert data["error"]["position"]["after"] < 1.6  # arcsec, of 3.08
