@@ -15,10 +15,11 @@ from calibration.driveleft import left_over
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
-from calibration.prune import beside, displaced
+from calibration.prune import CLEAR_SHARE, beside, displaced
 
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and
 # one of either flank of the teeth
+CLEAR_Z = 3.0  # standard errors of what a function takes below the floor (opened seed 20261211: 3.4)
 MOST = {True: 1, False: 2}
 
 
@@ -28,9 +29,10 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
     together = s
     findings: list[Finding] = []
     floor = s.problem.floor
-    enough = bool(floor) and (bool(s.chosen) or s.held.before <= floor)  # names, or nothing above the floor
-    if scene.force and enough and left_over(s, scene, floor) is None:
+    little = scene.force and bool(floor) and left_over(s, scene, floor) is None
+    if little and s.chosen:  # the names leave what is not called missing either
         return s, s, []
+    below = little and s.held.before <= floor
     for _ in range(MOST[scene.force]):
         base = design(s.problem, [x.candidate for x in together.chosen])
         scene.model = np.asarray(base @ together.after.beta)
@@ -41,7 +43,8 @@ def beyond_names(s: Selection, scene: Scene, seed: int) -> tuple[Selection, Sele
         beside_names = replace(s.problem, base=base, base_phases=own)
         more = select(beside_names, offered, np.random.default_rng(seed), most=1)
         s.refused += more.refused
-        if not more.chosen:
+        # below the floor of a coarse sensor most of what is left must go with it
+        if not more.chosen or (below and not (more.held.share > CLEAR_SHARE and more.held.z > CLEAR_Z)):
             break
         kept = displaced(s, more.chosen[0].candidate) if not findings else s
         if kept is not s:
