@@ -17,9 +17,9 @@ from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
 from calibration.prune import CLEAR_SHARE, beside, displaced
 
+CLEAR_Z = 3.0  # standard errors of what a function takes below the floor (opened seed 20261211: 3.4)
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and
 # one of either flank of the teeth
-CLEAR_Z = 3.0  # standard errors of what a function takes below the floor (opened seed 20261211: 3.4)
 MOST = {True: 1, False: 2}
 
 
