@@ -24,6 +24,8 @@ from calibration.statistics.regression import block_covariance, solve
 # of the command's rms: less is the rounding of a log's numbers and the order of a law's own sums. ASSUMPTION;
 # EMPS, whose law is published, is left with 0.0003
 LEAST = 0.003
+CLEARLY = 0.5  # of what another row's position leaves: more decides nothing
+AT_LIMIT, STRAY = 0.97, 1e-3  # of the limit; of a row's filter that may lie there
 LAGS = (3, 10, 30, 100, 300, 1000)  # rows: of the first-order lags that the reference is seen through
 
 
@@ -32,7 +34,7 @@ class Command:
     """The command less its law, as a problem whose base is an offset per file; `gains` (k,) with their
     covariance (k, k) in the law's order of `labels`; `follows` (n_fitted, k): the law's terms, as far as
     they follow the reference; `forward` (n_fitted, 3): what a feed-forward of rate, acceleration and friction
-    would add."""
+    would add; `left`: rms of what the law leaves of the fitted rows."""
 
     problem: Problem
     labels: list[tuple[str, str]]
@@ -40,52 +42,92 @@ class Command:
     covariance: Array
     follows: Array
     forward: Array
+    left: float
 
 
 def command_of(view: View, balance: Problem, law: Controller) -> Command:
-    """The law's gains from two-stage least squares, and what it leaves of the effort.
+    """The law with the position of that row, the one before or the one after, that the command was made of:
+    which one stands beside it is the log writer's choice. Where what is left does not tell, because a late
+    position looks like another gain of the rate, it is the one that makes the gains the declared ones."""
+    tried = [_command_of(view, balance, law, rows) for rows in (0, 1, -1)]
+    least = min(c.left for c in tried)
+    declared = np.array(list(declared_terms(law).values()))
+    scale = np.where(declared != 0, declared, 1.0)
+    good = [c for c in tried if c.left <= least / CLEARLY]
+    return min(good, key=lambda c: float(np.sum((c.gains / scale - declared / scale) ** 2)))
+
+
+def _command_of(view: View, balance: Problem, law: Controller, before: int) -> Command:
+    """The law's gains from two-stage least squares, and what it leaves of the effort; with the position
+    `before` rows earlier.
 
     A disturbance of the command moves the drive, and the error that the law sees has it, too: least squares
     would read it into the gains. The reference does not know of it, so only what follows the reference counts
     (instruments: Van den Hof 1998; Janot, Gautier, Brunot 2019 for a drive's own parameters).
     """
+    moved = {**view.columns, "position": view.delayed(view.x, -before * view.period_s)}
+    view = replace(view, columns=moved)
     effort, x, reference = view.columns["effort"], view.x, view.columns["reference"]
     labels, full = _terms(view, law, reference - x)
     declared = sum((g * c for g, c in zip(declared_terms(law).values(), full, strict=True)), np.zeros(len(x)))
+    late = []
     if law.law == "cascade":
-        late = [-view.rate(declared), view.second(x)]
-    elif "d" in law.gains:  # its rate holds no more than this: a delay of all is read as a smaller gain_d
+        late = [view.second(x)]
+    elif "d" in law.gains:
         late = [-view.second(reference - x)]
-    else:
-        late = [-view.rate(declared)]
+    # the rates of position and reference hold a delay of all: it is read as a smaller gain of the rate
+    if not ("d" in law.gains or "rate_feedforward" in law.gains):
+        late.append(-view.rate(declared))
     terms_at = view.at(np.column_stack([*full, *late]))
-    files = np.column_stack([(balance.session == k).astype(float) for k in np.unique(balance.session)])
+    unit = view.rig.columns["effort"].unit
+    nuisances, names = _per_file(view, balance, "i" in law.gains, unit)
     ok = view.ok[view.rows]
+    if law.limit is not None:
+        ok &= view.at((np.abs(effort) > AT_LIMIT * law.limit).astype(float)) < STRAY
     train = ok & ~balance.held
     p = replace(
         balance,
         channel="S",
-        unit=view.rig.columns["effort"].unit,
+        unit=unit,
         y=view.at(effort),
-        base=files,
-        base_labels=[("law_offset", view.rig.columns["effort"].unit)] * files.shape[1],
+        base=nuisances,
+        base_labels=names,
         valid=ok,
-        fresh=files,
+        fresh=nuisances,
         floor=0.0,
         step=LEAST * float(np.std(view.at(effort)[train])) if train.any() else 0.0,
         resolved=None,
         sensor="command",
     )
-    z = np.hstack([view.at(_known(view, reference)), files])
+    z = np.hstack([view.at(_known(view, reference)), nuisances])
     follows = z @ np.column_stack([solve(z[train], c[train]) for c in terms_at.T])
-    design = np.hstack([follows, files])
+    design = np.hstack([follows, nuisances])
     beta = solve(design[train], p.y[train])
     k, own, rate = len(labels), terms_at.shape[1], view.rate(reference)
-    left = p.y - np.hstack([terms_at, files]) @ beta
+    left = p.y - np.hstack([terms_at, nuisances]) @ beta
+    others = np.hstack([terms_at[:, k:], nuisances])
+    y = p.y - terms_at[:, :k] @ np.array(list(declared_terms(law).values()))
+    if np.std((y - others @ solve(others[train], y[train]))[train]) < CLEARLY * np.std(left[train]):
+        # the reference says too little of the gains: with a disturbance the declared ones would leave as much
+        follows, design = terms_at, np.hstack([terms_at, nuisances])
+        beta = solve(design[train], p.y[train])
+        left = p.y - design @ beta
     covariance = block_covariance(design[train], left[train], p.block)[:k, :k]
     p.y = p.y - terms_at @ beta[:own]
-    forward = [rate, view.rate(rate), np.sign(rate)]
-    return Command(p, labels, beta[:k], covariance, follows[:, :k], view.at(np.column_stack(forward)))
+    forward = view.at(np.column_stack([rate, view.rate(rate), np.sign(rate)]))
+    rms = float(np.sqrt(np.mean(left[train] ** 2))) if train.any() else np.inf
+    return Command(p, labels, beta[:k], covariance, follows[:, :k], forward, rms)
+
+
+def _per_file(view: View, balance: Problem, integral: bool, unit: str) -> tuple[Array, list[tuple[str, str]]]:
+    """(n_fitted, m) and labels: an offset per file; where the law integrates, what it makes of an offset
+    between position and reference."""
+    files = np.column_stack([(balance.session == k).astype(float) for k in np.unique(balance.session)])
+    names = [("law_offset", unit)] * files.shape[1]
+    if not integral:
+        return files, names
+    ramps = files * (view.t[view.rows] / max(float(view.t.max()), 1e-300))[:, None]
+    return np.hstack([files, ramps]), [*names, *[("law_ramp", unit)] * files.shape[1]]
 
 
 def _terms(view: View, law: Controller, error: Array) -> tuple[list[tuple[str, str]], list[Array]]:

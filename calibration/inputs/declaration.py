@@ -59,6 +59,7 @@ class Controller:
 
     law: str
     gains: dict[str, float]
+    limit: float | None = None  # of the effort, its unit: at it the law is not what acts
 
 
 @dataclass(frozen=True)

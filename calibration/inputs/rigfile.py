@@ -103,7 +103,7 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
 def _controller(given: dict[str, Any] | None) -> Controller | None:
     if given is None:
         return None
-    return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()})
+    return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()}, given.get("limit"))
 
 
 FORWARD = {"rate_feedforward", "acceleration_feedforward"}

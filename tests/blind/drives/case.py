@@ -33,6 +33,7 @@ class Order:
     spoil: str = ""
     seconds: float = 30.0
     two: bool = False
+    law: bool = False  # the reference is logged and the controller declared
 
 
 @dataclass
@@ -115,18 +116,22 @@ def seal(order: Order, seed: int, logs: Path, truths: Path) -> dict[str, Any]:
     folder = logs / order.key
     folder.mkdir(parents=True, exist_ok=True)
     two = order.two or bool(hidden and hidden.second)
+    law = order.law or bool(hidden and hidden.law)
     span = len(made.rows) * order.seconds
     for k, rows in enumerate(made.rows):
         rng: Rng = np.random.default_rng([number, 7, k])
         s = {**hidden.values(), **hidden.sensor} if hidden else {}
         out = sensors.columns(rows, f, s, rng, order.noise, k * order.seconds, span, made.plant["TOP"], two)
+        if law:
+            out["reference"] = made.references[k]
         out = sensors.spoil(out, rng, order.spoil if k == 0 else "")
         table = np.column_stack(list(out.values()))
-        formats = ["%.6f", "%.6g", *["%d"] * (len(out) - 2)]
+        known = {"t": "%.6f", "effort": "%.6g", "reference": "%.10g"}
+        formats = [known.get(name, "%d") for name in out]
         np.savetxt(
             folder / f"run{k + 1}.csv", table, fmt=formats, delimiter=",", header=",".join(out), comments=""
         )
-    (folder / "rig.yaml").write_text(rig(f, made.plant["GAIN"], made.turn, two))
+    (folder / "rig.yaml").write_text(rig(f, made.plant, made.turn, two, law))
     truth = {
         "key": order.key, "cell": order.cell, "kind": f"{order.noise} {order.spoil}".strip(),
         "seed": seed, "poor": False, "family": order.kind, "spoil": order.spoil, "seconds": order.seconds,

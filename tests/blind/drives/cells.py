@@ -21,9 +21,19 @@ def nothing(repeats: int = 3) -> list[Order]:
                 spoil = SPOILS[k % 3]
                 key = f"drive-nothing-{kind}-{noise}-{k}"
                 two = kind in ("servo", "belt") and k % 3 == 0
+                law = kind in ("ball_screw", "table") and k % 2 == 0
                 out.append(
                     Order(
-                        key, "nothing", kind, (), 0.0, noise, "" if two else spoil, SECONDS[len(out) % 4], two
+                        key,
+                        "nothing",
+                        kind,
+                        (),
+                        0.0,
+                        noise,
+                        "" if two else spoil,
+                        SECONDS[len(out) % 4],
+                        two,
+                        law,
                     )
                 )
     return out

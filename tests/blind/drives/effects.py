@@ -30,6 +30,7 @@ class Hidden:
     alike: tuple[str, ...] = ()
     how: str = "measured"
     second: bool = False  # needs the second position column
+    law: bool = False  # needs the reference's column and the declared controller
     powers: dict[str, float] = field(default_factory=dict)
     most: float = math.inf
     size: float = 1.0
@@ -202,6 +203,12 @@ def sticking_brush(rng: Rng, f: Family, plant: dict[str, float], turn: float, ra
     )
 
 
+def gain_scheduling(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
+    """Smaller gains below a speed that the drive often has; the rig file declares one set of them."""
+    values = {"SCHEDULED": 0.05 * ratio, "SCHEDULED_V": rng.uniform(0.15, 0.4) * f.speed[0]}
+    return Hidden("outside_scheduling", "U", ("command", "velocity"), {}, values, how="given", law=True)
+
+
 def mains_beat(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
     """Mains picked up by the effort's column, folded by the sampling."""
     values = {"MAINS": 1.5 * ratio, "MAINS_F": rng.uniform(49.9, 50.1)}
@@ -249,5 +256,6 @@ OUTSIDE: dict[Draw, tuple[str, ...]] = {
     sticking_brush: ("servo", "ball_screw"),
     mains_beat: ("ball_screw", "table"),
     thermal_bowing: ("belt", "servo"),
+    gain_scheduling: ("ball_screw", "table"),
 }
 """`friction_asymmetry` is not drawn: beside a declared offset a constant force is no effect."""

@@ -63,6 +63,8 @@ def simulate(p: Array, reference: Array, period: float, start_s: float, noise: A
             u = p[p_.KV] * (p[p_.KP] * error + wanted - speed)
         else:
             u = p[p_.KP] * error + p[p_.KD] * (wanted - speed)
+        if abs(wanted) < p[p_.SCHEDULED_V]:
+            u *= 1.0 - p[p_.SCHEDULED]
         integral += p[p_.KI] * error * period
         u = min(max(u + integral, -p[p_.TOP]), p[p_.TOP])
         upset = 0.0

@@ -17,7 +17,7 @@ NAMES: Final = (
     "ASYM", "POSF", "POSF_K", "POSF_P", "GRAV", "GRAV_P", "LINE", "LINE_K", "LINE_P", "DRAG", "DRAG_T",
     "WARM", "WARM_TAU", "UPSET", "UPSET_F", "UPSET_SQUARE", "UPSET_INSIDE", "STRIBECK",
     # outside the catalogue
-    "PREISACH", "PREISACH_W", "BRUSH", "BRUSH_K",
+    "PREISACH", "PREISACH_W", "BRUSH", "BRUSH_K", "SCHEDULED", "SCHEDULED_V",
 )  # fmt: skip
 INDEX: Final = {name: place for place, name in enumerate(NAMES)}
 (
@@ -25,7 +25,7 @@ INDEX: Final = {name: place for place, name in enumerate(NAMES)}
     GAIN, KP, KI, KD, KV, CASCADE, TOP,
     ASYM, POSF, POSF_K, POSF_P, GRAV, GRAV_P, LINE, LINE_K, LINE_P, DRAG, DRAG_T,
     WARM, WARM_TAU, UPSET, UPSET_F, UPSET_SQUARE, UPSET_INSIDE, STRIBECK,
-    PREISACH, PREISACH_W, BRUSH, BRUSH_K,
+    PREISACH, PREISACH_W, BRUSH, BRUSH_K, SCHEDULED, SCHEDULED_V,
 ) = range(len(NAMES))  # fmt: skip
 
 COLUMNS: Final = ("effort", "x", "v", "x2", "own", "a")
