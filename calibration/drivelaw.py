@@ -23,7 +23,7 @@ ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' decla
 TOLD, CLEAR = 0.02, 5.0  # of a declared gain, and standard errors: less is not told
 BEFORE = "in front of the logged effort: the law makes no such command"
 FORWARD = "follows the reference, not the error: a feed-forward that the rig file does not declare?"
-PARTS = (0.25, 0.5, 0.75)  # of the moving rows, below whose speed the gains may be others
+PARTS = (0.03, 0.06, 0.12, 0.25, 0.5, 0.75)  # of the moving rows, below whose speed the gains may be others
 
 
 @dataclass
