@@ -53,7 +53,8 @@ def look_at_volts(view: View, balance: Problem, seed: int) -> Electric | None:
     s = prune(signed(select(p, offered, np.random.default_rng(seed))))
     s, together, unnamed = beyond_names(s, scene, seed)
     found = [f for k in range(len(s.chosen)) for f in findings_of(s, k)]
-    cold = float(s.after.beta[0]) / declared["resistance"] if declared["resistance"] else 1.0
+    final = {n: float(x) for (n, _), x in zip(p.base_labels, s.after.beta, strict=False)}
+    cold = final["resistance"] / declared["resistance"] if declared["resistance"] else 1.0
     for f in found:
         if f.name == "winding_heating":  # the warm resistance makes the heat, the cold one is what rises
             f.parameters["thermal_resistance"] = f.parameters["thermal_resistance"].times(1 / cold)

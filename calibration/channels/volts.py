@@ -77,7 +77,8 @@ def volts_balance(view: View, balance: Problem) -> Volts | None:
         return None
     p.step = LEAST * float(np.std(p.y[p.train]))
     beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=None)[0]
-    p.floor = _noise(view, volts, i, float(beta[0]))
+    fitted = {name: float(b) for (name, _), b in zip(p.base_labels, beta, strict=True)}
+    p.floor = _noise(view, volts, i, fitted["resistance"])
     floor, source = floor_of(own, p, lambda: p.floor)
     return Volts(p, own, volts, duty, floor, source)
 
