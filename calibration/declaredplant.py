@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.channels.declared import DECLARED, paper_start
+from calibration.errors import CalibrationInputError
 from calibration.readers.drive import TRAIN_STIFFNESS
 from calibration.readers.run import Array, Run
 
@@ -44,14 +45,24 @@ class Declared:
     own: bool = False  # the emulator's own boards made the log
 
 
+def _train_stiffness(runs: list[Run]) -> str | None:
+    """As the headers declare it, in all of them or in none of them another one."""
+    said = {r.header[TRAIN_STIFFNESS]: r.path for r in runs if TRAIN_STIFFNESS in r.header}
+    if len(set(map(float, said))) > 1:
+        raise CalibrationInputError(
+            list(said.values())[-1], f"'{TRAIN_STIFFNESS}' is another one in another log: one drive has one"
+        )
+    return next(iter(said), None)
+
+
 def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
     """From `plant`, from the project's plant file for the emulator's own logs, else from the paper's
-    tables and the first log's header."""
+    tables and the logs' headers."""
     axis, preload = runs[0].header["axis"], runs[0].header.get("preload", "low")
     note = runs[0].header.get("note", "").lower()
     own = note.startswith(OWN)
     if plant is None and not own:
-        d, said = DECLARED[preload], runs[0].header.get(TRAIN_STIFFNESS)
+        d, said = DECLARED[preload], _train_stiffness(runs)
         return Declared(
             d["coulomb"],
             d["stiction"],

@@ -113,10 +113,11 @@ def analyse(
     sensors = repairs_found(records)
     if agreement is not None and agreement.late:
         sensors.append(_late(agreement))
+    best = next((b for b in balances if b.view.dynamic), balances[0])  # its filter is made for rates
     tell("command: the controller's law")
-    law = look_at_law(balances[0].view, balances[0].problem, seed)
+    law = look_at_law(best.view, best.problem, seed)
     tell("voltage: winding and back-EMF")
-    electric = look_at_volts(balances[0].view, balances[0].problem, seed)
+    electric = look_at_volts(best.view, best.problem, seed)
     return DriveResult(rig, records, balances, sensors, agreement, clock, law, electric)
 
 

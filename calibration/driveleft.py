@@ -23,7 +23,7 @@ MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: balances of forces of 144 sealed drives without an
 # effect stay below 1.4 (seeds 1036 and 1038; one whose fitted files go one way only apart)
 TELLING = 1.6
-FEWEST = 60  # rows that are not fitted, where the position is resolved
+FEWEST = 60  # rows that are not fitted, where the position is resolved. ASSUMPTION: fewer are a few moves
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ def sensors_floor(view: View, p: Problem) -> float | None:
         return _of_sensors(view, place, width)
     if r.channel == "acceleration":
         if "acceleration" in view.columns:
-            return _passed(view, view.columns["acceleration"] * r.gain, width)
+            return passed(view, view.columns["acceleration"] * r.gain, width)
         return float(abs(r.gain) * curved)
     known = _resolved_noise(view, p, curved, width)
     turning = _unresolved(view, p)
@@ -53,7 +53,7 @@ def resolved_rows(view: View, p: Problem) -> tuple[Mask, float] | None:
 
 def _resolved_noise(view: View, p: Problem, curved: float, width: float) -> float | None:
     """rms of the force's own column and of the position through the inertia."""
-    own = _passed(view, response_of(view, 0.0)[0], width)
+    own = passed(view, response_of(view, 0.0)[0], width)
     return None if own is None else float(np.hypot(own, abs(_declared(p).get("inertia", 0.0)) * curved))
 
 
@@ -62,13 +62,13 @@ def _of_sensors(view: View, place: float, width: float) -> float | None:
     second = view.columns.get(view.response.channel)
     if second is None:
         return None
-    passed = float(np.sqrt(PASSED / width)) if view.sigma > 0 else 1.0
+    part = float(np.sqrt(PASSED / width)) if view.sigma > 0 else 1.0
     noise = position_noise(second, view.file) * abs(view.response.gain)
     ratio = abs(view.response.ratio if view.response.ratio is not None else 1.0)
-    return float(np.hypot(noise, ratio * place) * passed)
+    return float(np.hypot(noise, ratio * place) * part)
 
 
-def _passed(view: View, full: Array, width: float) -> float | None:
+def passed(view: View, full: Array, width: float) -> float | None:
     """A column's white noise after the filter, the median over files."""
     found = [rough(full[view.file == k], 2) for k in np.unique(view.file)]
     good = [x for x in found if np.isfinite(x)]

@@ -3,8 +3,8 @@
     pid      u = p e + i int(e) + d de/dt          e = reference - position
     cascade  u = velocity (position e - v)
 
-Columns go through the balance's filter, so that law and effort lose the same. The gains are fitted anew,
-beside the lateness of the effort's row and of the rate, which a controller takes from positions that have
+Columns go through the balance's filter, so that law and effort lose the same. The gains are fitted anew from
+what follows the reference, beside the lateness of the rate, which a controller takes from positions that have
 passed; what the law cannot make of reference and position acts in front of the logged effort.
 """
 
@@ -24,9 +24,14 @@ from calibration.statistics.regression import block_covariance, solve
 # of the command's rms: less is the rounding of a log's numbers and the order of a law's own sums. ASSUMPTION;
 # EMPS, whose law is published, is left with 0.0003
 LEAST = 0.003
-CLEARLY = 0.5  # of what another row's position leaves: more decides nothing
-AT_LIMIT, STRAY = 0.97, 1e-3  # of the limit; of a row's filter that may lie there
-LAGS = (3, 10, 30, 100, 300, 1000)  # rows: of the first-order lags that the reference is seen through
+CLEARLY = 0.5  # of what another explanation leaves: more decides nothing. ASSUMPTION
+AT_LIMIT, STRAY = (
+    0.97,
+    1e-3,
+)  # of the limit (noise is on it); of a row's filter that may lie there. ASSUMPTION
+# rows: of the first-order lags that the reference is seen through; loops answer within three to a thousand
+# samples. ASSUMPTION: what they miss makes the intervals wider, not the gains wrong
+LAGS = (3, 10, 30, 100, 300, 1000)
 
 
 @dataclass(frozen=True)
@@ -49,7 +54,8 @@ def command_of(view: View, balance: Problem, law: Controller) -> Command:
     """The law with the position of that row, the one before or the one after, that the command was made of:
     which one stands beside it is the log writer's choice. Where what is left does not tell, because a late
     position looks like another gain of the rate, it is the one that makes the gains the declared ones."""
-    tried = [_command_of(view, balance, law, rows) for rows in (0, 1, -1)]
+    known = view.at(_known(view, view.columns["reference"]))
+    tried = [_command_of(view, balance, law, known, rows) for rows in (0, 1, -1)]
     least = min(c.left for c in tried)
     declared = np.array(list(declared_terms(law).values()))
     scale = np.where(declared != 0, declared, 1.0)
@@ -57,9 +63,9 @@ def command_of(view: View, balance: Problem, law: Controller) -> Command:
     return min(good, key=lambda c: float(np.sum((c.gains / scale - declared / scale) ** 2)))
 
 
-def _command_of(view: View, balance: Problem, law: Controller, before: int) -> Command:
+def _command_of(view: View, balance: Problem, law: Controller, known: Array, before: int) -> Command:
     """The law's gains from two-stage least squares, and what it leaves of the effort; with the position
-    `before` rows earlier.
+    `before` rows earlier; `known` (n_fitted, m) are the instruments.
 
     A disturbance of the command moves the drive, and the error that the law sees has it, too: least squares
     would read it into the gains. The reference does not know of it, so only what follows the reference counts
@@ -99,7 +105,7 @@ def _command_of(view: View, balance: Problem, law: Controller, before: int) -> C
         resolved=None,
         sensor="command",
     )
-    z = np.hstack([view.at(_known(view, reference)), nuisances])
+    z = np.hstack([known, nuisances])
     follows = z @ np.column_stack([solve(z[train], c[train]) for c in terms_at.T])
     design = np.hstack([follows, nuisances])
     beta = solve(design[train], p.y[train])

@@ -10,14 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calibration.channels.drivenoise import passed
 from calibration.channels.floors import floor_of
-from calibration.channels.noise import rough
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.inputs.declaration import Response
 from calibration.readers.run import Array
 
-PASSED = 1.0 / (2.0 * np.sqrt(np.pi))  # mean square of white noise through a Gaussian of s rows, times s
 # of the volts' rms: smaller is what meters and a duty's rounding are sure to. ASSUMPTION: shunt amplifiers
 # and voltage dividers have 0.1 to 1 % of full scale
 LEAST = 0.002
@@ -27,13 +26,10 @@ FEWEST = 200  # rows that are fitted
 
 @dataclass(frozen=True)
 class Volts:
-    """The balance as a problem, a view whose response are the volts, and the duty (n,) at full rate where
-    there is one."""
+    """The balance as a problem, a view whose response are the volts, the floor, V, and where it is from."""
 
     problem: Problem
     view: View
-    volts: Array
-    duty: Array | None
     floor: float | None
     floor_from: str
 
@@ -56,7 +52,7 @@ def volts_balance(view: View, balance: Problem) -> Volts | None:
     found = volts_of(view)
     if found is None:
         return None
-    volts, duty = found
+    volts, _ = found
     own = replace(view, response=Response("voltage", "V"))
     i, place = view.columns["current"], view.angle_unit
     valid = view.ok[view.rows]
@@ -78,18 +74,13 @@ def volts_balance(view: View, balance: Problem) -> Volts | None:
     p.step = LEAST * float(np.std(p.y[p.train]))
     beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=None)[0]
     fitted = {name: float(b) for (name, _), b in zip(p.base_labels, beta, strict=True)}
-    p.floor = _noise(view, volts, i, fitted["resistance"])
-    floor, source = floor_of(own, p, lambda: p.floor)
-    return Volts(p, own, volts, duty, floor, source)
+    noise = _noise(view, volts, i, fitted["resistance"])
+    p.floor = noise or 0.0
+    return Volts(p, own, *floor_of(own, p, lambda: noise))
 
 
-def _noise(view: View, volts: Array, current: Array, resistance: float) -> float:
+def _noise(view: View, volts: Array, current: Array, resistance: float) -> float | None:
     """rms, V, of both columns' noise from row to row and of their steps, behind the filter."""
-    squares = 0.0
-    for column, weight in ((volts, 1.0), (current, resistance)):
-        found = [rough(column[view.file == k], 2) for k in np.unique(view.file)]
-        good = [x for x in found if np.isfinite(x)]
-        squares += (weight * float(np.median(good))) ** 2 if good else 0.0
-    return (
-        float(np.sqrt(squares * PASSED / max(view.sigma, 1.0))) if view.sigma > 0 else float(np.sqrt(squares))
-    )
+    width = max(view.sigma, 1.0)
+    own, others = passed(view, volts, width), passed(view, current * resistance, width)
+    return None if own is None or others is None else float(np.hypot(own, others))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
+from calibration.candidates.electrical import KNEES
 from calibration.channels.volts import volts_of
 from calibration.names.name import VOLTS, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
-KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)  # duties below which pulses are lost whole, as for the axis
 MOST = 0.2  # of the supply. ASSUMPTION: a bridge that loses more is broken
 
 

@@ -36,3 +36,6 @@ def test_a_header_settles_it(tmp_path: Path) -> None:
     assert (declared.stiffness, declared.readings) == (1.54e6, (1.0,))
     with pytest.raises(CalibrationInputError, match="'train_stiffness_Nm_per_rad' is 'soft', must be"):
         read_axis_log(write(tmp_path / "c.log", said.replace("1.54e6", "soft")))
+    logs = [read_axis_log(write(tmp_path / "d.log", said.replace("1.54e6", "2e6")))]
+    with pytest.raises(CalibrationInputError, match="one drive has one"):
+        declared_numbers([*logs, read_axis_log(tmp_path / "b.log")], None)
