@@ -63,6 +63,20 @@ def report(folder: Path, rig: str, **changes: Any) -> dict[str, Any]:
     return answer(folder, rig, *[loop(k, **changes) for k in range(3)], header="t,x,u,r")
 
 
+def test_a_sound_loop_of_a_plain_log_writer_keeps_its_law(tmp_path: Path) -> None:
+    """The position is written after the step, its zero is another, and the logged command ends at 5 N."""
+    tables = []
+    for k in range(3):
+        t, x, u, r = loop(k)
+        after = np.concatenate([x[1:], x[-1:]]) + 1e-4
+        noise = 0.03 * np.random.default_rng(k).standard_normal(len(t))  # else the end is seen by itself
+        tables.append((t, after, np.clip(u, -5.0, 5.0) + noise, r))
+    data = answer(tmp_path, RIG.replace("source:", "limit: 5.0, source:"), *tables, header="t,x,u,r")
+    assert of_the_command(data) == []
+    for name, value in GAINS.items():
+        assert data["calibrated"][f"gain_{name}"]["value"] == pytest.approx(value, rel=0.03)
+
+
 def of_the_command(data: dict[str, Any]) -> list[dict[str, Any]]:
     return [e for e in data["effects"] if e["channel"] == "S"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.calibration.test_drives import FORCE, MASS, PERIOD, SENSORS, found, mass, motion
+from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, SENSORS, VISCOUS, found, mass, motion
 from tests.calibration.test_drives import answer as answer_of
 
 LONG = 60.0
@@ -127,12 +127,26 @@ def test_an_encoder_that_bows_away_more_and_more_is_a_ratio_that_moves(tmp_path:
 
 
 def test_a_small_delay_below_the_floor_is_not_named(tmp_path: Path) -> None:
-    """Half a percent of the force's noise: the declared model is at the floor without it."""
+    """8 ms under a force's noise of 0.3 N: the declared model is at the floor without it, and it is told."""
     t, x, u = motion(LONG)
-    noise = 0.5 * np.random.default_rng(4).standard_normal(len(t))
-    late = np.interp(t - 0.004, t, u) + noise
-    data = answer(tmp_path, FORCE, (t, x, late))
+    noise = 0.3 * np.random.default_rng(4).standard_normal(len(t))
+    data = answer(tmp_path, FORCE, (t, x, np.interp(t - 0.008, t, u) + noise))
+    assert data["error"]["torque"]["before"] < data["error"]["torque"]["floor"]
     assert "channel_delay" not in found(data)
+    assert data["verdict"] == "cannot tell" and "channel_delay of effort" in data["separating_experiment"]
+
+
+def test_an_asymmetry_is_no_larger_than_the_friction_it_is_of(tmp_path: Path) -> None:
+    """Beyond it friction would push; each of its two sizes has the declared one's bound."""
+    t, x, u = motion(LONG)
+    size = 1.5 * COULOMB * np.abs(np.sign(rate(x))) + 1.5 * VISCOUS * np.abs(rate(x))
+    data = answer(tmp_path, FORCE, (t, x, u + size))
+    for e in data["effects"]:
+        if e["name"] == "friction_asymmetry":
+            p = {k: v["value"] for k, v in e["parameters"].items()}
+            assert abs(p.get("coulomb_asymmetry", 0.0)) <= 1.05 * COULOMB
+            assert abs(p.get("viscous_asymmetry", 0.0)) <= 1.05 * VISCOUS
+    assert data["verdict"] != "nothing"
 
 
 def test_a_gain_that_follows_the_place_is_a_function_of_it(tmp_path: Path) -> None:
