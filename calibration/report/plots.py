@@ -31,6 +31,7 @@ def figure(width: float = 9.0, height: float = 3.4) -> tuple[Any, Any]:
             "axes.spines.right": False,
             "axes.titlesize": 10,
             "axes.titleweight": "bold",
+            "axes.formatter.limits": (-6, 6),  # beyond, a power of ten stands where the legend is
         }
     )
     return plt.subplots(figsize=(width, height), constrained_layout=True)
