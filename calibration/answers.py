@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +11,7 @@ from calibration.decide.parameters import interval
 from calibration.decide.select import CLOSEST, Selection
 from calibration.decide.verdict import Verdict
 from calibration.finding import Parameter
-from calibration.readers.run import Array, Run
+from calibration.readers.run import Array
 
 Answer = tuple[Verdict, list[dict[str, str]], str]
 
@@ -91,18 +89,3 @@ def _domain(name: str, c: Any, order: float | None) -> tuple[Array, str]:
     if name == "current" and c.load is not None:
         return c.load, f"load, {c.unit}"
     return table.get(name, (c.t, "time, s"))
-
-
-def axis(
-    runs: list[Run],
-    hold_out: list[str],
-    out: Path,
-    plant: Path | None,
-    plots: bool,
-    tell: Callable[[str], None],
-    replay: bool = True,
-) -> Answer:
-    """Answer for logs of one axis of the telescope."""
-    from calibration.axisanswer import axis_answer
-
-    return axis_answer(runs, hold_out, out, plant, plots, tell, replay)

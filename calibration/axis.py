@@ -47,12 +47,12 @@ from calibration.decide.sizes import largest_amplitude
 from calibration.decide.tolerance import compliance_change
 from calibration.declaredplant import declared_numbers
 from calibration.finding import Finding, middle
+from calibration.inputs.declaration import Rig
+from calibration.inputs.telescope import telescope
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run
 from calibration.statistics.regression import gls
 
-# kg m2, one rotor at the axis: 3e-4 to 6e-3 kg m2 (hardware.md 1.2) times the ratio squared
-ROTORS = (39.0, 780.0)
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error
 )
@@ -72,19 +72,22 @@ def analyse(
     seed: int = 0,
     tell: Callable[[str], None] = lambda s: None,
     plant: Path | None = None,
+    rig: Rig | None = None,
 ) -> AxisResult:
-    """Run every channel the logs have; a fault of a column that is found is undone, and all is run again."""
+    """Run every channel the logs have; a fault of a column that is found is undone, and all is run again.
+    `rig` declares the drive, the telescope's own axis without it; `plant` a plant file it is held against."""
     wraps = [w for w in (repair_wraps(r) for r in runs) if w is not None]
-    result = _look(runs, hold_out, seed, tell, plant)
+    rig = rig or telescope(runs[0].header["axis"])
+    result = _look(runs, rig, hold_out, seed, tell, plant)
     result.findings = [*wraps[:1], *result.findings]
-    fault = to_apply(merge(deepcopy(result.findings)))
+    fault = to_apply(merge(deepcopy(result.findings), result.frame.train))
     if fault is None:
         return result
     refusal = too_little(result, fault)
     if refusal is not None:
         return without(result, fault, refusal)
     tell(f"once more without the {fault.name.replace('_', ' ')}")
-    again = _look(corrected_runs(result, fault), hold_out, seed, tell, plant)
+    again = _look(corrected_runs(result, fault), rig, hold_out, seed, tell, plant)
     before = before_of(result, again, fault)
     refusal = judged(before, again, fault)
     if refusal is not None:
@@ -102,15 +105,20 @@ def analyse(
 
 
 def _look(
-    runs: list[Run], hold_out: list[str], seed: int, tell: Callable[[str], None], plant: Path | None
+    runs: list[Run],
+    rig: Rig,
+    hold_out: list[str],
+    seed: int,
+    tell: Callable[[str], None],
+    plant: Path | None,
 ) -> AxisResult:
     """Every channel of repaired logs."""
     rng = np.random.default_rng(seed)
-    frame = build_frame(runs)
+    frame = build_frame(runs, rig)
     held, held_names = choose_held_out(frame, hold_out)
     stamps = clock_findings(frame)  # takes repeated rows out: they are no motion
     m = motion_of(frame, WIDTH)
-    numbers = declared_numbers(runs, plant)
+    numbers = declared_numbers(runs, plant, rig)
     result = AxisResult(numbers, frame, m, held, None, None, None, held_out=held_names)
     result.findings += stamps
     clock = axis_torque.start_clock([r.header.get("start_utc", "") for r in runs], frame.t, frame.run)
@@ -190,7 +198,7 @@ def _encoders(result: AxisResult, per_ampere: float, rng: np.random.Generator) -
         s = select(
             roller,
             kinematic_candidates.roller_effects(context, m)
-            + kinematic_candidates.subdivision(context, m, lags_of(roller)),
+            + kinematic_candidates.subdivision(context, m, lags_of(roller), frame.rig.encoder_periods),
             rng,
         )
         result.selections["S"] = s
@@ -243,12 +251,15 @@ def _command(result: AxisResult, rng: np.random.Generator) -> None:
 
 def transmission(result: AxisResult, per_ampere: float, left: dict[str, Array]) -> Transmission:
     """From currents to the axis, with the trains' stiffness and the rotors' lag where encoders show them."""
-    stiffness, softness = result.declared.stiffness, ROTORS[0] / result.declared.stiffness
+    frame = result.frame
+    assert frame.rig.motors is not None
+    low, high = (k * frame.scale["gear_ratio"] ** 2 for k in frame.rig.motors.rotor_inertia)  # at the axis
+    stiffness, softness = result.declared.stiffness, low / result.declared.stiffness
     if "K" in result.selections:
         beta = result.selections["K"].after.beta
         if beta[0] > 1e-8:
             stiffness = 1.0 / float(beta[0])
-        softness = float(np.clip(-beta[1] * ARCSEC, ROTORS[0] / stiffness, ROTORS[1] / stiffness))
+        softness = float(np.clip(-beta[1] * ARCSEC, low / stiffness, high / stiffness))
     return Transmission(per_ampere, left, softness, stiffness)
 
 
@@ -259,7 +270,9 @@ def _fine(result: AxisResult, rng: np.random.Generator) -> None:
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
     if problem is not None:
-        candidates = kinematic_candidates.subdivision(_kinematic_context(frame, full), full, lags_of(problem))
+        candidates = kinematic_candidates.subdivision(
+            _kinematic_context(frame, full), full, lags_of(problem), frame.rig.encoder_periods
+        )
         if candidates:
             s = select(problem, candidates, rng, margin=FINE_MARGIN)
             if s.chosen:
@@ -288,6 +301,7 @@ def _kinematic_context(frame: Frame, m: Motion) -> Context:
         2 * np.pi,
         zero,
         temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
+        train=frame.train,
     )
 
 
@@ -308,4 +322,5 @@ def _stack(c: Context) -> Context:
         c.turn,
         twice(c.friction),
         temperature=twice(c.temperature) if c.temperature is not None else None,
+        train=c.train,
     )

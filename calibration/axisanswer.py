@@ -25,10 +25,12 @@ from calibration.decide.tolerance import ELECTRICAL_ERROR
 from calibration.decide.verdict import Verdict, judge
 from calibration.decide.withdraw import withdraw
 from calibration.finding import Finding
+from calibration.inputs.declaration import Rig
 from calibration.plantfile import declared_model, write_plant
-from calibration.readers.drive import ARCSEC, STAGES
+from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Run
 from calibration.replay.answer import correct_and_replay
+from calibration.replay.held import Replay
 from calibration.report.replayplot import replay_picture
 from calibration.statistics.regression import gls
 from plant.model import load, with_effects
@@ -48,24 +50,28 @@ def axis_answer(
     plots: bool,
     tell: Callable[[str], None],
     run_again: bool = True,
+    rig: Rig | None = None,
 ) -> tuple[Verdict, list[dict[str, str]], str]:
     """Run the pipeline and put the answer together; logs that say nothing get that answer and its reason.
 
-    `run_again=False` leaves out the replay of the closed loop.
+    `run_again=False` leaves out the replay of the closed loop. `rig` declares the drive, the telescope's own
+    axis without it; a drive whose logs are tables has no plant file that the emulator could run.
     """
     axis = runs[0].header["axis"]
     preload = runs[0].header.get("preload", "low")
-    title = f"{axis.upper()} axis, {preload} preload"
+    emulated = rig is None or rig.format == "axis-log"
+    title = f"{axis.upper()} axis, {preload} preload" if emulated else axis
     reason = too_little(runs)
     if reason:
         v = Verdict("cannot tell", [], reasons=[reason], not_identifiable=["everything: " + reason])
         v.separating = "a log of 80 s and more that moves, at two speeds in both directions, without gaps"
-        model, keep = declared_model(runs[0].header, plant)
-        bare = model if keep else with_effects(model, axis, ())
-        write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("cannot tell"), [])
+        if emulated:
+            model, keep = declared_model(runs[0].header, plant)
+            bare = model if keep else with_effects(model, axis, ())
+            write_plant(out / "plant.yaml", bare, axis, {}, [], Facts("cannot tell"), [])
         return v, [], title
-    result = analyse(runs, hold_out, tell=tell, plant=plant)
-    named = merge(result.findings)
+    result = analyse(runs, hold_out, tell=tell, plant=plant, rig=rig)
+    named = merge(result.findings, result.frame.train)
     lost = traces(result.findings, named)
     tried = _controls(result, named)
     effects, withdrawn = withdraw(named, tried)
@@ -92,8 +98,10 @@ def axis_answer(
             v.error[SENSORS[key]] = error_row(s, result.floors.get(key))
             v.error[SENSORS[key]]["before"] = result.before.get(key, s.held.before)
     _before_within_tolerance(v, result, effects)
-    again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
-    compensation.write(out / "compensation.yaml", load(out / "plant.yaml"), axis)
+    again, remarks = Replay(), list[str]()
+    if emulated:
+        again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
+        compensation.write(out / "compensation.yaml", load(out / "plant.yaml"), axis)
     v.closed_loop = again.rows
     short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
@@ -114,7 +122,7 @@ def still_missing(result: AxisResult, v: Verdict) -> list[str]:
         "axis angle": turn,
         "speed and direction": np.sign(rate) * np.log1p(np.abs(rate)),
         "time": result.frame.t[m.pick],
-        "motor angle": (turn * STAGES["motor"]) % 1.0,
+        "motor angle": (turn * result.frame.train.ratio) % 1.0,
     }
     rows = {row: key for key, row in SENSORS.items()}
     out = []
@@ -248,7 +256,7 @@ def _plots(result: AxisResult, effects: list[Finding]) -> list[dict[str, str]]:
                 "image": draw.order_plot(
                     t,
                     torque.context.angle / (2 * np.pi),
-                    STAGES,
+                    result.frame.train.orders,
                     "Torque residual over order, gear table dotted",
                     "cycles per axis turn",
                 ),

@@ -9,12 +9,8 @@ from typing import Any
 
 from calibration.decide.verdict import Verdict, as_dict
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Rig
-from calibration.inputs.record import Record
+from calibration.inputs.logs import Drive, read_drive
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.tables import read_table
-from calibration.readers.axis import is_axis_log, read_axis_log
-from calibration.readers.guide import is_guide_log, read_guide_log
 from calibration.readers.run import Run
 
 Plots = list[dict[str, str]]
@@ -51,15 +47,14 @@ def calibrate(
     ):
         task = bar.add_task("reading")
         tell: Callable[[str], None] = lambda text: bar.update(task, description=text)  # noqa: E731
-        declared = load_rig(rig) if rig is not None else None
-        kind, runs = read_logs(logs, declared)
-        _check_names(hold_out or [], runs, logs)
+        drive = read_drive(logs, load_rig(rig) if rig is not None else None)
+        if plant is not None and not drive.emulated:
+            raise CalibrationInputError("--plant", "is for axis logs: no other drive has a plant file")
+        _check_names(hold_out or [], drive.runs, logs)
         out.mkdir(parents=True, exist_ok=True)
-        verdict, pictures, title = answer(
-            kind, runs, declared, hold_out or [], out, plant, plots, tell, replay
-        )
+        verdict, pictures, title = answer(drive, hold_out or [], out, plant, plots, tell, replay)
         tell("writing the report")
-        write_report(verdict, pictures, title, runs, out)
+        write_report(verdict, pictures, title, drive.runs, out)
     print(paragraph(as_dict(verdict), verdict.remarks, out))
     return 0
 
@@ -97,67 +92,6 @@ def paragraph(data: dict[str, Any], remarks: list[str], out: Path) -> str:
     return " ".join(p for p in parts if p)
 
 
-def read_logs(logs: list[Path], rig: Rig | None) -> tuple[str, list[Run]]:
-    """Kind of input ("axis", "guide", "rig") and its runs; one kind per call."""
-    runs: list[Run] = []
-    kinds: dict[str, Path] = {}
-    for k, path in enumerate(logs):
-        if path.resolve() in [p.resolve() for p in logs[:k]]:
-            raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
-        if path.exists() and not path.is_file():  # a pipe may never begin, a device never end
-            raise CalibrationInputError(
-                path,
-                "cannot be read (Is a directory)" if path.is_dir() else "cannot be read (no regular file)",
-            )
-        if path.suffix.lower() == ".mat":
-            text = ""
-        else:
-            try:
-                text = path.read_text(encoding="utf-8-sig", errors="strict")
-            except UnicodeDecodeError as error:
-                head = error.object[:20000].decode("latin-1")
-                if is_guide_log(head):  # names in it may be in the computer's code page; numbers are ASCII
-                    kinds["guide"] = path
-                    runs += read_guide_log(path, error.object.decode("latin-1"))
-                    continue
-                line = error.object[: error.start].count(b"\n") + 1
-                raise CalibrationInputError(path, "is not UTF-8 text", line) from None
-            except OSError as error:
-                raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
-        if path.suffix.lower() != ".mat" and not text.strip():
-            raise CalibrationInputError(path, "is empty", 1)
-        if is_axis_log(text):
-            kinds["axis"] = path
-            runs.append(read_axis_log(path, text))
-        elif is_guide_log(text):
-            kinds["guide"] = path
-            runs += read_guide_log(path, text)
-        elif rig is not None:
-            kinds["rig"] = path
-            runs += read_table(path, rig)
-        else:
-            raise CalibrationInputError(
-                path,
-                "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
-                "another drive's file needs --rig FILE",
-                1,
-            )
-    if len(kinds) > 1:
-        a, b = list(kinds)[:2]
-        raise CalibrationInputError(
-            kinds[b], f"is a {b} log, {kinds[a]} is a {a} log: calibrate one kind at a time"
-        )
-    kind = next(iter(kinds))
-    if kind == "axis":
-        axes = {r.header["axis"]: r.path for r in runs}
-        if len(axes) > 1:
-            (a, first), (b, second) = list(axes.items())[:2]
-            raise CalibrationInputError(
-                second, f"is an axis log of {b}, {first} one of {a}: calibrate one axis at a time"
-            )
-    return kind, runs
-
-
 def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None:
     import difflib
 
@@ -176,9 +110,7 @@ def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None
 
 
 def answer(
-    kind: str,
-    runs: list[Run],
-    rig: Rig | None,
+    drive: Drive,
     hold_out: list[str],
     out: Path,
     plant: Path | None,
@@ -186,25 +118,23 @@ def answer(
     tell: Callable[[str], None],
     replay: bool = True,
 ) -> tuple[Verdict, Plots, str]:
-    """Verdict, pictures and title for runs of one kind."""
-    from calibration import answers
+    """Verdict, pictures and title, by what the drive is declared to be: an axis with two motors, a position
+    at constant rate, or a response to explain."""
+    rig = drive.rig
+    if rig is not None and rig.motors is not None:
+        from calibration.axisanswer import axis_answer
 
-    if kind == "guide":
+        return axis_answer(drive.runs, hold_out, out, plant, plots, tell, replay, rig)
+    if rig is None or rig.drifts:
         from calibration.guideanswer import guide_answer
 
-        return guide_answer(runs, rig, hold_out, plots)
-    if kind == "rig":
-        assert rig is not None
-        from calibration.drive import analyse
-        from calibration.driveanswer import drive_answer
-        from calibration.inputs.tables import set_starts
+        return guide_answer(drive.runs, rig, hold_out, plots)
+    from calibration.drive import analyse
+    from calibration.driveanswer import drive_answer
 
-        records = [r for r in runs if isinstance(r, Record)]
-        clock = set_starts(records, rig)
-        found = analyse(records, rig, hold_out, clock, tell)
-        tell("controls and pictures")
-        return drive_answer(found, plots)
-    return answers.axis(runs, hold_out, out, plant, plots, tell, replay)
+    found = analyse(drive.records, rig, hold_out, drive.clock, tell)
+    tell("controls and pictures")
+    return drive_answer(found, plots)
 
 
 def write_report(verdict: Verdict, pictures: Plots, title: str, runs: list[Run], out: Path) -> None:

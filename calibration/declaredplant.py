@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from calibration.channels.declared import DECLARED, paper_start
 from calibration.errors import CalibrationInputError
+from calibration.inputs.declaration import Rig
+from calibration.inputs.telescope import telescope
 from calibration.readers.drive import TRAIN_STIFFNESS
 from calibration.readers.run import Array, Run
 
-SIGMA_0 = 5.9e6  # N m/rad; design.md, the near miss that reaches the paper's rows together
-STIFFNESS = {"ra": 3.08e6, "dec": 2.46e6}  # N m/rad per train, paper Table 1
-TABLE_1 = (1.0, 0.5)  # readings of that number, per train: it may mean one train, or both side by side
-# design.md, the near miss that reaches the paper's rows together
-TORQUE_CONSTANT, RESISTANCE = 0.39, 2.2  # N m/A, ohm
 # periodic effects of a plant file, and the stage of those that have only one
 PERIODIC = {"gear_eccentricity": None, "gear_mesh": None, "gravity_imbalance": "axis"}
 # a log whose note starts with this was made by the emulator: its plant file is what is declared
@@ -34,15 +30,19 @@ class Declared:
     viscous: float
     sigma_0: float
     stiffness: float
+    torque_constant: float  # N m/A
+    resistance: float  # ohm, of the whole loop
     lines: tuple[tuple[str, str, int], ...] = ()
     readings: tuple[float, ...] = (1.0,)  # of the stiffness: a plant file says what it means
-    start: Array = field(default_factory=lambda: paper_start("low"))  # log (Ts/Tc, vs, sigma_0/Tc)
     stribeck_exponent: float = 2.0
-    torque_constant: float = TORQUE_CONSTANT  # N m/A
-    resistance: float = RESISTANCE  # ohm, of the whole loop
     ripple: float | None = None  # A/V: current above its mean at the falling edge is this V d (1 - d)
     gear_lag_s: float = 0.0  # damping over stiffness of a train: its torque lags its motor's
     own: bool = False  # the emulator's own boards made the log
+
+    @property
+    def start(self) -> Array:
+        """log (Ts/Tc, Stribeck speed, sigma_0/Tc), where a fit of the friction begins."""
+        return np.log([self.stiction / self.coulomb, self.stribeck_speed, self.sigma_0 / self.coulomb])
 
 
 def _train_stiffness(runs: list[Run]) -> str | None:
@@ -55,24 +55,32 @@ def _train_stiffness(runs: list[Run]) -> str | None:
     return next(iter(said), None)
 
 
-def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
-    """From `plant`, from the project's plant file for the emulator's own logs, else from the paper's
-    tables and the logs' headers."""
+def _from_rig(rig: Rig, preload: str, stiffness: str | None) -> Declared:
+    """The rig file's numbers for a state of the friction, and a header's word on the trains' stiffness."""
+    assert rig.motors is not None
+    f = next((f for f in rig.friction if f.state == preload), rig.friction[0])
+    return Declared(
+        f.coulomb,
+        f.stiction,
+        f.stribeck_rate,
+        f.viscous,
+        f.bristle_stiffness,
+        float(stiffness) if stiffness else rig.motors.train_stiffness,
+        rig.motors.torque_constant,
+        rig.motors.resistance,
+        readings=(1.0,) if stiffness else rig.motors.stiffness_readings,
+        stribeck_exponent=f.stribeck_exponent,
+    )
+
+
+def declared_numbers(runs: list[Run], plant: Path | None, rig: Rig | None = None) -> Declared:
+    """From `plant`, from the project's plant file for the emulator's own logs, else from the rig file (the
+    telescope's own axis without one) and the logs' headers."""
     axis, preload = runs[0].header["axis"], runs[0].header.get("preload", "low")
     note = runs[0].header.get("note", "").lower()
     own = note.startswith(OWN)
     if plant is None and not own:
-        d, said = DECLARED[preload], _train_stiffness(runs)
-        return Declared(
-            d["coulomb"],
-            d["stiction"],
-            d["stribeck_speed"],
-            d["viscous"],
-            SIGMA_0,
-            float(said) if said else STIFFNESS[axis],
-            readings=(1.0,) if said else TABLE_1,
-            start=paper_start(preload),
-        )
+        return _from_rig(rig or telescope(axis), preload, _train_stiffness(runs))
     from plant.model import default_files, load
 
     files = default_files()
@@ -86,7 +94,6 @@ def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
         if e.enabled and (stage := e.stage or PERIODIC.get(e.name)) and e.name in PERIODIC
     )
     motor = part.motor
-    log = np.log([f.stiction.si / f.coulomb.si, f.stribeck_rate.si, f.bristle_stiffness.si / f.coulomb.si])
     return Declared(
         f.coulomb.si,
         f.stiction.si,
@@ -94,11 +101,10 @@ def declared_numbers(runs: list[Run], plant: Path | None) -> Declared:
         f.viscous.si,
         f.bristle_stiffness.si,
         part.gear.stiffness.si / 2,
+        motor.torque_constant.si,
+        motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
         lines,
-        start=log,
         stribeck_exponent=f.stribeck_exponent.si,
-        torque_constant=motor.torque_constant.si,
-        resistance=motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
         ripple=0.5 / (motor.inductance.si * model.controller.pwm_frequency.si) if own else None,
         gear_lag_s=part.gear.damping.si / part.gear.stiffness.si if own else 0.0,
         own=own,

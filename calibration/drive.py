@@ -28,7 +28,6 @@ from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.origin import align_counters
 from calibration.inputs.record import Record
-from calibration.inputs.stuck import check_stuck
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
@@ -91,14 +90,7 @@ def analyse(
                 raise CalibrationInputError(
                     rig.path, f"{key}: {value:g} s is too long for a run of {r.duration_s:.4g} s"
                 )
-    check_stuck(records, rig)
     align_counters(records, rig)
-    still = [g.name for g in rig.stages if not g.period]
-    if still and all(r.channel != "position" for r in rig.responses):
-        raise CalibrationInputError(
-            rig.path,
-            f"stages.{still[0]}: period_s is for a drive at constant rate (response: position); give period",
-        )
     from calibration.names.columns import repairs_found
 
     balances = []

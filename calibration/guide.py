@@ -118,7 +118,8 @@ def analyse_guide(runs: list[Run], rig: Rig | None, hold_out: list[str], seed: i
         return "no section is long enough to say anything"
     known = parts(runs, rig)
     slowest = max((1.0 / part.rate for part in known), default=SLOWEST_S)
-    problem, names = guide_problem(runs, hold_out, slowest)
+    quickest = min((1.0 / part.rate for part in known), default=SLOWEST_S)
+    problem, names = guide_problem(runs, hold_out, slowest, quickest)
     if problem.train.sum() < LEAST_ROWS:
         return f"{int(problem.train.sum())} frames to fit are too few to say anything (at least {LEAST_ROWS})"
     if problem.domains:
@@ -132,7 +133,7 @@ def analyse_guide(runs: list[Run], rig: Rig | None, hold_out: list[str], seed: i
         found = max(1.0 / (c.candidate.frequency or 1.0) for c in s.chosen)
         if found >= NEXT * slowest:
             break
-        quicker = guide_problem(runs, hold_out, found)[0]
+        quicker = guide_problem(runs, hold_out, found, quickest)[0]
         rest = [part for part in seen if part.rate * found > 0.99]
         again = _search(quicker, rest, known, span, told, seed)
         if not again.chosen:

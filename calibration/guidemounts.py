@@ -66,7 +66,7 @@ def known_mount(runs: list[Run]) -> tuple[int, ...]:
 
 def parts(runs: list[Run], rig: Rig | None) -> list[Part]:
     """Every periodic part that is known: from the rig, the mount's name, else usual wheels."""
-    if rig is not None:
+    if rig is not None and rig.stages:
         return [Part(s.name, 1.0 / s.period_s) for s in rig.stages if s.period_s]
     wheels = known_mount(runs) or COMMON
     found = [Part(f"worm of a {n}-tooth wheel", n / SIDEREAL_DAY_S) for n in wheels]

@@ -11,12 +11,9 @@ from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.level import Level
-from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
-SHAFTS = ("shaft2", "roller", "shaft1", "motor")
-MESHES = ("mesh3", "mesh2", "mesh1")
 COGGING = (
     72  # highest cogging order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
 )
@@ -84,13 +81,13 @@ def gear_lines(c: Context, period_s: float) -> list[Candidate]:
     out = []
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
-    for stage in (*SHAFTS, *MESHES):
+    for stage in (*c.train.shafts, *c.train.meshes):
         for h in (1, 2):
-            order = STAGES[stage] * h
+            order = c.train.orders[stage] * h
             if span * order < 0.8:
                 continue
-            name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
-            domain = "motor_angle" if stage == "motor" else "axis_angle"
+            name = "gear_mesh" if stage in c.train.meshes else "gear_eccentricity"
+            domain = "motor_angle" if stage == c.train.motor else "axis_angle"
             one = line(c, name, stage, h, order, pair(turns * order, c, period_s, None, order), domain)
             out.append(replace(one, neighbours=off_stage(c, order, period_s)))
     return out
@@ -120,7 +117,7 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
     the declared model, so that a plain projection ranks them.
     """
     found: dict[str, list[tuple[float, Candidate]]] = {"motor_cogging": [], "torque_ripple": []}
-    ratio = STAGES["motor"]
+    ratio = c.train.ratio
     x = np.where(rows, e, 0.0)
     for n in range(2, COGGING + 1):
         order = n * ratio
@@ -141,7 +138,7 @@ def motor_lines(c: Context, motors: Motors, e: Array, rows: Mask, keep: int = 6)
                 # both motors' pairs are all but the same: their angles differ by their wind-up
                 q, _ = np.linalg.qr(np.where(rows[:, None], columns, 0.0))
                 score = float(np.sum((q.T @ x) ** 2)) - 0.5 * float(np.var(x)) * columns.shape[1]
-                made = line(c, name, "motor", n, order, columns, "motor_angle")
+                made = line(c, name, c.train.motor, n, order, columns, "motor_angle")
                 which = {} if motor is None else {"motor": (motor, "0 A, 1 B")}
                 found[name].append((score, replace(made, labels=(LABELS[name],), fixed=which)))
     out = []
@@ -181,7 +178,7 @@ def free_lines(c: Context, level: Level, e: Array, rows: Mask, period_s: float) 
     (friction)."""
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
-    known = np.array([v * h for k, v in STAGES.items() for h in (1, 2, 3) if k != "aux"])
+    known = np.array([v * h for v in c.train.known.values() for h in (1, 2, 3)])
     out = []
     sided = level.answer(np.ones(len(level.angle)))
     for name, weight in (("bearing_pass", np.ones(len(e))), ("position_friction", sided)):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.inputs.train import Train
 from calibration.readers.run import Array
 
 
@@ -38,6 +39,7 @@ class Context:
     temperature: Array | None = None
     effort: Array | None = None
     stages: dict[str, float] = field(default_factory=dict)  # name -> turns per position unit
+    train: Train = field(default_factory=lambda: Train({}, {}))  # of an axis with two motors
 
 
 def turning_points(angle: Array, run: NDArray[np.int64], travel: float) -> NDArray[np.bool_]:

@@ -8,17 +8,16 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.candidates.axis_lines import MESHES, SHAFTS, line, pair
+from calibration.candidates.axis_lines import line, pair
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
 from calibration.candidates.friction import stop_operator
 from calibration.candidates.orders import order_spectrum, peaks
 from calibration.channels.motion import Motion, acceleration_of, rate_of
-from calibration.readers.drive import ARCSEC, STAGES
+from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
-LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
 RESOLVED = 0.3  # periods per row, ASSUMPTION: where hardly a row is slower, the log cannot show the error
 
 
@@ -40,16 +39,24 @@ def motor_encoder_effects(c: Context, period_s: float, motor: Array) -> list[Can
             order=1.0,
         )
     )
-    for stage in (*SHAFTS, *MESHES):
+    for stage in (*c.train.shafts, *c.train.meshes):
         for h in (1, 2):
-            order = STAGES[stage] * h
+            order = c.train.orders[stage] * h
             if span * order < 0.8:
                 continue
-            name = "gear_mesh" if stage in MESHES else "gear_eccentricity"
+            name = "gear_mesh" if stage in c.train.meshes else "gear_eccentricity"
             columns = pair(turns * order, c, period_s, None, order)
             for one in (columns, columns * (motor == 0)[:, None], columns * (motor == 1)[:, None]):
                 out.append(
-                    line(c, name, stage, h, order, one, "motor_angle" if stage == "motor" else "axis_angle")
+                    line(
+                        c,
+                        name,
+                        stage,
+                        h,
+                        order,
+                        one,
+                        "motor_angle" if stage == c.train.motor else "axis_angle",
+                    )
                 )
     if c.temperature is not None and np.ptp(c.temperature) > 0.3:
         out.append(
@@ -120,16 +127,21 @@ def roller_effects(c: Context, m: Motion) -> list[Candidate]:
     w = c.speed * 206264.806
     turns = c.angle / c.turn
     span = float(np.ptp(turns))
-    out = [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage="roller")]
-    out += _slips(m)
+    roller = c.train.one("roller")
+    out = []
+    if roller is not None:
+        out += [Candidate("roller_ratio", "velocity", w[:, None], (("scale", "1"),), stage=roller)]
+        out += _slips(m, roller)
     for h in (1, 2):
-        order = STAGES["roller"] * h
+        if roller is None:
+            break
+        order = c.train.orders[roller] * h
         if span * order > 0.8:
             out.append(
                 line(
                     c,
                     "encoder_eccentricity",
-                    "roller",
+                    roller,
                     h,
                     order,
                     pair(turns * order, c, period_s, w, order),
@@ -152,7 +164,7 @@ def roller_effects(c: Context, m: Motion) -> list[Candidate]:
     return out
 
 
-def _slips(m: Motion) -> list[Candidate]:
+def _slips(m: Motion, roller: str) -> list[Candidate]:
     """Travel lost while the axis accelerates harder than a limit: a share of it, or as much as the limit is
     exceeded. Row by row: the analysis' means would round off what is beyond a limit."""
     row_s = m.period_s / m.width
@@ -171,7 +183,7 @@ def _slips(m: Motion) -> list[Candidate]:
                     "velocity",
                     shape(np.array([limit, chatter])),
                     ((name, unit),),
-                    stage="roller",
+                    stage=roller,
                     fixed={"limit": (limit, "rad/s2"), "chatter": (chatter, "rad/s2")},
                     sign=1,
                     shape=shape,
@@ -215,17 +227,18 @@ def _excess(rate: Array, acceleration: Array) -> Callable[[float, float], Array]
     return lost
 
 
-def subdivision(c: Context, m: Motion, lags: Array) -> list[Candidate]:
-    """Rate error of the absolute encoder's interpolation: its line count and twice it.
+def subdivision(c: Context, m: Motion, lags: Array, lines: int | None) -> list[Candidate]:
+    """Rate error of the absolute encoder's interpolation: its line count (signal periods per turn) and twice
+    it; none where nobody declared one.
 
     It is sampled with the position, row by row, and goes through the same differences; `lags` (2,) are what
     the channel's base makes of the position's acceleration and jerk, in which the error is, too.
     """
     row_s = m.period_s / m.width
-    if np.mean(np.abs(c.speed) / c.turn * LINES * row_s < RESOLVED) < 0.02:
+    if lines is None or np.mean(np.abs(c.speed) / c.turn * lines * row_s < RESOLVED) < 0.02:
         return []
     parts = []
-    for wave in (g(h * LINES * m.theta) for h in (1, 2) for g in (np.cos, np.sin)):
+    for wave in (g(h * lines * m.theta) for h in (1, 2) for g in (np.cos, np.sin)):
         bent = acceleration_of(wave, m.width, row_s)
         late = lags[0] * bent + lags[1] * np.gradient(bent, row_s)
         parts.append((rate_of(wave, m.width, row_s) + late)[m.pick])
@@ -236,7 +249,7 @@ def subdivision(c: Context, m: Motion, lags: Array) -> list[Candidate]:
             np.column_stack(parts),
             (("amplitude", "arcsec"),),
             kind="line",
-            order=float(LINES),
+            order=float(lines),
             harmonic=1,
         )
     ]
@@ -249,7 +262,7 @@ def free_kinematic(c: Context, e: Array, rows: Mask, period_s: float, top: float
     orders, power = order_spectrum(np.where(rows, e, 0.0), turns, rows.astype(float), top)
     out = []
     for order in peaks(orders, power, 2, 1.5 / span if span else 1.0):
-        if min(abs(order - v * h) for v in STAGES.values() for h in (1, 2)) * span < 0.8:
+        if min(abs(order - v * h) for v in c.train.orders.values() for h in (1, 2)) * span < 0.8:
             continue
         out.append(
             line(

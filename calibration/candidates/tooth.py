@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
-from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
 
 WIDTHS = (0.006, 0.0085, 0.012, 0.018, 0.027, 0.04, 0.06, 0.085)  # of a turn, full width of a raised cosine
@@ -32,8 +31,8 @@ def damaged_teeth(
     """The best few pulses on every shaft that turns about once in the log."""
     out = []
     turns = c.angle / c.turn
-    for stage in ("shaft2", "shaft1", "motor"):
-        order = STAGES[stage]
+    for stage in c.train.toothed:
+        order = c.train.orders[stage]
         if np.ptp(turns) * order < 0.9:
             continue
         phase = turns * order
@@ -60,7 +59,7 @@ def damaged_teeth(
             out.append(
                 Candidate(
                     "damaged_tooth",
-                    "axis_angle" if stage != "motor" else "motor_angle",
+                    "axis_angle" if stage != c.train.motor else "motor_angle",
                     shape(np.array([centre, width])),
                     (("amplitude", c.unit),),
                     stage=stage,

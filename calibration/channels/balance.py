@@ -65,8 +65,6 @@ def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:
     if r.channel == "acceleration":
         x = view.columns.get("acceleration")
         y = view.second(view.x) if x is None else x
-    elif r.channel == "position":
-        y = view.x
     else:
         y = view.delayed(view.columns[r.channel], delay_s)
     y = y * r.gain
@@ -86,7 +84,7 @@ def default_terms(view: View) -> tuple[str, ...]:
     """The declared model's terms: those of the rig file, and what every response of its kind needs."""
     if view.response.is_force:
         return view.rig.estimate or ("viscous", "coulomb", "offset")
-    drift = ("drift",) if "drift" in view.rig.estimate or view.response.channel == "position" else ()
+    drift = ("drift",) if "drift" in view.rig.estimate else ()
     scale = ("scale",) if view.response.channel == "position2" and view.response.ratio is None else ()
     return ("offset", *scale, *drift)
 

@@ -13,13 +13,6 @@ from calibration.readers.run import Array
 from calibration.statistics.regression import solve
 from calibration.statistics.whitening import Mask
 
-#: paper Table 2 and Table 1 (RA after weight removal); sigma_0 from hardware.md 1.1 (recommended)
-DECLARED = {
-    "low": {"coulomb": 229.0, "stiction": 621.0, "stribeck_speed": 4e-4, "viscous": 6700.0},
-    "high": {"coulomb": 217.0, "stiction": 1490.0, "stribeck_speed": 7e-4, "viscous": 11300.0},
-}
-INERTIA = {"ra": 1760.0, "dec": 579.0}  # kg m2, paper section 4 (rundown) and Table 1
-SIGMA_0 = 1e7  # N m/rad, hardware.md 1.1
 BOUNDS = (
     (0.0, 3.2),
     (np.log(3e-6), np.log(1e-2)),
@@ -39,12 +32,6 @@ class Friction:
     inertia: float
     inertia_fixed: bool = False
     identifiable: dict[str, bool] = field(default_factory=dict)
-
-
-def paper_start(preload: str) -> Array:
-    """Log parameters (ratio, Stribeck speed, stiffness) of the paper's tables, where a fit begins."""
-    d = DECLARED[preload]
-    return np.log([d["stiction"] / d["coulomb"], d["stribeck_speed"], SIGMA_0 / d["coulomb"]])
 
 
 def shape_columns(m: Motion, p: Array, exponent: float = 2.0) -> Array:

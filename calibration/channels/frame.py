@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.inputs.declaration import Rig
+from calibration.inputs.telescope import telescope
+from calibration.inputs.train import Train, train_of
 from calibration.readers.run import Array, Run
 from calibration.statistics.whitening import Mask
 
@@ -39,9 +42,15 @@ class Frame:
     session: NDArray[np.int64]
     columns: dict[str, Array]
     scale: dict[str, float]
+    rig: Rig  # the drive's declaration
     missing: dict[str, list[tuple[float, int]]] = field(
         default_factory=dict
     )  # run -> (time, rows) of every gap
+
+    @property
+    def train(self) -> Train:
+        """The declared gear train."""
+        return train_of(self.rig)
 
     @property
     def present(self) -> Mask:
@@ -54,8 +63,9 @@ class Frame:
         return x if x is not None and np.isfinite(x).mean() > 0.05 else None
 
 
-def build_frame(runs: list[Run]) -> Frame:
-    """Put all runs of one axis on one grid. Rows between samples are NaN; stamps are rounded to the grid."""
+def build_frame(runs: list[Run], rig: Rig | None = None) -> Frame:
+    """Put all runs of one axis on one grid. Rows between samples are NaN; stamps are rounded to the grid.
+    `rig` declares the drive: the telescope's own axis without it."""
     period = runs[0].scales["sample_period_s"]
     sessions = {s: k for k, s in enumerate(dict.fromkeys(r.session for r in runs))}
     parts: dict[str, list[Array]] = {c: [] for c in (*COLUMNS, "t", "clock")}
@@ -91,6 +101,7 @@ def build_frame(runs: list[Run]) -> Frame:
         np.concatenate(owners).astype(np.int64),
         joined,
         dict(runs[0].scales),
+        rig or telescope(runs[0].header["axis"]),
         missing,
     )
 

@@ -16,6 +16,7 @@ from calibration.statistics.whitening import Mask
 
 LEAST_PART = 0.25  # of the longest section: shorter ones only add an offset and a drift each
 LEAST_FRAMES = 30  # in a section
+PER_TURN = 20.0  # cells in a turn of the quickest part: its eighth harmonic is still seen
 CELL_S = 3.0  # quick frames are averaged over this: the eighth harmonic of the quickest worm lasts 19 s
 DRIFT_TURNS = 2.0  # of the slowest period: what has not come round twice is not known to be periodic
 LEAST_DEGREE = 2  # of the drift: refraction and polar alignment change its rate
@@ -60,12 +61,13 @@ class _Rows:
 
 
 def guide_problem(
-    runs: list[Run], hold_out: list[str], slowest_s: float = SLOWEST_S
+    runs: list[Run], hold_out: list[str], slowest_s: float = SLOWEST_S, quickest_s: float = SLOWEST_S
 ) -> tuple[Problem, list[str]]:
     """Problem and the names of what is held out: the end of every section, or the sections that are named.
 
     `slowest_s` is the longest period that is looked for: what takes longer than two of it is drift, a
-    nuisance like the star's offset, of the fitted and of the held-out rows on their own.
+    nuisance like the star's offset, of the fitted and of the held-out rows on their own. `quickest_s` is the
+    shortest period that is declared.
     `session` is where a period keeps its phase: a section, because a slew between two turns the worm; when
     whole sections are held out, all of them on the clock (`domains["clock"]`), for nothing else could be
     predicted there.
@@ -77,7 +79,8 @@ def guide_problem(
         )
     unit = next(iter(units))
     frame = float(np.median(np.concatenate([np.diff(r.columns["t"]) for r in runs])))
-    period = frame if 2 * frame > CELL_S else CELL_S
+    cell = min(CELL_S, quickest_s / PER_TURN)
+    period = frame if 2 * frame > cell else cell
     parts, names = _sections(runs, hold_out, period)
     y, t = np.concatenate([r.y for r in parts]), np.concatenate([r.t for r in parts])
     run = np.concatenate([np.full(len(r.y), r.run) for r in parts]).astype(np.int64)

@@ -78,7 +78,7 @@ def kinematic_problem(
     valid = np.concatenate(oks) & ~np.concatenate([wide, wide])
     offsets = _offsets(segment, n, valid)
     alpha, rate = m.acceleration[pick], m.rate[pick]
-    one = declared_lines(m, [x for x in lines if x[1] != "axis"])
+    one = declared_lines(m, [x for x in lines if x[1] != "axis"], frame.train)
     nil = np.zeros_like(one)
     twist = np.vstack([np.hstack([one, nil]), np.hstack([nil, one])])  # the trains may differ
     base = np.column_stack(

@@ -13,7 +13,7 @@ from calibration.channels.frame import Frame, fill
 from calibration.channels.motion import Motion, motion_of
 from calibration.channels.problem import Problem
 from calibration.declaredplant import Declared
-from calibration.readers.drive import STAGES
+from calibration.inputs.train import Train
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
@@ -77,16 +77,16 @@ def slid(m: Motion, unseen: Array, travel: float) -> Mask:
 
 
 def saturated(frame: Frame, current: Array) -> Mask:
-    """Rows where the 10-bit converter is at its end."""
-    return np.asarray(current >= 1022.5 * frame.scale["adc_A_per_count"])
+    """Rows where the current's converter is at its end."""
+    return np.asarray(current >= frame.scale["adc_end_A"])
 
 
-def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]]) -> Array:
+def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], train: Train) -> Array:
     """(n_analysis, 2 k): cos and sin of every declared periodic torque, dimmed by the two boxcars."""
     turns, speed = m.theta[m.pick] / (2 * np.pi), np.abs(m.rate[m.pick]) / (2 * np.pi)
     columns = [np.zeros((len(turns), 0))]
     for _, stage, harmonic in lines:
-        order = STAGES[stage] * harmonic
+        order = train.orders[stage] * harmonic
         per_sample = speed * order * m.period_s
         dim = np.where(per_sample < 0.9, np.sinc(per_sample) ** 2, 0.0)
         x = 2 * np.pi * order * turns
@@ -121,7 +121,7 @@ def torque_problem(
     full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
     y = m.at(full) - drive.softness_s2 * m.curvature(full)[pick]
     test = held[pick]
-    lines = declared_lines(m, declared.lines)
+    lines = declared_lines(m, declared.lines, frame.train)
     torques = lines if beside is None else np.hstack([lines, beside])
     friction, base, bristle = fit_friction(
         m, y, rows & ~test, declared.start, declared.stribeck_exponent, torques
@@ -178,6 +178,7 @@ def torque_problem(
         current=m.at(fa - fb),
         effort=m.at(effort),
         temperature=fill(temperature, frame.run)[0][pick] if temperature is not None else None,
-        stages={k: v / (2 * np.pi) for k, v in STAGES.items() if k not in ("aux",)},
+        stages={k: v / (2 * np.pi) for k, v in frame.train.known.items()},
+        train=frame.train,
     )
     return Torque(problem, context, m, friction, bristle, drive)

@@ -11,7 +11,6 @@ from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import predict_residual
 from calibration.decide.select import Selection, design
 from calibration.decide.thresholds import FLIPPED_BY_LUCK
-from calibration.readers.drive import STAGES
 from calibration.readers.run import Array
 from calibration.statistics.regression import under
 
@@ -101,6 +100,3 @@ def _flipped(selection: Selection, k: int) -> bool:
     rows = p.test
     e1, e0 = predict_residual(p, x, beta, rows), predict_residual(p, x, without, rows)
     return bool(np.mean(e1**2) < (1 - FLIPPED_BY_LUCK) * np.mean(e0**2))
-
-
-__all__ = ["STAGES", "controls"]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from calibration.finding import Finding
-from calibration.readers.drive import STAGES
+from calibration.inputs.train import Train
 
 #: a finding of the key's name (in that channel) explains away findings of these names
 CONSEQUENCES: dict[tuple[str, str], tuple[str, ...]] = {
@@ -62,10 +62,10 @@ SUPERFLUOUS = (
 )
 
 
-def merge(findings: list[Finding]) -> list[Finding]:
-    """Findings of all channels as a list of effects, strongest first."""
+def merge(findings: list[Finding], train: Train | None = None) -> list[Finding]:
+    """Findings of all channels as a list of effects, strongest first; `train` of an axis with two motors."""
     out = _resolve_gain(findings)
-    out = _resolve_motor(out)
+    out = _resolve_motor(out, train) if train is not None else out
     out = _resolve_mesh(out)
     out = _same_key(out)
     out = _consequences(out)
@@ -94,16 +94,15 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
     return out
 
 
-def _resolve_motor(findings: list[Finding]) -> list[Finding]:
+def _resolve_motor(findings: list[Finding], train: Train) -> list[Finding]:
     """A torque line of the motor that the encoders see too is a twist of its gear: cogging twists nothing."""
-    twists = {f.harmonic for f in findings if (f.channel, f.name, f.stage) == ("K", TWIST, "motor")}
+    twists = {f.harmonic for f in findings if (f.channel, f.name, f.stage) == ("K", TWIST, train.motor)}
     out = []
     for f in findings:
-        twist = f.channel == "T" and TWIST in f.equivalent and f.stage == "motor" and f.harmonic in twists
+        twist = f.channel == "T" and TWIST in f.equivalent and f.stage == train.motor and f.harmonic in twists
         if twist and f.name == "motor_cogging":
-            ratio = STAGES["motor"]  # cogging is told at the motor, a gear's torque at the axis
-            p = f.parameters["amplitude"]
-            told = replace(p.times(ratio), unit="N m")
+            p = f.parameters["amplitude"]  # cogging is told at the motor, a gear's torque at the axis
+            told = replace(p.times(train.ratio), unit="N m")
             f = replace(f, name=TWIST, equivalent=[], parameters={"amplitude": told})
         out.append(f)
     return out

@@ -23,6 +23,7 @@ class Column:
     offset: float = 0.0  # rig units, added after the scale
     wrap: float | None = None  # length of the counter, file units
     delay_s: float = 0.0  # known lateness, taken out
+    window_s: float | None = None  # over which a counted rate counts, up to the row's stamp
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,31 @@ class Controller:
 
 
 @dataclass(frozen=True)
+class Motors:
+    """Two motors that pull an axis against each other, through trains of their own; SI."""
+
+    counter_torque: float  # share of the effort that the lagging motor gets
+    torque_constant: float  # N m/A
+    resistance: float  # ohm, of the whole loop
+    rotor_inertia: tuple[float, float]  # kg m2 at the motor, least and most
+    train_stiffness: float  # N m/rad at the axis, of one train
+    stiffness_readings: tuple[float, ...] = (1.0,)  # factors that number may have to be read by
+
+
+@dataclass(frozen=True)
+class Friction:
+    """LuGre friction with a Stribeck curve, as declared for one state of a drive; SI at the axis."""
+
+    state: str
+    coulomb: float
+    stiction: float
+    stribeck_rate: float
+    stribeck_exponent: float
+    viscous: float
+    bristle_stiffness: float
+
+
+@dataclass(frozen=True)
 class Rig:
     """A rig file, checked. `constants` are known coefficients of the model's terms, by the term's name."""
 
@@ -84,4 +110,13 @@ class Rig:
     sample_period_s: float | None
     controller: Controller | None = None
     supply_V: float | None = None  # what a duty of one gives
+    format: str = "table"  # of its logs; axis-log and phd2 say their columns themselves
+    motors: Motors | None = None
+    friction: tuple[Friction, ...] = ()  # by state, the usual one first
+    encoder_periods: int | None = None  # per turn of the position encoder
     raw: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def drifts(self) -> bool:
+        """Whether what is explained is a position at constant rate, over time."""
+        return self.format == "phd2" or any(r.channel == "position" for r in self.responses)

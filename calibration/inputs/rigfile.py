@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Column, Controller, Response, Rig
+from calibration.inputs.declaration import Column, Controller, Friction, Motors, Response, Rig
+from calibration.inputs.rigchecks import check
 from calibration.inputs.stages import stages_of
 from calibration.inputs.yamltext import load_yaml
 
@@ -68,15 +69,17 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
             float(v.get("offset", 0.0)),
             v.get("wrap"),
             float(v.get("delay_s", 0.0)),
+            v.get("window_s"),
         )
-        for k, v in data["columns"].items()
+        for k, v in data.get("columns", {}).items()
     }
-    given = data["response"] if isinstance(data["response"], list) else [data["response"]]
+    told = data.get("response", [])
+    given = told if isinstance(told, list) else [told]
     responses = tuple(
         Response(r["channel"], r["unit"], float(r.get("gain", 1.0)), r.get("divide_by"), r.get("ratio"))
         for r in given
     )
-    _check(path, data, columns, responses)
+    check(path, data, columns, responses)
     return Rig(
         name=data["rig"],
         path=path,
@@ -96,7 +99,37 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         sample_period_s=data.get("sample_period_s"),
         controller=_controller(data.get("controller")),
         supply_V=data.get("supply_V"),
+        format=data.get("format", "table"),
+        motors=_motors(data.get("motors")),
+        friction=tuple(_friction(f) for f in data.get("friction", ())),
+        encoder_periods=data.get("encoder_periods"),
         raw=data,
+    )
+
+
+def _motors(given: dict[str, Any] | None) -> Motors | None:
+    if given is None:
+        return None
+    low, high = (float(x) for x in given["rotor_inertia_kgm2"])
+    return Motors(
+        float(given["counter_torque"]),
+        float(given["torque_constant_Nm_per_A"]),
+        float(given["resistance_ohm"]),
+        (low, high),
+        float(given["train_stiffness_Nm_per_rad"]),
+        tuple(float(x) for x in given.get("stiffness_readings", (1.0,))),
+    )
+
+
+def _friction(given: dict[str, Any]) -> Friction:
+    return Friction(
+        given.get("state", ""),
+        float(given["coulomb_Nm"]),
+        float(given["stiction_Nm"]),
+        float(given["stribeck_rate_rad_per_s"]),
+        float(given.get("stribeck_exponent", 2.0)),
+        float(given["viscous_Nms_per_rad"]),
+        float(given["bristle_stiffness_Nm_per_rad"]),
     )
 
 
@@ -104,133 +137,3 @@ def _controller(given: dict[str, Any] | None) -> Controller | None:
     if given is None:
         return None
     return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()}, given.get("limit"))
-
-
-FORWARD = {"rate_feedforward", "acceleration_feedforward"}
-#: gains that a law must have, and those that it may
-GAINS = {
-    "pid": ({"p"}, {"p", "i", "d"} | FORWARD),
-    "cascade": ({"position", "velocity"}, {"position", "velocity"} | FORWARD),
-}
-
-
-def _check_controller(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:
-    law, gains = data["controller"]["law"], set(data["controller"]["gains"])
-    must, may = GAINS[law]
-    for name in sorted(must - gains):
-        refuse(f"controller.gains: '{name}' is missing; a {law} has it")
-    for name in sorted(gains - may):
-        refuse(f"controller.gains.{name}: a {law} has none; it has {', '.join(sorted(may))}")
-    if "reference" not in columns or "effort" not in columns:
-        refuse("controller: needs the columns reference and effort, which the law connects")
-    if columns["reference"].unit != columns["position"].unit:
-        refuse("columns.reference.unit: must be the position's for a controller; give a scale")
-
-
-def _check_electrical(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:
-    """Volts are measured, or a duty of a supply; a balance of them needs the current."""
-    for name in ("voltage", "duty"):
-        if name in columns and "current" not in columns:
-            refuse(
-                f"columns.{name}: a balance of volts needs the current; give columns.current or leave it out"
-            )
-    if "voltage" in columns and "duty" in columns:
-        refuse("columns.duty: the voltage is given; leave one of the two out")
-    if "duty" in columns and ("supply" in columns) == ("supply_V" in data):
-        refuse("columns.duty: needs what a duty of 1 gives, a column of the supply or supply_V, and only one")
-    if "duty" not in columns and "supply_V" in data:
-        refuse("supply_V: is for a column of the duty; leave it out")
-    for name, unit in (("voltage", "V"), ("duty", "1"), ("current", "A")):
-        if name in columns and {"voltage", "duty"} & set(columns) and columns[name].unit != unit:
-            refuse(
-                f"columns.{name}.unit: '{columns[name].unit}', must be {unit} for a balance of volts;"
-                " give a scale"
-            )
-
-
-def _check(
-    path: Path, data: dict[str, Any], columns: dict[str, Column], responses: tuple[Response, ...]
-) -> None:
-    """What the schema cannot say: channels that are needed, factors that erase a column, keys without
-    effect."""
-
-    def refuse(text: str) -> None:
-        raise CalibrationInputError(path, text)
-
-    have = ", ".join(columns)
-    if "time" not in columns and "sample_period_s" not in data:
-        refuse("columns: 'time' is missing; without a time column give sample_period_s")
-    if "time" in columns and "sample_period_s" in data:
-        refuse("sample_period_s: there is a time column; give one of the two")
-    if "position" not in columns:
-        refuse("columns: 'position' is missing")
-    if "time" in columns and columns["time"].unit != "s":
-        refuse(
-            f"columns.time.unit: '{columns['time'].unit}', must be s; give the file's unit as a factor,"
-            " such as scale: 0.001 for ms"
-        )
-    for name, column in columns.items():
-        if column.scale == 0:
-            refuse(f"columns.{name}.scale: 0 erases the column")
-    channels = [r.channel for r in responses]
-    for r in responses:
-        if r.channel not in columns and r.channel != "acceleration":
-            refuse(f"response.channel: '{r.channel}' is not among the columns ({have})")
-        if r.ratio is not None and r.channel != "position2":
-            refuse("response.ratio: is for a second sensor (channel: position2)")
-        if r.gain == 0:
-            refuse("response.gain: 0 erases the response")
-        if r.divide_by is not None and r.divide_by not in columns:
-            refuse(f"response.divide_by: '{r.divide_by}' is not among the columns ({have})")
-        if channels.count(r.channel) > 1:
-            refuse(f"response: '{r.channel}' is given twice")
-    if "controller" in data:
-        _check_controller(data, columns, refuse)
-    _check_electrical(data, columns, refuse)
-    _check_model(data, columns, responses, refuse)
-    _check_runs(data, refuse)
-
-
-def _check_model(
-    data: dict[str, Any], columns: dict[str, Column], responses: tuple[Response, ...], refuse: Any
-) -> None:
-    force = any(r.is_force for r in responses)
-    if not force:
-        forces = (set(data.get("estimate", ())) - {"offset", "drift"}) | set(data.get("constants", {}))
-        if forces:
-            refuse(f"{min(forces)}: is a term of forces, but no response is one")
-    both = set(data.get("estimate", ())) & set(data.get("constants", {}))
-    if both:
-        refuse(f"constants.{min(both)}: is estimated too; a number is known or estimated")
-    if "acceleration" in [r.channel for r in responses] and (
-        "inertia" in data.get("estimate", ()) or "inertia" in data.get("constants", {})
-    ):
-        refuse("inertia: a response of acceleration is a balance per unit of inertia; leave it out")
-    used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference"}
-    used |= {r.channel for r in responses} | {r.divide_by for r in responses if r.divide_by}
-    if any(r.channel == "position2" for r in responses):
-        used |= {"effort", "force", "current"}
-    if "controller" in data:
-        used.add("effort")
-    if {"voltage", "duty"} & set(columns):
-        used |= {"voltage", "duty", "current"}
-    for name in columns:
-        if name not in used:
-            refuse(f"columns.{name}: nothing uses it with this response; leave it out")
-
-
-def _check_runs(data: dict[str, Any], refuse: Any) -> None:
-    runs, wall = data.get("runs", {}), data.get("wall_time", {})
-    if runs.get("by") == "column" and "column" not in runs:
-        refuse("runs.by: 'column' needs runs.column, the column's name")
-    if "column" in runs and runs.get("by") != "column":
-        refuse("runs.column: is used with by: column only")
-    if "minimum_travel" in runs and runs.get("by") != "turning_points":
-        refuse("runs.minimum_travel: is used with by: turning_points only")
-    if wall and wall["from"] == "name" and "format" not in wall:
-        refuse("wall_time.from: 'name' needs wall_time.format, such as '%Hh%Mm%S'")
-    for key, needs in (("format", "name"), ("gap_s", "order")):
-        if key in wall and wall["from"] != needs:
-            refuse(f"wall_time.{key}: is used with from: {needs} only")
-    if wall and wall["from"] == "time" and "time" not in data["columns"]:
-        refuse("wall_time.from: 'time' needs a time column")

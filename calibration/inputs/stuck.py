@@ -19,7 +19,8 @@ def check_stuck(records: list[Record], rig: Rig) -> None:
     if np.ptp(position) <= MOVED * float(np.abs(position).max()):
         return
     wanted = [r.channel for r in rig.responses if r.channel != "position"]
-    wanted += [c for c in ("velocity", "acceleration") if c in rig.columns]
+    wanted += [c for c in ("velocity", "acceleration", "motor_a", "motor_b") if c in rig.columns]
+    wanted += ["effort"] if rig.motors is not None else []
     for channel in dict.fromkeys(wanted):
         if channel not in rig.columns:
             continue

@@ -15,8 +15,6 @@ from calibration.names.sines import over_place, stage_lines
 def columns(s: Scene) -> list[Candidate]:
     """Sines at the stages without another kind; without a stage of that length, at one turn of the
     position."""
-    if s.view.response.channel == "position":
-        return []
     out = stage_lines(s, "encoder_eccentricity", default=True)
     turn = s.view.turn
     have = [c.order for c in out]

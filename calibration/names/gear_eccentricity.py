@@ -10,7 +10,7 @@ from calibration.names.sines import stage_lines
 
 def columns(s: Scene) -> list[Candidate]:
     """Sines at the harmonics of every stage without another kind."""
-    return stage_lines(s, "gear_eccentricity", default=s.force or s.view.response.channel == "position")
+    return stage_lines(s, "gear_eccentricity", default=s.force)
 
 
 NAME = Name(

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate, sine_columns
-from calibration.inputs.declaration import Stage
+from calibration.candidates.candidate import Candidate
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
 
@@ -31,11 +30,7 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
     for; `default`: stages without a kind, too."""
     out = []
     x = s.view.x[s.view.rows]
-    steady = s.view.response.channel == "position"  # at a constant rate, time stands for the angle
     for stage in s.view.rig.stages:
-        if steady and stage.period_s and (stage.kind or (kind if default else "")) == kind:
-            out += _in_time(s, kind, stage)
-            continue
         if stage.period is None or (stage.kind or (kind if default else "")) != kind:
             continue
         for h in range(1, stage.harmonics + 1):
@@ -89,29 +84,6 @@ def as_one(mine: list[Candidate]) -> list[Candidate]:
         if len(some) > 1:
             whole = np.hstack([c.columns for c in some])
             out.append(replace(some[0], columns=whole, harmonic=None, searched=1))
-    return out
-
-
-def _in_time(s: Scene, kind: str, stage: Stage) -> list[Candidate]:
-    """Harmonics of a stage that turns once in `period_s` at the logged rate."""
-    t = s.view.t[s.view.rows]
-    out = []
-    for h in range(1, stage.harmonics + 1):
-        f = h / float(stage.period_s or 1.0)
-        if float(t.max()) * f < ENOUGH or f * s.view.period_s * max(s.view.step, s.view.sigma) > PER_ROW:
-            continue
-        out.append(
-            Candidate(
-                kind,
-                "axis_angle",
-                sine_columns(t * f, s.problem.session),
-                (("amplitude", s.unit),),
-                kind="line",
-                stage=stage.name,
-                harmonic=h,
-                frequency=f,
-            )
-        )
     return out
 
 

@@ -31,6 +31,7 @@ KNOWN = (
     "temperature",
 )
 _LONGEST_HEADER = 400  # lines, blank ones too
+LAST_COUNT = 1022.5  # of the 10-bit converter of the currents, log-format.md: above it may be anything
 REQUIRED = ("t", "effort", "position")
 #: what each counts column must be in, for the message when a header row names another unit
 UNITS = {
@@ -75,6 +76,7 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
         raise CalibrationInputError(path, "the log has a column row and no data rows", start + 2)
     raw = read_numbers(path, body, names, start + 2, wanted=set(KNOWN) & set(names))
     scales = {key: number(path, header, key) for key in SCALES}
+    scales["adc_end_A"] = LAST_COUNT * scales["adc_A_per_count"]
     raw = _check_time(path, raw, scales["sample_period_s"], start + 2)
     check_values(path, raw, scales, start + 2)
     si = to_si(raw, scales)

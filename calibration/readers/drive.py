@@ -1,12 +1,15 @@
-"""The declared scales and gear train of the telescope's axis logs.
+"""The declared scales of the telescope's axis logs.
 
-Sources: paper.txt sections 3.2-3.4 (encoders, gear train, log period); log-format.md (scales of the columns).
+Sources: paper.txt sections 3.2-3.4 (encoders, log period); log-format.md (scales of the columns). The drive
+behind the logs is declared in calibration/rigs.
 A log's header may override every scale by its key.
 """
 
 from __future__ import annotations
 
 import math
+
+from plant.gears import RATIO
 
 ARCSEC = math.pi / 648000.0  # rad per arcsec
 
@@ -26,7 +29,7 @@ SCALES: dict[str, tuple[float, str]] = {
     "effort_full_scale": (3000.0, "effort counts at full supply; log-format.md"),
     "supply_V": (24.0, "V; paper 3.2"),
     "counter_torque": (0.10, "fraction of the effort on the other motor; paper 3.3 says 0.10 to 0.25"),
-    "gear_ratio": (113 / 27 * 123 / 21 * 250 / 17, "motor turns per axis turn; paper 3.2"),
+    "gear_ratio": (RATIO, "motor turns per axis turn; paper 3.2"),
 }
 
 #: header key of a declared number that Table 1 gives in a way that can be read twice, and what it is
@@ -35,16 +38,3 @@ DECLARABLE: dict[str, str] = {TRAIN_STIFFNESS: "N m/rad at the axis of one motor
 
 #: counter lengths, in counts, of the columns that wrap
 WRAPS: dict[str, int] = {"position": 2**29, "aux": 2**17}
-
-#: stage -> (order in cycles per axis turn, teeth that make it), effects.md "Orders of this drive"
-STAGES: dict[str, float] = {
-    "axis": 1.0,
-    "aux": 10.8,
-    "shaft2": 250 / 17,
-    "roller": 735 / 30,
-    "shaft1": 250 / 17 * 123 / 21,
-    "mesh3": 250.0,
-    "motor": 250 / 17 * 123 / 21 * 113 / 27,
-    "mesh2": 250 / 17 * 123,
-    "mesh1": 250 / 17 * 123 / 21 * 113,
-}

@@ -31,6 +31,7 @@ _DEC = re.compile(r"\bDec\s*=\s*([0-9.+-]+)\s*deg")
 _SIDE = re.compile(r"Pier side\s*=\s*(\w+)")
 COLUMNS = ("Frame", "Time", "mount", "RARawDistance", "RAGuideDistance")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
+CLOCK = "clock_s"  # header key of a start in s, where a table's rig file says how it is known
 MARKS = ("Mount", "AO", "DROP")
 _MOST = 1e9
 """s or px; beyond any night and any camera, and sums of such numbers stay finite. ASSUMPTION."""
@@ -257,6 +258,8 @@ def _scale(path: Path, line: int, text: str) -> float:
 
 def start_seconds(run: Run) -> float | None:
     """Clock time of the section's beginning in s, by the computer's clock; None when it is not written."""
+    if CLOCK in run.header:
+        return float(run.header[CLOCK])
     text = run.header.get("start_local")
     if text is None:
         return None

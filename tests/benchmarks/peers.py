@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from calibration.axis import analyse
 from calibration.readers.axis import read_axis_log
-from calibration.readers.drive import STAGES
+from plant.gears import ORDERS as STAGES
 from tests.benchmarks.drives import TRUE_LINES, Drive
 
 Floats = NDArray[np.float64]

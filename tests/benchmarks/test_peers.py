@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from calibration.readers.drive import STAGES
+from plant.gears import ORDERS as STAGES
 from tests.benchmarks.drives import LEVELS, programme
 from tests.benchmarks.peers import MissingPeer, Residual, rms, sindy, whole_vector
 

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from calibration.command import calibrate, read_logs
+from calibration.command import calibrate
 from calibration.decide.tolerance import INFLATION, inflation
 from calibration.errors import CalibrationInputError
+from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
 from tests.calibration.logs import tiny_log, write_logs
@@ -60,7 +61,7 @@ def test_a_file_that_is_no_axis_log_says_why_in_one_line(tmp_path: Path, content
     path = tmp_path / "bad.log"
     path.write_bytes(content)
     with pytest.raises(CalibrationInputError, match=says) as caught:
-        read_logs([path], None)
+        read_drive([path], None)
     assert "\n" not in str(caught.value) and str(path) in str(caught.value)
 
 
@@ -68,7 +69,7 @@ def test_a_file_that_is_no_axis_log_says_why_in_one_line(tmp_path: Path, content
 def test_a_byte_order_mark_and_carriage_returns_do_not_matter(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "a.log"
     path.write_bytes(content)
-    (run,) = read_logs([path], None)[1]
+    (run,) = read_drive([path], None).runs
     assert run.rows == 300
 
 
@@ -81,7 +82,7 @@ def test_a_folder_a_missing_file_and_a_file_given_twice_are_refused(tmp_path: Pa
         ([path, path], "twice"),
     ):
         with pytest.raises(CalibrationInputError, match=says):
-            read_logs(logs, None)
+            read_drive(logs, None)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +105,7 @@ def test_a_folder_a_missing_file_and_a_file_given_twice_are_refused(tmp_path: Pa
 def test_every_mistake_in_a_rig_file_gets_one_line(tmp_path: Path, old: str, new: str, says: str) -> None:
     (tmp_path / "rig.yaml").write_text(RIG.replace(old, new, 1))
     t = np.arange(400) * 0.1
-    rows = "\n".join(f"{a:.2f},{5 + 4 * np.sin(a):.4f},1" for a in t)
+    rows = "\n".join(f"{a:.2f},{5 + 4 * np.sin(a):.4f},{np.cos(a):.3f}" for a in t)
     (tmp_path / "d.csv").write_text("t,x,u\n" + rows + "\n")
     with pytest.raises(CalibrationInputError, match=says) as caught:
         calibrate([tmp_path / "d.csv"], tmp_path / "rig.yaml", [], tmp_path / "out", plots=False)

@@ -7,7 +7,9 @@ from calibration.candidates.axis_lines import gear_lines
 from calibration.candidates.context import Context
 from calibration.channels.problem import Problem
 from calibration.decide.select import Selection, select
-from calibration.readers.drive import STAGES
+from calibration.inputs.telescope import telescope
+from calibration.inputs.train import train_of
+from plant.gears import ORDERS as STAGES
 
 PERIOD_S, ROWS = 0.03, 6000
 TRAVEL = 0.3  # of a turn of the axis, as the logs of the blind tests travel: a cell is 3.3 orders
@@ -24,7 +26,18 @@ def said(order: float) -> Selection:
     zero = np.zeros(ROWS)
     session = np.zeros(ROWS, dtype=np.int64)
     c = Context(
-        t, 2 * np.pi * turns, speed, np.sign(speed), zero, run, session, "N m", "rad", 2 * np.pi, zero
+        t,
+        2 * np.pi * turns,
+        speed,
+        np.sign(speed),
+        zero,
+        run,
+        session,
+        "N m",
+        "rad",
+        2 * np.pi,
+        zero,
+        train=train_of(telescope("ra")),
     )
     y = AMPLITUDE * np.cos(2 * np.pi * order * turns + 0.7) + NOISE * rng.standard_normal(ROWS)
     base = np.column_stack([np.ones(ROWS), speed])

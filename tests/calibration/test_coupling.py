@@ -9,6 +9,7 @@ from calibration.channels.coupling import carried_on, driven_side
 from calibration.channels.frame import Frame
 from calibration.channels.motion import motion_of
 from calibration.channels.torque import slid
+from calibration.inputs.telescope import telescope
 from calibration.readers.drive import ARCSEC
 
 DT, GAP, NOISE = 0.01, 8.0, 0.0015  # s, arcsec, arcsec
@@ -58,7 +59,9 @@ def test_rows_are_fitted_again_once_the_bristles_hold_nothing_of_the_unseen_path
     position, unseen = 1e-6 * np.arange(1000.0), np.zeros(1000)
     unseen[200:300] = 1.0
     columns = {"position": position, "unseen": unseen}
-    frame = Frame([], DT, DT * np.arange(1000), np.zeros(1000), *[np.zeros(1000, int)] * 2, columns, {})
+    frame = Frame(
+        [], DT, DT * np.arange(1000), np.zeros(1000), *[np.zeros(1000, int)] * 2, columns, {}, telescope("ra")
+    )
     m = motion_of(frame, 3)
     assert not m.trusted[197:303].any() and m.trusted[320:900].all() and m.fresh.sum() == 1
     settled = slid(m, unseen, 5e-5)

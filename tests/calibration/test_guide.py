@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from calibration.command import calibrate, read_logs
+from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.guidemounts import SIDEREAL_DAY_S, known_mount
+from calibration.inputs.logs import read_drive
 from calibration.readers.guide import read_guide_log
 from calibration.readers.run import Run
 from tests.calibration import guidelogs
@@ -114,8 +115,8 @@ def test_code_pages_byte_order_marks_decimal_commas_in_the_scale_and_a_cut_end_a
         text.replace("\n", "\r\n").encode(),
     ):
         path.write_bytes(content)
-        kind, runs = read_logs([path], None)
-        assert kind == "guide" and runs[0].columns["ra"][0] == pytest.approx(0.2)
+        found = read_drive([path], None)
+        assert found.rig is None and found.runs[0].columns["ra"][0] == pytest.approx(0.2)
     path.write_text(GUIDE[: GUIDE.index("INFO: DITHER")] + '5,5.0,"Mou')
     assert read_guide_log(path)[0].rows == 3
 

@@ -10,7 +10,7 @@ import pytest
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.context import Context
 from calibration.candidates.electrical import from_cold, weakened
-from calibration.candidates.kinematic import LINES, subdivision
+from calibration.candidates.kinematic import subdivision
 from calibration.candidates.modes import _resonance
 from calibration.channels.declared import Friction
 from calibration.channels.frame import Frame
@@ -23,9 +23,13 @@ from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
 from calibration.decide.heldout import predict_residual
 from calibration.decide.merge import merge
 from calibration.finding import Finding, Parameter
-from calibration.readers.drive import STAGES
+from calibration.inputs.telescope import telescope
+from calibration.inputs.train import train_of
 from calibration.statistics.regression import gls
+from plant.gears import ORDERS as STAGES
 
+LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
+TRAIN = train_of(telescope("ra"))
 DT = 0.01
 FRICTION = Friction(2.7, 4e-4, 2.5e4, 229.0, 6700.0, 1960.0)
 
@@ -35,7 +39,15 @@ def moved(position: np.ndarray, width: int = 3) -> Motion:
     n = len(position)
     zero = np.zeros(n)
     frame = Frame(
-        [], DT, DT * np.arange(n), zero, zero.astype(int), zero.astype(int), {"position": position}, {}
+        [],
+        DT,
+        DT * np.arange(n),
+        zero,
+        zero.astype(int),
+        zero.astype(int),
+        {"position": position},
+        {},
+        telescope("ra"),
     )
     return motion_of(frame, width)
 
@@ -98,7 +110,7 @@ def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width:
     )
     zero = np.zeros(len(row))
     c = Context(t[row], m.theta[row], m.rate[row], zero, zero, run, run, "arcsec", "rad", 2 * np.pi, zero)
-    (one,) = subdivision(c, m, np.array([-2.5e-3, 8e-5]))
+    (one,) = subdivision(c, m, np.array([-2.5e-3, 8e-5]), LINES)
     beta = gls(y, np.hstack([problem.base, one.columns]), valid, 0).beta
     assert np.hypot(*beta[2:4]) == pytest.approx(amplitude, rel=0.03)
     assert np.hypot(*beta[4:6]) < 0.1 * amplitude
@@ -224,16 +236,19 @@ def line(channel: str, name: str, **more: object) -> Finding:
 
 def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:
     torque = line("T", "motor_cogging", equivalent=["gear_eccentricity"], evidence=100.0)
-    alone = merge([torque])
+    alone = merge([torque], TRAIN)
     assert [f.name for f in alone] == ["motor_cogging"]
-    seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)])
+    seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)], TRAIN)
     assert [f.name for f in seen] == ["gear_eccentricity"]
     assert seen[0].parameters["amplitude"].value == pytest.approx(0.01 * STAGES["motor"])
 
 
 def test_ripple_at_the_order_of_a_mesh_that_the_encoders_see_is_the_mesh_s() -> None:
     ripple, mesh = line("T", "torque_ripple"), line("T", "gear_mesh")
-    assert {f.name for f in merge([ripple, mesh])} == {"torque_ripple", "gear_mesh"}
-    assert {f.name for f in merge([ripple, mesh, line("K", "gear_mesh")])} == {"gear_mesh"}
+    assert {f.name for f in merge([ripple, mesh], TRAIN)} == {"torque_ripple", "gear_mesh"}
+    assert {f.name for f in merge([ripple, mesh, line("K", "gear_mesh")], TRAIN)} == {"gear_mesh"}
     other = replace(ripple, order=3 * STAGES["motor"], harmonic=3)
-    assert {f.name for f in merge([other, mesh, line("K", "gear_mesh")])} == {"torque_ripple", "gear_mesh"}
+    assert {f.name for f in merge([other, mesh, line("K", "gear_mesh")], TRAIN)} == {
+        "torque_ripple",
+        "gear_mesh",
+    }

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from calibration.channels.clock import repair_wraps
-from calibration.command import calibrate, read_logs
+from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
+from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
 from calibration.readers.axis import read_axis_log, unwrap
@@ -79,12 +80,12 @@ def test_a_run_that_was_cut_off_is_read_up_to_its_last_whole_row(tmp_path: Path)
 def test_two_axes_and_two_kinds_in_one_call_are_refused(tmp_path: Path) -> None:
     ra, dec = write(tmp_path / "ra.log", tiny_log()), write(tmp_path / "dec.log", tiny_log(axis="dec"))
     with pytest.raises(CalibrationInputError, match="one axis at a time"):
-        read_logs([ra, dec], None)
+        read_drive([ra, dec], None)
     guide = write(tmp_path / "guide.txt", GUIDE)
     with pytest.raises(CalibrationInputError, match="one kind at a time"):
-        read_logs([ra, guide], None)
+        read_drive([ra, guide], None)
     with pytest.raises(CalibrationInputError, match="needs --rig"):
-        read_logs([write(tmp_path / "x.csv", "a,b\n1,2\n")], None)
+        read_drive([write(tmp_path / "x.csv", "a,b\n1,2\n")], None)
 
 
 @pytest.mark.parametrize("rows", [0, 3, 200])

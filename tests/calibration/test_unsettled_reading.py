@@ -6,14 +6,15 @@ from pathlib import Path
 import pytest
 
 from calibration.decide.tolerance import unsettled_reading
-from calibration.declaredplant import TABLE_1, Declared, declared_numbers
+from calibration.declaredplant import Declared, declared_numbers
 from calibration.errors import CalibrationInputError
 from calibration.finding import Parameter
 from calibration.readers.axis import read_axis_log
 from tests.calibration.test_readers import tiny_log, write
 
 TRAIN = 3.08e6  # N m/rad, paper Table 1
-PAPER = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, TRAIN, readings=TABLE_1)
+TABLE_1 = (1.0, 0.5)  # it may mean one train, or both side by side
+PAPER = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, TRAIN, 0.39, 2.2, readings=TABLE_1)
 
 
 @pytest.mark.parametrize(

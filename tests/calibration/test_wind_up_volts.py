@@ -10,12 +10,13 @@ from calibration.channels.frame import Frame
 from calibration.channels.motion import motion_of
 from calibration.channels.torque import WIDTH
 from calibration.declaredplant import Declared
+from calibration.inputs.telescope import telescope
 
 DT, ROWS, FINE = 0.01, 24_000, 10  # s, rows, steps of the drive per row
 V, R, K, RATIO, STIFFNESS = 24.0, 2.385, 0.39, 360.49, 3.08e6  # hardware.md 1.2, 2.3, 2.4
 SHARE = 0.1  # counter torque, of the effort
 LEAP = 1e-4  # rad that the axis stands behind before it goes
-DECLARED = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, STIFFNESS, torque_constant=K, resistance=R)
+DECLARED = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, STIFFNESS, K, R)
 
 
 def constant(stiffness: float) -> float:
@@ -31,10 +32,15 @@ def constant(stiffness: float) -> float:
     lagging = SHARE * effort * V / R
     columns = {"effort": effort, "position": axis, "current_a": current, "current_b": lagging}
     columns = {name: column[::FINE] for name, column in columns.items()}  # what a log has of it
-    scale = {"gear_ratio": RATIO, "supply_V": V, "counter_torque": SHARE, "adc_A_per_count": 0.0061}
-    scale["effort_full_scale"] = 3000.0
+    scale = {
+        "gear_ratio": RATIO,
+        "supply_V": V,
+        "counter_torque": SHARE,
+        "adc_A_per_count": 0.0061,
+    }
+    scale |= {"effort_full_scale": 3000.0, "adc_end_A": np.inf}
     zero = np.zeros(ROWS, dtype=np.int64)
-    frame = Frame([], DT, t[::FINE], np.zeros(ROWS), zero, zero, columns, scale)
+    frame = Frame([], DT, t[::FINE], np.zeros(ROWS), zero, zero, columns, scale, telescope("ra"))
     m = motion_of(frame, WIDTH)
     found = electrical_problem(frame, m, zero > 0, replace(DECLARED, stiffness=stiffness))
     assert found is not None

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.readers.drive import STAGES
+from plant.gears import ORDERS as STAGES
 from plant.loop import simulate
 from plant.model import load
 

@@ -11,8 +11,8 @@ from random import Random
 
 from bus.can.candump import line
 from bus.can.frame import check
-from calibration.command import read_logs
 from calibration.errors import CalibrationInputError
+from calibration.inputs.logs import read_drive
 from calibration.readers.guide import start_seconds
 from calibration.readers.run import Run
 from scenarios.muted import FeedError, read
@@ -46,7 +46,7 @@ def _is_error(text: str) -> bool:
 
 def _axis(path: Path, text: bytes) -> None:
     """Rows that are read are the rows of the file, number by number."""
-    (run,) = read_logs([path], None)[1]
+    (run,) = read_drive([path], None).runs
     lines = text.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     start = next(k for k, each in enumerate(lines) if each.strip() and not each.startswith("#"))
     names = [name.strip().strip('"') for name in lines[start].split(",")]
@@ -79,7 +79,7 @@ def _finite(run: Run) -> None:
 
 def _guide(path: Path, _text: bytes) -> None:
     """Sections whose columns are as long as each other, and a start that can be asked for."""
-    for run in read_logs([path], None)[1]:
+    for run in read_drive([path], None).runs:
         _finite(run)
         start_seconds(run)
 
