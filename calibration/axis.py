@@ -61,9 +61,8 @@ FINE_MARGIN = (
 LEAST_LAW = 1.2
 SURE_CONSTANT = 0.1  # standard error of the torque constant, of itself, beyond which the declared one is used
 PULSES = 8.0  # a quarter of the regular spikes: 32 of them
-LEAST_COMMAND = (
-    0.8  # 1/3000: a line on the command below the effort's own step is a beat of quantised columns
-)
+# steps of the effort: a line on the command below the effort's own step is a beat of quantised columns
+LEAST_COMMAND = 0.8
 
 
 def analyse(
@@ -242,7 +241,7 @@ def _command(result: AxisResult, rng: np.random.Generator) -> None:
                 share=found.share,
                 note=f"pulses on the command, every {found.period:.2f} s",
                 parameters={
-                    "size": middle(found.sizes, "1/3000"),
+                    "size": middle(found.sizes, p.unit),
                     "period": middle(found.gaps, "s"),
                 },
             )

@@ -10,13 +10,18 @@ import numpy as np
 from calibration.answers import GATE, Answer, calibrated, errors, gate_rows, refusals, too_short
 from calibration.decide.controls import _better, _flipped
 from calibration.decide.merge import merge
+from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.select import Selection
 from calibration.decide.verdict import Verdict, judge
+from calibration.decide.withdraw import withdraw
 from calibration.guide import GuideResult, analyse_guide, harmonics
 from calibration.guidemounts import SIDEREAL_DAY_S
 from calibration.inputs.declaration import Rig
 from calibration.readers.run import Run
 from calibration.report import plots as draw
+
+
+FEW = 4  # parts of a mount, whose turns are looked at for what is left
 
 
 def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: bool) -> Answer:
@@ -37,8 +42,9 @@ def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: b
             title,
         )
     s = found.selection
-    effects = merge(found.findings)
-    verdict, separating = judge(effects)
+    tried = _worm_controls(found)
+    effects, withdrawn = withdraw(merge(found.findings), tried)
+    verdict, separating = judge(effects, [f"{what} was close, but {why}" for _, what, why in withdrawn])
     if not effects and found.not_identifiable:
         verdict = "cannot tell"
         separating = "a longer section without a slew: two turns in its first 60 %, for " + "; ".join(
@@ -51,13 +57,28 @@ def guide_answer(runs: list[Run], rig: Rig | None, hold_out: list[str], plots: b
         found.held_out,
         calibrated(s, ("offset",)),
         found.not_identifiable,
-        _worm_controls(found),
+        tried,
         separating,
         list(dict.fromkeys([*(n for r in runs for n in r.notes), *found.notes, *too_short(s, "")])),
         thresholds=gate_rows({"position": s}),
-        refused=refusals({"position": s}),
+        refused=[*withdrawn, *refusals({"position": s})],
     )
+    v.remarks = _still_missing(found, v)
+    v.reasons += v.remarks
     return v, _guide_plots(found) if plots else [], title
+
+
+def _still_missing(found: GuideResult, v: Verdict) -> list[str]:
+    """What is beyond twice the floor when every part has been tried, and where it lives."""
+    p = found.problem
+    clock = p.domains.get("clock", p.t)
+    parts = found.stages if len(found.stages) <= FEW else {}  # usual wheels that were only tried say nothing
+    domains = {"time": p.t, **{f"the turn of {n}": (clock * rate) % 1.0 for n, rate in parts.items()}}
+    where = lives_in(found.selection, domains)
+    return [
+        f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
+        for row, ratio in above_floor(v.error).items()
+    ]
 
 
 def _worm_controls(found: GuideResult) -> list[dict[str, Any]]:
@@ -65,6 +86,7 @@ def _worm_controls(found: GuideResult) -> list[dict[str, Any]]:
     s = found.selection
     for k, chosen in enumerate(s.chosen):
         c = chosen.candidate
+        which = {"name": c.name, "stage": c.stage, "harmonic": c.harmonic}
         if c.stage and c.frequency:
             for step, word in ((1, "more"), (-1, "less")):
                 rate = c.frequency + step / SIDEREAL_DAY_S
@@ -78,16 +100,18 @@ def _worm_controls(found: GuideResult) -> list[dict[str, Any]]:
                     )
                     continue
                 wrong = replace(c, columns=harmonics(s.problem, rate, max(c.width // 2, 1)))
-                out.append({"what": f"one tooth {word}: {1 / rate:.2f} s", "accepted": _better(s, k, wrong)})
+                what = f"one tooth {word}: {1 / rate:.2f} s"
+                out.append({"what": what, "accepted": _better(s, k, wrong), **which})
             for factor in (0.9, 1.1):
                 wrong = replace(c, columns=harmonics(s.problem, c.frequency * factor, max(c.width // 2, 1)))
                 out.append(
                     {
                         "what": f"wrong period: {1 / (c.frequency * factor):.1f} s",
                         "accepted": _better(s, k, wrong),
+                        **which,
                     }
                 )
-        out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(s, k)})
+        out.append({"what": f"sign flipped ({c.name})", "accepted": _flipped(s, k), **which})
     return out
 
 

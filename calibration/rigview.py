@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from calibration.inputs.declaration import Rig
-from calibration.inputs.record import Record
+from calibration.inputs.declaration import Friction, Motors, Rig
+from calibration.inputs.logs import read_drive
+from calibration.inputs.record import Record, Signal, signal_of
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.tables import read_table, set_starts
 
 MOST_POINTS = 4000  # drawn per column
 
@@ -20,17 +21,46 @@ def show(rig_file: Path, logs: list[Path], out: Path | None) -> str:
     Raises CalibrationInputError as `schmidt calibrate` would.
     """
     rig = load_rig(rig_file)
-    records = [r for path in logs for r in read_table(path, rig)]
+    drive = read_drive(logs, rig) if logs else None
     lines = [_declaration(rig)]
-    if records:
-        lines.append(f"files start by {set_starts(records, rig)}")
-    for r in records:
-        lines += ["", _head(r), *_table(r)]
-        lines += [f"  ! {x.channel}: {x.note}" for x in r.repairs]
+    records = drive.records if drive is not None else []
+    if drive is not None and records:
+        lines.append(f"files start by {drive.clock}")
+        for r in records:
+            lines += ["", _head(r), *_table(r.signals)]
+            lines += [f"  ! {x.channel}: {x.note}" for x in r.repairs]
+    elif drive is not None:
+        for run in drive.runs:
+            at = f"{run.name}: {run.rows} rows, {run.duration_s:.6g} s"
+            lines += [
+                "",
+                at,
+                *_table({c: signal_of(c, c, SI.get(c, ""), x, 0) for c, x in run.columns.items()}),
+            ]
     if out is not None and records:
         _draw(records, rig, out)
         lines += ["", f"plot: {out}"]
     return "\n".join(lines)
+
+
+#: units of the columns of logs whose format says what they are, as they are read
+SI = {
+    "t": "s",
+    "position": "rad",
+    "aux": "rad",
+    "velocity": "rad/s",
+    "setpoint": "rad/s",
+    "effort": "1",
+    "current_a": "A",
+    "current_b": "A",
+    "motor_a": "rad/s",
+    "motor_b": "rad/s",
+    "supply": "V",
+    "temperature": "degC",
+    "ra": "arcsec",
+    "dec": "arcsec",
+    "dither": "arcsec",
+}
 
 
 def _declaration(rig: Rig) -> str:
@@ -41,13 +71,19 @@ def _declaration(rig: Rig) -> str:
         for r in rig.responses
     )
     known = ", ".join(f"{k} = {v:g}" for k, v in rig.constants.items())
+    unit = rig.columns["position"].unit if "position" in rig.columns else "turns"
     stages = ", ".join(
-        f"{g.name} {g.period:g} {rig.columns['position'].unit}" if g.period else f"{g.name} {g.period_s:g} s"
-        for g in rig.stages
+        f"{g.name} {g.period:g} {unit}" if g.period else f"{g.name} {g.period_s:g} s" for g in rig.stages
     )
     law = rig.controller
     gains = ", ".join(f"{k} = {v:g}" for k, v in law.gains.items()) if law else ""
-    parts = [rig.name, f"explains {what}", f"estimates {', '.join(rig.estimate) or 'its usual terms'}"]
+    parts = [rig.name]
+    if rig.motors is not None:
+        parts += [*_motors(rig.motors), *(_friction(f) for f in rig.friction)]
+    elif rig.drifts:
+        parts.append("explains a position at constant rate over time")
+    else:
+        parts += [f"explains {what}", f"estimates {', '.join(rig.estimate) or 'its usual terms'}"]
     return "\n".join(
         [
             *parts,
@@ -55,6 +91,23 @@ def _declaration(rig: Rig) -> str:
             *([f"stages {stages}"] if stages else []),
             *([f"controlled by a {law.law}, {gains}"] if law else []),
         ]
+    )
+
+
+def _motors(m: Motors) -> list[str]:
+    first = f"two motors: {m.torque_constant:g} N m/A, {m.resistance:g} ohm"
+    return [
+        f"{first}, trains of {m.train_stiffness:g} N m/rad, counter torque {100 * m.counter_torque:g} %",
+        "explains torque, volts, encoders and command of the axis, as far as it has the columns",
+    ]
+
+
+def _friction(f: Friction) -> str:
+    when = f" ({f.state})" if f.state else ""
+    return (
+        f"friction{when}: Coulomb {f.coulomb:g} N m, stiction {f.stiction:g} N m,"
+        f" Stribeck {f.stribeck_rate:g} rad/s, viscous {f.viscous:g} N m s/rad,"
+        f" bristles {f.bristle_stiffness:g} N m/rad"
     )
 
 
@@ -66,9 +119,9 @@ def _head(r: Record) -> str:
     return f"{r.name}: {r.rows} rows, {r.duration_s:.6g} s at {rate:.5g} Hz{lost}{start}"
 
 
-def _table(r: Record) -> list[str]:
+def _table(signals: Mapping[str, Signal]) -> list[str]:
     rows = [("channel", "column", "unit", "low", "high", "quantum", "missing", "wraps")]
-    for s in r.signals.values():
+    for s in signals.values():
         step = "none" if s.quantum is None else f"{s.quantum:.3g}"
         rows.append(
             (s.channel, s.column, s.unit, f"{s.low:.5g}", f"{s.high:.5g}", step, str(s.missing), str(s.wraps))

@@ -20,7 +20,6 @@ FINE = 16  # frequencies per resolution cell of the longest run
 PHASES = 17  # tried in each of three searches, each within a step of the one before
 LINES = 3  # strongest lines that are tried
 STEP_CELLS = 0.05  # of a resolution cell, for the refinement of a frequency
-FULL = 3000.0  # effort counts at full supply, log-format.md
 
 
 def disturbances(e: Electrical, m: Motion, frame: Frame, residual: Array) -> list[Candidate]:
@@ -30,7 +29,8 @@ def disturbances(e: Electrical, m: Motion, frame: Frame, residual: Array) -> lis
     n = len(m.pick)
     effort = m.at(fill(frame.columns["effort"], frame.run)[0])
     side = np.where(effort > 0, -1.0, 1.0)
-    volts = np.concatenate([side, side]) * share_of_effort(e) * e.supply / FULL
+    full = frame.scale["effort_full_scale"]
+    volts = np.concatenate([side, side]) * share_of_effort(e) * e.supply / full
     weight = np.where(e.problem.valid, volts, 0.0)
     power = weight[:n] ** 2 + weight[n:] ** 2
     seen = power > 0
@@ -54,7 +54,7 @@ def disturbances(e: Electrical, m: Motion, frame: Frame, residual: Array) -> lis
                     "command_disturbance",
                     "time",
                     shape(np.array([f0])),
-                    (("amplitude", "1/3000"),),
+                    (("amplitude", f"1/{full:g}"),),
                     sign=1,
                     frequency=f0,
                     fixed={"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")},

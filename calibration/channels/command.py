@@ -27,7 +27,7 @@ ARCSEC_PER_RAD = 206264.806
 STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position loop adds is more
 REGIME = 51  # rows over which the set point's kind is told
 CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
-ROUNDING = float(np.sqrt(2 / 12))  # 1/3000: of a change between two efforts, each in whole steps
+ROUNDING = float(np.sqrt(2 / 12))  # steps of the effort: of a change between two efforts, each in whole steps
 EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
@@ -43,6 +43,7 @@ def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Proble
         return None
     dt, window = frame.period_s, frame.scale["velocity_window_s"]
     u = frame.columns["effort"] * frame.scale["effort_full_scale"]
+    unit = f"1/{frame.scale['effort_full_scale']:g}"  # of the supply
     per_count = frame.scale["velocity_arcsec_per_count"] * 4.84813681e-6
     v = velocity * window / per_count
     theta = frame.columns["position"] / per_count
@@ -76,10 +77,10 @@ def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Proble
         return None
     problem = Problem(
         "S",
-        "1/3000",
+        unit,
         np.where(valid, y, 0.0),
         np.where(valid[:, None], base, 0.0),
-        [("gain", "1/3000 per count")] * 4,
+        [("gain", f"{unit} per count")] * 4,
         frame.t,
         frame.run,
         frame.session,
@@ -145,7 +146,7 @@ def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Cand
                 "command_disturbance",
                 "time",
                 shape(np.array([f0])),
-                (("amplitude", "1/3000"),),
+                (("amplitude", problem.unit),),
                 kind="line",
                 frequency=f0,
                 fixed={"frequency": (f0, "Hz")},
@@ -162,7 +163,7 @@ def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Cand
                     "unknown",
                     "command",
                     problem.base * below[:, None],
-                    tuple((f"gain_below_{k}", "1/3000 per count") for k in range(4)),
+                    tuple((f"gain_below_{k}", f"{problem.unit} per count") for k in range(4)),
                     fixed={"set_point_limit": (limit, "arcsec/s")},
                 )
             )
@@ -184,9 +185,9 @@ def _line(t: Array, run: NDArray[np.int64], dt: float) -> Callable[[Array], Arra
 
 @dataclass(frozen=True)
 class Pulses:
-    """Pulses that come back: sizes (1/3000) and gaps (s, in whole periods) as found; `score` decides,
-    `evidence` is -log10 p of gaps within a twentieth of the period by chance, `share` of the mean square they
-    hold."""
+    """Pulses that come back: sizes (the problem's unit) and gaps (s, in whole periods) as found; `score`
+    decides, `evidence` is -log10 p of gaps within a twentieth of the period by chance, `share` of the mean
+    square they hold."""
 
     sizes: Array
     period: float

@@ -110,10 +110,10 @@ def guide_problem(
         fresh=fresh,
         domains={"clock": np.concatenate([r.clock for r in parts])} if whole else {},
     )
-    steps = np.diff(y)
-    steps = steps[np.isfinite(steps)]
-    if len(steps):
-        problem.floor = float(np.median(np.abs(steps - np.median(steps))) * 1.4826 / np.sqrt(2))
+    bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
+    bent = bent[np.isfinite(bent)]
+    if len(bent):
+        problem.floor = float(np.median(np.abs(bent - np.median(bent))) * 1.4826 / np.sqrt(6))
     return problem, names
 
 

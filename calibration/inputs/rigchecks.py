@@ -99,9 +99,7 @@ def _check_periods(data: dict[str, Any], drifts: bool, refuse: Any) -> None:
     """A stage turns with the position, or with the clock where the position has a constant rate."""
     for stage in data.get("stages", []):
         if drifts and "period" in stage:
-            refuse(
-                f"stages.{stage['name']}: at constant rate the clock counts; give period_s"
-            )
+            refuse(f"stages.{stage['name']}: at constant rate the clock counts; give period_s")
         if not drifts and "period_s" in stage:
             refuse(
                 f"stages.{stage['name']}: period_s is for a drive at constant rate (response: position);"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime, timedelta
 from math import pi
 from typing import Any
 
@@ -29,6 +30,8 @@ UNITS: dict[str, str | None] = {
     "temperature": "degC",
 }
 ARCSEC = pi / 648000.0
+FIRST = datetime(2000, 1, 1, tzinfo=UTC)  # of a clock that nobody declared a date for
+WHOLE = 1e-3  # of a count of steps, by which a text file's digits may miss a whole one
 FINEST = 1e-7  # of a column's range: its step, where none can be told
 #: what the other balances are declared by
 OTHERS = (
@@ -139,7 +142,9 @@ def runs_of(records: list[Record], rig: Rig) -> list[Run]:
                     str(rig.columns[name].column),
                 )
         out.append(
-            Run(r.name, r.path, _session(r, rig), si, {}, _header(rig), _scales(r, rig, train.ratio, steps))
+            Run(
+                r.name, r.path, _session(r, rig), si, {}, _header(r, rig), _scales(r, rig, train.ratio, steps)
+            )
         )
     return out
 
@@ -149,8 +154,17 @@ def _session(r: Record, rig: Rig) -> str:
     return rig.name if rig.runs.get("origin") == "shared" else r.name
 
 
-def _header(rig: Rig) -> dict[str, str]:
-    return {"axis": rig.name, "loop": "closed" if "reference_rate" in rig.columns else "open"}
+def _header(r: Record, rig: Rig) -> dict[str, str]:
+    """As an axis log's: the start on the clock that all files share, from any day."""
+    start = FIRST + timedelta(seconds=r.start_s or 0.0)
+    loop = "closed" if "reference_rate" in rig.columns else "open"
+    return {"axis": rig.name, "loop": loop, "start_utc": start.isoformat()}
+
+
+def _full_scale(step: float) -> float:
+    """Steps of the effort to full supply, whole where they are all but whole."""
+    full = 1.0 / step
+    return float(round(full)) if abs(full - round(full)) < WHOLE * full else full
 
 
 def _scales(r: Record, rig: Rig, ratio: float, steps: dict[str, float]) -> dict[str, float]:
@@ -173,7 +187,7 @@ def _scales(r: Record, rig: Rig, ratio: float, steps: dict[str, float]) -> dict[
         "tach_counts_per_turn": 2 * pi / (steps["motor_a"] * window("motor_a"))
         if "motor_a" in steps
         else 4096.0,
-        "effort_full_scale": 1.0 / steps["effort"],
+        "effort_full_scale": _full_scale(steps["effort"]),
         "supply_V": rig.supply_V or float(np.nanmean(r.columns["supply"])),
         "counter_torque": rig.motors.counter_torque,
         "gear_ratio": ratio,
