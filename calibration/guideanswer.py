@@ -20,7 +20,6 @@ from calibration.inputs.declaration import Rig
 from calibration.readers.run import Run
 from calibration.report import plots as draw
 
-
 FEW = 4  # parts of a mount, whose turns are looked at for what is left
 
 
