@@ -163,13 +163,15 @@ def _electrical(result: AxisResult, clock: Array, rng: np.random.Generator) -> t
         result.selections["E"] = s
         mean_currents(frame, p, s.after.beta)
         constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
+        whole = 1.0
         if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
             constant = numbers.torque_constant
         else:
-            result.scale_error = spread / abs(constant)
+            result.scale_error, whole = spread / abs(constant), e.constant / constant
         per_ampere = constant * frame.scale["gear_ratio"]
-        left = electrical_candidates.weakened(fitted(s), clock)
+        left = electrical_candidates.weakened(fitted(s), clock, whole)
         result.collect(s)
+        result.findings = [electrical_candidates.from_whole(f, whole) for f in result.findings]
         cold = float(s.after.beta[0])
         result.findings = [electrical_candidates.from_cold(f, e.resistance / cold) for f in result.findings]
         result.findings = [electrical_candidates.followed(f) for f in result.findings]

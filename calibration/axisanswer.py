@@ -88,7 +88,7 @@ def axis_answer(
         thresholds=gate_rows(result.selections),
         refused=[*withdrawn, *lost, *result.refused, *refusals(result.selections)],
         controls=tried,
-        earned=AXIS_EARNED,
+        earned=AXIS_EARNED if emulated else None,
     )
     v.calibrated = dict(result.calibrated)
     if "E" in result.selections:

@@ -58,6 +58,9 @@ def look_at_volts(view: View, balance: Problem, seed: int) -> Electric | None:
     for f in found:
         if f.name == "winding_heating":  # the warm resistance makes the heat, the cold one is what rises
             f.parameters["thermal_resistance"] = f.parameters["thermal_resistance"].times(1 / cold)
+        if f.name == "magnet_weakening" and final["torque_constant"]:  # of the constant before it fell
+            whole = declared["torque_constant"] / final["torque_constant"]
+            f.parameters["fraction"] = f.parameters["fraction"].times(max(whole, 1e-9))
     sure = max(b.floor, p.step) if b.floor else None  # less than meters are sure to is not "still missing"
     found = settle([_dead(f) for f in found] + unnamed, left_over(s, scene, sure), "E")
     lacks = [f"{n.name}: {n.lacks(scene)}" for n in names if n.lacks(scene)]

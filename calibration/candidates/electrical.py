@@ -205,15 +205,15 @@ def _weakening(e: Electrical, t: Array) -> Callable[[Array], Array]:
     return lambda p: (-e.constant * e.pulling * ramp(t, float(p[0]), float(p[1])))[:, None]
 
 
-def weakened(chosen: list[tuple[Candidate, Array]], clock: Array) -> dict[str, Array]:
+def weakened(chosen: list[tuple[Candidate, Array]], clock: Array, ratio: float = 1.0) -> dict[str, Array]:
     """Part of its torque constant that each motor has left, (n,) over `clock`, from the E channel's accepted
-    effects."""
+    effects; `ratio` as in `from_whole`."""
     out = {"a": np.ones(len(clock)), "b": np.ones(len(clock))}
     for c, beta in chosen:
         if c.name != "magnet_weakening":
             continue
         at = c.fixed
-        lost = float(beta[0]) * (ramp(clock, at["onset"][0], at["ramp"][0]) if "onset" in at else 1.0)
+        lost = ratio * float(beta[0]) * (ramp(clock, at["onset"][0], at["ramp"][0]) if "onset" in at else 1.0)
         for k, key in enumerate("ab"):
             if "motor" not in at or at["motor"][0] == k:
                 out[key] = out[key] - lost
@@ -236,6 +236,13 @@ def followed(f: Finding) -> Finding:
     if "following" not in f.parameters:
         return f
     return replace(f, note="the lagging motor's current follows the leading one's, not its own duty")
+
+
+def from_whole(f: Finding, ratio: float) -> Finding:
+    """A weakening found with the mean constant of the log, `ratio` times the one before it, told of that."""
+    if f.name != "magnet_weakening" or "fraction" not in f.parameters:
+        return f
+    return replace(f, parameters={**f.parameters, "fraction": f.parameters["fraction"].times(ratio)})
 
 
 def from_cold(f: Finding, ratio: float) -> Finding:

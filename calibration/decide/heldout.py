@@ -111,7 +111,8 @@ LEAST_PIECE = 8  # rows
 
 
 def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
-    """Fold of every row in `use`: pieces of each run, numbered on from run to run and dealt out in turn.
+    """Fold of every row in `use`: pieces of each run dealt out in turn, every run's from the next fold on:
+    what happens at the beginning of every run must not lie in one fold.
 
     A piece lasts FOLD_S, or less where that would leave a fold with fewer than PER_FOLD pieces.
     """
@@ -121,8 +122,10 @@ def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
     total = sum(float(since[run == k].max()) + problem.period_s for k in begin)
     piece_s = max(min(FOLD_S, total / (FOLDS * PER_FOLD)), LEAST_PIECE * problem.period_s)
     piece = np.floor(since / piece_s + 1e-9).astype(np.int64)
-    rank = np.unique(np.column_stack([run, piece]), axis=0, return_inverse=True)[1]
-    return np.asarray(rank.reshape(-1) % FOLDS, dtype=np.int64)
+    order = np.unique(run, return_inverse=True)[1].reshape(-1)
+    rank = np.unique(np.column_stack([order, piece]), axis=0, return_inverse=True)[1].reshape(-1)
+    first = np.array([rank[order == k].min() for k in range(len(begin))])
+    return np.asarray((rank - first[order] + order) % FOLDS, dtype=np.int64)
 
 
 def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:

@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.blind.drives import cells, slots, table
-from tests.blind.drives.case import Order, build, seal
+from calibration.inputs.rigfile import load_rig
+from tests.blind.drives import cells, mount, slots, table
+from tests.blind.drives.case import build, seal
 from tests.blind.drives.effects import OUTSIDE, WHERE
 from tests.blind.drives.families import FAMILIES
+from tests.blind.drives.order import Order
 from tests.blind.drives.score import score
 
 
@@ -34,7 +36,33 @@ def test_every_name_is_drawn_in_its_families_and_keys_are_unique() -> None:
     for draws in (WHERE, OUTSIDE):
         for draw, kinds in draws.items():
             assert set(kinds) <= set(FAMILIES)
-            assert {o.kind for o in orders if o.names == (draw.__name__,)} == set(kinds)
+            drawn = {o.kind for o in orders if o.names == (draw.__name__,)}
+            assert drawn - {"telescope"} == set(kinds)
+    for kind, names in (("mount", cells.MOUNT), ("telescope", cells.TELESCOPE)):
+        assert {o.names[0] for o in orders if o.kind == kind and o.cell == "single"} == set(names)
+
+
+@pytest.mark.parametrize(("kind", "name"), [("mount", "worm_error"), ("telescope", "supply_sag")])
+def test_drives_of_files_of_their_own_are_sealed_the_same_way(tmp_path: Path, kind: str, name: str) -> None:
+    order = Order("x", "single", kind, (name,), 5.0, seconds=1200.0)
+    for folder in ("one", "two"):
+        seal(order, 1004, tmp_path / folder / "logs", tmp_path / folder / "truth")
+    files = sorted(p.relative_to(tmp_path / "one") for p in (tmp_path / "one").rglob("*") if p.is_file())
+    for file in files:
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+    truth = json.loads((tmp_path / "one" / "truth" / "x.json").read_text())
+    assert truth["effects"][0]["reached"] == pytest.approx(5.0, rel=0.11)
+    assert load_rig(tmp_path / "one" / "logs" / "x" / "rig.yaml").stages
+
+
+def test_a_worm_is_as_large_as_asked_for_over_the_seeing() -> None:
+    rng = np.random.default_rng(3)
+    m = mount.draw(rng)
+    bare, worn = (
+        mount.night(np.random.default_rng(5), m, hidden, "gaussian", 0.0, 3600.0)[:, 1]
+        for hidden in (None, mount.gear_error(rng, m, 4.0))
+    )
+    assert np.std(worn - bare) == pytest.approx(4.0 / np.sqrt(2), rel=0.1)
 
 
 @pytest.mark.parametrize("kind", FAMILIES)

@@ -99,6 +99,12 @@ def test_a_sound_motor_gives_its_numbers_and_no_name(tmp_path: Path) -> None:
             0.08,
             {"constant": lambda t, angle, i: K * (1 - 0.08 * np.clip((t - 22.0) / 5.0, 0.0, 1.0))},
         ),
+        (  # most of the log is weak: its mean constant is not the one that fell
+            "magnet_weakening",
+            "fraction",
+            0.25,
+            {"constant": lambda t, angle, i: K * (1 - 0.25 * (t > 5.0))},
+        ),
         (
             "torque_ripple",
             "ripple",

@@ -67,6 +67,13 @@ def test_its_numbers_are_calibrated_and_nothing_is_found(tmp_path: Path) -> None
         ({"SAG": 0.3}, "supply_sag", None, "resistance", 0.3),
         ({"DEADBAND": 0.02}, "pwm_deadband", None, "u0", 0.02),
         ({"ROLLER_EPS": 2e-4}, "roller_ratio", "tape", "scale", 2e-4),
+        (  # early: the mean constant of the log is not the one that fell
+            {"MAG_A": 0.1, "MAG_T0": 40.0, "MAG_RAMP": 5.0, "MAG_SIDE": 0.0},
+            "magnet_weakening",
+            None,
+            "fraction",
+            0.1,
+        ),
         ({"BRAKE_T": 10.0, "BRAKE_T0": 120.0}, "brake_drag", None, "torque", 10.0),
         ({"DELAY_POS": 0.006}, "channel_delay", None, "delay", 0.006),
     ],

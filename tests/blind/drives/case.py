@@ -8,32 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from tests.blind.drives import sensors, slots
+from tests.blind.drives import mount, sensors, slots, telescope
 from tests.blind.drives.effects import OUTSIDE, WHERE, Hidden
 from tests.blind.drives.families import FAMILIES, Family, Rng
 from tests.blind.drives.kernel import STOPS, simulate
 from tests.blind.drives.motion import reference
+from tests.blind.drives.order import Order
 from tests.blind.drives.rigfile import rig
 from tests.blind.drives.slots import Array
 
 DRAWS = {draw.__name__: draw for draw in (*WHERE, *OUTSIDE)}
 FORCE_EFFECT = ("T",)
-
-
-@dataclass(frozen=True)
-class Order:
-    """What to seal: cell (nothing, single, outside), family, name, ratio, noise, what is spoiled, seconds."""
-
-    key: str
-    cell: str
-    kind: str  # the family
-    names: tuple[str, ...] = ()
-    ratio: float = 0.0
-    noise: str = "gaussian"
-    spoil: str = ""
-    seconds: float = 30.0
-    two: bool = False
-    law: bool = False  # the reference is logged and the controller declared
 
 
 @dataclass
@@ -109,12 +94,31 @@ def build(order: Order, seed: int) -> tuple[Sealed, Hidden | None, float, int]:
     return made, hidden, size, number
 
 
+#: kinds of drive that are made by files of their own
+OTHERS = {"mount": mount.make, "telescope": telescope.make}
+
+
 def seal(order: Order, seed: int, logs: Path, truths: Path) -> dict[str, Any]:
     """Write logs/<key>/{run1..3.csv, rig.yaml, SEAL} and truths/<key>.json."""
-    made, hidden, size, number = build(order, seed)
-    f = made.family
     folder = logs / order.key
     folder.mkdir(parents=True, exist_ok=True)
+    made = OTHERS.get(order.kind, _tables)(order, seed, folder)
+    truth = {
+        "key": order.key, "cell": order.cell, "kind": f"{order.noise} {order.spoil}".strip(),
+        "seed": seed, "poor": False, "family": order.kind, "spoil": order.spoil, "seconds": order.seconds,
+        **made,
+    }  # fmt: skip
+    text = json.dumps(truth, indent=1)
+    (folder / "SEAL").write_text(hashlib.sha256(text.encode()).hexdigest() + "\n")
+    truths.mkdir(parents=True, exist_ok=True)
+    (truths / f"{order.key}.json").write_text(text)
+    return truth
+
+
+def _tables(order: Order, seed: int, folder: Path) -> dict[str, Any]:
+    """Tables and rig file of a drive with a position loop; the truth's effects and drive."""
+    made, hidden, size, number = build(order, seed)
+    f = made.family
     two = order.two or bool(hidden and hidden.second)
     law = order.law or bool(hidden and hidden.law)
     span = len(made.rows) * order.seconds
@@ -132,17 +136,8 @@ def seal(order: Order, seed: int, logs: Path, truths: Path) -> dict[str, Any]:
             folder / f"run{k + 1}.csv", table, fmt=formats, delimiter=",", header=",".join(out), comments=""
         )
     (folder / "rig.yaml").write_text(rig(f, made.plant, made.turn, two, law))
-    truth = {
-        "key": order.key, "cell": order.cell, "kind": f"{order.noise} {order.spoil}".strip(),
-        "seed": seed, "poor": False, "family": order.kind, "spoil": order.spoil, "seconds": order.seconds,
-        "effects": [truth_of(hidden, order.ratio, size)] if hidden else [],
-        "drive": made.plant, "turn": made.turn, "number": number,
-    }  # fmt: skip
-    text = json.dumps(truth, indent=1)
-    (folder / "SEAL").write_text(hashlib.sha256(text.encode()).hexdigest() + "\n")
-    truths.mkdir(parents=True, exist_ok=True)
-    (truths / f"{order.key}.json").write_text(text)
-    return truth
+    effects = [truth_of(hidden, order.ratio, size)] if hidden else []
+    return {"effects": effects, "drive": made.plant, "turn": made.turn, "number": number}
 
 
 def truth_of(hidden: Hidden, ratio: float, size: float) -> dict[str, Any]:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from tests.blind import finder
-from tests.blind.drives.case import Order, seal
+from tests.blind.drives.case import seal
+from tests.blind.drives.order import Order
 from tests.blind.drives.score import score
 
 
