@@ -122,15 +122,15 @@ def answer(
     at constant rate, or a response to explain."""
     rig = drive.rig
     if rig is not None and rig.motors is not None:
-        from calibration.axisanswer import axis_answer
+        from calibration.twomotors.answer import axis_answer
 
         return axis_answer(drive.runs, hold_out, out, plant, plots, tell, replay, rig)
     if rig is None or rig.drifts:
-        from calibration.guideanswer import guide_answer
+        from calibration.drift.answer import guide_answer
 
         return guide_answer(drive.runs, rig, hold_out, plots)
-    from calibration.drive import analyse
-    from calibration.driveanswer import drive_answer
+    from calibration.response.answer import drive_answer
+    from calibration.response.look import analyse
 
     found = analyse(drive.records, rig, hold_out, drive.clock, tell)
     tell("controls and pictures")

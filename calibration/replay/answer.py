@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.axisresult import AxisResult
 from calibration.candidates.axis_torque import start_clock
 from calibration.corrected.curves import curve_of
 from calibration.corrected.making import Facts
@@ -17,6 +16,7 @@ from calibration.finding import Finding
 from calibration.plantfile import calibrate_model, declared_model, write_plant
 from calibration.replay.before import before_numbers, with_declared_lines
 from calibration.replay.held import Replay, replay
+from calibration.twomotors.result import AxisResult
 from plant.gears import RATIO
 from plant.model import PlantModel, with_effects
 

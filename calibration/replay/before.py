@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.axisresult import AxisResult
 from calibration.corrected.making import wrapped
 from calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
 from calibration.declaredplant import PERIODIC
 from calibration.finding import Finding, Parameter
 from calibration.statistics.regression import Fit
+from calibration.twomotors.result import AxisResult
 from plant.effects import REGISTRY
 from plant.model import PlantModel, with_effects
 from plant.parts import Number

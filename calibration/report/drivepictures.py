@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.decide.select import Selection
-from calibration.drive import Balance, DriveResult
 from calibration.readers.run import Array
 from calibration.report import plots as draw
+from calibration.response.look import Balance, DriveResult
 
 MOST = 4  # pictures of effects in a balance
 

@@ -10,8 +10,8 @@ from time import perf_counter, process_time
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.axis import analyse
 from calibration.readers.axis import read_axis_log
+from calibration.twomotors.look import analyse
 from plant.gears import ORDERS as STAGES
 from tests.benchmarks.drives import TRUE_LINES, Drive
 

@@ -11,7 +11,7 @@ import pytest
 from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.decide.select import fitted, select
-from calibration.prune import signed
+from calibration.response.prune import signed
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
 
 SHARED = FORCE.replace("unit: m}", "unit: rad}") + "runs: {origin: shared}\n"

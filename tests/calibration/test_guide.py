@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
+from calibration.drift.mounts import SIDEREAL_DAY_S, known_mount
 from calibration.errors import CalibrationInputError
-from calibration.guidemounts import SIDEREAL_DAY_S, known_mount
 from calibration.inputs.logs import read_drive
 from calibration.readers.guide import read_guide_log
 from calibration.readers.run import Run

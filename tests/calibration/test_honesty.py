@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from calibration.answers import error_row
-from calibration.axislacks import motion_lacks
 from calibration.candidates.amplifier import _phase
 from calibration.candidates.axis_lines import _between
 from calibration.candidates.candidate import Candidate
@@ -23,6 +22,7 @@ from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import Verdict, as_dict, judge
 from calibration.decide.withdraw import withdraw
 from calibration.finding import Finding, Parameter, middle
+from calibration.twomotors.lacks import motion_lacks
 
 
 def row(after: float, floor: float | None) -> dict[str, dict[str, Any]]:

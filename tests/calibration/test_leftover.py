@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.axisapply import too_little
-from calibration.axisresult import AxisResult
-from calibration.driveleft import Left, settle
 from calibration.finding import Finding
+from calibration.response.left import Left, settle
+from calibration.twomotors.applied import too_little
+from calibration.twomotors.result import AxisResult
 from tests.calibration.test_drives import FORCE, answer, motion
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from calibration.axis import analyse
 from calibration.readers.axis import read_axis_log
+from calibration.twomotors.look import analyse
 from plant.model import default_files, load
 from tests.calibration.logs import write_logs
 

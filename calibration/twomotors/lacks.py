@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.answers import lacking
-from calibration.axisresult import AxisResult
 from calibration.decide.tolerance import unsettled_reading
 from calibration.readers.run import Array
+from calibration.twomotors.result import AxisResult
 
 COLUMNS = {
     "T": "the currents (adc_a, adc_b): without them there is neither torque nor volts",

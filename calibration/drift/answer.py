@@ -14,8 +14,8 @@ from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.select import Selection
 from calibration.decide.verdict import Verdict, judge
 from calibration.decide.withdraw import withdraw
-from calibration.guide import GuideResult, analyse_guide, harmonics
-from calibration.guidemounts import SIDEREAL_DAY_S
+from calibration.drift.look import GuideResult, analyse_guide, harmonics
+from calibration.drift.mounts import SIDEREAL_DAY_S
 from calibration.inputs.declaration import Rig
 from calibration.readers.run import Run
 from calibration.report import plots as draw

@@ -11,11 +11,11 @@ from calibration.channels.slowoffset import SLOW
 from calibration.decide.select import Selection
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.decide.verdict import Verdict, judge
-from calibration.drive import Balance, DriveResult
-from calibration.drivecontrols import drive_controls
-from calibration.driveleft import Left
 from calibration.finding import Finding
 from calibration.names import NAMES
+from calibration.response.left import Left
+from calibration.response.look import Balance, DriveResult
+from calibration.response.wrong import drive_controls
 
 REMARKED = ("saturation", "leap")  # repairs that change what a reader thinks the log is
 STRONG = 6.0  # -log10 p of a refused candidate that is told as having been close

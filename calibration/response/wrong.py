@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.candidates.candidate import sine_columns
 from calibration.decide.controls import controls
-from calibration.drive import Balance
+from calibration.response.look import Balance
 from calibration.statistics.regression import gls
 
 CELLS = 1.5  # resolution cells (1 / travel) by which a line's order is made wrong

@@ -15,7 +15,15 @@ from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible, lost_motion, moving_scale, spring
-from calibration.prune import above, more_than_an_offset, prune, remainders, signed, sound, within_bounds
+from calibration.response.prune import (
+    above,
+    more_than_an_offset,
+    prune,
+    remainders,
+    signed,
+    sound,
+    within_bounds,
+)
 
 MOST = 14  # effects: a cogging motor shows several orders
 MARGIN = 0.02  # of the cross-validated mean square (effects.md, lesson 3)

@@ -11,13 +11,13 @@ from calibration.channels.balance import problem_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.decide.select import Selection
-from calibration.drivesearch import lines_over_place, scene_of
 from calibration.finding import Finding
 from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
-from calibration.prune import REMAINDER, dominant
+from calibration.response.prune import REMAINDER, dominant
+from calibration.response.search import lines_over_place, scene_of
 
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.axisresult import AxisResult
 from calibration.channels.coupling import carried_on, driven_side
 from calibration.channels.frame import fill
 from calibration.channels.noise import column_noise
@@ -20,6 +19,7 @@ from calibration.finding import Finding
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run
 from calibration.statistics.regression import gls
+from calibration.twomotors.result import AxisResult
 
 #: columns of a log by what a finding calls them
 LATE = {

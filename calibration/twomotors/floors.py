@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from calibration.axisresult import AxisResult
 from calibration.channels import noise
 from calibration.channels.torque import Transmission
+from calibration.twomotors.result import AxisResult
 
 
 def sensor_floors(result: AxisResult, drive: Transmission) -> dict[str, float]:

@@ -11,9 +11,6 @@ import numpy as np
 
 from calibration import compensation
 from calibration.answers import calibrated, error_row, gate_rows, refusals, too_short
-from calibration.axis import analyse
-from calibration.axislacks import absent_columns, lacks
-from calibration.axisresult import AxisResult
 from calibration.corrected.making import Facts
 from calibration.decide.controls import controls
 from calibration.decide.merge import merge, traces
@@ -33,6 +30,9 @@ from calibration.replay.answer import correct_and_replay
 from calibration.replay.held import Replay
 from calibration.report.replayplot import replay_picture
 from calibration.statistics.regression import gls
+from calibration.twomotors.lacks import absent_columns, lacks
+from calibration.twomotors.look import analyse
+from calibration.twomotors.result import AxisResult
 from plant.model import load, with_effects
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters

@@ -14,9 +14,9 @@ from calibration.channels.view import View
 from calibration.decide.parameters import interval
 from calibration.decide.select import Selection, select
 from calibration.finding import Finding, Parameter
-from calibration.harmonics import findings_of
 from calibration.names.command_disturbance import lines
 from calibration.names.scene import Scene
+from calibration.response.harmonics import findings_of
 from calibration.statistics.regression import gls
 
 ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' declared numbers

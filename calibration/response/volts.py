@@ -11,15 +11,15 @@ from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.channels.volts import Volts, volts_balance
 from calibration.decide.select import Selection, select
-from calibration.driveleft import Left, left_over, settle
-from calibration.driveunnamed import beyond_names
 from calibration.finding import Finding
-from calibration.harmonics import findings_of
 from calibration.names import NAMES
 from calibration.names.name import VOLTS
 from calibration.names.scene import Scene
 from calibration.names.sines import over_place
-from calibration.prune import prune, signed
+from calibration.response.harmonics import findings_of
+from calibration.response.left import Left, left_over, settle
+from calibration.response.prune import prune, signed
+from calibration.response.unnamed import beyond_names
 
 # of u0, that a knee may be at, and of a period: switches' resistances bend a dead band's corner. ASSUMPTION
 REACH, SHARP = 2.0, 0.005

@@ -13,8 +13,8 @@ from calibration.channels.problem import Problem
 from calibration.decide.heldout import cross_validate
 from calibration.decide.parameters import amplitude_interval, finding_of
 from calibration.decide.select import Refusal, Selection, select
+from calibration.drift.mounts import SIDEREAL_DAY_S, Part, known_mount, parts
 from calibration.finding import Finding, Parameter
-from calibration.guidemounts import SIDEREAL_DAY_S, Part, known_mount, parts
 from calibration.inputs.declaration import Rig
 from calibration.readers.run import Array, Run
 

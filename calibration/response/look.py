@@ -15,22 +15,22 @@ from calibration.channels.problem import Problem
 from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
 from calibration.decide.select import Selection
-from calibration.drivedelay import Found, left_by_the_declared, timed
-from calibration.drivelaw import Law, look_at_law
-from calibration.driveleft import Left, left_over, settle
-from calibration.drivenames import as_told, of_calibrated
-from calibration.drivesearch import find, scene_of
-from calibration.driveunnamed import beyond_names, quick_lines
-from calibration.drivevolts import Electric, look_at_volts
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
-from calibration.harmonics import findings_of
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.origin import align_counters
 from calibration.inputs.record import Record
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
+from calibration.response.delay import Found, left_by_the_declared, timed
+from calibration.response.harmonics import findings_of
+from calibration.response.law import Law, look_at_law
+from calibration.response.left import Left, left_over, settle
+from calibration.response.search import find, scene_of
+from calibration.response.told import as_told, of_calibrated
+from calibration.response.unnamed import beyond_names, quick_lines
+from calibration.response.volts import Electric, look_at_volts
 
 MIN_ROWS = 200  # fewer rows than this say nothing about ten parameters
 

@@ -11,11 +11,11 @@ from calibration.channels.problem import Problem
 from calibration.channels.view import View
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import Selection, design, phases, select
-from calibration.driveleft import left_over
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
-from calibration.prune import CLEAR_SHARE, beside, displaced
+from calibration.response.left import left_over
+from calibration.response.prune import CLEAR_SHARE, beside, displaced
 
 CLEAR_Z = 3.0  # standard errors of what a function takes below the floor (opened seed 20261211: 3.4)
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and

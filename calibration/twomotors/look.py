@@ -8,18 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.axisapply import (
-    before_of,
-    corrected_runs,
-    judged,
-    keep_untouched,
-    to_apply,
-    too_little,
-    without,
-)
-from calibration.axisfloors import sensor_floors
-from calibration.axisresult import AxisResult
-from calibration.axistorque import torque_channel
 from calibration.candidates import amplifier, axis_torque
 from calibration.candidates import electrical as electrical_candidates
 from calibration.candidates import kinematic as kinematic_candidates
@@ -52,6 +40,18 @@ from calibration.inputs.telescope import telescope
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run
 from calibration.statistics.regression import gls
+from calibration.twomotors.applied import (
+    before_of,
+    corrected_runs,
+    judged,
+    keep_untouched,
+    to_apply,
+    too_little,
+    without,
+)
+from calibration.twomotors.floors import sensor_floors
+from calibration.twomotors.result import AxisResult
+from calibration.twomotors.torque import torque_channel
 
 FINE_MARGIN = (
     0.002  # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.axisresult import AxisResult
 from calibration.candidates import axis_lines, axis_torque, axis_unknown, modes, tooth
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.in_every_run import in_every_run
@@ -26,6 +25,7 @@ from calibration.names.own import own_candidates
 from calibration.readers.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.whitening import Mask
+from calibration.twomotors.result import AxisResult
 from plant.effects.signals import ANGLE, RATE, TIME
 
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
