@@ -15,7 +15,7 @@ GAP = 2.5  # sample periods between two rows: a row is missing
 class Repair:
     """What was wrong with a column, at how many rows, how large (rig units), and what was done."""
 
-    kind: str  # wrap, spike, repeat, saturation, signed, lost, leap
+    kind: str  # wrap, spike, repeat, saturation, signed, lost, leap, jitter, rounded
     channel: str
     rows: int
     size: float

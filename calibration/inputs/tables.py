@@ -13,6 +13,7 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.matlab import read_matlab
 from calibration.inputs.record import Record, signal_of
 from calibration.inputs.repair import repair
+from calibration.inputs.stamps import steady_stamps
 from calibration.inputs.text import read_text
 from calibration.readers.run import Array
 
@@ -67,6 +68,8 @@ def _record(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Record:
         for c, w in rig.columns.items()
     }
     repair(record, rig)
+    if "time" in rig.columns:
+        steady_stamps(record)
     return record
 
 

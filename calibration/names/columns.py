@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from calibration.finding import Finding, Parameter
 from calibration.inputs.record import Record
 
@@ -13,9 +15,10 @@ CALLED = {
     "repeat": "sample_loss",
     "lost": "sample_loss",
     "saturation": "log_wrap",
+    "jitter": "clock_jitter",
 }
 FORCES = ("effort", "current", "force", "acceleration")
-SAID = {"saturation", "leap"}  # told, but no fault of the log
+SAID = {"saturation", "leap", "rounded"}  # told, but no fault of the log
 FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
 FEWEST_OF_FORCE = 3  # spikes in a force: noise with heavy tails makes one or two; a position's has none
 CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise
@@ -38,6 +41,10 @@ def repairs_found(records: list[Record]) -> list[Finding]:
         files = f" in {len(found)} of {len(records)} files" if len(records) > 1 else ""
         count = Parameter(float(rows), "rows", float(rows), float(rows))
         parameters = {"count": count}
+        if kind == "jitter":
+            shake = float(np.sqrt(np.mean([size**2 for _, _, size, _ in found])))
+            half = 1.96 * shake / np.sqrt(2 * rows)
+            parameters = {"sigma": Parameter(shake, "s", shake - half, shake + half)}
         if kind in ("wrap", "signed"):
             size = found[0][2]
             parameters["length"] = Parameter(size, "rig units", size, size)
