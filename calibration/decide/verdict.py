@@ -13,7 +13,8 @@ from calibration.finding import Finding, Parameter
 
 PHASES = (
     "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
-    "effect, or of the difference of two encoders; plant.yaml has the effect's own torque or error, a sine."
+    "effect, or of the difference of two encoders; plant.yaml, where one is written, has the effect's own"
+    " torque or error, a sine."
 )
 
 

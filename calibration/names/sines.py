@@ -13,6 +13,7 @@ from calibration.readers.run import Array
 
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 SAME = 1e-6  # of a turn
+OWN = 0.35  # resolution cells (1 / travel) about a stage's harmonic that are its own, as on the axis
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
 TOGETHER = 24  # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple
@@ -101,7 +102,7 @@ def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
         return []
     out = []
     for rate in peaks(s, x, s.span, FREE_TURNS / s.span, most):
-        if any(abs(rate - r) * s.span < 0.8 for r in taken) or not seen(s, rate):
+        if any(abs(rate - r) * s.span < OWN for r in taken) or not seen(s, rate):
             continue
         blank = Candidate(
             name,

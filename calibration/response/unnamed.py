@@ -15,9 +15,8 @@ from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
 from calibration.response.left import left_over
-from calibration.response.prune import CLEAR_SHARE, beside, displaced
+from calibration.response.prune import CLEAR_SHARE, CLEAR_Z, beside, displaced
 
-CLEAR_Z = 3.0  # standard errors of what a function takes below the floor (opened seed 20261211: 3.4)
 # smooth functions at most: of a force one, which imitates most names; of two sensors one over the place and
 # one of either flank of the teeth
 MOST = {True: 1, False: 2}

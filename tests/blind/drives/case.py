@@ -87,7 +87,7 @@ def build(order: Order, seed: int) -> tuple[Sealed, Hidden | None, float, int]:
         if hidden.how != "measured" or 0.9 * order.ratio < size < 1.1 * order.ratio:
             break
         wanted = hidden.size * float(np.clip(order.ratio / max(size, 1e-9), 0.05, 20.0))
-        hidden.size = min(wanted, hidden.most)
+        hidden.size = max(min(wanted, hidden.most), hidden.least)
         values = hidden.values()
         made.rows = run(family, plant, values, references, number)
         size = ratio_of(made, values.get("LATE", 0.0))

@@ -18,7 +18,7 @@ class Hidden:
 
     how: "measured" (size set by its own force over the effort's noise), "given" (the ratio is in the values).
     sensor: values that the log's columns get (sensors.py) instead of the plant. powers: of the size, that a
-    scaled value goes with, if not 1. most: size beyond which no such drive is published.
+    scaled value goes with, if not 1. most: size beyond which no such drive is published, or possible.
     """
 
     name: str
@@ -33,6 +33,7 @@ class Hidden:
     law: bool = False  # needs the reference's column and the declared controller
     powers: dict[str, float] = field(default_factory=dict)
     most: float = math.inf
+    least: float = 0.0  # size below which it is none: a sound drive shows as much
     size: float = 1.0
 
     def values(self) -> dict[str, float]:
@@ -48,7 +49,10 @@ Draw = Callable[[Rng, Family, dict[str, float], float, float], Hidden]  # .., pl
 def position_friction(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
     """Coulomb friction in two to five waves over the travel."""
     waves = {"POSF_K": rng.uniform(2.0, 5.0) * TURN / f.travel[1], "POSF_P": rng.uniform(0, TURN)}
-    return Hidden("position_friction", "T", ("axis_angle",), {"POSF": 0.02 * plant["COUL"]}, waves)
+    passive = 0.9 / 0.02  # of the Coulomb friction: more would drive the axis where it is weakest
+    return Hidden(
+        "position_friction", "T", ("axis_angle",), {"POSF": 0.02 * plant["COUL"]}, waves, most=passive
+    )
 
 
 def gravity_imbalance(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
@@ -151,9 +155,11 @@ def stribeck_change(rng: Rng, f: Family, plant: dict[str, float], turn: float, r
 
 
 def channel_delay(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
-    """The effort's column is late."""
+    """The effort's column is late. Half a period is the hold of a sampled loop, which every log has."""
     late = f.period_s * rng.uniform(0.6, 1.2) * ratio
-    return Hidden("channel_delay", "S", ("clock",), {"LATE": late}, most=LATEST / late)
+    return Hidden(
+        "channel_delay", "S", ("clock",), {"LATE": late}, most=LATEST / late, least=0.8 * f.period_s / late
+    )
 
 
 def log_wrap(rng: Rng, f: Family, plant: dict[str, float], turn: float, ratio: float) -> Hidden:
