@@ -16,12 +16,13 @@ from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
-from calibration.response.prune import CLEAR_SHARE, REMAINDER, dominant
+from calibration.response.prune import REMAINDER, dominant
 from calibration.response.search import lines_over_place, scene_of
 
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]
 EARNS = 0.05  # of the held-out mean square, that a delay must take off beside the names found without it
+HALF = 0.5  # of the held-out rms: a delay is named below the floor only when it leaves less than that (ASSUMPTION)
 
 
 @dataclass
@@ -60,8 +61,7 @@ def timed(
     before = _held_rms(problem)
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
-    most = 1 - (now / before) ** 2 > CLEAR_SHARE if before > 0 else False
-    if before <= plain_loop.floor and not most:  # names are for what is above it
+    if before <= plain_loop.floor and now > HALF * before:  # names are for what is above it
         p = delay.parameters["delay"]
         what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
         why = "the declared model is at the floor without it"

@@ -91,11 +91,13 @@ def dominant(s: Selection) -> str:
 def displaced(s: Selection, smooth: Candidate) -> Selection:
     """Leave out a name over the domain of a smooth function that does its work: one that is worth less than
     REMAINDER beside the function and leaves more than STILL_MISSING times the error that it alone does."""
-    if s.problem.test.sum() < 20 or smooth.domain == "axis_angle":  # imitates weights, lines
+    if s.problem.test.sum() < 20:
         return s
     for k, x in enumerate(s.chosen):
         if x.candidate.domain != smooth.domain:
             continue
+        if smooth.domain == "axis_angle" and x.candidate.name != "position_friction":
+            continue  # knots follow weights and lines; friction of one harmonic is a guess at what knots show
         chosen = [y.candidate for y in s.chosen]
         others = [c for j, c in enumerate(chosen) if j != k]
         trials: tuple[list[Candidate], ...] = ([], chosen, [*others, smooth], [*chosen, smooth])
