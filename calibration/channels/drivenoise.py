@@ -8,7 +8,8 @@ from calibration.channels.balance import response_of
 from calibration.channels.noise import rough
 from calibration.channels.problem import Problem
 from calibration.channels.recursions import stop_element
-from calibration.channels.view import View, position_noise
+from calibration.channels.view import View, position_noise, smooth
+from calibration.inputs.record import quantum
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
@@ -16,6 +17,7 @@ from calibration.statistics.whitening import Mask
 # 3 / (8 sqrt(pi) s^5)
 PASSED = 1.0 / (2.0 * np.sqrt(np.pi))
 CURVED = 3.0 / (8.0 * np.sqrt(np.pi))
+ORIGINS = (0.1, 0.3, 0.6, 0.8)  # of a step, where a sensor's zero may lie
 
 
 def sensors_floor(view: View, p: Problem) -> float | None:
@@ -58,14 +60,36 @@ def _resolved_noise(view: View, p: Problem, curved: float, width: float) -> floa
 
 
 def _of_sensors(view: View, place: float, width: float) -> float | None:
-    """Two position sensors against each other; the filter does not average steps that a slow motion keeps."""
+    """Two position sensors against each other."""
     second = view.columns.get(view.response.channel)
     if second is None:
         return None
-    part = float(np.sqrt(PASSED / width)) if view.sigma > 0 else 1.0
-    noise = position_noise(second, view.file) * abs(view.response.gain)
-    ratio = abs(view.response.ratio if view.response.ratio is not None else 1.0)
-    return float(np.hypot(noise, ratio * place) * part)
+    gain, ratio = abs(view.response.gain), abs(view.response.ratio or 1.0)
+    noise = float(np.hypot(position_noise(second, view.file) * gain, ratio * place))
+    if view.sigma <= 0:
+        return noise
+    return max(noise * float(np.sqrt(PASSED / width)), _rounding(view, quantum(second), gain, ratio))
+
+
+def _rounding(view: View, second: float | None, gain: float, ratio: float) -> float:
+    """rms of what rounding in both sensors leaves behind the filter, which does not average a step that the
+    motion stays on: the log's own motion, rounded again from other origins. 0 for columns without steps."""
+    first = quantum(view.x)
+    if first is None or second is None:
+        return 0.0
+    path = smooth(view.x, view.segment, 2 * view.sigma)
+    left = []
+    for origin in ORIGINS:
+        one, two = _rounded(path, first, origin), _rounded(path * ratio / gain, second, 1.0 - origin)
+        e = view.at(gain * two - ratio * one)
+        left.append(float(np.mean((e - e.mean()) ** 2)))
+    return float(np.sqrt(np.mean(left)))
+
+
+def _rounded(path: Array, step: float, origin: float) -> Array:
+    """What rounding adds to a path when the sensor's zero is a part `origin` of a step away."""
+    at = path / step + origin
+    return np.asarray((np.round(at) - at) * step)
 
 
 def passed(view: View, full: Array, width: float) -> float | None:

@@ -37,7 +37,7 @@ LAGS = (3, 10, 30, 100, 300, 1000)
 @dataclass(frozen=True)
 class Command:
     """The command less its law, as a problem whose base is an offset per file; `gains` (k,) with their
-    covariance (k, k) in the law's order of `labels`; `follows` (n_fitted, k): the law's terms, as far as
+    covariance (k, k) in the law's order of `labels`; `terms` (n_fitted, k): the law's, `follows` as far as
     they follow the reference; `forward` (n_fitted, 3): what a feed-forward of rate, acceleration and friction
     would add; `left`: rms of what the law leaves of the fitted rows."""
 
@@ -46,6 +46,7 @@ class Command:
     gains: Array
     covariance: Array
     follows: Array
+    terms: Array
     forward: Array
     left: float
 
@@ -122,13 +123,14 @@ def _command_of(view: View, balance: Problem, law: Controller, known: Array, bef
     p.y = p.y - terms_at @ beta[:own]
     forward = view.at(np.column_stack([rate, view.rate(rate), np.sign(rate)]))
     rms = float(np.sqrt(np.mean(left[train] ** 2))) if train.any() else np.inf
-    return Command(p, labels, beta[:k], covariance, follows[:, :k], forward, rms)
+    return Command(p, labels, beta[:k], covariance, follows[:, :k], terms_at[:, :k], forward, rms)
 
 
 def _per_file(view: View, balance: Problem, integral: bool, unit: str) -> tuple[Array, list[tuple[str, str]]]:
-    """(n_fitted, m) and labels: an offset per file; where the law integrates, what it makes of an offset
-    between position and reference."""
-    files = np.column_stack([(balance.session == k).astype(float) for k in np.unique(balance.session)])
+    """(n_fitted, m) and labels: an offset per file; where the law integrates one per piece, because in a gap
+    the integral went on unseen, and what it makes of an offset between position and reference."""
+    label = view.segment[view.rows] if integral else balance.session
+    files = np.column_stack([(label == k).astype(float) for k in np.unique(label)])
     names = [("law_offset", unit)] * files.shape[1]
     if not integral:
         return files, names

@@ -24,12 +24,13 @@ FEWEST_OF_FORCE = 3  # spikes in a force: noise with heavy tails makes one or tw
 CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise
 
 
-def repairs_found(records: list[Record]) -> list[Finding]:
-    """One finding per kind and column, over all files."""
+def repairs_found(records: list[Record], own: tuple[str, ...] = ()) -> list[Finding]:
+    """One finding per kind and column, over all files. `own`: channels whose spikes may be the drive's: a
+    command whose law is another than the declared one jumps where that law does."""
     groups: dict[tuple[str, str], list[tuple[Record, int, float, str]]] = {}
     for r in records:
         for fix in r.repairs:
-            if fix.kind not in SAID:
+            if fix.kind not in SAID and not (fix.kind == "spike" and fix.channel in own):
                 groups.setdefault((fix.kind, fix.channel), []).append((r, fix.rows, fix.size, fix.note))
     out = []
     for (kind, channel), found in groups.items():

@@ -102,12 +102,12 @@ def analyse(
             first = problem_of(view, records, hold_out)
             agreement = velocity_against_position(view, first.held)
         balances.append(_balance(view, records, response, hold_out, tell, seed))
-    sensors = repairs_found(records)
-    if agreement is not None and agreement.late:
-        sensors.append(_late(agreement))
     best = next((b for b in balances if b.view.dynamic), balances[0])  # its filter is made for rates
     tell("command: the controller's law")
     law = look_at_law(best.view, best.problem, seed)
+    sensors = repairs_found(records, ("effort",) if law is not None and law.findings else ())
+    if agreement is not None and agreement.late:
+        sensors.append(_late(agreement))
     tell("voltage: winding and back-EMF")
     electric = look_at_volts(best.view, best.problem, seed)
     return DriveResult(rig, records, balances, sensors, agreement, clock, law, electric)
