@@ -77,14 +77,17 @@ def look(problem: Problem, base: Array, candidates: list[Candidate]) -> Look:
 def _neighbours(
     problem: Problem, base: Array, null: Fit, first: Contender, without: float, common: Whitener
 ) -> list[Contender]:
-    """Lines a little off the order of `first`, a stage's line, that gain clearly more than it does."""
+    """Lines a little off the order of `first`, a stage's line, that gain clearly more than it does; beside a
+    whole stage at once, which follows any line where the travel is hardly a turn, more than it costs."""
+    whole = first.candidate.kind == "line" and first.candidate.harmonic is None
     out = []
     for candidate in first.candidate.neighbours:
         moved = refine(problem, base, null.residual, candidate, null.whitener)
         fit = _fit_beside(problem, base, moved)
         if fit is not None:
             one = _scored(problem, base, moved, fit, common, without)
-            out += [one] if one.gain > (1 + MORE) * first.gain else []
+            better = one.bayes > first.bayes if whole else one.gain > (1 + MORE) * first.gain
+            out += [one] if better else []
     return sorted(out, key=lambda c: -c.gain)
 
 

@@ -10,7 +10,7 @@ from calibration.names.sines import free_lines
 
 def columns(s: Scene) -> list[Candidate]:
     """Lines that stand out of the residual's spectrum over position."""
-    return free_lines(s, "bearing_pass")
+    return free_lines(s)
 
 
 NAME = Name(

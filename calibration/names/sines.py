@@ -14,6 +14,7 @@ from calibration.readers.run import Array
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 SAME = 1e-6  # of a turn
 OWN = 0.35  # resolution cells (1 / travel) about a stage's harmonic that are its own, as on the axis
+OFF, AROUND = 0.05, 4  # of such a cell, from where on a line may be none of the stage's; lines tried, likewise
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
 TOGETHER = 24  # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple
@@ -54,7 +55,19 @@ def stage_lines(s: Scene, kind: str, default: bool = False) -> list[Candidate]:
             )
         mine = [c for c in out if c.stage == stage.name]
         out = [c for c in out if not _is_weight(s, c)] + as_one(mine)
+        beside = tuple(_off_stage(s, [h / stage.period for h in range(1, stage.harmonics + 1)]))
+        out = [replace(c, neighbours=beside) if c.stage == stage.name else c for c in out]
     return out
+
+
+def _off_stage(s: Scene, orders: list[float]) -> list[Candidate]:
+    """Lines of no stage within the cells of a stage's orders (cycles per position unit), but off them: a
+    bearing's may lie there."""
+    if s.span <= 0:
+        return []
+    found = peaks(s, s.view.x[s.view.rows], s.span, FREE_TURNS / s.span, AROUND)
+    off = {rate: min(abs(rate - r) * s.span for r in orders) for rate in found}
+    return [c for rate, by in off.items() if OFF < by < OWN and seen(s, rate) for c in _free(s, rate)]
 
 
 def _is_weight(s: Scene, c: Candidate) -> bool:
@@ -94,28 +107,30 @@ def seen(s: Scene, rate: float) -> bool:
     return bool(np.mean(np.abs(s.view.speed[s.view.rows]) * rate * step < PER_ROW) > 0.3)
 
 
-def free_lines(s: Scene, name: str, most: int = 6) -> list[Candidate]:
+def free_lines(s: Scene, most: int = 6) -> list[Candidate]:
     """Lines over position at no stage's period that stand out of the residual's spectrum."""
     x = s.view.x[s.view.rows]
     taken = [h / g.period for g in s.view.rig.stages if g.period for h in range(1, max(g.harmonics, 3) + 1)]
     if s.span <= 0:
         return []
-    out = []
-    for rate in peaks(s, x, s.span, FREE_TURNS / s.span, most):
-        if any(abs(rate - r) * s.span < OWN for r in taken) or not seen(s, rate):
-            continue
-        blank = Candidate(
-            name,
-            "axis_angle",
-            np.zeros((len(x), 0)),
-            (("amplitude", s.unit),),
-            kind="line",
-            order=float(rate * (s.view.turn or 1.0)),
-            apart=float(rate),
-            searched=1,
-        )
-        out += [_movable(s, c, rate) for c in over_place(s, blank, rate)]
-    return out
+    found = peaks(s, x, s.span, FREE_TURNS / s.span, most)
+    clear = [f for f in found if all(abs(f - r) * s.span >= OWN for r in taken) and seen(s, f)]
+    return [c for rate in clear for c in _free(s, rate)]
+
+
+def _free(s: Scene, rate: float) -> list[Candidate]:
+    """A line of no stage at `rate` cycles per position unit."""
+    blank = Candidate(
+        "bearing_pass",
+        "axis_angle",
+        np.zeros((len(s.view.rows), 0)),
+        (("amplitude", s.unit),),
+        kind="line",
+        order=float(rate * (s.view.turn or 1.0)),
+        apart=float(rate),
+        searched=1,
+    )
+    return [_movable(s, c, rate) for c in over_place(s, blank, rate)]
 
 
 def _movable(s: Scene, c: Candidate, rate: float) -> Candidate:

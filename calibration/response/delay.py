@@ -10,19 +10,21 @@ import numpy as np
 from calibration.channels.balance import problem_of
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
-from calibration.decide.select import Selection
+from calibration.decide.select import Selection, design
 from calibration.finding import Finding
 from calibration.inputs.record import Record
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
-from calibration.response.prune import REMAINDER, dominant
+from calibration.readers.run import Array
+from calibration.response.prune import CLEAR_SHARE, REMAINDER, dominant
 from calibration.response.search import lines_over_place, scene_of
+from calibration.statistics.whitening import Mask
 
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]
 EARNS = 0.05  # of the held-out mean square, that a delay must take off beside the names found without it
-HALF = 0.5  # of the held-out rms: a delay is named below the floor only when it leaves less than that (ASSUMPTION)
+FEWEST = 20  # rows
 
 
 @dataclass
@@ -61,15 +63,37 @@ def timed(
     before = _held_rms(problem)
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
-    if before <= plain_loop.floor and now > HALF * before:  # names are for what is above it
+    if before <= plain_loop.floor and not _above_where_resolved(problem, late[0]):  # names are for what is above
         p = delay.parameters["delay"]
         what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
         why = "the declared model is at the floor without it"
         return Timed(plain_loop, found, close=f"{what} ({why}): quicker turns and a quieter effort")
     telling = was**2 - now**2 > max(EARNS * was**2, least)
     if telling or (simpler and now < was):
+        if before > 0:  # of what the declared model leaves, as every other effect's
+            delay.share = max(1 - (late[0].held.before / before) ** 2, 0.0)
         return Timed(moved, late, delay, before)
     return Timed(plain_loop, found)
+
+
+def _above_where_resolved(problem: Problem, late: Selection) -> bool:
+    """Whether the declared model is above the noise on held-out rows that coarse steps of the position do not
+    spoil, and the delay takes most of what it leaves there."""
+    if problem.resolved is None:
+        return False
+    rows, floor = problem.resolved
+    rows = rows & problem.test & late.problem.test
+    if rows.sum() < FEWEST:
+        return False
+    before = _rms_of(problem, problem.base, rows)
+    after = _rms_of(late.problem, design(late.problem, [x.candidate for x in late.chosen]), rows)
+    return before > floor and after**2 < (1 - CLEAR_SHARE) * before**2
+
+
+def _rms_of(p: Problem, x: Array, rows: Mask) -> float:
+    """rms on `rows` of a fit of columns x (n, k) to the training rows."""
+    beta = np.linalg.lstsq(x[p.train], p.y[p.train], rcond=None)[0]
+    return float(np.sqrt(np.mean((p.y - x @ beta)[rows] ** 2)))
 
 
 def _held_loop(view: View, records: list[Record], hold_out: list[str], problem: Problem) -> Problem:
@@ -91,8 +115,5 @@ def left_by_the_declared(view: View, p: Problem) -> float:
 
 
 def _held_rms(problem: Problem) -> float:
-    rows, train = problem.test, problem.train
-    beta = np.linalg.lstsq(problem.base[train], problem.y[train], rcond=None)[0]
-    return (
-        float(np.sqrt(np.mean((problem.y - problem.base @ beta)[rows] ** 2))) if rows.any() else float("nan")
-    )
+    rows = problem.test
+    return _rms_of(problem, problem.base, rows) if rows.any() else float("nan")
