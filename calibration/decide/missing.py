@@ -22,14 +22,15 @@ def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
     return {k: r for k, r in found.items() if r > STILL_MISSING}
 
 
-def lives_in(s: Selection, domains: dict[str, Array]) -> str:
-    """The domain whose bin means on training rows take most off the held-out residual, in words."""
+def lives_in(s: Selection, domains: dict[str, Array]) -> tuple[str | None, str]:
+    """The domain whose bin means on training rows take most off the held-out residual, None where none does;
+    and in words."""
     e, p = s.after.residual, s.problem
     shares = {name: domain_share(e, x, p.train, p.test) for name, x in domains.items()}
     name = max(shares, key=lambda k: shares[k], default="")
     if not name or shares[name] < LEAST_SHARE:
-        return "in none of " + ", ".join(domains)
-    return f"over {name} ({100 * shares[name]:.0f} % of its mean square)"
+        return None, "in none of " + ", ".join(domains)
+    return name, f"over {name} ({100 * shares[name]:.0f} % of its mean square)"
 
 
 def domain_share(e: Array, x: Array, train: Mask, test: Mask) -> float:

@@ -14,7 +14,10 @@ from calibration.readers.run import Array
 ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything
 SAME = 1e-6  # of a turn
 OWN = 0.35  # resolution cells (1 / travel) about a stage's harmonic that are its own, as on the axis
-OFF, AROUND = 0.05, 4  # of such a cell, from where on a line may be none of the stage's; lines tried, likewise
+OFF, AROUND = (
+    0.05,
+    4,
+)  # of such a cell, from where on a line may be none of the stage's; lines tried, likewise
 PER_ROW = 0.45  # of a period per fitted row at most: quicker is not seen
 FREE_TURNS = 5.0  # cycles within the travel before a line that no stage has is a line and not a bend
 TOGETHER = 24  # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple

@@ -63,7 +63,8 @@ def timed(
     before = _held_rms(problem)
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
-    if before <= plain_loop.floor and not _above_where_resolved(problem, late[0]):  # names are for what is above
+    if before <= plain_loop.floor and not _above_where_resolved(problem, late[0]):
+        # names are for what is above it
         p = delay.parameters["delay"]
         what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
         why = "the declared model is at the floor without it"

@@ -84,8 +84,8 @@ def _gains(c: Command) -> dict[str, Parameter]:
 
 
 def _tell(law: Law, c: Command, declared: dict[str, float]) -> None:
-    """Tell gains that are not the declared ones, when the command of held-out rows is theirs; beyond a fifth it
-    is a finding."""
+    """Tell gains that are not the declared ones, when the command of held-out rows is theirs; beyond a fifth
+    it is a finding."""
     if _better(c, declared) < BETTER:
         return
     for k, (name, unit) in enumerate(c.labels):

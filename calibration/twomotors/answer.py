@@ -98,6 +98,11 @@ def axis_answer(
             v.error[SENSORS[key]] = error_row(s, result.floors.get(key))
             v.error[SENSORS[key]]["before"] = result.before.get(key, s.held.before)
     _before_within_tolerance(v, result, effects)
+    left = still_missing(result, v)
+    v.remarks = [text for _, _, text in left]
+    if v.verdict == "nothing" and (unnamed := [Finding("unknown", k, d, note=x) for k, d, x in left if d]):
+        v.effects = effects = unnamed
+        v.verdict, v.separating = judge(unnamed)
     again, remarks = Replay(), list[str]()
     if emulated:
         again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
@@ -105,7 +110,6 @@ def axis_answer(
     v.closed_loop = again.rows
     short = [x for k, s in result.selections.items() for x in too_short(s, f"channel {k}: ")]
     v.reasons = [*dict.fromkeys(n for r in runs for n in r.notes), *again.reasons, *remarks, *short]
-    v.remarks = still_missing(result, v)
     v.reasons += [*absent_columns(result), *v.remarks]
     pictures = _plots(result, effects) if plots else []
     if plots and again.log is not None:
@@ -113,24 +117,36 @@ def axis_answer(
     return v, pictures, title
 
 
-def still_missing(result: AxisResult, v: Verdict) -> list[str]:
-    """One sentence per channel that is still above twice its floor, and where that lives."""
+#: of the report's domains, in words
+SPOKEN = {
+    "axis angle": "axis_angle",
+    "speed and direction": "velocity",
+    "time": "time",
+    "motor angle": "motor_angle",
+}
+
+
+def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None, str]]:
+    """Channel, domain and a sentence for every channel that is still above twice its floor."""
     m = result.motion
     n = len(m.pick)
     turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
-    domains = {
-        "axis angle": turn,
-        "speed and direction": np.sign(rate) * np.log1p(np.abs(rate)),
-        "time": result.frame.t[m.pick],
-        "motor angle": (turn * result.frame.train.ratio) % 1.0,
-    }
+    values = (
+        turn,
+        np.sign(rate) * np.log1p(np.abs(rate)),
+        result.frame.t[m.pick],
+        (turn * result.frame.train.ratio) % 1.0,
+    )
+    domains = dict(zip(SPOKEN, values, strict=True))
     rows = {row: key for key, row in SENSORS.items()}
     out = []
     for row, ratio in above_floor(v.error).items():
-        s = result.selections[rows[row]]
+        key = rows[row]
+        s = result.selections[key]
         long = {k: np.resize(x, len(s.problem.y)) for k, x in domains.items()}
-        where = lives_in(s, long) if len(s.problem.y) % n == 0 else "not looked for"
-        out.append(f"something is still missing in {row}: {ratio:.1f} floors are left, {where}")
+        place, where = lives_in(s, long) if len(s.problem.y) % n == 0 else (None, "not looked for")
+        text = f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
+        out.append((key, SPOKEN[place] if place else None, text))
     return out
 
 
