@@ -89,6 +89,21 @@ def test_a_sound_loop_keeps_its_law_and_gets_its_gains(tmp_path: Path) -> None:
     assert data["error"]["command"]["after"] < 0.1  # N, of 5 N
 
 
+def test_an_integral_goes_on_where_rows_are_missing(tmp_path: Path) -> None:
+    """Three files of twenty seconds, each with three gaps of 0.3 s."""
+    tables = []
+    for k in range(3):
+        columns = loop(k)
+        keep = np.ones(len(columns[0]), dtype=bool)
+        for first in (4100, 9300, 15700):
+            keep[first : first + 300] = False
+        tables.append(tuple(c[keep] for c in columns))
+    data = answer(tmp_path, RIG, *tables, header="t,x,u,r")
+    assert of_the_command(data) == []
+    for name, value in GAINS.items():
+        assert data["calibrated"][f"gain_{name}"]["value"] == pytest.approx(value, rel=0.03)
+
+
 def test_a_quick_disturbance_has_its_size_before_the_filter(tmp_path: Path) -> None:
     """The filter of the balance leaves four fifths of it (`smooth_s` says how wide it is)."""
     (found,) = of_the_command(report(tmp_path, RIG + "smooth_s: 0.02\n", hertz=26.3))

@@ -14,6 +14,9 @@ from calibration.inputs.rigfile import load_rig
 from calibration.inputs.telescope import telescope
 from calibration.inputs.train import train_of
 from plant.gears import ORDERS, RATIO
+from tests.blind.drives.case import seal
+from tests.blind.drives.cells import HOUR_S
+from tests.blind.drives.order import Order
 from tests.calibration import azimuth
 from tests.calibration.azimuth import RIG, VALUES, write
 
@@ -136,3 +139,17 @@ def test_a_mistake_in_the_declaration_gets_one_line(tmp_path: Path, old: str, ne
     with pytest.raises(CalibrationInputError, match=says) as caught:
         load_rig(path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.slow
+def test_what_is_left_over_the_speed_is_unknown_there_and_not_nothing(tmp_path: Path) -> None:
+    """A drag that grows with the square of the speed, on steady speeds: cross-validation behind the noise's
+    filter does not see it, and 2.6 floors are left."""
+    order = Order("drive-outside-outside_quadratic-telescope-5", "outside", "telescope",
+                  ("outside_quadratic",), 5.0, seconds=HOUR_S)  # fmt: skip
+    seal(order, 1061, tmp_path / "logs", tmp_path / "truth")
+    folder = tmp_path / "logs" / order.key
+    calibrate(sorted(folder.glob("*.csv")), folder / "rig.yaml", [], tmp_path / "out", plots=False)
+    told = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert told["verdict"] == "unknown"
+    assert [(e["name"], e["domain"]) for e in told["effects"]] == [("unknown", "velocity")]
