@@ -14,6 +14,7 @@ from calibration.finding import Finding
 from calibration.readers.run import Array
 
 FOLLOWS = 2.0  # of the share: a lagging motor's current that follows the leading one's has 1
+ABOVE = 0.5  # quantile of the duties that drive, above which no dead band's knee lies (ASSUMPTION)
 # duties where the search for a dead band begins; 0.3 to 5 % of a period is what bridges lose. ASSUMPTION
 KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)
 SHORTEST = 0.01  # of the rows: may have pulses shorter than a dead band taken for a constant (ASSUMPTION)
@@ -134,7 +135,9 @@ def dead_bands(e: Electrical) -> list[Candidate]:
                 twins=() if before else ("adc_offset",),
             )
         )
-        shape = _swallowed(e.supply * share, split)
+        driven = split[e.problem.train & (split > 0)]
+        widest = float(np.quantile(driven, ABOVE)) if len(driven) else 0.0
+        shape = _swallowed(e.supply * share, split, widest)
         out += [
             Candidate(
                 "pwm_deadband",
@@ -148,13 +151,15 @@ def dead_bands(e: Electrical) -> list[Candidate]:
                 searched=1,
             )
             for knee in KNEES
+            if knee < widest
         ]
     return out
 
 
-def _swallowed(volts: Array, duty: Array) -> Callable[[Array], Array]:
-    """`volts` where the duty exceeds the knee, in proportion below it."""
-    return lambda p: (volts * np.minimum(duty / max(float(p[0]), 1e-4), 1.0))[:, None]
+def _swallowed(volts: Array, duty: Array, widest: float) -> Callable[[Array], Array]:
+    """`volts` where the duty exceeds the knee, in proportion below it: a knee above every duty would be the
+    supply itself."""
+    return lambda p: (volts * np.minimum(duty / float(np.clip(p[0], 1e-4, widest)), 1.0))[:, None]
 
 
 def share_of_effort(e: Electrical) -> Array:

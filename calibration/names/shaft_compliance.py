@@ -6,10 +6,12 @@ from calibration.candidates.candidate import Candidate
 from calibration.names.name import SENSORS, Name
 from calibration.names.scene import Scene
 
+WINDS = ("force", "effort", "current")  # columns of what winds it up, the first there is
+
 
 def columns(s: Scene) -> list[Candidate]:
     """The effort, as it goes through the shaft between two sensors."""
-    for channel in ("force", "effort", "current"):
+    for channel in WINDS:
         if channel in s.view.columns:
             label = ("compliance", f"{s.unit}/{s.view.rig.columns[channel].unit}")
             return [
@@ -20,7 +22,7 @@ def columns(s: Scene) -> list[Candidate]:
 
 def lacks(s: Scene) -> str:
     """A column of the force."""
-    have = {"force", "effort", "current"} & set(s.view.columns)
+    have = set(WINDS) & set(s.view.columns)
     return "" if have else "a column of the effort, the current or the force"
 
 

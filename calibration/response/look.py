@@ -9,12 +9,12 @@ import numpy as np
 
 from calibration.channels.agreement import Agreement, velocity_against_position
 from calibration.channels.balance import problem_of
-from calibration.channels.drivenoise import resolved_rows
+from calibration.channels.drivenoise import passed, resolved_rows
 from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
 from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
-from calibration.decide.select import Selection
+from calibration.decide.select import Selection, fitted
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Response, Rig
@@ -23,7 +23,9 @@ from calibration.inputs.record import Record
 from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
-from calibration.response.delay import Found, left_by_the_declared, timed
+from calibration.names.shaft_compliance import WINDS
+from calibration.response.delay import Found, Timed, left_by_the_declared, timed
+from calibration.response.gap import where_known
 from calibration.response.harmonics import findings_of
 from calibration.response.law import Law, look_at_law
 from calibration.response.left import Left, left_over, settle
@@ -147,13 +149,7 @@ def _balance(
             " counts the other way; its sign is turned here, and so are the signs of what is found in it"
         )
     if view.dynamic:
-        view.slow_offset, rms = offset_order(view, problem, scene_of(view, problem).wander)
-        problem = problem_of(view, records, hold_out)
-        if view.slow_offset:
-            remarks.append(
-                f"{response.channel}: its offset wanders by {rms:.2g} {response.unit} rms within a file;"
-                f" {view.slow_offset} slow functions of time are fitted anew in every file, as the offset is"
-            )
+        view.slow_offset, wander = offset_order(view, problem, scene_of(view, problem).wander)
 
     def search(p: Problem) -> Found:
         floor, _ = floor_of(view, p)
@@ -161,16 +157,33 @@ def _balance(
         p.resolved = resolved_rows(view, p)
         return find(view, p, seed, tell)
 
-    delay, before, close = None, None, ""
-    if response.channel in ("effort", "current", "force") and view.dynamic:
+    def attempt() -> Timed:
+        whole = problem_of(view, records, hold_out)
+        if response.channel not in ("effort", "current", "force") or not view.dynamic:
+            return Timed(whole, search(whole))
         tell(f"{response.channel}: delay")
-        when = timed(view, records, hold_out, problem, response.channel, search)
-        problem, (s, scene, bounds), delay, before = when.problem, when.found, when.delay, when.before
-        notes += [when.note] if when.note else []
-        close = when.close
-    else:
-        s, scene, bounds = search(problem)
+        return timed(view, records, hold_out, whole, response.channel, search)
+
+    when = attempt()
+    if view.slow_offset:
+        slow, view.slow_offset = view.slow_offset, 0
+        steady = attempt()  # what begins at some time looks like a walk before it has a name
+        if steady.found[0].chosen and steady.found[0].held.after < when.found[0].held.after:
+            when = steady
+        else:
+            view.slow_offset = slow
+            remarks.append(
+                f"{response.channel}: its offset wanders by {wander:.2g} {response.unit} rms within a file;"
+                f" {slow} slow functions of time are fitted anew in every file, as the offset is"
+            )
+    problem, (s, scene, bounds), delay, before = when.problem, when.found, when.delay, when.before
+    notes += [when.note] if when.note else []
+    s = where_known(s, view)
+    problem = s.problem
     floor, source = floor_of(view, problem)
+    wind = wound_up(view, s) if floor else 0.0
+    if wind and floor:
+        floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     tell(f"{response.channel}: what no name explains")
     s, together, unnamed = beyond_names(s, scene, seed)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
@@ -196,8 +209,18 @@ def _balance(
         notes,
         remarks,
         left_over(together, scene, floor),
-        close,
+        when.close,
     )
+
+
+def wound_up(view: View, s: Selection) -> float:
+    """rms, in the response's unit, of the effort's own noise through a shaft's wind-up that was found: its
+    column is noisy, the shaft winds up by the torque; 0 where none was."""
+    for c, beta in fitted(s):
+        if c.name == "shaft_compliance":
+            channel = next(k for k in WINDS if k in view.columns)
+            return abs(float(beta[0])) * (passed(view, view.columns[channel], max(view.sigma, 1.0)) or 0.0)
+    return 0.0
 
 
 def _sharpen(view: View, records: list[Record], hold_out: list[str]) -> None:

@@ -122,9 +122,10 @@ def _tables(order: Order, seed: int, folder: Path) -> dict[str, Any]:
     two = order.two or bool(hidden and hidden.second)
     law = order.law or bool(hidden and hidden.law)
     span = len(made.rows) * order.seconds
+    usual = float(np.sqrt(np.mean(np.concatenate(made.rows)[:, slots.EFFORT] ** 2)))
     for k, rows in enumerate(made.rows):
         rng: Rng = np.random.default_rng([number, 7, k])
-        s = {**hidden.values(), **hidden.sensor} if hidden else {}
+        s = {**hidden.values(), **hidden.sensor, "WIND_RMS": usual} if hidden else {}
         out = sensors.columns(rows, f, s, rng, order.noise, k * order.seconds, span, made.plant["TOP"], two)
         if law:
             out["reference"] = made.references[k]

@@ -36,8 +36,7 @@ def second(rows: Array, f: Family, s: dict[str, float], t: Array, span: float) -
     x = rows[:, slots.X]
     y = play(x, s["GAP"]) if "GAP" in s else x.copy()
     if "WIND" in s:
-        u = rows[:, slots.EFFORT]
-        y = y - s["WIND"] * u / max(float(np.sqrt(np.mean(u**2))), 1e-12)
+        y = y - s["WIND"] * rows[:, slots.EFFORT] / s["WIND_RMS"]
     if "ECC" in s:
         y = y + s["ECC"] * np.cos(s["ECC_K"] * x + s["ECC_P"])
     if "BOW" in s:
