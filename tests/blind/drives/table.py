@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tests.blind.table import share, text_of
+from tests.blind.table import quotient, share, text_of
 
 Row = dict[str, Any]
 LEAST = 1.8  # ratio that a measured effect must have come to, of 2 asked for: sizes are met to a tenth
@@ -42,6 +42,13 @@ def markdown(rows: list[Row], seed: int) -> str:
     ]
     out = ["| figure | must | measured (95 % interval) |", "|---|---|---|"]
     out += [f"| {name} | {must} | {text_of(measured)} |" for name, must, measured in figures]
+    left = quotient(single, "after", "floor")
+    if left["total"]:
+        out.append(
+            f"| held-out after / floor, one effect, ratio ≥ 2: median; 90th percentile | ≤ 1.2; ≤ 2 |"
+            f" {left['value']:.2f} ({left['low']:.2f}–{left['high']:.2f}); {left['p90']:.2f},"
+            f" n = {left['total']} |"
+        )
     seconds = sorted(r["seconds"] for r in rows)
     out += [
         "",
