@@ -14,7 +14,7 @@ from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
 from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
-from calibration.decide.select import Selection, fitted
+from calibration.decide.select import Selection, design, fitted
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Response, Rig
@@ -24,6 +24,7 @@ from calibration.names import NAMES
 from calibration.names.name import FORCE, SENSORS
 from calibration.names.scene import Scene
 from calibration.names.shaft_compliance import WINDS
+from calibration.readers.run import Array
 from calibration.response.delay import Found, Timed, left_by_the_declared, timed
 from calibration.response.gap import where_known
 from calibration.response.harmonics import findings_of
@@ -138,7 +139,7 @@ def _balance(
     seed: int,
 ) -> Balance:
     if view.dynamic:
-        _sharpen(view, records, hold_out)
+        fade(view, _sharpest(view, records, hold_out))
     problem = problem_of(view, records, hold_out)
     notes, remarks = [], []
     if _acts_on_the_drive(view, problem):
@@ -176,6 +177,8 @@ def _balance(
                 f"{response.channel}: its offset wanders by {wander:.2g} {response.unit} rms within a file;"
                 f" {slow} slow functions of time are fitted anew in every file, as the offset is"
             )
+    if view.dynamic and when.found[0].chosen:
+        when = _sharper(when, view, records, hold_out, attempt)
     problem, (s, scene, bounds), delay, before = when.problem, when.found, when.delay, when.before
     notes += [when.note] if when.note else []
     s = where_known(s, view)
@@ -223,14 +226,40 @@ def wound_up(view: View, s: Selection) -> float:
     return 0.0
 
 
-def _sharpen(view: View, records: list[Record], hold_out: list[str]) -> None:
-    """Choose how sharply friction turns with the speed: by what the declared terms leave on fitted rows."""
+def _sharpest(view: View, records: list[Record], hold_out: list[str], known: Timed | None = None) -> float:
+    """How sharply friction turns with the speed, of STANDSTILLS: by what the declared terms leave on fitted
+    rows, beside the effects of `known` where there is something."""
+    shown = (view.standstill, view.direction)
+    delay = known.delay.parameters["delay"].value if known is not None and known.delay is not None else 0.0
+    effects = _effects(known.found[0]) if known is not None else 0.0
     left = []
     for part in STANDSTILLS:
         fade(view, part)
-        p = problem_of(view, records, hold_out)
-        left.append(left_by_the_declared(view, p))
-    fade(view, STANDSTILLS[int(np.argmin(left))])
+        p = problem_of(view, records, hold_out, delay)
+        left.append(left_by_the_declared(view, replace(p, y=p.y - effects)))
+    view.standstill, view.direction = shown
+    return STANDSTILLS[int(np.argmin(left))]
+
+
+def _effects(s: Selection) -> Array:
+    """(n_fitted,): what is found, in the response's unit."""
+    first = s.problem.base.shape[1]
+    return np.asarray(design(s.problem, [x.candidate for x in s.chosen])[:, first:] @ s.after.beta[first:])
+
+
+def _sharper(
+    first: Timed, view: View, records: list[Record], hold_out: list[str], attempt: Callable[[], Timed]
+) -> Timed:
+    """The search again, where what was found makes friction turn more or less sharply than without it; as it
+    is when that leaves more."""
+    shown = (view.standstill, view.direction)
+    fade(view, _sharpest(view, records, hold_out, first))
+    if view.standstill != shown[0]:
+        again = attempt()
+        if again.found[0].chosen and again.found[0].held.after < first.found[0].held.after:
+            return again
+    view.standstill, view.direction = shown
+    return first
 
 
 def _acts_on_the_drive(view: View, problem: Problem) -> bool:
