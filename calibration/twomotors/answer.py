@@ -103,6 +103,8 @@ def axis_answer(
     if v.verdict == "nothing" and (unnamed := [Finding("unknown", k, d, note=x) for k, d, x in left if d]):
         v.effects = effects = unnamed
         v.verdict, v.separating = judge(unnamed)
+    elif v.verdict == "nothing" and left:
+        v.verdict, v.separating = judge([], [f"{x}: a column of what may drive it" for _, _, x in left])
     again, remarks = Replay(), list[str]()
     if emulated:
         again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
@@ -144,7 +146,8 @@ def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None,
         key = rows[row]
         s = result.selections[key]
         long = {k: np.resize(x, len(s.problem.y)) for k, x in domains.items()}
-        place, where = lives_in(s, long) if len(s.problem.y) % n == 0 else (None, "not looked for")
+        times, rest = divmod(len(s.problem.y), n)
+        place, where = lives_in(s, long, times) if rest == 0 else (None, "not looked for")
         text = f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
         out.append((key, SPOKEN[place] if place else None, text))
     return out
