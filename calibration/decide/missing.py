@@ -13,10 +13,10 @@ from calibration.statistics.whitening import Mask
 
 BINS, FEWEST_BINS = 24, 8  # of a domain, each with as many rows as the next
 ROWS = 10  # per bin
+LEAST_SHARE = 0.1  # of the mean square, explained on rows the means are not made of, before a domain is named
 # the same for a channel that is twice above its floor, where a fault comes and goes: chance alone has none on
 # rows that the means are not made of (development seed 1043: a brush that sticks at times has 0.07)
 SHOWN = 0.05
-LEAST_SHARE = 0.1  # of the mean square, explained on rows the means are not made of, before a domain is named
 
 
 def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
