@@ -183,8 +183,7 @@ def _errors(found: DriveResult) -> dict[str, dict[str, Any]]:
     if found.law is not None:
         held, unit = found.law.selection.held, found.law.selection.problem.unit
         if np.isfinite(held.before):
-            floor = found.law.floor
-            out["command"] = {"unit": unit, "before": held.before, "after": held.after, "floor": floor}
+            out["command"] = {"unit": unit, "before": held.before, "after": held.after, "floor": None}
     if found.electric is not None and np.isfinite(found.electric.selection.held.before):
         held, floor = found.electric.selection.held, found.electric.balance.floor
         out["electrical"] = {"unit": "V", "before": held.before, "after": held.after, "floor": floor}

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from calibration.candidates.candidate import Candidate
-from calibration.channels.drivenoise import passed
 from calibration.channels.law import Command, command_of, declared_terms
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
@@ -38,7 +37,6 @@ class Law:
 
     selection: Selection
     gains: dict[str, Parameter]
-    floor: float | None  # rms of the effort column's own noise: the law itself is computed exactly
     findings: list[Finding] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -51,8 +49,7 @@ def look_at_law(view: View, balance: Problem, seed: int) -> Law | None:
     c = command_of(view, balance, law)
     offered = [*_lines(view, c), *_by_speed(view, c), _forward(view, c)]
     s = select(c.problem, offered, np.random.default_rng(seed))
-    floor = passed(view, view.columns["effort"], max(view.sigma, 1.0))
-    out = Law(s, _gains(c), floor, [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
+    out = Law(s, _gains(c), [f for k in range(len(s.chosen)) for f in findings_of(s, k)])
     for f in out.findings:
         forward = f.domain == "reference"
         f.domain = "command" if f.name == "unknown" else f.domain
