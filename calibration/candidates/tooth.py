@@ -40,21 +40,7 @@ def damaged_teeth(
         ok = rows & (reach < 0.12)
         if ok.sum() < 500:
             continue
-        ranked = []
-        bins = 240
-        place = (phase[ok] % 1.0 * bins).astype(np.int64)
-        total, count = np.bincount(place, e[ok], bins), np.bincount(place, minlength=bins).astype(float)
-        for width in WIDTHS:
-            kernel = pulse((np.arange(bins) + 0.5) / bins, 0.5, width, np.full(bins, 1.5 / bins))
-            f_kernel = np.conj(np.fft.rfft(np.roll(kernel, -bins // 2)))
-            hit = np.fft.irfft(np.fft.rfft(total) * f_kernel, bins)
-            weight = np.fft.irfft(
-                np.fft.rfft(count) * np.conj(np.fft.rfft(np.roll(kernel**2, -bins // 2))), bins
-            )
-            score = np.where(weight > 3, hit**2 / np.maximum(weight, 3), 0.0)
-            k = int(np.argmax(score))
-            ranked.append((float(score[k]), k / bins, width))
-        for _, centre, width in sorted(ranked, reverse=True)[:keep]:
+        for centre, width in folded(phase[ok], e[ok], keep):
             shape = _shape(phase, reach)
             out.append(
                 Candidate(
@@ -72,6 +58,25 @@ def damaged_teeth(
                 )
             )
     return out
+
+
+def folded(phase: Array, e: Array, keep: int) -> list[tuple[float, float]]:
+    """Centre and width, turns, of the `keep` pulses that take most off the residual `e` (n,) at `phase`
+    (n,)."""
+    ranked = []
+    bins = 240
+    place = (phase % 1.0 * bins).astype(np.int64) % bins
+    total, count = np.bincount(place, e, bins), np.bincount(place, minlength=bins).astype(float)
+    for width in WIDTHS:
+        kernel = pulse((np.arange(bins) + 0.5) / bins, 0.5, width, np.full(bins, 1.5 / bins))
+        f_kernel = np.conj(np.fft.rfft(np.roll(kernel, -bins // 2)))
+        hit = np.fft.irfft(np.fft.rfft(total) * f_kernel, bins)
+        f_square = np.conj(np.fft.rfft(np.roll(kernel**2, -bins // 2)))
+        weight = np.fft.irfft(np.fft.rfft(count) * f_square, bins)
+        score = np.where(weight > 3, hit**2 / np.maximum(weight, 3), 0.0)
+        k = int(np.argmax(score))
+        ranked.append((float(score[k]), k / bins, width))
+    return [(centre, width) for _, centre, width in sorted(ranked, reverse=True)[:keep]]
 
 
 def _shape(phase: Array, reach: Array) -> Callable[[Array], Array]:
