@@ -81,6 +81,7 @@ def test_steps_that_a_slow_motion_stays_on_are_in_the_floor(tmp_path: Path) -> N
     assert row["floor"] > 2 * averaged
 
 
+@pytest.mark.slow
 def test_a_line_beside_a_motors_harmonic_is_not_the_motors(tmp_path: Path) -> None:
     """Order 5.67 on a table whose travel is hardly a turn: sixty harmonics together follow it, too."""
     key = "drive-single-bearing_pass-table-5-0"

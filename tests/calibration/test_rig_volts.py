@@ -86,6 +86,7 @@ def test_a_sound_motor_gives_its_numbers_and_no_name(tmp_path: Path) -> None:
     assert row["unit"] == "V" and row["after"] < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "size", "value", "changes"),
     [
@@ -123,6 +124,7 @@ def test_a_name_of_the_motor(
     assert row["after"] < 0.6 * row["before"]
 
 
+@pytest.mark.slow
 def test_a_burnt_commutator_is_unknown_over_the_motor(tmp_path: Path) -> None:
     found, _ = electrical(tmp_path, resistance=lambda t, angle, i: R * (1 + 0.3 * np.cos(2 * angle)))
     assert found and {(f["name"], f["domain"]) for f in found} == {("unknown", "motor_angle")}
