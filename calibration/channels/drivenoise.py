@@ -17,7 +17,8 @@ from calibration.statistics.whitening import Mask
 # 3 / (8 sqrt(pi) s^5)
 PASSED = 1.0 / (2.0 * np.sqrt(np.pi))
 CURVED = 3.0 / (8.0 * np.sqrt(np.pi))
-ORIGINS = (0.1, 0.3, 0.6, 0.8)  # of a step, where a sensor's zero may lie
+# of a step, where a sensor's zero may lie: distances of the two zeros of 0.2 to 0.8 (ASSUMPTION)
+ORIGINS = (0.1, 0.3, 0.6, 0.8)
 
 
 def sensors_floor(view: View, p: Problem) -> float | None:

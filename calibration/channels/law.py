@@ -36,10 +36,10 @@ LAGS = (3, 10, 30, 100, 300, 1000)
 
 @dataclass(frozen=True)
 class Command:
-    """The command less its law, as a problem whose base is an offset per file; `gains` (k,) with their
-    covariance (k, k) in the law's order of `labels`; `terms` (n_fitted, k): the law's, `follows` as far as
-    they follow the reference; `forward` (n_fitted, 3): what a feed-forward of rate, acceleration and friction
-    would add; `left`: rms of what the law leaves of the fitted rows."""
+    """The command less its law, as a problem whose base is an offset per file, or per piece where the law
+    integrates; `gains` (k,) with their covariance (k, k) in the law's order of `labels`; `terms` (n_fitted,
+    k): the law's, `follows` as far as they follow the reference; `forward` (n_fitted, 3): what a feed-forward
+    of rate, acceleration and friction would add; `left`: rms of what the law leaves of the fitted rows."""
 
     problem: Problem
     labels: list[tuple[str, str]]

@@ -14,7 +14,6 @@ from calibration.answers import calibrated, error_row, gate_rows, refusals, too_
 from calibration.corrected.making import Facts
 from calibration.decide.controls import controls
 from calibration.decide.merge import merge, traces
-from calibration.decide.missing import above_floor, lives_in
 from calibration.decide.passive import sound
 from calibration.decide.select import Selection
 from calibration.decide.thresholds import AXIS_EARNED
@@ -24,22 +23,21 @@ from calibration.decide.withdraw import withdraw
 from calibration.finding import Finding
 from calibration.inputs.declaration import Rig
 from calibration.plantfile import declared_model, write_plant
-from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Run
 from calibration.replay.answer import correct_and_replay
 from calibration.replay.held import Replay
 from calibration.report.replayplot import replay_picture
 from calibration.statistics.regression import gls
+from calibration.twomotors.above import still_missing
 from calibration.twomotors.lacks import absent_columns, lacks
 from calibration.twomotors.look import analyse
-from calibration.twomotors.result import AxisResult
+from calibration.twomotors.result import SENSORS, AxisResult
 from plant.model import load, with_effects
 
 LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters
 LEAST_PRESENT = (
     0.25  # of the rows between first and last stamp; with fewer, nothing is a measured motion any more
 )
-SENSORS = {"T": "torque", "S": "velocity", "K": "position", "E": "electrical", "U": "command"}
 
 
 def axis_answer(
@@ -117,40 +115,6 @@ def axis_answer(
     if plots and again.log is not None:
         pictures.append(replay_picture(again))
     return v, pictures, title
-
-
-#: of the report's domains, in words
-SPOKEN = {
-    "axis angle": "axis_angle",
-    "speed and direction": "velocity",
-    "time": "time",
-    "motor angle": "motor_angle",
-}
-
-
-def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None, str]]:
-    """Channel, domain and a sentence for every channel that is still above twice its floor."""
-    m = result.motion
-    n = len(m.pick)
-    turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
-    values = (
-        turn,
-        np.sign(rate) * np.log1p(np.abs(rate)),
-        result.frame.t[m.pick],
-        (turn * result.frame.train.ratio) % 1.0,
-    )
-    domains = dict(zip(SPOKEN, values, strict=True))
-    rows = {row: key for key, row in SENSORS.items()}
-    out = []
-    for row, ratio in above_floor(v.error).items():
-        key = rows[row]
-        s = result.selections[key]
-        long = {k: np.resize(x, len(s.problem.y)) for k, x in domains.items()}
-        times, rest = divmod(len(s.problem.y), n)
-        place, where = lives_in(s, long, times) if rest == 0 else (None, "not looked for")
-        text = f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
-        out.append((key, SPOKEN[place] if place else None, text))
-    return out
 
 
 def too_little(runs: list[Run]) -> str:

@@ -15,6 +15,9 @@ from calibration.declaredplant import Declared
 from calibration.finding import Finding, Parameter
 from calibration.statistics.whitening import Mask
 
+#: row of the report's error table, by channel
+SENSORS = {"T": "torque", "S": "velocity", "K": "position", "E": "electrical", "U": "command"}
+
 
 @dataclass
 class AxisResult:

@@ -81,6 +81,17 @@ def test_steps_that_a_slow_motion_stays_on_are_in_the_floor(tmp_path: Path) -> N
     assert row["floor"] > 2 * averaged
 
 
+def test_nothing_is_judged_before_a_gap_has_been_crossed(tmp_path: Path) -> None:
+    """A belt drive that begins every file somewhere in its gap; 7.9 floors were left by the first second."""
+    order = Order("drive-single-play-belt-2-0", "single", "belt", ("play",), 2.0, seconds=40.0)
+    seal(order, 1062, tmp_path / "logs", tmp_path / "truth")
+    folder = tmp_path / "logs" / order.key
+    calibrate(sorted(folder.glob("*.csv")), folder / "rig.yaml", [], tmp_path / "out", plots=False)
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert [e["name"] for e in report["effects"]] == ["play"]
+    assert report["error"]["position"]["after"] < 2 * report["error"]["position"]["floor"]
+
+
 @pytest.mark.slow
 def test_a_line_beside_a_motors_harmonic_is_not_the_motors(tmp_path: Path) -> None:
     """Order 5.67 on a table whose travel is hardly a turn: sixty harmonics together follow it, too."""

@@ -1,0 +1,43 @@
+"""What stands above the floor of a channel of an axis when the answer is given, and where it lives."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calibration.decide.missing import above_floor, lives_in
+from calibration.decide.verdict import Verdict
+from calibration.readers.drive import ARCSEC
+from calibration.twomotors.result import SENSORS, AxisResult
+
+#: of the report's domains, in words
+SPOKEN = {
+    "axis angle": "axis_angle",
+    "speed and direction": "velocity",
+    "time": "time",
+    "motor angle": "motor_angle",
+}
+
+
+def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None, str]]:
+    """Channel, domain and a sentence for every channel that is still above twice its floor."""
+    m = result.motion
+    n = len(m.pick)
+    turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
+    values = (
+        turn,
+        np.sign(rate) * np.log1p(np.abs(rate)),
+        result.frame.t[m.pick],
+        (turn * result.frame.train.ratio) % 1.0,
+    )
+    domains = dict(zip(SPOKEN, values, strict=True))
+    rows = {row: key for key, row in SENSORS.items()}
+    out = []
+    for row, ratio in above_floor(v.error).items():
+        key = rows[row]
+        s = result.selections[key]
+        long = {k: np.resize(x, len(s.problem.y)) for k, x in domains.items()}
+        times, rest = divmod(len(s.problem.y), n)
+        place, where = lives_in(s, long, times) if rest == 0 else (None, "not looked for")
+        text = f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
+        out.append((key, SPOKEN[place] if place else None, text))
+    return out
