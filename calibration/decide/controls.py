@@ -9,7 +9,8 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate
 from calibration.decide.heldout import predict_residual
-from calibration.decide.select import Selection, design
+from calibration.decide.judge import design
+from calibration.decide.select import Selection
 from calibration.decide.thresholds import FLIPPED_BY_LUCK
 from calibration.readers.run import Array
 from calibration.statistics.regression import under

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.select import Selection, design
+from calibration.decide.judge import design
+from calibration.decide.select import Selection
 from calibration.declaredplant import Declared
 from calibration.finding import Finding, Parameter
 from calibration.statistics.regression import gls

@@ -10,10 +10,12 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.problem import Problem
 from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_model, within_step
 from calibration.decide.gate import gate
-from calibration.decide.heldout import HeldOut, compare, cross_validate
+from calibration.decide.heldout import HeldOut, compare
+from calibration.decide.judge import Refusal, design, joint, judge, phases
 from calibration.decide.refine import polish
 from calibration.decide.sameorder import lesser_of_one_order
-from calibration.decide.scan import Contender, Look, fit_with, look
+from calibration.decide.scan import Contender, fit_with, look
+from calibration.decide.superfluous import drop_needless, unphysical, without_superfluous
 from calibration.decide.unseen import never_begins, settled
 from calibration.readers.run import Array
 from calibration.statistics.regression import Fit, gls, under
@@ -22,14 +24,6 @@ from calibration.statistics.surrogate import Scores
 MOST = 5  # effects per channel
 ROWS_PER_COLUMN = 8  # before a fit on a short log is tried at all
 CLOSEST = "the closest candidate"
-
-
-@dataclass(frozen=True)
-class Refusal:
-    """A candidate that was looked at and refused, and why."""
-
-    what: str
-    why: str
 
 
 @dataclass
@@ -53,11 +47,6 @@ class Selection:
         return float(self.scores.value.max()) if len(self.scores.value) else 0.0
 
 
-def design(problem: Problem, chosen: list[Candidate]) -> Array:
-    """Base and chosen candidates side by side."""
-    return np.hstack([problem.base, *[c.columns for c in chosen]])
-
-
 def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
     """Every accepted effect with its coefficients in the joint fit."""
     out, at = [], s.problem.base.shape[1]
@@ -65,28 +54,6 @@ def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
         out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
         at += c.candidate.width
     return out
-
-
-def phases(problem: Problem, chosen: list[Candidate]) -> list[slice]:
-    """Columns of `design` whose phase is every run's own."""
-    out, at = list(problem.base_phases), problem.base.shape[1]
-    for c in chosen:
-        if c.per_run:
-            out.append(slice(at, at + c.width))
-        at += c.width
-    return out
-
-
-def judge(
-    problem: Problem, look: Look, picks: list[Contender], contender: Contender
-) -> tuple[HeldOut, HeldOut]:
-    """Score a contender beside `picks`: on training rows it was not fitted to, and on the held-out rows."""
-    others = [p.candidate for p in picks]
-    base = design(problem, others)
-    x, w = np.hstack([base, contender.candidate.columns]), contender.fit.whitener
-    free = (phases(problem, others), phases(problem, [*others, contender.candidate]))
-    inside = cross_validate(problem, base, x, w)
-    return inside, compare(problem, base, look.null.beta, x, contender.fit.beta, w, free)
 
 
 def select(
@@ -131,11 +98,12 @@ def select(
         picks.append(taken)
         classes.append(equivalents(problem, now.contenders, taken))
         steps.append(held)
-        picks, classes, steps = _retest(problem, picks, classes, steps, refused)
+        picks, classes, steps = without_superfluous(problem, picks, classes, steps, refused)
         left = [c for c in left if all(c.key != p.candidate.key for p in picks)]
     if len(picks) > 1:
         for k in range(len(picks)):
             _again(problem, picks, classes, steps, k, candidates, margin, refused)
+        drop_needless(problem, picks, classes, steps, margin, refused)
     while (lesser := lesser_of_one_order(problem, [p.candidate for p in picks])) is not None:
         k, other = lesser
         why = f"its order is that of {picks[other].candidate.say()}, whose shape leaves as much"
@@ -148,7 +116,7 @@ def select(
         why = "beside the others its size comes out with a sign that physics excludes"
         refused.append(Refusal(picks[bad].candidate.say(), why))
         del picks[bad], classes[bad], steps[bad]
-    after = _fit(problem, picks)
+    after = joint(problem, picks)
     scores = gate(problem, before, after, candidates, problem.base, rng)
     keep = [p.evidence >= scores.threshold for p in picks]
     for p, good in zip(picks, keep, strict=True):
@@ -163,7 +131,7 @@ def select(
         picks = [x for x, k in zip(picks, keep, strict=True) if k]
         classes = [x for x, k in zip(classes, keep, strict=True) if k]
         steps = [x for x, k in zip(steps, keep, strict=True) if k]
-        after = _fit(problem, picks)
+        after = joint(problem, picks)
     held = compare(
         problem,
         problem.base,
@@ -192,28 +160,6 @@ def _closest(problem: Problem, candidates: list[Candidate]) -> list[Refusal]:
         for c in now
         if c.bayes > 0
     ]
-
-
-def _fit(problem: Problem, picks: list[Contender]) -> Fit:
-    return gls(
-        problem.y,
-        design(problem, [p.candidate for p in picks]),
-        problem.train,
-        problem.ar_order,
-        problem.block,
-    )
-
-
-def unphysical(problem: Problem, picks: list[Contender]) -> int | None:
-    """Place of an effect whose size in the joint fit its own bounds exclude; None where all are within."""
-    beta, at = _fit(problem, picks).beta, problem.base.shape[1]
-    for k, pick in enumerate(picks):
-        here = beta[at : at + pick.candidate.width]
-        some = pick.candidate.sign and np.any(here * pick.candidate.sign > 0)  # may lose a part: prune.signed
-        if not pick.candidate.allowed(here) and not some:
-            return k
-        at += pick.candidate.width
-    return None
 
 
 def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
@@ -264,21 +210,3 @@ def _again(
         picks[k], steps[k] = contender, held
         classes[k] = equivalents(problem, now.contenders, contender)
         return
-
-
-def _retest(
-    problem: Problem,
-    picks: list[Contender],
-    classes: list[list[Contender]],
-    steps: list[HeldOut],
-    refused: list[Refusal],
-) -> tuple[list[Contender], list[list[Contender]], list[HeldOut]]:
-    """Drop earlier picks that the later ones made superfluous."""
-    keep = list(range(len(picks)))
-    for k in range(len(picks) - 1):
-        others = design(problem, [picks[j].candidate for j in keep if j != k])
-        again = fit_with(problem, others, picks[k].candidate)
-        if again is None or again.bayes <= 0:
-            keep.remove(k)
-            refused.append(Refusal(picks[k].candidate.say(), "superfluous once the others are in"))
-    return [picks[k] for k in keep], [classes[k] for k in keep], [steps[k] for k in keep]

@@ -11,8 +11,9 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.guide import SLOWEST_S, guide_problem, named, usable
 from calibration.channels.problem import Problem
 from calibration.decide.heldout import cross_validate
+from calibration.decide.judge import Refusal
 from calibration.decide.parameters import amplitude_interval, finding_of
-from calibration.decide.select import Refusal, Selection, select
+from calibration.decide.select import Selection, select
 from calibration.drift.mounts import SIDEREAL_DAY_S, Part, known_mount, parts
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Rig

@@ -10,7 +10,8 @@ import numpy as np
 
 from calibration.candidates.orders import order_spectrum
 from calibration.decide.heldout import predict_residual
-from calibration.decide.select import Selection, design, phases
+from calibration.decide.judge import design, phases
+from calibration.decide.select import Selection
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from calibration.channels.view import View
 from calibration.decide.heldout import predict_residual
+from calibration.decide.judge import design, phases
 from calibration.decide.missing import LEAST_SHARE, domain_share
-from calibration.decide.select import Selection, design, phases
+from calibration.decide.select import Selection
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.finding import Finding
 from calibration.names.scene import Scene

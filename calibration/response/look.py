@@ -14,7 +14,8 @@ from calibration.channels.floors import floor_of
 from calibration.channels.problem import Problem
 from calibration.channels.slowoffset import offset_order
 from calibration.channels.view import STANDSTILLS, View, fade, view_of
-from calibration.decide.select import Selection, design, fitted
+from calibration.decide.judge import design
+from calibration.decide.select import Selection, fitted
 from calibration.errors import CalibrationInputError
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Response, Rig

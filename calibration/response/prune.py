@@ -10,8 +10,9 @@ from calibration.candidates.candidate import Candidate
 from calibration.channels.slowoffset import slowness, with_slow_offset
 from calibration.channels.view import View
 from calibration.decide.heldout import compare
+from calibration.decide.judge import Refusal, design, phases
 from calibration.decide.scan import Contender
-from calibration.decide.select import Refusal, Selection, design, fitted, phases
+from calibration.decide.select import Selection, fitted
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.names.structural_mode import MOST_DAMPED
 from calibration.readers.run import Array

@@ -9,8 +9,9 @@ import numpy as np
 from calibration.channels.pickup import pick_up
 from calibration.channels.problem import Problem
 from calibration.channels.view import View
+from calibration.decide.judge import design, phases
 from calibration.decide.parameters import finding_of
-from calibration.decide.select import Selection, design, phases, select
+from calibration.decide.select import Selection, select
 from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions

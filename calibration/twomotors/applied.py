@@ -14,7 +14,8 @@ from calibration.channels.frame import fill
 from calibration.channels.noise import column_noise
 from calibration.decide.delays import ELECTRICAL_S, WINDOW_DELAY_S
 from calibration.decide.heldout import predict_residual
-from calibration.decide.select import Refusal, Selection
+from calibration.decide.judge import Refusal
+from calibration.decide.select import Selection
 from calibration.finding import Finding
 from calibration.readers.drive import ARCSEC
 from calibration.readers.run import Array, Run

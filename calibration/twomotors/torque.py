@@ -16,7 +16,8 @@ from calibration.channels.motion import Motion
 from calibration.channels.torque import Torque, Transmission, torque_problem
 from calibration.decide.accept import FEWEST_BLOCKS
 from calibration.decide.broadband import wind
-from calibration.decide.select import Selection, design, select
+from calibration.decide.judge import design
+from calibration.decide.select import Selection, select
 from calibration.decide.sizes import white_noise
 from calibration.decide.tolerance import seen_speeds, telling, torque_changes
 from calibration.finding import Finding, Parameter

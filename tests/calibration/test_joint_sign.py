@@ -4,7 +4,7 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate
 from calibration.decide.scan import fit_with
-from calibration.decide.select import unphysical
+from calibration.decide.superfluous import unphysical
 from tests.calibration.test_statistics import regression
 
 
