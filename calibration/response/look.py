@@ -27,7 +27,7 @@ from calibration.names.scene import Scene
 from calibration.names.shaft_compliance import WINDS
 from calibration.readers.run import Array
 from calibration.response.delay import Found, Timed, left_by_the_declared, timed
-from calibration.response.gap import where_known
+from calibration.response.gap import crossed_first, where_known
 from calibration.response.harmonics import findings_of
 from calibration.response.law import Law, look_at_law
 from calibration.response.left import Left, left_over, settle
@@ -162,7 +162,7 @@ def _balance(
     def attempt() -> Timed:
         whole = problem_of(view, records, hold_out)
         if response.channel not in ("effort", "current", "force") or not view.dynamic:
-            return Timed(whole, search(whole))
+            return Timed(whole, crossed_first(search(whole), view, search))
         tell(f"{response.channel}: delay")
         return timed(view, records, hold_out, whole, response.channel, search)
 

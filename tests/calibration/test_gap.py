@@ -1,0 +1,53 @@
+"""Two encoders on both sides of a gap that nobody has crossed when a file begins."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.command import calibrate
+
+GAP, NOISE, PERIOD_S = 0.03, 3e-4, 0.005  # rad, rad, s
+SENSORS = """rig: joint
+columns:
+  time: {column: t, unit: s}
+  position: {column: x, unit: rad}
+  position2: {column: y, unit: rad}
+response: {channel: position2, unit: rad}
+estimate: [offset]
+smooth_s: 0.1
+"""
+
+
+def follower(x: np.ndarray, start: float) -> np.ndarray:
+    """What a side behind a gap does while the other goes `x`; the log begins `start` off its middle."""
+    y = np.empty_like(x)
+    y[0] = x[0] + start
+    for k in range(1, len(x)):
+        y[k] = min(max(y[k - 1], x[k] - GAP / 2), x[k] + GAP / 2)
+    return y
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_gap_is_found_although_files_begin_by_creeping_within_it(tmp_path: Path, seed: int) -> None:
+    """Nine seconds at 0.2 mrad/s, each file at another place of the gap: a sixth of all rows."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 60.0, PERIOD_S)
+    moving = 0.6 * np.sin(2 * np.pi * (t - 9.0) / 7.0) + 0.2 * np.sin(2 * np.pi * (t - 9.0) / 3.1)
+    files = []
+    for k, start in enumerate(rng.uniform(-0.4, 0.4, 2) * GAP):
+        x = np.cumsum(np.where(t < 9.0, 2e-4, moving)) * PERIOD_S
+        y = follower(x, float(start))
+        x, y = (one + NOISE * rng.standard_normal(len(t)) for one in (x, y))
+        files.append(tmp_path / f"{k}.csv")
+        np.savetxt(files[-1], np.column_stack([t, x, y]), delimiter=",", header="t,x,y", comments="")
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(SENSORS)
+    calibrate(files, rig, [], tmp_path / "out", plots=False)
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    (found,) = report["effects"]
+    assert found["name"] == "play"
+    assert found["parameters"]["gap"]["value"] == pytest.approx(GAP, rel=0.02)
+    row = report["error"]["position"]
+    assert row["after"] < 1.5 * row["floor"]
