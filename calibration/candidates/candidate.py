@@ -63,6 +63,11 @@ class Candidate:
         """Coefficients, and parameters that were searched for."""
         return self.width + self.searched
 
+    @property
+    def repeats(self) -> float | None:
+        """The order whose phase says where it is: of a line, or of a pulse once a turn."""
+        return self.order if self.kind == "line" or "width" in self.fixed else None
+
     def allowed(self, beta: Array) -> bool:
         """Whether the coefficients respect the physical sign."""
         if np.any(np.abs(beta) > self.most) or any(beta[k] <= 0 for k in self.positive):

@@ -15,7 +15,7 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from calibration.candidates.context import direction_of, since_reversal, turning_points
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.record import GAP, Record
+from calibration.inputs.record import GAP, Record, quantum
 from calibration.inputs.units import units_per_turn
 from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
@@ -232,10 +232,12 @@ def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     """rms of the position's white noise, from its fourth differences, and of its rounding."""
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
     noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(70.0)  # of white noise: 1+16+36+16+1
-    steps = np.abs(np.diff(x))
-    steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently
-    rounding = float(np.quantile(steps, 0.02)) / np.sqrt(12.0) if len(steps) else 0.0
-    return float(max(noise, rounding))
+    step = quantum(x)
+    if step is None:
+        both = (np.abs(np.diff(x)), np.diff(np.unique(x)))  # rows between two samples round differently
+        some = [d[d > 1e-9 * (float(np.ptp(x)) or 1.0)] for d in both]
+        step = min((float(np.quantile(d, 0.02)) for d in some if len(d)), default=0.0)
+    return float(max(noise, step / np.sqrt(12.0)))
 
 
 def least_travel(x: Array) -> float:

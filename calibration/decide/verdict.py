@@ -16,6 +16,7 @@ PHASES = (
     "effect, or of the difference of two encoders; plant.yaml, where one is written, has the effect's own"
     " torque or error, a sine."
 )
+PLACES = "The phase of a damaged tooth is its place on its part, in turns from where the position is zero."
 
 
 @dataclass
@@ -83,6 +84,12 @@ def as_dict(v: Verdict) -> dict[str, Any]:
         "controls": v.controls,
         "thresholds": v.thresholds,
         "reasons": v.reasons,
-        "conventions": [PHASES] if any("phase" in e.parameters for e in v.effects) else [],
+        "conventions": _conventions(v.effects),
         "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
     }
+
+
+def _conventions(effects: Sequence[Finding]) -> list[str]:
+    """What the phases that are told are phases of."""
+    units = {e.parameters["phase"].unit for e in effects if "phase" in e.parameters}
+    return [PHASES] * bool(units - {"turn"}) + [PLACES] * ("turn" in units)

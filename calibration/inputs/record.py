@@ -86,7 +86,15 @@ def quantum(x: Array) -> float | None:
     steps = steps[steps > 1e-12 * max(float(np.abs(values).max()), 1e-300)]
     if len(steps) == 0:
         return None
-    least = float(np.quantile(steps, 0.02))
+    few, smallest = (
+        float(np.quantile(steps, 0.02)),
+        float(steps.min()),
+    )  # a wide, sparse column has few of one
+    return _as_multiples(steps, few) or _as_multiples(steps, smallest)
+
+
+def _as_multiples(steps: Array, least: float) -> float | None:
+    """About `least`, when the steps are multiples of it."""
     near = steps[(steps > 0.5 * least) & (steps < 1.5 * least)]
     q = float(np.median(near)) if len(near) else least
     multiple = steps / q

@@ -19,7 +19,7 @@ def pictures(found: DriveResult, gate_text: str) -> list[dict[str, str]]:
         s = b.selection
         for k in _worth_drawing(s):
             c = s.chosen[k].candidate
-            x, label = _domain(b, c.domain, c.order if c.kind == "line" else None, c.frequency)
+            x, label = _domain(b, c.domain, c.repeats, c.frequency)
             odd = b.view.direction[b.view.rows] if c.name == "position_friction" else None
             out.append(
                 {

@@ -16,6 +16,7 @@ from calibration.readers.run import Array
 from calibration.statistics.whitening import Mask
 
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
+BINS, BINS_OF_A_PULSE = 80, 8
 
 
 def figure(width: float = 9.0, height: float = 3.4) -> tuple[Any, Any]:
@@ -91,7 +92,7 @@ def domain_plot(
     ax.plot(xs[::step], es[::step], ".", ms=1.5, color=GREY, alpha=0.4)
     ax.plot([], [], ".", ms=6, color=GREY, label="residual without the effect")
     order = np.argsort(xs)
-    cells = np.array_split(order, min(max(len(xs) // 20, 8), 80))
+    cells = np.array_split(order, min(max(len(xs) // 20, 8), _bins(selection, index)))
     mid = np.array([np.median(xs[c]) for c in cells])
     mean = np.array([np.mean(es[c]) for c in cells])
     error = np.array([np.std(es[c]) / np.sqrt(max(len(c) / 10, 1)) for c in cells])
@@ -104,6 +105,12 @@ def domain_plot(
     ax.set(xlabel=label, ylabel=f"residual{times}, {p.unit}")
     finish(ax, title)
     return png(fig)
+
+
+def _bins(selection: Selection, index: int) -> int:
+    """Bins over a domain: BINS, and for a narrow pulse as many as put BINS_OF_A_PULSE on its width."""
+    fixed = selection.chosen[index].candidate.fixed if selection.chosen else {}
+    return max(BINS, round(BINS_OF_A_PULSE / fixed["width"][0])) if "width" in fixed else BINS
 
 
 def order_plot(

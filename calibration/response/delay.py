@@ -24,8 +24,8 @@ from calibration.statistics.whitening import Mask
 
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]
-# A floor that coarse steps made is what they may hide: below it a delay, with what is named beside it, must
-# take PLAINLY of the held-out mean square. No log without an effect of development seeds 1031 to 1038, 1062
+# A floor that coarse steps made is what they may hide: below it a delay must take PLAINLY of the held-out mean
+# square, by itself. No log without an effect of development seeds 1031 to 1038, 1062
 # and 1063 had a delay that came so far: theirs took less than MATTERS (names/lateness.py)
 EARNS = 0.05  # of the held-out mean square, that a delay must take off beside the names found without it
 
@@ -66,7 +66,8 @@ def timed(
     before = _held_rms(problem)
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
-    if before <= plain_loop.floor and now**2 > (1 - PLAINLY) * before**2:  # names are for what is above it
+    alone = late[0].held.before
+    if before <= plain_loop.floor and alone**2 > (1 - PLAINLY) * before**2:  # names are for what is above it
         p = delay.parameters["delay"]
         what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
         why = "the declared model is at the floor without it"
@@ -74,7 +75,7 @@ def timed(
     telling = was**2 - now**2 > max(EARNS * was**2, least)
     if telling or (simpler and now < was):
         if before > 0:  # of what the declared model leaves, as every other effect's
-            delay.share = max(1 - (late[0].held.before / before) ** 2, 0.0)
+            delay.share = max(1 - (alone / before) ** 2, 0.0)
         return Timed(moved, late, delay, before)
     return Timed(plain_loop, found)
 

@@ -217,8 +217,8 @@ def _plots(result: AxisResult, effects: list[Finding]) -> list[dict[str, str]]:
             c = chosen.candidate
             n = len(s.problem.y)
             theta = np.resize(result.motion.theta[result.motion.pick], n) if key != "U" else s.problem.t
-            if c.kind == "line" and c.order and key != "U":
-                x, label = (theta / (2 * np.pi) * c.order) % 1.0, f"phase of order {c.order:.5g}, turns"
+            if c.repeats and key != "U":
+                x, label = (theta / (2 * np.pi) * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
             elif key == "T" and torque is not None:
                 x, label = _domain(c.domain, torque.context, None)
             elif c.domain == "velocity" and key != "U":
