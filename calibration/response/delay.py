@@ -25,7 +25,7 @@ from calibration.statistics.whitening import Mask
 Found = tuple[Selection, Scene, list[str]]
 Find = Callable[[Problem], Found]
 # A floor that coarse steps made is what they may hide: below it a delay must take PLAINLY of the held-out
-# mean square, by itself. No log without an effect of development seeds 1031 to 1038, 1062 and 1063 had a delay
+# mean square, by itself. No log without an effect of development seeds 1031 to 1038, 1062 and 1063 had one
 # that came so far: theirs took less than MATTERS (names/lateness.py)
 EARNS = 0.05  # of the held-out mean square, that a delay must take off beside the names found without it
 
