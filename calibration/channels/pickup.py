@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from calibration.channels.view import View, pieces, smooth
 from calibration.readers.run import Array
@@ -18,6 +19,7 @@ FEWEST = 2048  # rows of a file before its spectrum has quiet bins beside a line
 NEAR = 64  # bins, of whose median the noise around a line is taken
 BY_CHANCE = 1e-6  # that noise alone makes the highest of all bins as high
 MATTERS = 0.5  # of the column's own noise from row to row: a weaker line changes nothing that is told
+JUMP = 8.0  # of the usual deviation: a sine has 1.4 of its own at most (ASSUMPTION)
 ALIKE = 2.0  # factor within which its size must be the same in slow, middling and quick rows
 APART = 0.7  # of the quick third's speed, below which the slow third's is another speed
 
@@ -41,6 +43,8 @@ def pick_up(view: View) -> PickUp | None:
         return None
     y = full * view.response.gain
     quick = np.where(view.ok, y - smooth(y, view.segment, view.sigma), 0.0)
+    jumps = np.abs(quick) > JUMP * float(np.median(np.abs(quick[view.ok])))  # where friction turns
+    calm = view.ok & (maximum_filter1d(jumps.astype(float), 2 * round(4 * view.sigma) + 1) == 0)
     spans = [(a, b) for a, b in pieces(view.file) if b - a >= FEWEST]
     if not spans:
         return None
@@ -59,7 +63,7 @@ def pick_up(view: View) -> PickUp | None:
     if r <= 1 or n * (r - 1 - np.log(r)) < np.log(use.sum() / BY_CHANCE):
         return None
     line = _finest(quick, spans, at / size, size)
-    whole = _sizes(quick, spans, line, np.ones(len(quick), dtype=bool))
+    whole = _sizes(quick, spans, line, calm)
     noise = 1.4826 * float(np.median(np.abs(quick[view.ok])))
     if whole / np.sqrt(2.0) < MATTERS * noise or not _at_every_speed(view, quick, spans, line, whole):
         return None

@@ -126,9 +126,13 @@ def test_an_encoder_that_bows_away_more_and_more_is_a_ratio_that_moves(tmp_path:
     assert data["error"]["position"]["after"] < 0.05 * data["error"]["position"]["before"]
 
 
+COARSE = 2e-4  # position units: steps of the sensor, which a travel of 0.8 makes 4000 of
+
+
 def late_by_8_ms(folder: Path, noise_n: float) -> dict[str, Any]:
     t, x, u = motion(LONG)
     noise = noise_n * np.random.default_rng(4).standard_normal(len(t))
+    x = np.round(x / COARSE) * COARSE
     data = answer(folder, FORCE, (t, x, np.interp(t - 0.008, t, u) + noise))
     assert data["error"]["torque"]["before"] < data["error"]["torque"]["floor"]
     return data
