@@ -234,9 +234,9 @@ def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(70.0)  # of white noise: 1+16+36+16+1
     step = quantum(x)
     if step is None:
-        both = (np.abs(np.diff(x)), np.diff(np.unique(x)))  # rows between two samples round differently
-        some = [d[d > 1e-9 * (float(np.ptp(x)) or 1.0)] for d in both]
-        step = min((float(np.quantile(d, 0.02)) for d in some if len(d)), default=0.0)
+        steps = np.abs(np.diff(x))
+        steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently
+        step = float(np.quantile(steps, 0.02)) if len(steps) else 0.0
     return float(max(noise, step / np.sqrt(12.0)))
 
 

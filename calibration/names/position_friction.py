@@ -14,6 +14,7 @@ from calibration.readers.run import Array
 
 HARMONICS = 3  # of the travelled range, and up to 12 of every stage
 WAVES = np.arange(0.75, 12.1, 0.5)  # over the travelled range, of a friction that follows no stage
+BESIDE = 2.0  # of the friction that is fitted without the effect: what it may be beside it. ASSUMPTION
 STEP = 0.1  # of a wave over the range: a small one
 
 
@@ -23,7 +24,8 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     v = s.view
     period = min(s.span, v.turn or s.span)
-    most = s.declared.get("coulomb", 0.0) or np.inf  # friction that changes its sign would feed energy
+    # friction that changes its sign would feed energy; how much there is is known beside the effect
+    most = BESIDE * s.declared.get("coulomb", 0.0) or np.inf
     blank = Candidate(
         "position_friction",
         "axis_angle",

@@ -6,6 +6,7 @@ import numpy as np
 
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.friction import stop_operator
+from calibration.channels.friction import bristle
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
@@ -16,8 +17,9 @@ FEWEST = 0.005  # of the rows within twice the radius
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """One or two elastoplastic elements, less the sign of motion: the loop alone, sliding friction as it
-    is. A positive size only: the other sign would feed energy."""
+    """One or two elastoplastic elements, or bristles that give way by and by (Dahl's law, LuGre without its
+    dip), less the sign of motion: the loop alone, sliding friction as it is. A positive size only: the other
+    sign would feed energy."""
     if not s.both:
         return []
     v = s.view
@@ -34,13 +36,22 @@ def columns(s: Scene) -> list[Candidate]:
     def two(p: Array) -> Array:
         return np.column_stack([one(p), one(np.maximum(p, 2 * least) / 2)])
 
+    fresh = np.concatenate([[True], np.diff(v.file) != 0])
+
+    def bristles(p: Array) -> Array:
+        travel = float(np.clip(p[0], max(least, 1e-6 * stroke), RADII[-1] * stroke))
+        return bristle(v.x, fresh, v.period_s, 1.0, 1.0, 1.0 / travel) - v.direction
+
     out = []
     for part in RADII:
         radius = part * stroke
         if radius < least or np.mean(np.abs(v.since) < 2 * radius) < FEWEST:
             continue
-        fixed = {"breakaway_travel": (radius, s.angle_unit)}
-        for full, width in ((one, 1), (two, 2)):
+        for full, width, travel in (
+            (one, 1, "breakaway_travel"),
+            (two, 2, "breakaway_travel"),
+            (bristles, 1, "bristle_travel"),
+        ):
             shape = s.shaped(full)
             out.append(
                 Candidate(
@@ -49,7 +60,7 @@ def columns(s: Scene) -> list[Candidate]:
                     shape(np.array([radius])),
                     labels[:width],
                     sign=1,
-                    fixed=fixed,
+                    fixed={travel: (radius, s.angle_unit)},
                     shape=shape,
                     steps=(0.1 * radius,),
                     searched=1,

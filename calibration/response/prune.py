@@ -175,12 +175,14 @@ def _clear_of_steps(s: Selection) -> bool:
 def within_bounds(s: Selection, resolved: float) -> Selection:
     """Leave out what ended where its shape means nothing: a loop narrower than the sensor's steps, a mode
     that is no resonance. `resolved`: travel, position units."""
-    bounds = {
-        "presliding": ("breakaway_travel", -np.inf, resolved, "narrower than the sensor's steps show"),
-        "play": ("gap", -np.inf, resolved, "narrower than the sensor's steps show"),
-        "structural_mode": ("damping", MOST_DAMPED, np.inf, "damped too much for a resonance"),
-    }
-    for name, (key, low, high, why) in bounds.items():
+    narrow = (-np.inf, resolved, "narrower than the sensor's steps show")
+    bounds = (
+        ("presliding", "breakaway_travel", *narrow),
+        ("presliding", "bristle_travel", *narrow),
+        ("play", "gap", *narrow),
+        ("structural_mode", "damping", MOST_DAMPED, np.inf, "damped too much for a resonance"),
+    )
+    for name, key, low, high, why in bounds:
         at = [k for k, x in enumerate(s.chosen) if x.candidate.name == name]
         for k in reversed(at):
             if low <= s.chosen[k].candidate.fixed.get(key, (np.nan, ""))[0] <= high:
@@ -193,7 +195,16 @@ def _negative(s: Selection) -> str | None:
     for k, (name, _) in enumerate(s.problem.base_labels):
         if name in PASSIVE and s.before.beta[k] > 0 > s.after.beta[k]:
             return name
+        if name == "coulomb" and s.after.beta[k] > 0:
+            wave = max((float(np.hypot(*b)) for c, b in fitted(s) if _one_wave_of_friction(c)), default=0.0)
+            error = float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
+            if wave > s.after.beta[k] + SURE_Z * error:
+                return "friction at some places"
     return None
+
+
+def _one_wave_of_friction(c: Candidate) -> bool:
+    return c.name == "position_friction" and c.width == 2
 
 
 def _fit(s: Selection, chosen: list[Candidate]) -> tuple[Array, Fit]:

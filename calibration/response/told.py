@@ -8,7 +8,8 @@ from calibration.finding import Finding, Parameter
 from calibration.names.scene import Scene
 
 LINES = ("gear_eccentricity", "gear_mesh", "motor_cogging", "bearing_pass")
-LOOPS = ("presliding", "play")  # after a reversal: two of them are the shape of one
+# names of a loop after every reversal, and what tells how wide it is
+LOOPS: dict[str, tuple[str, ...]] = {"presliding": ("breakaway_travel", "bristle_travel"), "play": ("gap",)}
 # of the usual stroke: a wider loop is no bristle's. Contacts slide after micrometres to some hundred of them
 # (Al-Bender, Lampaert, Swevers 2005)
 WIDEST = 0.05
@@ -52,8 +53,8 @@ def _line(f: Finding, scene: Scene) -> Finding:
 def _wide_loop(f: Finding, scene: Scene) -> Finding:
     """A hysteresis over a good part of the stroke is a loop, but of what is not known: gears have gaps of
     minutes of arc."""
-    key = {"presliding": "breakaway_travel", "play": "gap"}.get(f.name)
-    if key is None or key not in f.parameters:
+    key = next((k for k in LOOPS.get(f.name, ()) if k in f.parameters), None)
+    if key is None:
         return f
     v = scene.view
     stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
