@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.channels.frictionlaw import friction_shape
 from calibration.channels.problem import Problem
 from calibration.channels.slowoffset import with_slow_offset
 from calibration.channels.view import View
@@ -127,7 +128,7 @@ def _term(view: View, name: str) -> Array:
     columns: dict[str, Callable[[], Array]] = {
         "inertia": lambda: view.columns.get("acceleration", view.second(view.x)),
         "viscous": lambda: view.rate(view.x) * (-1.0 if free else 1.0),
-        "coulomb": lambda: view.direction * (-1.0 if free else 1.0),
+        "coulomb": lambda: friction_shape(view) * (-1.0 if free else 1.0),
         "offset": lambda: np.ones(len(view.t)),
         "drift": lambda: view.clock - view.clock.mean(),
         "stiffness": lambda: view.x - view.x.mean(),

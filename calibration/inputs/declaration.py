@@ -89,6 +89,17 @@ class Friction:
 
 
 @dataclass(frozen=True)
+class FrictionLaw:
+    """Shape of the friction of a drive with one motor, whose size is the term `coulomb`: a dip from rest
+    (Stribeck), bristles (LuGre), or both. Position units and s."""
+
+    stiction_ratio: float = 1.0  # friction from rest over Coulomb's
+    stribeck_speed: float = 1.0
+    stribeck_exponent: float = 2.0
+    bristle_travel: float | None = None  # Coulomb friction over the bristles' stiffness
+
+
+@dataclass(frozen=True)
 class Rig:
     """A rig file, checked. `constants` are known coefficients of the model's terms, by the term's name."""
 
@@ -113,6 +124,7 @@ class Rig:
     format: str = "table"  # of its logs; axis-log and phd2 say their columns themselves
     motors: Motors | None = None
     friction: tuple[Friction, ...] = ()  # by state, the usual one first
+    friction_law: FrictionLaw | None = None  # of a drive with one motor
     encoder_periods: int | None = None  # per turn of the position encoder
     raw: dict[str, Any] = field(default_factory=dict)
 

@@ -31,6 +31,17 @@ def _check_controller(data: dict[str, Any], columns: dict[str, Column], refuse: 
         refuse("columns.reference.unit: must be the position's for a controller; give a scale")
 
 
+def _check_friction_law(law: dict[str, Any], has_term: bool, refuse: Any) -> None:
+    if not has_term:
+        refuse("friction_law: is the shape of the term coulomb, which no response has; estimate it")
+    dip = ("stiction_ratio", "stribeck_speed")
+    for name in dip:
+        if name not in law and ({*dip, "stribeck_exponent"} & set(law)):
+            refuse(f"friction_law: '{name}' is missing; a dip from rest has {' and '.join(dip)}")
+    if not {*dip, "bristle_travel"} & set(law):
+        refuse("friction_law: says nothing; give stiction_ratio and stribeck_speed, bristle_travel, or all")
+
+
 def _check_electrical(data: dict[str, Any], columns: dict[str, Column], refuse: Any) -> None:
     """Volts are measured, or a duty of a supply; a balance of them needs the current."""
     for name in ("voltage", "duty"):
@@ -152,6 +163,9 @@ def _check_model(
         forces = (set(data.get("estimate", ())) - {"offset", "drift"}) | set(data.get("constants", {}))
         if forces:
             refuse(f"{min(forces)}: is a term of forces, but no response is one")
+    if "friction_law" in data:
+        terms = {*data.get("estimate", ("coulomb",)), *data.get("constants", {})}
+        _check_friction_law(data["friction_law"], force and "coulomb" in terms, refuse)
     both = set(data.get("estimate", ())) & set(data.get("constants", {}))
     if both:
         refuse(f"constants.{min(both)}: is estimated too; a number is known or estimated")

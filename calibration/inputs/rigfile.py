@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Column, Controller, Friction, Motors, Response, Rig
+from calibration.inputs.declaration import Column, Controller, Friction, FrictionLaw, Motors, Response, Rig
 from calibration.inputs.rigchecks import check
 from calibration.inputs.stages import stages_of
 from calibration.inputs.yamltext import load_yaml
@@ -102,6 +102,7 @@ def _build(path: Path, data: dict[str, Any]) -> Rig:
         format=data.get("format", "table"),
         motors=_motors(data.get("motors")),
         friction=tuple(_friction(f) for f in data.get("friction", ())),
+        friction_law=_friction_law(data.get("friction_law")),
         encoder_periods=data.get("encoder_periods"),
         raw=data,
     )
@@ -131,6 +132,12 @@ def _friction(given: dict[str, Any]) -> Friction:
         float(given["viscous_Nms_per_rad"]),
         float(given["bristle_stiffness_Nm_per_rad"]),
     )
+
+
+def _friction_law(given: dict[str, Any] | None) -> FrictionLaw | None:
+    if given is None:
+        return None
+    return FrictionLaw(**{k: float(v) for k, v in given.items() if k != "source"})
 
 
 def _controller(given: dict[str, Any] | None) -> Controller | None:

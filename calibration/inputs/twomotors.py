@@ -39,6 +39,7 @@ OTHERS = (
     "estimate",
     "constants",
     "controller",
+    "friction_law",
     "smooth_s",
     "analyse_period_s",
     "hold_out_fraction",

@@ -7,6 +7,7 @@ import numpy as np
 from calibration.candidates.candidate import Candidate
 from calibration.candidates.friction import stop_operator
 from calibration.channels.friction import bristle
+from calibration.channels.frictionlaw import friction_shape
 from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
 from calibration.readers.run import Array
@@ -18,17 +19,17 @@ FEWEST = 0.005  # of the rows within twice the radius
 
 def columns(s: Scene) -> list[Candidate]:
     """One or two elastoplastic elements, or bristles that give way by and by (Dahl's law, LuGre without its
-    dip), less the sign of motion: the loop alone, sliding friction as it is. A positive size only: the other
-    sign would feed energy."""
+    dip), less the declared friction: the loop alone, sliding friction as it is. A positive size only: the
+    other sign would feed energy."""
     if not s.both:
         return []
     v = s.view
     stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
-    least = v.resolved
+    least, declared = v.resolved, friction_shape(v)
     labels = (("loop_force", s.unit), ("second_loop_force", s.unit))
 
     def element(radius: float) -> Array:
-        return stop_operator(v.x, v.file, radius) / radius - v.direction
+        return stop_operator(v.x, v.file, radius) / radius - declared
 
     def one(p: Array) -> Array:
         return element(float(np.clip(p[0], max(least, 1e-6 * stroke), RADII[-1] * stroke)))
@@ -40,7 +41,7 @@ def columns(s: Scene) -> list[Candidate]:
 
     def bristles(p: Array) -> Array:
         travel = float(np.clip(p[0], max(least, 1e-6 * stroke), RADII[-1] * stroke))
-        return bristle(v.x, fresh, v.period_s, 1.0, 1.0, 1.0 / travel) - v.direction
+        return bristle(v.x, fresh, v.period_s, 1.0, 1.0, 1.0 / travel) - declared
 
     out = []
     for part in RADII:
