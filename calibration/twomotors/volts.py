@@ -43,7 +43,7 @@ def electrical_channel(
         mean_currents(frame, p, s.after.beta)
         constant, spread = float(s.after.beta[1]), float(np.sqrt(s.after.covariance[1, 1]))
         whole = 1.0
-        if spread > SURE_CONSTANT * abs(constant):  # one speed: it is not apart from the resistance
+        if spread > SURE_CONSTANT * constant:  # one speed, not apart from the resistance; or no motor at all
             constant = numbers.torque_constant
         else:
             result.scale_error, whole = spread / abs(constant), e.constant / constant
