@@ -19,6 +19,10 @@ def summary(data: dict[str, Any]) -> str:
     """What was found and what it is worth, for the top of the page."""
     effects = data["effects"]
     if data["verdict"] == "nothing":
+        if any("still missing" in x for x in data["reasons"]):
+            return (
+                "No effect shows in this log, with a name or without, though more is left than sensors leave."
+            )
         return "Nothing is missing from the declared model that this log could show."
     if data["verdict"] == "cannot tell":
         return "This log cannot tell whether something is missing. It lacks: " + (

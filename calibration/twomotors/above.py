@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from calibration.decide.missing import above_floor, lives_in
@@ -17,16 +19,25 @@ SPOKEN = {
     "motor angle": "motor_angle",
 }
 
-
-# floors that are left before a domain makes an unnamed effect of them: the emulator's own sound logs, whose
-# boards keep clocks of their own, leave 4.1 at most (tests/calibration/test_own_logs.py), a brush that sticks
-# at times 5.5 (development seed 1043)
+# floors that are left before they are an effect without a name, or a reason not to say "nothing": the
+# emulator's own sound logs, whose boards keep clocks of their own, leave 4.1 at most
+# (tests/calibration/test_own_logs.py), a brush that sticks at times 5.5 (development seed 1043)
 EFFECT = 5.0
 
 
-def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None, str]]:
-    """Channel, domain and a sentence for every channel that is still above twice its floor; the domain only
-    where so much is left that it is an effect."""
+@dataclass(frozen=True)
+class Above:
+    """A channel that is still above twice its floor: the domain it lives in, where one shows it, and so in
+    words; `effect` where so much is left that it is more than how boards keep time."""
+
+    channel: str
+    domain: str | None
+    text: str
+    effect: bool
+
+
+def still_missing(result: AxisResult, v: Verdict) -> list[Above]:
+    """Every channel that is still above twice its floor."""
     m = result.motion
     n = len(m.pick)
     turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
@@ -46,5 +57,5 @@ def still_missing(result: AxisResult, v: Verdict) -> list[tuple[str, str | None,
         times, rest = divmod(len(s.problem.y), n)
         place, where = lives_in(s, long, times) if rest == 0 else (None, "not looked for")
         text = f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
-        out.append((key, SPOKEN[place] if place and ratio > EFFECT else None, text))
+        out.append(Above(key, SPOKEN[place] if place else None, text, ratio > EFFECT))
     return out

@@ -97,12 +97,13 @@ def axis_answer(
             v.error[SENSORS[key]]["before"] = result.before.get(key, s.held.before)
     _before_within_tolerance(v, result, effects)
     left = still_missing(result, v)
-    v.remarks = [text for _, _, text in left]
-    if v.verdict == "nothing" and (unnamed := [Finding("unknown", k, d, note=x) for k, d, x in left if d]):
+    v.remarks = [x.text for x in left]
+    large = [x for x in left if x.effect] if v.verdict == "nothing" else []
+    if unnamed := [Finding("unknown", x.channel, x.domain, note=x.text) for x in large if x.domain]:
         v.effects = effects = unnamed
         v.verdict, v.separating = judge(unnamed)
-    elif v.verdict == "nothing" and left:
-        v.verdict, v.separating = judge([], [f"{x}: a column of what may drive it" for _, _, x in left])
+    elif large:
+        v.verdict, v.separating = judge([], [f"{x.text}: a column of what may drive it" for x in large])
     again, remarks = Replay(), list[str]()
     if emulated:
         again, remarks = correct_and_replay(result, v, out / "plant.yaml", plant, run_again, tell)
