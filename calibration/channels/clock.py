@@ -7,6 +7,7 @@ import numpy as np
 
 from calibration.channels.frame import Frame
 from calibration.finding import Finding, Parameter
+from calibration.inputs.ends import piled_at
 from calibration.readers.run import Array, Run
 from calibration.statistics.tails import share_log10, variance_log10
 from calibration.statistics.whitening import Mask
@@ -15,8 +16,6 @@ JITTER_S = 4e-5  # rms of the stamps about a straight line; an interrupt's own l
 MOVING = 4e-8  # rad per row, 0.8 arcsec/s
 QUICK = 4e-7  # rad per row: fast enough that a single row without motion is no chance
 LOST = 0.003  # fraction of rows missing that is worth a word
-DRIVEN = 0.05  # of the effort's range, that a column at its end must hold against
-PILE = 60  # rows at the very end of a column's range
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 WHOLE = 1.0  # -log10 p of one jump that is a power of two within a tenth (a fold) or a twentieth either way
 PACKET = 25  # rows per RS232 packet, log-format.md
@@ -225,9 +224,7 @@ def _stops(x: Array, name: str, effort: Array) -> tuple[str, float]:
         power = np.log2(abs(end) + (1 if end > 0 else 0))
         if name == "velocity" and abs(power - round(power)) > 1e-9:
             continue  # a constant speed piles up too: only an end of a power of two is a stop
-        if np.ptp(effort[x == end]) < DRIVEN * np.ptp(effort):
-            continue  # a steady effort makes a steady current
-        piled, next_to = int(np.sum(x == end)), int(np.sum(x == end + inward))
-        if piled >= PILE and piled > 3 * next_to + 20:
-            return f"stops at {int(end)} counts", share_log10(piled, piled + next_to, 0.5)
+        at = piled_at(x, effort, float(end), float(end + inward))
+        if at is not None:
+            return f"stops at {int(end)} counts", share_log10(at[0], sum(at), 0.5)
     return "", 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Column, Rig
+from calibration.inputs.ends import converter_end
 from calibration.inputs.record import Record
 from calibration.inputs.train import KINDS, train_of
 from calibration.inputs.units import units_per_turn
@@ -147,7 +148,20 @@ def runs_of(records: list[Record], rig: Rig) -> list[Run]:
                 r.name, r.path, _session(r, rig), si, {}, _header(r, rig), _scales(r, rig, train.ratio, steps)
             )
         )
+    _end_of_currents(out)
     return out
+
+
+def _end_of_currents(runs: list[Run]) -> None:
+    """Tell every run where the currents' converter ends, when they pile up there."""
+    end = converter_end(runs, ("current_a", "current_b"))
+    if end is None:
+        return
+    for r in runs:
+        r.scales["adc_end_A"] = end - r.scales["adc_A_per_count"] / 2
+        rows = sum(int(np.sum(r.columns[n] >= end)) for n in ("current_a", "current_b"))
+        if rows:
+            r.notes.append(f"{r.name}: {rows} currents stop at {end:.4g} A, left out")
 
 
 def _session(r: Record, rig: Rig) -> str:
