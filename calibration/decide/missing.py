@@ -25,9 +25,9 @@ def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
     return {k: r for k, r in found.items() if r > STILL_MISSING}
 
 
-def lives_in(s: Selection, domains: dict[str, Array], stacked: int = 1) -> tuple[str | None, str]:
+def lives_in(s: Selection, domains: dict[str, Array], stacked: int = 1) -> tuple[str | None, float, str]:
     """The domain whose bin means on training rows take most off the held-out residual, or off its size; None
-    where none does; and in words. Of several things one after another in the channel (`stacked`: two motors)
+    where none does; how much of its mean square; and in words. Of several things one after another in the channel (`stacked`: two motors)
     the one that leaves most is looked at."""
     e, p = s.after.residual, s.problem
     mine = np.arange(len(e)) // (len(e) // stacked)
@@ -41,8 +41,8 @@ def lives_in(s: Selection, domains: dict[str, Array], stacked: int = 1) -> tuple
     }
     best = max(shares, key=lambda k: shares[k], default=None)
     if best is None or shares[best] < SHOWN:
-        return None, "in none of " + ", ".join(domains)
-    return best[0], f"over {best[0]}{best[1]} ({100 * shares[best]:.0f} % of its mean square)"
+        return None, 0.0, "in none of " + ", ".join(domains)
+    return best[0], shares[best], f"over {best[0]}{best[1]} ({100 * shares[best]:.0f} % of its mean square)"
 
 
 def domain_share(e: Array, x: Array, train: Mask, test: Mask) -> float:

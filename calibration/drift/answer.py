@@ -73,7 +73,7 @@ def _still_missing(found: GuideResult, v: Verdict) -> list[str]:
     clock = p.domains.get("clock", p.t)
     parts = found.stages if len(found.stages) <= FEW else {}  # usual wheels that were only tried say nothing
     domains = {"time": p.t, **{f"the turn of {n}": (clock * rate) % 1.0 for n, rate in parts.items()}}
-    _, where = lives_in(found.selection, domains)
+    *_, where = lives_in(found.selection, domains)
     return [
         f"something is still missing in {row}: {ratio:.1f} floors are left, {where}"
         for row, ratio in above_floor(v.error).items()
