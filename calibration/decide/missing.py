@@ -27,8 +27,8 @@ def above_floor(error: dict[str, dict[str, Any]]) -> dict[str, float]:
 
 def lives_in(s: Selection, domains: dict[str, Array], stacked: int = 1) -> tuple[str | None, float, str]:
     """The domain whose bin means on training rows take most off the held-out residual, or off its size; None
-    where none does; how much of its mean square; and in words. Of several things one after another in the channel (`stacked`: two motors)
-    the one that leaves most is looked at."""
+    where none does; how much of its mean square; and in words. Of several things one after another in the
+    channel (`stacked`: two motors) the one that leaves most is looked at."""
     e, p = s.after.residual, s.problem
     mine = np.arange(len(e)) // (len(e) // stacked)
     worst = max(range(stacked), key=lambda k: float(np.sum(e[p.test & (mine == k)] ** 2)))
