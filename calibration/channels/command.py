@@ -28,12 +28,16 @@ STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position
 REGIME = 51  # rows over which the set point's kind is told
 CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
 ROUNDING = float(np.sqrt(2 / 12))  # steps of the effort: of a change between two efforts, each in whole steps
+LIMITS = np.geomspace(20.0, 5000.0, 57)  # arcsec/s, a tenth apart: where a law may change
+FEW = 0.03  # of the rows, on one side of such a limit
 EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
 
-def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Problem, Array] | None:
-    """The problem at the log's full rate, and the set point in arcsec/s; None without set point or
+def command_problem(
+    frame: Frame, held: Mask, own: bool = False
+) -> tuple[Problem, tuple[Array, Array]] | None:
+    """The problem at the log's full rate, set point and measured rate in arcsec/s; None without set point or
     velocity.
 
     `own`: the emulator's boards made the log, whose gains depend on the mode: one regime is looked at.
@@ -92,7 +96,8 @@ def command_problem(frame: Frame, held: Mask, own: bool = False) -> tuple[Proble
         sensor="command",
         floor=ROUNDING if np.allclose(u, np.round(u), atol=0.01, equal_nan=True) else 0.0,
     )
-    return problem, np.nan_to_num(setpoint) * 206264.806
+    rates = (np.nan_to_num(x) * ARCSEC_PER_RAD for x in (setpoint, velocity))
+    return problem, (next(rates), next(rates))
 
 
 def resting(setpoint: Array, run: NDArray[np.int64]) -> Mask:
@@ -123,9 +128,9 @@ def usual_regime(setpoint: Array, run: NDArray[np.int64], valid: Mask) -> Mask:
     return max(regimes, key=lambda rows: int((rows & valid).sum()))
 
 
-def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Candidate]:
-    """Lines at fixed Hz (a disturbance on the command), and a law that changes with the set point (no
-    catalogue name)."""
+def command_candidates(problem: Problem, rates: tuple[Array, Array], e: Array) -> list[Candidate]:
+    """Lines at fixed Hz (a disturbance on the command), and a law that changes with the set point or with the
+    measured rate, `rates` in arcsec/s (no catalogue name)."""
     rows = problem.train
     dt = problem.period_s
     size = 1 << int(np.bincount(problem.run - problem.run.min()).max() - 1).bit_length()
@@ -155,19 +160,39 @@ def command_candidates(problem: Problem, setpoint: Array, e: Array) -> list[Cand
                 per_run=True,
             )
         )
-    for limit in (30.0, 60.0, 120.0, 200.0, 300.0, 450.0, 700.0, 1000.0, 1500.0):
-        below = np.abs(setpoint) < limit
-        if 0.03 < np.mean(below[rows]) < 0.97:
+    for name, rate in zip(("set_point_limit", "rate_limit"), rates, strict=True):
+        limit = likeliest_limit(problem, np.abs(rate))
+        if limit is not None:
             out.append(
                 Candidate(
                     "unknown",
                     "command",
-                    problem.base * below[:, None],
+                    problem.base * (np.abs(rate) < limit)[:, None],
                     tuple((f"gain_below_{k}", f"{problem.unit} per count") for k in range(4)),
-                    fixed={"set_point_limit": (limit, "arcsec/s")},
+                    fixed={name: (limit, "arcsec/s")},
                 )
             )
     return out
+
+
+def likeliest_limit(problem: Problem, rate: Array) -> float | None:
+    """The one of LIMITS of `rate` (n,), arcsec/s, below and above which two laws leave least on training
+    rows; None where the log has hardly any rows on one side of every one."""
+    rows = problem.train
+    x, y = problem.base[rows], problem.y[rows]
+    bins = np.digitize(rate[rows], LIMITS)
+    count = np.cumsum(np.bincount(bins, minlength=len(LIMITS) + 1))
+    parts = [bins == k for k in range(len(LIMITS) + 1)]
+    gram = np.cumsum([x[b].T @ x[b] for b in parts], axis=0)
+    moment = np.cumsum([x[b].T @ y[b] for b in parts], axis=0)
+
+    def taken(k: int) -> float:  # by the law below the limit, and by the one above
+        sides = ((gram[k], moment[k]), (gram[-1] - gram[k], moment[-1] - moment[k]))
+        return sum(float(m @ np.linalg.lstsq(g, m, rcond=1e-10)[0]) for g, m in sides)
+
+    least = FEW * count[-1]
+    tried = [k for k in range(len(LIMITS)) if least < count[k] < count[-1] - least]
+    return float(LIMITS[max(tried, key=taken)]) if tried else None
 
 
 def _line(t: Array, run: NDArray[np.int64], dt: float) -> Callable[[Array], Array]:

@@ -24,9 +24,9 @@ def command_channel(result: AxisResult, rng: np.random.Generator) -> None:
     command = command_problem(result.frame, result.held, result.declared.own)
     if command is None:
         return
-    p, setpoint = command
+    p, rates = command
     null = gls(p.y, p.base, p.train, p.ar_order, p.block)
-    s = select(p, command_candidates(p, setpoint, null.residual), rng, margin=0.02)
+    s = select(p, command_candidates(p, rates, null.residual), rng, margin=0.02)
     if s.chosen and s.chosen[0].candidate.name == "unknown" and s.held.before < LEAST_LAW * p.floor:
         s = select(p, [], rng)
     result.selections["U"] = s
