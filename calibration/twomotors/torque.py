@@ -17,6 +17,7 @@ from calibration.channels.torque import Torque, Transmission, torque_problem
 from calibration.decide.accept import FEWEST_BLOCKS
 from calibration.decide.broadband import wind
 from calibration.decide.judge import design
+from calibration.decide.sameorder import SAME
 from calibration.decide.select import Selection, select
 from calibration.decide.sizes import white_noise
 from calibration.decide.tolerance import seen_speeds, telling, torque_changes
@@ -32,6 +33,7 @@ from plant.effects.signals import ANGLE, RATE, TIME
 CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history
 REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away
 LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training
+MOTOR_LINES, GEAR_LINES = ("motor_cogging", "torque_ripple"), ("gear_mesh", "gear_eccentricity")
 EXPLAINS = 0.7  # of the held-out mean square: what is left beside such an effect is its remainder
 SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is believed beside a broadband torque
 
@@ -150,6 +152,7 @@ def _pass(
     candidates += axis_unknown.unknown_torques(c, f, null.residual, p.train, m.period_s)
     candidates += tooth.damaged_teeth(c, null.residual, p.train, m.period_s)
     candidates += axis_lines.free_lines(c, f.level, null.residual, p.train, m.period_s)
+    candidates = [c for c in candidates if not _of_a_gear(c, result.findings)]
     whole = p.valid.copy()
     moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
     if (moving & p.train).sum() > LEAST_MOVING and (moving & p.test).sum() > 100:
@@ -157,6 +160,15 @@ def _pass(
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
     return select(p, candidates, rng), whole, moving
+
+
+def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:
+    """Whether a motor's line has the order of a gear's that the encoders have shown: a motor's torque moves
+    no encoder against another, and a pinion's teeth are harmonics of its motor."""
+    if c.name not in MOTOR_LINES or not c.order:
+        return False
+    gears = (f.order for f in found if f.channel == "K" and f.name in GEAR_LINES and f.order)
+    return any(abs(c.order / order - 1.0) < SAME for order in gears)
 
 
 def _by_formula(m: Motion, clock: Array) -> list[Candidate]:
