@@ -211,10 +211,14 @@ def _weakening(e: Electrical, t: Array) -> Callable[[Array], Array]:
 
 
 def weakened(chosen: list[tuple[Candidate, Array]], clock: Array, ratio: float = 1.0) -> dict[str, Array]:
-    """Part of its torque constant that each motor has left, (n,) over `clock`, from the E channel's accepted
-    effects; `ratio` as in `from_whole`."""
+    """Part of what its current reads that each motor makes torque of, (n,) over `clock`, from the E channel's
+    accepted effects: what its magnets have left, and no more than it really draws; `ratio` as in
+    `from_whole`."""
     out = {"a": np.ones(len(clock)), "b": np.ones(len(clock))}
     for c, beta in chosen:
+        if c.name == "adc_gain":
+            key = "ab"[int(c.fixed["motor"][0])]
+            out[key] = out[key] * (1.0 - float(beta[0]))
         if c.name != "magnet_weakening":
             continue
         at = c.fixed
@@ -223,6 +227,12 @@ def weakened(chosen: list[tuple[Candidate, Array]], clock: Array, ratio: float =
             if "motor" not in at or at["motor"][0] == k:
                 out[key] = out[key] - lost
     return out
+
+
+def reading_error(chosen: list[tuple[Candidate, Array]]) -> float:
+    """Relative standard error of all torques from a current's gain: volts show that the two motors' readings
+    differ, and hardly which of them is right."""
+    return max((abs(float(beta[0])) / 2 for c, beta in chosen if c.name == "adc_gain"), default=0.0)
 
 
 def _heating(e: Electrical, clock: Array) -> Callable[[Array], Array]:

@@ -49,6 +49,8 @@ def electrical_channel(
             result.scale_error, whole = spread / abs(constant), e.constant / constant
         per_ampere = constant * frame.scale["gear_ratio"]
         left = electrical_candidates.weakened(fitted(s), clock, whole)
+        doubt = electrical_candidates.reading_error(fitted(s))
+        result.scale_error = float(np.hypot(result.scale_error, doubt))
         result.collect(s)
         result.findings = [electrical_candidates.from_whole(f, whole) for f in result.findings]
         cold = float(s.after.beta[0])
