@@ -7,17 +7,9 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
+from tests.calibration.test_coarse_steps import SENSORS
 
 GAP, NOISE, PERIOD_S = 0.03, 3e-4, 0.005  # rad, rad, s
-SENSORS = """rig: joint
-columns:
-  time: {column: t, unit: s}
-  position: {column: x, unit: rad}
-  position2: {column: y, unit: rad}
-response: {channel: position2, unit: rad}
-estimate: [offset]
-smooth_s: 0.1
-"""
 
 
 def follower(x: np.ndarray, start: float) -> np.ndarray:
