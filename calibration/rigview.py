@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.inputs.declaration import Friction, Motors, Rig
+from calibration.inputs.declaration import Friction, FrictionLaw, Motors, Rig
 from calibration.inputs.logs import read_drive
 from calibration.inputs.record import Record, Signal, signal_of
 from calibration.inputs.rigfile import load_rig
@@ -88,6 +88,7 @@ def _declaration(rig: Rig) -> str:
         [
             *parts,
             *([f"knows {known}"] if known else []),
+            *([_friction_law(rig.friction_law, unit)] if rig.friction_law is not None else []),
             *([f"stages {stages}"] if stages else []),
             *([f"controlled by a {law.law}, {gains}"] if law else []),
         ]
@@ -100,6 +101,13 @@ def _motors(m: Motors) -> list[str]:
         f"{first}, trains of {m.train_stiffness:g} N m/rad, counter torque {100 * m.counter_torque:g} %",
         "explains torque, volts, encoders and command of the axis, as far as it has the columns",
     ]
+
+
+def _friction_law(law: FrictionLaw, unit: str) -> str:
+    dip = f"{law.stiction_ratio:g} times Coulomb's from rest, Stribeck {law.stribeck_speed:g} {unit}/s"
+    dip += f" to the power {law.stribeck_exponent:g}" if law.stribeck_exponent != 2.0 else ""
+    bristles = f"bristles of {law.bristle_travel:g} {unit}" if law.bristle_travel is not None else ""
+    return "friction law: " + "; ".join([dip] * (law.stiction_ratio != 1.0) + [bristles] * bool(bristles))
 
 
 def _friction(f: Friction) -> str:

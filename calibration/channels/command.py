@@ -28,8 +28,8 @@ STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position
 REGIME = 51  # rows over which the set point's kind is told
 CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py
 ROUNDING = float(np.sqrt(2 / 12))  # steps of the effort: of a change between two efforts, each in whole steps
-LIMITS = np.geomspace(20.0, 5000.0, 57)  # arcsec/s, a tenth apart: where a law may change
-FEW = 0.03  # of the rows, on one side of such a limit
+LIMITS = np.geomspace(20.0, 5000.0, 57)  # arcsec/s, a tenth apart: where a law may change (ASSUMPTION)
+FEW = 0.03  # of the rows, on one side of such a limit (ASSUMPTION)
 EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
 REGULAR = 0.6  # fraction of pulses that must keep the period
 
@@ -96,8 +96,7 @@ def command_problem(
         sensor="command",
         floor=ROUNDING if np.allclose(u, np.round(u), atol=0.01, equal_nan=True) else 0.0,
     )
-    rates = (np.nan_to_num(x) * ARCSEC_PER_RAD for x in (setpoint, velocity))
-    return problem, (next(rates), next(rates))
+    return problem, (np.nan_to_num(setpoint) * ARCSEC_PER_RAD, np.nan_to_num(velocity) * ARCSEC_PER_RAD)
 
 
 def resting(setpoint: Array, run: NDArray[np.int64]) -> Mask:

@@ -86,11 +86,8 @@ def quantum(x: Array) -> float | None:
     steps = steps[steps > 1e-12 * max(float(np.abs(values).max()), 1e-300)]
     if len(steps) == 0:
         return None
-    few, smallest = (
-        float(np.quantile(steps, 0.02)),
-        float(steps.min()),
-    )  # a wide, sparse column has few of one
-    return _as_multiples(steps, few) or _as_multiples(steps, smallest)
+    # a wide, sparse column has few steps of one count
+    return _as_multiples(steps, float(np.quantile(steps, 0.02))) or _as_multiples(steps, float(steps.min()))
 
 
 def _as_multiples(steps: Array, least: float) -> float | None:

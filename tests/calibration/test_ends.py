@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.inputs.ends import piled_at
+from calibration.inputs.ends import converter_end, piled_at
+from calibration.readers.run import Run
 from tests.blind.drives.case import seal
 from tests.blind.drives.cells import SETS
 
@@ -33,6 +34,12 @@ def test_a_clipped_one_has(end: float) -> None:
     found = piled_at(np.minimum(x, end), effort, end, end - 1)
     assert found is not None
     assert found[0] == np.sum(x >= end)
+
+
+@pytest.mark.parametrize("x", [np.full(ROWS, np.nan), np.zeros(ROWS), np.full(ROWS, 3.0)])
+def test_a_current_that_never_changes_has_no_end(x: np.ndarray) -> None:
+    run = Run("r", Path("r.csv"), "s", {"current_a": x, "effort": currents(0.0)[0]}, {}, {}, {})
+    assert converter_end([run], ("current_a", "current_b")) is None
 
 
 def test_a_steady_effort_makes_a_steady_current() -> None:

@@ -9,19 +9,13 @@ import pytest
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.rigfile import load_rig
-from tests.calibration.test_drives import PERIOD, answer, found
+from calibration.rigview import show
+from tests.calibration.test_drives import FORCE, PERIOD, answer, found
 
 MASS, COULOMB, VISCOUS = 2.0, 3.0, 4.0
 RATIO, SPEED, TRAVEL = 1.6, 0.05, 0.03  # of friction from rest; rad/s; rad
 SUBSTEPS = 40
-RIG = """rig: a stage with soft bristles
-columns:
-  time: {column: t, unit: s}
-  position: {column: x, unit: rad}
-  effort: {column: u, unit: N m}
-response: {channel: effort, unit: N m}
-estimate: [inertia, viscous, coulomb, offset]
-"""
+RIG = FORCE.replace("unit: m}", "unit: rad}").replace("unit: N}", "unit: N m}")
 LAW = (
     f"friction_law: {{stiction_ratio: {RATIO}, stribeck_speed: {SPEED}, bristle_travel: {TRAVEL},"
     " source: test}\n"
@@ -63,6 +57,13 @@ def test_what_the_declared_law_says_is_no_effect(tmp_path: Path) -> None:
     assert row["after"] < 1.5 * row["floor"]
     assert row["after"] < 0.1 * bare["error"]["torque"]["before"]
     assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.02)
+
+
+def test_what_is_understood_is_shown(tmp_path: Path) -> None:
+    path = tmp_path / "rig.yaml"
+    path.write_text(RIG + LAW)
+    said = "friction law: 1.6 times Coulomb's from rest, Stribeck 0.05 rad/s; bristles of 0.03 rad"
+    assert said in show(path, [], None).splitlines()
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,12 @@
 """Two encoders on both sides of a gap that nobody has crossed when a file begins."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from calibration.command import calibrate
 from tests.calibration.test_coarse_steps import SENSORS
+from tests.calibration.test_drives import answer
 
 GAP, NOISE, PERIOD_S = 0.03, 3e-4, 0.005  # rad, rad, s
 
@@ -27,17 +26,12 @@ def test_a_gap_is_found_although_files_begin_by_creeping_within_it(tmp_path: Pat
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 60.0, PERIOD_S)
     moving = 0.6 * np.sin(2 * np.pi * (t - 9.0) / 7.0) + 0.2 * np.sin(2 * np.pi * (t - 9.0) / 3.1)
-    files = []
-    for k, start in enumerate(rng.uniform(-0.4, 0.4, 2) * GAP):
+    tables = []
+    for start in rng.uniform(-0.4, 0.4, 2) * GAP:
         x = np.cumsum(np.where(t < 9.0, 2e-4, moving)) * PERIOD_S
-        y = follower(x, float(start))
-        x, y = (one + NOISE * rng.standard_normal(len(t)) for one in (x, y))
-        files.append(tmp_path / f"{k}.csv")
-        np.savetxt(files[-1], np.column_stack([t, x, y]), delimiter=",", header="t,x,y", comments="")
-    rig = tmp_path / "rig.yaml"
-    rig.write_text(SENSORS)
-    calibrate(files, rig, [], tmp_path / "out", plots=False)
-    report = json.loads((tmp_path / "out" / "report.json").read_text())
+        both = (x, follower(x, float(start)))
+        tables.append((t, *(one + NOISE * rng.standard_normal(len(t)) for one in both)))
+    report = answer(tmp_path, SENSORS, *tables, header="t,x,y")
     (found,) = report["effects"]
     assert found["name"] == "play"
     assert found["parameters"]["gap"]["value"] == pytest.approx(GAP, rel=0.02)
