@@ -57,7 +57,7 @@ def drive_again(
     scale = frame.scale
     position, _ = fill(frame.columns["position"][rows], frame.run[rows])
     effort, _ = fill(frame.columns["effort"][rows], frame.run[rows])
-    wanted = ticks(_held(frame.columns["setpoint"][rows]) / ARCSEC)
+    wanted = ticks(_held(frame.columns["setpoint"][rows], frame.present[rows]) / ARCSEC)
     closed = np.isfinite(wanted)
     if abs(effort[0]) > AT_REST:
         wanted[: 2 * LEAD_ROWS] = np.nan
@@ -112,9 +112,10 @@ def before_start(frame: Frame, rows: Mask) -> Array | None:
     return np.stack(parts)
 
 
-def _held(x: Array) -> Array:
-    """A set point through gaps: the last one stays in force."""
-    at = np.where(np.isfinite(x), np.arange(len(x)), -1)
+def _held(x: Array, present: Mask) -> Array:
+    """A set point through rows that are missing: the last row's stays in force; one without any is open loop,
+    and so is what follows it."""
+    at = np.where(present, np.arange(len(x)), -1)
     np.maximum.accumulate(at, out=at)
     return np.where(at >= 0, x[np.maximum(at, 0)], np.nan)
 
