@@ -1,4 +1,4 @@
-"""A log that is driven open loop in part: rows without a set point are the effort's, missing rows are held."""
+"""A log driven open loop in part: rows without a set point are the effort's, missing rows are held."""
 
 import numpy as np
 
