@@ -1,6 +1,7 @@
 """Logs in the format of `candump -L`: `(1.000129) can0 211#1101000000000000`, times since the start or an
 epoch."""
 
+import re
 from array import array
 from hashlib import sha256
 from typing import BinaryIO, Final, Protocol
@@ -22,6 +23,12 @@ _US_PER_S: Final = 1_000_000
 _BYTES: Final = 8
 
 
+_LINE: Final = re.compile(
+    r"\((\d{1,10})\.(\d{6})\) \S+ ([0-7][0-9A-F]{2}|[0-3][0-9A-F]{7})#(?:R([0-8]?)|((?:[0-9A-F]{2}){0,8}))"
+)
+"""candump writes a remote frame of no bytes as `R`."""
+
+
 class _Digest(Protocol):
     def update(self, data: bytes, /) -> None: ...
     def hexdigest(self) -> str: ...
@@ -32,6 +39,18 @@ def line(t_ns: int, frame: Frame, channel: str = "can0") -> str:
     name = f"{frame.identifier:08X}" if frame.extended else f"{frame.identifier:03X}"
     body = f"R{len(frame.data)}" if frame.remote else frame.data.hex().upper()
     return f"({t_ns // 1_000_000_000}.{t_ns // 1000 % 1_000_000:06d}) {channel} {name}#{body}"
+
+
+def parsed(text: str) -> tuple[int, Frame] | None:
+    """Time, ns, and frame of such a line; None: it is none. An error frame has bit 29 of its identifier set
+    (CAN_ERR_FLAG, linux/can.h)."""
+    found = _LINE.fullmatch(text)
+    if found is None:
+        return None
+    seconds, micros, name, length, data = found.groups()
+    body = bytes(int(length or 0)) if length is not None else bytes.fromhex(data)
+    frame = Frame(int(name, 16), body, len(name) == 8, length is not None)
+    return int(seconds) * 1_000_000_000 + int(micros) * 1000, frame
 
 
 def block(times_ns: list[int], frames: list[Frame], channel: str = "can0") -> bytes:

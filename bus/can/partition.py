@@ -5,7 +5,7 @@ from heapq import heapify, heappush
 
 from bus.can.frame import Frame
 from bus.can.port import Port
-from bus.can.wire import Wire
+from bus.can.wire import Tap, Wire
 
 
 def move(port: Port, to: Wire, t_ns: int) -> None:
@@ -51,11 +51,15 @@ class Partition:
     """Cuts `ports` off `wire` from the moment it is made; `heal` joins the two again.
 
     The pieces arbitrate, acknowledge and count errors each for themselves; taps stay on the first one.
+    parted: a tap that hears the frames of both.
     """
 
-    def __init__(self, wire: Wire, ports: Iterable[Port], t_ns: int) -> None:
+    def __init__(self, wire: Wire, ports: Iterable[Port], t_ns: int, parted: Tap | None = None) -> None:
         self.piece = Wire(wire.queue, wire.bitrate)
-        self._wire = wire
+        self._wire, self._parted = wire, parted
+        if parted is not None:
+            wire.tap(parted)
+            self.piece.tap(parted)
         self._order = {port: place for place, port in enumerate(wire.ports)}
         for port in list(ports):
             move(port, self.piece, t_ns)
@@ -63,6 +67,8 @@ class Partition:
     def heal(self, t_ns: int) -> None:
         """Everybody back on one wire, in the order in which they were on it."""
         wire, order = self._wire, self._order
+        if self._parted is not None:
+            wire._taps.remove(self._parted)
         for port in list(self.piece.ports):
             move(port, wire, t_ns)
         wire.ports.sort(key=lambda port: order.get(port, len(order)))

@@ -65,9 +65,9 @@ class Watcher(Protocol):
 class Port:
     """A node on a wire; made by `Wire.attach`.
 
-    Among the buffers of one node the lowest identifier goes first, equal identifiers in the order sent:
-    firmware is taken to set the MCP2515's TXP priorities that way. (ASSUMPTION: the paper does not say;
-    with all TXP equal the chip would take the highest buffer number.)
+    Among the buffers of one node the lowest identifier goes first, equal identifiers in the order sent.
+    ASSUMPTION: firmware sets the MCP2515's TXP priorities that way. The paper does not say; with all TXP
+    equal the chip would take the highest buffer number.
     A node that is off keeps nothing: its buffers are emptied and its error counters start from zero when
     it returns.
     """

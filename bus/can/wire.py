@@ -26,10 +26,10 @@ class BitrateError(ValueError):
 class Wire:
     """One CAN bus of `bitrate` bit/s (bit times are whole nanoseconds).
 
-    Whoever is ready by the end of the start-of-frame bit takes part in the arbitration; the lowest
-    arbitration field wins, at equal fields the first come (two nodes with one identifier collide, see
-    `trouble.py`). A frame reaches its receivers at the end of EOF; the next may start after the three
-    bits of intermission.
+    Whoever is ready by the end of the start-of-frame bit takes part in the arbitration. The lowest
+    arbitration field wins, at equal fields the first come; two nodes with one identifier collide
+    (`trouble.py`). A frame reaches its receivers at the end of EOF; the next may start after the three bits
+    of intermission.
     """
 
     def __init__(self, queue: EventQueue, bitrate: int = MAX_BITRATE) -> None:
@@ -128,8 +128,8 @@ class Wire:
     def _plan(self) -> None:
         """Find out who sends next if nobody else comes: somebody waits, and there is no plan yet.
 
-        While all is well the outcome of an arbitration can be told in advance, and told again when somebody
-        comes before the first bit is over. That costs one event a frame instead of two.
+        While all is well the outcome of an arbitration can be told in advance. It can be told again when
+        somebody comes before the first bit is over. That costs one event a frame instead of two.
         """
         waiting = self._waiting
         sof_ns = self._free_ns

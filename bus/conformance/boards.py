@@ -1,9 +1,10 @@
 """Who is checked: a board of the protocol, or one of a known type under an identifier of its own."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from bus.protocol import Device
-from bus.protocol.names import DECLARED
+from bus.protocol.nodes import DEVICES
 
 _IDENTIFIERS = 0x80
 """Device types are seven bits: an identifier is a base plus a device type."""
@@ -35,10 +36,9 @@ def board_of(device: Device) -> Board:
     return Board(device.name, family_of(device), int(device), device)
 
 
-def parse(text: str) -> Board:
-    """`TYPE:ID`, such as axis:0x11; raises BoardError with one line."""
+def parse(text: str, known: Sequence[Device] = DEVICES) -> Board:
+    """`TYPE:ID`, such as axis:0x11, of a type that is `known`; raises BoardError with one line."""
     kind, colon, number = text.partition(":")
-    known = [*Device, *DECLARED.values()]
     models = {family_of(each).lower(): each for each in reversed(known)}
     if not colon:
         raise BoardError(f'--board "{text}": expected TYPE:ID, such as axis:0x11')

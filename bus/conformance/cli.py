@@ -2,8 +2,8 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import can
 from rich.console import Console
@@ -13,33 +13,45 @@ from bus.conformance.boards import Board
 from bus.conformance.result import CheckResult, summary
 from bus.conformance.run import run
 from bus.conformance.settings import Settings
-from bus.external import SpecError, open_bus
+from bus.outside.external import SpecError, open_bus
 from bus.protocol import Device
+
+if TYPE_CHECKING:
+    from cantools.database import Database
 
 
 def conformance_command(
-    spec: str, json_path: Path | None = None, boards: Sequence[Board] = (), settings: Settings | None = None
+    spec: str,
+    json_path: Path | None = None,
+    boards: Sequence[Board] = (),
+    settings: Settings | None = None,
+    dbc: "Database | None" = None,
 ) -> int:
-    """Check `boards` (none named: every board of the protocol) behind `spec`; 0 without an error, else 1.
+    """Check `boards` (none named: every board of the protocol) behind `spec` against `dbc` (None: the
+    project's own); 0 without an error, else 1.
 
     Raises SpecError (a ValueError) when the bus cannot be opened or breaks, or `json_path` cannot be written.
     """
     with open_bus(spec) as bus:
         try:
-            return check(bus, json_path, settings or Settings(), boards)
+            return check(bus, json_path, settings or Settings(), boards, dbc)
         except can.CanError as error:
             raise SpecError(f'"{spec}": the bus broke down: {error}') from None
 
 
-def check(bus: can.BusABC, json_path: Path | None, settings: Settings, boards: Sequence[Board] = ()) -> int:
-    """Check boards on an open bus, print what is wrong, write the results; 0 or 1 as above."""
+def check(
+    bus: can.BusABC,
+    json_path: Path | None,
+    settings: Settings,
+    boards: Sequence[Board] = (),
+    dbc: "Database | None" = None,
+) -> int:
+    """Check boards on an open bus, print what is wrong, write the results; 0 or 1 as above.
+
+    `settings.each` may show how far it is.
+    """
     console = Console()
-    with console.status("listening") as status:
-
-        def show(result: CheckResult) -> None:
-            status.update(f"{result.check}: {result.subject}")
-
-        results = run(bus, devices=boards or tuple(Device), settings=replace(settings, each=show))
+    results = run(bus, dbc, boards or tuple(Device), settings)
     found = summary(results)
     if json_path is not None:
         try:

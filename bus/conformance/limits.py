@@ -9,16 +9,12 @@ from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
 from bus.protocol import HARMONICS, AxisParameter, Opcode, Reply, Result, pack_command
 from bus.protocol.nodes import kind_of
+from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 
-_TURN_COUNTS: Final = 112_896_000
-"""Incremental encoder: 4.608e6 counts x 735/30 (paper, sections 2.2 and 3.2)."""
-_LAST_STEP: Final = (1 << 29) - 1
-"""Absolute encoder RCN 829: 29 bit (paper, section 3.2)."""
-_Q16_PER_ARCSEC: Final = _TURN_COUNTS / 1_296_000 / 200 * 65536
-"""1"/s in Q16 counts per 5 ms."""
-_FASTEST: Final = round(3.1 * 3600 * _Q16_PER_ARCSEC)
+_LAST_STEP: Final = STEPS_PER_TURN - 1
+_FASTEST: Final = rate_q16(3.1 * 3600)
 """The paper reports up to 3 deg/s (Fig. 12)."""
-_ACCELERATION: Final = round(7200 * _Q16_PER_ARCSEC) // 20
+_ACCELERATION: Final = rate_q16(7200.0) // 20
 """Q16 counts per 5 ms, per 5 ms: slew speed within 100 ms."""
 _SUPPLY_Q8: Final = 3000 << 8
 """All of the supply, PWM steps in Q8 (paper, section 3.3)."""
@@ -37,7 +33,7 @@ PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
         AxisParameter.DUTY_FRACTION: (0, 1),
         AxisParameter.COMPENSATION: (0, 1),
         AxisParameter.FRICTION_LEVEL_Q8: (0, _SUPPLY_Q8),
-        AxisParameter.FRICTION_TRAVEL_COUNTS: (1, _TURN_COUNTS),
+        AxisParameter.FRICTION_TRAVEL_COUNTS: (1, COUNTS_PER_TURN),
         **{AxisParameter.HARMONIC_FIRST + at: _CELLS[at % 3] for at in range(3 * HARMONICS)},
         AxisParameter.COUNTER_BIAS_Q8: (0, 300 << 8),
         AxisParameter.RATE_LOCK: (0, 1),
@@ -139,10 +135,10 @@ def _set(link: Link, board: Board, number: int, value: int, right: bool) -> list
     """What is wrong with the answer to setting a parameter, or with its value afterwards."""
     reply = link.first(board.device, Opcode.SET_PARAMETER, number, value)
     result = Result.OK if right else Result.OUT_OF_RANGE
-    if reply is None or reply.result != result:
+    if reply is None or (reply.result, reply.parameter) != (result, number):
         return [f"{value}: {_said(reply)}"]
     there = link.first(board.device, Opcode.GET_PARAMETER, number)
-    if there is None or (there.value == value) != right:
+    if there is None or there.parameter != number or (there.value == value) != right:
         return [f"{value}: then {_said(there)}"]
     return []
 
@@ -151,4 +147,4 @@ def _said(reply: Reply | None) -> str:
     if reply is None:
         return "no reply"
     name = Result(reply.result).name if reply.result in set(Result) else f"result {reply.result}"
-    return f"{name} value {reply.value}"
+    return f"{name} parameter {reply.parameter} value {reply.value}"

@@ -6,12 +6,23 @@ from time import monotonic
 import can
 
 from bus.conformance.settings import Settings
-from bus.protocol import COMMAND_BASE, FRAME_BYTES, REPLY_BASE, Reply, pack_command, unpack_reply
-from bus.pythoncan import SchmidtBus
+from bus.outside.pythoncan import SchmidtBus
+from bus.protocol import COMMAND_BASE, FRAME_BYTES, REPLY_BASE, Opcode, Reply, pack_command, unpack_reply
 
 _ROOM_S = 0.0005
 """Commands come before all else in arbitration: a tester that never pauses starves the boards' own frames
 until their transmit buffers are full. Time for some of them after each pair of command and answer."""
+_TYPES = 0x80
+"""Identifiers from a base on, one for each device type."""
+_NUMBERED = (Opcode.GET_PARAMETER, Opcode.SET_PARAMETER)
+"""Their answers repeat the number of the parameter."""
+
+
+class Answers(list[Reply]):
+    """Replies to one command. instead: what came in the place of one. parameter: the number each repeats."""
+
+    instead = ""
+    parameter: int | None = None
 
 
 def clock_of(bus: can.BusABC) -> Callable[[], float]:
@@ -28,8 +39,11 @@ class Link:
     def __init__(self, bus: can.BusABC, settings: Settings) -> None:
         self.settings = settings
         self.now = clock_of(bus)
-        self.took_s: dict[int, list[float]] = {}
-        """Per device type, what its first answers took, seconds on the bus's clock."""
+        self.took_s: dict[int, list[tuple[float, int]]] = {}
+        """Per device type, what its first answers took, seconds on the bus's clock, and to which opcode."""
+        self.known: set[int] = set()
+        """Identifiers that come unasked."""
+        self._instead: list[str] = []
         self._sent_s = 0.0
         self._bus = bus
 
@@ -43,9 +57,21 @@ class Link:
                 heard.append(message)
         return heard
 
+    def frame(self, identifier: int, within_s: float) -> can.Message | None:
+        """The next data frame with this standard identifier; None when there is none in time."""
+        end = self.now() + within_s
+        while (left := end - self.now()) > 0:
+            message = self._bus.recv(timeout=left)
+            if message is None or message.is_error_frame or message.is_remote_frame:
+                continue
+            if message.arbitration_id == identifier and not message.is_extended_id:
+                return message
+        return None
+
     def send(self, identifier: int, data: bytes, *, extended: bool = False, remote: bool = False) -> None:
         """Put one frame on the bus."""
         self._sent_s = self.now()
+        self._instead.clear()
         self._bus.send(
             can.Message(
                 arbitration_id=identifier,
@@ -61,23 +87,42 @@ class Link:
         end = self.now() + within_s
         while (left := end - self.now()) > 0:
             message = self._bus.recv(timeout=left)
-            if message is None or message.arbitration_id != REPLY_BASE + device or message.is_extended_id:
+            if message is None or message.is_error_frame:
                 continue
-            if len(message.data) == FRAME_BYTES and not message.is_remote_frame:
+            if message.arbitration_id != REPLY_BASE + device or message.is_extended_id:
+                self._stray(message, REPLY_BASE + device)
+            elif len(message.data) == FRAME_BYTES and not message.is_remote_frame:
                 return unpack_reply(bytes(message.data))
+            else:
+                self._instead.append(f"answered with {len(message.data)} bytes instead of {FRAME_BYTES}")
         return None
 
-    def replies(self, device: int, opcode: int | None) -> list[Reply]:
+    def _stray(self, message: can.Message, expected: int) -> None:
+        """Keep a frame that nobody sends unasked: it may be the answer, elsewhere."""
+        identifier = message.arbitration_id
+        base = identifier & ~(_TYPES - 1)
+        unasked = identifier in self.known or base == COMMAND_BASE  # a bus may hand back the tester's own
+        if message.is_extended_id or base == REPLY_BASE or not unasked:
+            kind = "extended " if message.is_extended_id else ""
+            self._instead.append(f"answered with {kind}{identifier:#05x} instead of {expected:#05x}")
+
+    def _took(self, device: int, opcode: int) -> None:
+        self.took_s.setdefault(device, []).append((self.now() - self._sent_s, opcode))
+
+    def replies(self, device: int, opcode: int | None) -> Answers:
         """Answers of `device` to `opcode` (None: to anything): the first within reply_s, then any within
         quiet_s."""
-        found: list[Reply] = []
+        found = Answers()
         end = self.now() + self.settings.reply_s
         while (reply := self.reply(device, end - self.now())) is not None:
             if opcode is None or reply.opcode == opcode:
                 if not found:
-                    self.took_s.setdefault(device, []).append(self.now() - self._sent_s)
+                    self._took(device, reply.opcode)
                 found.append(reply)
                 end = self.now() + self.settings.quiet_s
+            else:
+                self._instead.append(f"answered for opcode {reply.opcode:#04x} instead of {opcode:#04x}")
+        found.instead = ", ".join(dict.fromkeys(self._instead))
         return found
 
     def first(self, device: int, opcode: int, *arguments: int) -> Reply | None:
@@ -86,6 +131,7 @@ class Link:
         end = self.now() + self.settings.reply_s
         while (reply := self.reply(device, end - self.now())) is not None:
             if reply.opcode == opcode:
+                self._took(device, opcode)
                 self.listen(_ROOM_S)
                 return reply
         return None
@@ -101,11 +147,14 @@ class Link:
                 return False
         return True
 
-    def ask(self, device: int, opcode: int, *arguments: int) -> list[Reply]:
+    def ask(self, device: int, opcode: int, *arguments: int) -> Answers:
         """Send a command of the protocol and collect its answers."""
         return self.ask_raw(device, pack_command(device, opcode, *arguments), opcode)
 
-    def ask_raw(self, device: int, data: bytes, opcode: int | None) -> list[Reply]:
+    def ask_raw(self, device: int, data: bytes, opcode: int | None) -> Answers:
         """Send any bytes as a command to `device` and collect the answers."""
         self.send(COMMAND_BASE + device, data)
-        return self.replies(device, opcode)
+        found = self.replies(device, opcode)
+        if len(data) == FRAME_BYTES and data[0] == device and opcode in _NUMBERED:
+            found.parameter = data[2]
+        return found

@@ -7,7 +7,7 @@ from bus.conformance.boards import Board
 from bus.conformance.commands import judge
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import COMMAND_BASE, LAYOUTS, REPLY_BASE, Device, Opcode, Result, pack_command
+from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, layout_of, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
@@ -36,19 +36,15 @@ def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
     ping = pack_command(device, Opcode.PING)
     other = next(each for each in Device if each != device)
     for length in (0, 1, 2, 7):
-        # Without byte 1 the answer cannot name an opcode: it says 0.
-        opcode = int(Opcode.PING) if length > 1 else 0
         subject = f"{name} PING of {length} bytes"
-        yield _one(link, device, "wrong length", subject, ping[:length], opcode, Result.WRONG_LENGTH)
+        yield _one(link, device, "wrong length", subject, ping[:length], Result.WRONG_LENGTH)
     data = pack_command(other, Opcode.PING)
-    yield _one(
-        link, device, "wrong device type", f"{name} PING for {other.name}", data, Opcode.PING,
-        Result.WRONG_DEVICE_TYPE,
-    )  # fmt: skip
+    subject = f"{name} PING for {other.name}"
+    yield _one(link, device, "wrong device type", subject, data, Result.WRONG_DEVICE_TYPE)
     for opcode in _UNKNOWN_OPCODES:
         data = bytes([device, opcode, 0, 0, 0, 0, 0, 0])
         subject = f"{name} opcode {opcode:#04x}"
-        yield _one(link, device, "unknown opcode", subject, data, opcode, Result.UNKNOWN_OPCODE)
+        yield _one(link, device, "unknown opcode", subject, data, Result.UNKNOWN_OPCODE)
     wrong: list[tuple[Opcode, tuple[int, ...]]] = [
         (Opcode.GET_PARAMETER, (_UNKNOWN_PARAMETER,)),
         (Opcode.SET_PARAMETER, (_UNKNOWN_PARAMETER, 0)),
@@ -57,7 +53,7 @@ def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
     for known, arguments in wrong:
         data = pack_command(device, known, *arguments)
         subject = f"{name} {known.name} {' '.join(map(str, arguments))}"
-        yield _one(link, device, "out of range", subject, data, known, Result.OUT_OF_RANGE)
+        yield _one(link, device, "out of range", subject, data, Result.OUT_OF_RANGE)
 
 
 def declared_misuse(device: Device) -> list[tuple[Opcode, tuple[int, ...]]]:
@@ -82,15 +78,14 @@ def declared_misuse(device: Device) -> list[tuple[Opcode, tuple[int, ...]]]:
 
 def _fits(opcode: Opcode, arguments: tuple[int, ...]) -> bool:
     try:
-        LAYOUTS[opcode][0].pack(*arguments)
+        layout_of(opcode)[0].pack(*arguments)
     except struct.error:
         return False
     return True
 
 
-def _one(
-    link: Link, device: int, check: str, subject: str, data: bytes, opcode: int, result: Result
-) -> CheckResult:
+def _one(link: Link, device: int, check: str, subject: str, data: bytes, result: Result) -> CheckResult:
+    opcode = data[1] if len(data) > 1 else 0  # without byte 1 the answer cannot name one: it says 0
     start = link.now()
     replies = link.ask_raw(device, data, opcode)
     return judge(check, subject, replies, device, (result,), link.now() - start)

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import Any
 
@@ -17,7 +17,7 @@ class Level(StrEnum):
     ERROR = "error"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CheckResult:
     """One check of one subject (a frame or a command); duration_s is the time the check took on the
     bus's clock."""
@@ -36,21 +36,26 @@ class CheckResult:
 
 
 def judged(
-    check: str,
-    subject: str,
-    passed: bool,
-    expected: str,
-    observed: str,
-    duration_s: float = 0.0,
-    otherwise: Level = Level.ERROR,
+    check: str, subject: str, passed: bool, expected: str, observed: str, duration_s: float = 0.0
 ) -> CheckResult:
-    """A check that passed, or is `otherwise`."""
-    return CheckResult(check, subject, Level.OK if passed else otherwise, expected, observed, duration_s)
+    """A check that passed, or is an error."""
+    return CheckResult(
+        check=check, subject=subject, level=Level.OK if passed else Level.ERROR,
+        expected=expected, observed=observed, duration_s=duration_s,
+    )  # fmt: skip
+
+
+def doubted(
+    check: str, subject: str, passed: bool, expected: str, observed: str, duration_s: float = 0.0
+) -> CheckResult:
+    """A check that passed, or is an issue."""
+    found = judged(check, subject, passed, expected, observed, duration_s)
+    return found if passed else replace(found, level=Level.ISSUE)
 
 
 def told(check: str, subject: str, observed: str) -> CheckResult:
     """Something worth knowing that is neither right nor wrong."""
-    return CheckResult(check, subject, Level.INFO, "", observed)
+    return CheckResult(check=check, subject=subject, level=Level.INFO, expected="", observed=observed)
 
 
 def summary(results: Sequence[CheckResult]) -> dict[str, Any]:

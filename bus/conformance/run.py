@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import can
 
 from bus.conformance.boards import Board, board_of
+from bus.conformance.canopen import check_canopen
 from bus.conformance.commands import check_answers, check_commands
 from bus.conformance.flood import check_flood
 from bus.conformance.halt import halted
@@ -17,8 +18,7 @@ from bus.conformance.settings import Settings
 from bus.conformance.states import check_states
 from bus.conformance.telemetry import check_telemetry
 from bus.protocol import Device, Opcode
-from bus.protocol.names import DECLARED
-from bus.protocol.nodes import documented
+from bus.protocol.nodes import DEVICES, documented
 
 if TYPE_CHECKING:
     from cantools.database import Database
@@ -41,21 +41,24 @@ def run(
     link = Link(bus, settings)
     results = []
     with halted(link, boards):
-        for result in _checks(
-            link, dbc or documented([*(board.model for board in boards), *DECLARED.values()]), boards
-        ):
+        for result in _checks(link, dbc or documented([*DEVICES, *(each.model for each in boards)]), boards):
             settings.each(result)
             results.append(result)
     return results
 
 
 def _checks(link: Link, dbc: "Database", boards: Sequence[Board]) -> Iterator[CheckResult]:
+    if link.settings.canopen:
+        yield from check_canopen(link, boards)
+        return
     yield from check_telemetry(link, dbc, boards)
     for board in boards:
-        if not (link.ask(board.device, Opcode.PING) or link.ask(board.device, Opcode.PING)):
+        answers = link.ask(board.device, Opcode.PING) or link.ask(board.device, Opcode.PING)
+        if not answers:
             # Once is enough: waiting for the answer to every command of a board that is not there takes
             # minutes.
-            yield judged("answers", f"{board.name} PING", False, "a reply", "none, twice")
+            none = "; ".join(("none, twice", *filter(None, [answers.instead])))
+            yield judged("answers", f"{board.name} PING", False, "a reply", none)
             continue
         yield from check_commands(link, board)
         yield from check_misuse(link, board)

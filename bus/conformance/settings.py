@@ -10,7 +10,7 @@ def _nobody(_result: CheckResult) -> None:
     """Nobody wants to see results as they come."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
     """listen_s: how long telemetry is collected; at least three of the longest period, or periods go
     unchecked.
@@ -26,6 +26,7 @@ class Settings:
     motion: also send commands that power or move something. Off by default: the bus may be a real
         telescope's. Everything is stopped at the end.
     flood: also fill the bus. Off by default: a board rightly remembers, and reports, what it had to drop.
+    canopen: check what a CANopen master expects, and nothing else.
     each: called with every result as it is found.
     """
 
@@ -38,4 +39,5 @@ class Settings:
     speed: float = 1.0
     motion: bool = False
     flood: bool = False
+    canopen: bool = False
     each: Callable[[CheckResult], None] = _nobody

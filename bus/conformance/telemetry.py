@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import can
 
 from bus.conformance.boards import Board
+from bus.conformance.course import Row, check_course
 from bus.conformance.link import Link
-from bus.conformance.result import CheckResult, Level, judged, told
+from bus.conformance.result import CheckResult, doubted, judged, told
 from bus.conformance.timing import check_timing, queueing_s
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def check_telemetry(link: Link, dbc: "Database", boards: Sequence[Board]) -> Ite
             odd.add(f"{'remote' if message.is_remote_frame else 'extended'} {message.arbitration_id:#05x}")
         else:
             heard[message.arbitration_id].append(message)
+    link.known = set(heard)
     known = {message.frame_id for message in dbc.messages}
     for board in boards:
         shift = board.device - board.model
@@ -40,9 +42,7 @@ def check_telemetry(link: Link, dbc: "Database", boards: Sequence[Board]) -> Ite
                 yield from _frame(link, dbc, board, documented, heard.get(documented.frame_id + shift, []))
     strange = sorted(odd) + [f"{identifier:#05x}" for identifier in sorted(set(heard) - known)]
     observed = ", ".join(strange) or "none"
-    yield judged(
-        "undocumented", "bus", not strange, "no other frames", observed, seconds, otherwise=Level.ISSUE
-    )
+    yield doubted("undocumented", "bus", not strange, "no other frames", observed, seconds)
 
 
 def _frame(
@@ -70,7 +70,14 @@ def _frame(
         f"byte 0 = {board.device:#04x}",
         ", ".join(f"{b:#04x}" for b in first),
     )
-    yield result("contents", *_contents(documented, heard))
+    speed = link.settings.speed
+    rows = [
+        Row(message.timestamp * speed, documented.decode(message.data, decode_choices=False))
+        for message in heard
+        if len(message.data) == documented.length
+    ]
+    yield result("contents", *_contents(documented, rows))
+    yield from check_course(subject, rows, link.settings.stamps_s * speed)
     if len(heard) <= _INTERVALS:
         yield told("period", subject, f"{len(heard)} frames in {seconds:.2f} s say nothing about a period")
         return
@@ -79,15 +86,12 @@ def _frame(
     yield from check_timing(link.settings, subject, documented.cycle_time, stamps, queueing)
 
 
-def _contents(documented: Any, heard: list[can.Message]) -> tuple[bool, str, str]:
+def _contents(documented: Any, rows: Sequence[Row]) -> tuple[bool, str, str]:
     """Every signal of every frame within the range the DBC gives; byte 0 has a check of its own."""
     expected = "every signal within its range"
-    for message in heard:
-        if len(message.data) != documented.length:
-            continue
-        values = documented.decode(message.data, decode_choices=False)
+    for row in rows:
         for signal in documented.signals:
-            value = values[signal.name]
+            value = row.signals[signal.name]
             if signal.name != "Device" and not signal.minimum <= value <= signal.maximum:
                 return False, expected, f"{signal.name} = {value}, not {signal.minimum}..{signal.maximum}"
-    return True, expected, f"{len(heard)} frames within"
+    return True, expected, f"{len(rows)} frames within"

@@ -1,6 +1,6 @@
 """The protocol. `schmidt.dbc` is the source; the codecs beside it are held to it by tests."""
 
-from bus.protocol.command import LAYOUTS, CommandError, opcodes, pack_command, unpack_command
+from bus.protocol.command import CommandError, layout_of, opcodes, pack_command, unpack_command
 from bus.protocol.focus import Focus, FocusFlag, pack_focus, unpack_focus
 from bus.protocol.heartbeat import Heartbeat, pack_heartbeat, unpack_heartbeat
 from bus.protocol.motion import Motion, MotionFlag, pack_motion, unpack_motion
@@ -22,7 +22,6 @@ from bus.protocol.names import (
     Result,
     SpeedClass,
     State,
-    device_named,
 )
 from bus.protocol.position import (
     AGE_UNIT_NS,
@@ -45,7 +44,6 @@ __all__ = [
     "HARMONICS",
     "HEARTBEAT_BASE",
     "HEARTBEAT_KIND",
-    "LAYOUTS",
     "MEASUREMENT_BASE",
     "REPLY_BASE",
     "SUMMARY_BASE",
@@ -70,7 +68,7 @@ __all__ = [
     "Summary",
     "Tach",
     "Target",
-    "device_named",
+    "layout_of",
     "opcodes",
     "pack_command",
     "pack_focus",

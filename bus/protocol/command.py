@@ -1,6 +1,7 @@
 """COMMAND: one layout per opcode, as a table; byte 0 is the device type, byte 1 the opcode, the rest
 below."""
 
+from functools import cache
 from struct import Struct, error
 from typing import Final
 
@@ -49,19 +50,33 @@ def opcodes(device: Device) -> tuple[Opcode, ...]:
     return _COMMON
 
 
-def pack_command(device: int, opcode: int, *arguments: int) -> bytes:
-    """Eight bytes of COMMAND; raises CommandError for arguments that do not fit the opcode's layout."""
+def layout_of(opcode: int) -> tuple[Struct, tuple[str, ...]]:
+    """Layout of bytes 2..7 and the names of its arguments, a declared board's opcode's, too.
+
+    Raises CommandError for a number that is no opcode.
+    """
+    if isinstance(opcode, Opcode) and opcode.declared is not None:
+        return _declared(*opcode.declared)
     try:
-        layout, names = LAYOUTS[opcode]
+        return LAYOUTS[opcode]
     except KeyError:
         raise CommandError(f"opcode {opcode:#04x} is not in the protocol") from None
+
+
+@cache
+def _declared(layout: str, names: tuple[str, ...]) -> tuple[Struct, tuple[str, ...]]:
+    return Struct(layout), names
+
+
+def pack_command(device: int, opcode: int, *arguments: int) -> bytes:
+    """Eight bytes of COMMAND; raises CommandError for arguments that do not fit the opcode's layout."""
+    layout, names = layout_of(opcode)
     try:
         return bytes((device, opcode)) + layout.pack(*arguments)
     except error as reason:
         wanted = ", ".join(names) or "no arguments"
-        raise CommandError(
-            f"{Opcode(opcode).name} takes {wanted}; {arguments} does not fit: {reason}"
-        ) from None
+        name = opcode.name if isinstance(opcode, Opcode) else Opcode(opcode).name
+        raise CommandError(f"{name} takes {wanted}; {arguments} does not fit: {reason}") from None
 
 
 def unpack_command(data: bytes) -> tuple[int, int, tuple[int, ...]]:

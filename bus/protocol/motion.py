@@ -29,28 +29,23 @@ class Motion(NamedTuple):
 
 
 def pack_motion(
-    device: int,
-    mode: int,
-    flags: int,
-    velocity: int,
-    effort: int,
-    adc_a: int,
-    adc_b: int,
-    clip: Clip = nobody,
+    device: int, status: int, velocity: int, effort: int, adcs: tuple[int, int], clip: Clip = nobody
 ) -> bytes:
-    """Eight bytes; a velocity beyond 15 bits or an effort beyond 13 is cut, and `clip` told."""
+    """Eight bytes; a velocity beyond 15 bits or an effort beyond 13 is cut, and `clip` told.
+
+    status: the mode, and the flags times 16. adcs: 10-bit counts of both motors.
+    """
     if not (-SIGN_15 <= velocity < SIGN_15 and -SIGN_13 <= effort < SIGN_13):
         clip()
         velocity = min(max(velocity, -SIGN_15), SIGN_15 - 1)
         effort = min(max(effort, -SIGN_13), SIGN_13 - 1)
     return (
         device
-        | mode << 8
-        | flags << 12
+        | status << 8
         | (velocity & 0x7FFF) << 16
         | (effort & 0x1FFF) << 31
-        | adc_a << 44
-        | adc_b << 54
+        | adcs[0] << 44
+        | adcs[1] << 54
     ).to_bytes(8, "little")
 
 

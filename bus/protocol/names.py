@@ -2,7 +2,7 @@
 schmidt.dbc."""
 
 from enum import IntEnum, IntFlag
-from typing import Final
+from typing import Any, Final, Self
 
 COMMAND_BASE: Final = 0x080
 """Identifier of a device's COMMAND is this plus its device type; likewise below."""
@@ -20,8 +20,37 @@ FRAME_BYTES: Final = 8
 """Length of every documented frame."""
 
 
-class Device(IntEnum):
-    """Byte 0 of every frame: who it comes from, or in a COMMAND whom it is for."""
+class _Open(IntEnum):
+    """Numbers with names, and further ones that boards declare (`bus/protocol/nodes/`).
+
+    Nobody keeps a list of the further ones, so that two networks in one process may have different ones.
+    """
+
+    @property
+    def declared(self) -> Any:
+        """What a further one was declared with; None: it is written out here."""
+        return vars(self).get("_declared")
+
+    @classmethod
+    def further(cls, name: str, number: int, declared: object) -> Self:
+        """A further one; the way the standard library makes the unnamed members of a Flag."""
+        made = int.__new__(cls, number)
+        made._name_, made._value_ = name, number
+        vars(made)["_declared"] = declared
+        return made
+
+    @classmethod
+    def _missing_(cls, value: object) -> Self | None:
+        return cls.further(*value) if isinstance(value, tuple) else None
+
+    def __reduce_ex__(self, _protocol: object) -> tuple[Any, ...]:
+        if self.declared is None:
+            return type(self), (self.value,)
+        return type(self), ((self.name, self.value, self.declared),)
+
+
+class Device(_Open):
+    """Byte 0 of every frame: who it comes from, or in a COMMAND whom it is for. declared: its `Kind`."""
 
     AXIS_RA = 0x11
     AXIS_DEC = 0x12
@@ -35,13 +64,9 @@ class Device(IntEnum):
     DISPLAY = 0x51
     GATEWAY = 0x61
 
-    @classmethod
-    def _missing_(cls, value: object) -> "Device | None":
-        return DECLARED.get(value) if isinstance(value, int) else None
 
-
-class Opcode(IntEnum):
-    """Byte 1 of a COMMAND, repeated in byte 1 of its REPLY."""
+class Opcode(_Open):
+    """Byte 1 of a COMMAND, repeated in byte 1 of its REPLY. declared: format and names of its arguments."""
 
     PING = 0x01
     GET_PARAMETER = 0x02
@@ -60,10 +85,6 @@ class Opcode(IntEnum):
     FOCUS_FREE = 0x23
     FOCUS_REFERENCE = 0x24
     BRIGHTNESS = 0x30
-
-    @classmethod
-    def _missing_(cls, value: object) -> "Opcode | None":
-        return DECLARED_OPCODES.get(value) if isinstance(value, int) else None
 
 
 class Result(IntEnum):
@@ -163,33 +184,3 @@ class AxisParameter(IntEnum):
 
 HARMONICS: Final = 8
 """Lines of the compensation table."""
-
-DECLARED: Final[dict[int, Device]] = {}
-"""Boards beyond those above, by device type (`bus/protocol/nodes/`). `Device(number)` finds them; going
-through `Device` gives the eleven of the lab network."""
-DECLARED_OPCODES: Final[dict[int, Opcode]] = {}
-
-
-def declared_device(name: str, number: int) -> Device:
-    """A further device; the way the standard library makes the unnamed members of a Flag."""
-    device = int.__new__(Device, number)
-    device._name_ = name
-    device._value_ = number
-    DECLARED[number] = device
-    return device
-
-
-def declared_opcode(name: str, number: int) -> Opcode:
-    """A further opcode."""
-    opcode = int.__new__(Opcode, number)
-    opcode._name_ = name
-    opcode._value_ = number
-    DECLARED_OPCODES[number] = opcode
-    return opcode
-
-
-def device_named(name: str) -> Device:
-    """A device by name, declared ones too; raises KeyError."""
-    if name in Device.__members__:
-        return Device[name]
-    return next((device for device in DECLARED.values() if device.name == name), None) or Device[name]

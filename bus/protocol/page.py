@@ -6,31 +6,73 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from bus.protocol.names import SUMMARY_KIND, Device, device_named
-from bus.protocol.nodes import KINDS, documented
+from bus.protocol.names import FRAME_BYTES, HEARTBEAT_KIND, SUMMARY_KIND, Device
+from bus.protocol.nodes import DEVICES, documented
+from bus.protocol.report import PLACES
+from bus.protocol.serial import MEANINGS, SAMPLES, SYNC, fields, packet_bytes
 
-PAGE_PATH = Path(__file__).parents[2] / "docs" / "protocol.md"
+PAGE_PATH = Path(__file__).parents[2] / "docs" / "reference" / "protocol.md"
 DBC_PATH = Path(__file__).with_name("final.dbc")
 """All boards in one file, for other people's tools; written beside the page."""
-OTHERS = tuple(Device(number) for kind in KINDS for number in kind.nodes.values())
-_INTRO = f"""# The protocol
+_TYPE = 0x7F
+"""Bits of an identifier that are the device type."""
+_INTRO = """# The protocol
 
-Made from `bus/protocol/schmidt.dbc` and, for the boards that only the network `final` has,
-`bus/protocol/nodes/*.dbc`, by `python -m bus.protocol.page`; change the DBC, not this page.
-`bus/protocol/final.dbc`, written with it, has all boards in one file.
+Made by `python -m bus.protocol.page` from `bus/protocol/schmidt.dbc` and `bus/protocol/nodes/*.dbc`; change
+these, not this page. The files in `nodes` have the boards of the network `final`. `bus/protocol/final.dbc`,
+written with the page, has all boards.
 
-CAN 2.0A, standard identifiers, 1 Mbit/s unless a scenario says otherwise; every frame has eight bytes,
-little endian, and byte 0 is the device type. In a 64-byte HID report bit 7 of byte 0 marks what is not a
-measurement frame (identifier 0x200 + device type); byte 1 then tells which: an opcode (REPLY),
-{SUMMARY_KIND:#04x} (SUMMARY, TARGET) or 0xf7 (HEARTBEAT).
+CAN 2.0A with standard identifiers, at 1 Mbit/s unless a scenario says otherwise. Every frame has eight bytes,
+little endian, and byte 0 is the device type.
 
-A COMMAND is answered exactly once by the device's REPLY. A frame with an identifier nobody accepts is
-acknowledged and ignored.
+A COMMAND is answered exactly once by the device's REPLY, within `10` ms. A REPLY's Parameter repeats the
+number that GET_PARAMETER or SET_PARAMETER named. A frame with an identifier nobody accepts is acknowledged
+and ignored. The identifiers are ASSUMPTIONS: the paper prints none.
 """
+_REPORTS = f"""
+## USB HID reports
+
+`64` bytes each way, without a report number: eight places of eight bytes.
+A place whose byte `0` is `0` is empty.
+
+From the gateway:
+
+| byte 0 | byte 1 | what |
+|---|---|---|
+| 0x01..0x7f: device type | any | a measurement: the eight bytes of frame 0x200 + device type |
+| 0x80 + device type | below 0x80: the opcode | REPLY, bytes 1..7 of frame 0x100 + device type |
+| 0x80 + device type | {SUMMARY_KIND:#04x} | SUMMARY or TARGET, bytes 1..7 of frame 0x300 + device type |
+| 0x80 + device type | {HEARTBEAT_KIND:#04x} | HEARTBEAT, bytes 1..7 of frame 0x700 + device type |
+
+A measurement of the nodes below stands in its place and in no other: the newest since the report before.
+All else takes places that are free, in the order of arrival.
+A report leaves when eight places are full or the oldest frame is `4` ms old, at the next millisecond of USB.
+
+To the gateway: up to eight COMMANDs, each sent as frame `0x080 + device type`, in the order of their places.
+
+| place | bytes | measurement of |
+|---|---|---|"""
+_PACKETS = f"""
+## RS232 packets
+
+`115200` baud, `8N1`, little endian. Every `250` ms a packet of `{SAMPLES}` samples, `10` ms apart:
+
+| bytes | what |
+|---|---|
+| 0, 1 | sync, `{SYNC.hex(" ")}` |
+| 2 | device type, u8 |
+| 3 | sequence, u8: one more in every packet, modulo 256 |
+| 4..7 | time stamp, u32: the board's clock at the first sample, units of 100 µs, modulo 2³² |
+| 8.. | {SAMPLES} samples |
+| last 2 | CRC-16, u16, over all bytes between sync and CRC |
+
+The CRC has polynomial `0x1021` and begins with `0xffff`; it is not reflected, and there is no final XOR.
+
+A sync may come by chance among the samples: after a wrong CRC, search on one byte behind it."""
 
 
 def _everything() -> Any:
-    return documented((*Device, *OTHERS))
+    return documented(DEVICES)
 
 
 def _family(name: str) -> str:
@@ -44,7 +86,7 @@ def _suffix(name: str) -> str:
 def _devices() -> Iterator[str]:
     yield "\n## Devices\n"
     yield "| device | type | frames |\n|---|---|---|"
-    for device in (*Device, *OTHERS):
+    for device in DEVICES:
         names = [
             message.name for message in _everything().messages if message.name.startswith(f"{device.name}_")
         ]
@@ -59,13 +101,13 @@ def _row(signal: Any) -> str:
     span = "see Devices" if signal.name == "Device" else f"{signal.minimum}..{signal.maximum}"
     choices = signal.choices if signal.choices and signal.name != "Device" else {}
     values = ", ".join(f"{number} {name}" for number, name in choices.items())
-    text = " ".join(part for part in (signal.comment or "", values and f"({values})") if part)
+    text = " ".join(part for part in (signal.comment or "", values and f"(`{values}`)") if part)
     when = "" if signal.multiplexer_ids is None else f"{signal.multiplexer_ids[0]:#04x}"
     return f"| {when} | {signal.name} | {bits} | {kind} | {span} | {signal.unit or ''} | {text} |"
 
 
 def _message(message: Any, devices: list[str]) -> Iterator[str]:
-    base = message.frame_id - device_named(devices[0])
+    base = message.frame_id & ~_TYPE
     period = f"every {message.cycle_time} ms" if message.cycle_time else "on demand"
     yield f"\n### {_family(message.name)} {_suffix(message.name)}: {base:#05x} + device type, {period}\n"
     yield f"{message.comment} Devices: {', '.join(devices)}.\n"
@@ -74,14 +116,53 @@ def _message(message: Any, devices: list[str]) -> Iterator[str]:
     yield from (_row(signal) for signal in by_opcode)
 
 
+def _in_short(messages: list[Any]) -> Iterator[str]:
+    """Rows: identifier, frame, period, signals in their order; boards that have the same frame in one row."""
+    rows: dict[tuple[str, ...], list[str]] = {}
+    for message in messages:
+        period = f"{message.cycle_time} ms" if message.cycle_time else "on demand"
+        own = [each for each in message.signals if each.name != "Device" and not each.multiplexer_ids]
+        signals = ", ".join(signal.name for signal in sorted(own, key=lambda signal: signal.start))
+        key = f"{message.frame_id & ~_TYPE:#05x}", _suffix(message.name), period, signals
+        rows.setdefault(key, []).append(_family(message.name))
+    everyone = max(map(len, rows.values()))
+    for (base, kind, period, signals), families in rows.items():
+        boards = "every board" if len(families) == everyone else ", ".join(families)
+        yield f"| {base} | {kind} | {boards} | {period} | {signals} |"
+
+
+def _places() -> Iterator[str]:
+    for device, place in PLACES.items():
+        first = place * FRAME_BYTES
+        yield f"| {place} | {first}..{first + FRAME_BYTES - 1} | {Device(device).name} ({device:#04x}) |"
+
+
+def _samples() -> Iterator[str]:
+    like = {
+        "an axis board": Device.AXIS_RA,
+        "a position board": Device.POSITION_RA,
+        "the focus": Device.FOCUS,
+    }
+    for who, device in (like | {"a declared board with a line": 0x7F}).items():
+        rows = fields(device)
+        yield f"\n### Sample of {who}; a packet has {packet_bytes(device)} bytes\n"
+        yield "| bytes | field | type | meaning |\n|---|---|---|---|"
+        for name, kind, first in rows:
+            last = first + int(kind[1:]) // 8 - 1
+            yield f"| {first if first == last else f'{first}..{last}'} | {name} | {kind} | {MEANINGS[name]} |"
+
+
 def page() -> str:
     """The whole page, Markdown. Messages that differ only in the device are shown once."""
-    lines = [_INTRO.rstrip(), *_devices(), "\n## Frames"]
     shown: dict[tuple[str, str], tuple[Any, list[str]]] = {}
     for message in _everything().messages:
         device = message.name.rpartition("_")[0]
         key = _family(message.name), _suffix(message.name)
         shown.setdefault(key, (message, []))[1].append(device)
+    lines = [_INTRO.rstrip(), *_devices(), "\n## Frames in short\n"]
+    lines += ["| identifier less type | frame | boards | period | signals |", "|---|---|---|---|---|"]
+    lines += _in_short([message for message, _ in shown.values()])
+    lines += [_REPORTS, *_places(), _PACKETS, *_samples(), "\n## Frames"]
     for message, devices in shown.values():
         lines += _message(message, devices)
     return "\n".join(lines) + "\n"

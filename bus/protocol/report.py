@@ -1,6 +1,9 @@
 """The 64-byte USB HID report between gateway and PC: eight slots of eight frame bytes, byte 0 names the
 device.
 
+Each of the paper's eight measuring nodes has a place of its own (row L2), the same in every report; what
+else there is to say takes the places that are free.
+
 There is no room for identifiers. Bit 7 of byte 0 marks what is not a 0x200+D measurement; byte 1 then
 tells a REPLY (an opcode, below 0x80) from a SUMMARY or TARGET (0xF3) and a HEARTBEAT (0xF7). A slot
 whose byte 0 is 0 is empty.
@@ -19,11 +22,28 @@ from bus.protocol.names import (
     REPLY_BASE,
     SUMMARY_BASE,
     SUMMARY_KIND,
+    Device,
 )
 
 REPORT_BYTES: Final = 64
 SLOTS: Final = REPORT_BYTES // FRAME_BYTES
 _NOT_MEASUREMENT: Final = 0x80
+PLACES: Final[dict[int, int]] = {
+    int(device): place
+    for place, device in enumerate(
+        (
+            Device.POSITION_RA,
+            Device.POSITION_DEC,
+            Device.AXIS_RA,
+            Device.AXIS_DEC,
+            Device.MOTOR_RA_A,
+            Device.MOTOR_RA_B,
+            Device.MOTOR_DEC_A,
+            Device.MOTOR_DEC_B,
+        )
+    )
+}
+"""Whose measurement is where. ASSUMPTION: the order of the paper's list."""
 _KINDS: Final = {SUMMARY_KIND: SUMMARY_BASE, HEARTBEAT_KIND: HEARTBEAT_BASE}
 
 
@@ -51,6 +71,20 @@ def pack_report(slots: Sequence[bytes]) -> bytes:
     if len(slots) > SLOTS:
         raise ReportError(f"{len(slots)} slots do not fit a HID report of {SLOTS}")
     return b"".join(slots).ljust(REPORT_BYTES, b"\0")
+
+
+def place(waiting: Sequence[bytes]) -> bytes:
+    """A report to the PC of up to eight slots, oldest first; of two measurements of one node the newer."""
+    placed: dict[int, bytes] = {}
+    others: list[bytes] = []
+    for data in waiting:
+        at = PLACES.get(data[0])
+        if at is None:
+            others.append(data)
+        else:
+            placed[at] = data
+    rest = iter(others)
+    return b"".join(placed.get(at) or next(rest, bytes(FRAME_BYTES)) for at in range(SLOTS))
 
 
 def _slots(report: bytes) -> Iterator[bytes]:

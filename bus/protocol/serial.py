@@ -8,13 +8,14 @@ between sync and CRC. Layouts and CRC are ASSUMPTIONS; the paper gives the perio
 quantities (row L3).
 """
 
+import re
 from binascii import crc_hqx
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import starmap
-from struct import Struct, error
+from struct import Struct, calcsize, error
 from typing import Any, Final, NamedTuple
 
-from bus.protocol.names import DECLARED, Device
+from bus.protocol.names import Device
 from bus.protocol.saturate import Clip, fitted, nobody
 
 SYNC: Final = b"\xaa\x55"
@@ -25,17 +26,13 @@ SAMPLES: Final = 25
 NO_SETPOINT: Final = -(1 << 31)
 """Set point of an axis in open loop: there is none."""
 _CRC_START: Final = 0xFFFF
+_CODES: Final = re.compile(r"(\d*)([a-zA-Z])")
 _head: Final = Struct("<BBI")
 _crc: Final = Struct("<H")
 
 
 class AxisSample(NamedTuple):
-    """One 10 ms sample of an axis board.
-
-    effort: 1/3000 of the supply; position: steps, 29 bit; velocity: counts in the last 5 ms; adc_a,
-    adc_b: 10-bit counts; tach_a, tach_b: counts in the last 10 ms; aux: counts, 17 bit; setpoint: Q16
-    counts per 5 ms.
-    """
+    """One 10 ms sample of an axis board; units in `MEANINGS`."""
 
     effort: int
     position: int
@@ -49,13 +46,13 @@ class AxisSample(NamedTuple):
 
 
 class PositionSample(NamedTuple):
-    """position: steps, 29 bit."""
+    """What the encoder said."""
 
     position: int
 
 
 class FocusSample(NamedTuple):
-    """half_steps: commanded; encoder: counts; lvdt: 10-bit counts."""
+    """Where the focus is: commanded, counted, measured."""
 
     half_steps: int
     encoder: int
@@ -74,6 +71,23 @@ class FrameSample(NamedTuple):
     byte7: int
 
 
+MEANINGS: Final = {
+    "effort": "1/3000 of the supply",
+    "position": "steps of the absolute encoder, 29 bit",
+    "velocity": "counts of the incremental encoder in the last 5 ms",
+    "adc_a": "current of motor A, 10-bit counts",
+    "adc_b": "current of motor B, 10-bit counts",
+    "tach_a": "counts of motor A in the last 10 ms",
+    "tach_b": "counts of motor B in the last 10 ms",
+    "aux": "counts of the auxiliary encoder, 17 bit",
+    "setpoint": f"Q16 counts per 5 ms; {NO_SETPOINT} in open loop",
+    "half_steps": "commanded, half steps",
+    "encoder": "counts of the focus encoder",
+    "lvdt": "10-bit counts",
+    **{f"byte{k}": f"byte {k} of the measurement frame, see the board's DBC" for k in range(1, 8)},
+}
+"""Field of a sample -> unit and meaning, for the protocol's page."""
+
 Sample = AxisSample | PositionSample | FocusSample | FrameSample
 _AXIS: Final = (Struct("<hIhHHhhIi"), AxisSample)
 _POSITION: Final = (Struct("<I"), PositionSample)
@@ -88,9 +102,8 @@ _LAYOUTS: Final[dict[int, tuple[Struct, type[Sample]]]] = {
 _FRAME: Final[tuple[Struct, type[Sample]]] = (Struct("<7B"), FrameSample)
 
 
-def _layout(device: int) -> tuple[Struct, type[Sample]] | None:
-    """How the samples of a device look; None: it has no serial line."""
-    return _LAYOUTS.get(device) or (_FRAME if device in DECLARED else None)
+_WRITTEN: Final = frozenset(Device)
+"""Every other device type is a declared board's."""
 
 
 class SerialError(ValueError):
@@ -118,11 +131,22 @@ def packet_bytes(device: int) -> int:
     return len(SYNC) + _head.size + SAMPLES * _known(device)[0].size + _crc.size
 
 
+def fields(device: int) -> list[tuple[str, str, int]]:
+    """Name, type (`i16`) and first byte of what a sample of `device` holds; SerialError as above."""
+    layout, kind = _known(device)
+    codes = [code for count, code in _CODES.findall(layout.format) for _ in range(int(count or 1))]
+    at, found = 0, []
+    for name, code in zip(kind._fields, codes, strict=True):
+        size = calcsize(f"<{code}")
+        found.append((name, f"{'i' if code.islower() else 'u'}{8 * size}", at))
+        at += size
+    return found
+
+
 def _known(device: int) -> tuple[Struct, type[Sample]]:
-    layout = _layout(device)
-    if layout is None:
+    if device in _WRITTEN and device not in _LAYOUTS:
         raise SerialError(f"device type {device:#04x} has no serial line")
-    return layout
+    return _LAYOUTS.get(device, _FRAME)
 
 
 def pack_packet(
@@ -145,12 +169,13 @@ def pack_packet(
 
 
 class PacketDecoder:
-    """Finds packets in a byte stream, however it is cut.
+    """Finds packets in a byte stream, however it is cut. declared: types of declared boards on this line.
 
     A wrong CRC or unknown device type costs the sync it started with; the search goes on one byte later.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, declared: Collection[int] = ()) -> None:
+        self._devices = {*_LAYOUTS, *declared}
         self.crc_errors = 0
         self.skipped_bytes = 0
         self._buffer = bytearray()
@@ -162,7 +187,7 @@ class PacketDecoder:
         packets: list[Packet] = []
         while self._seek() and len(buffer) > len(SYNC):
             device = buffer[len(SYNC)]
-            if _layout(device) is None:
+            if device not in self._devices:
                 self._skip(1)
                 continue
             length = packet_bytes(device)

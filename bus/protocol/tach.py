@@ -1,9 +1,7 @@
 """TACH: a motor velocity board's measurement frame, every 10 ms."""
 
-from struct import Struct, error
+from struct import Struct
 from typing import Final, NamedTuple
-
-from bus.protocol.saturate import fitted
 
 _tach: Final = Struct("<BBih")
 tach_fields: Final = _tach.unpack
@@ -21,12 +19,9 @@ class Tach(NamedTuple):
 
 
 def pack_tach(device: int, flags: int, counts: int, delta: int) -> bytes:
-    """Eight bytes; `counts` wraps at 32 bits (it runs free), a `delta` beyond 16 is cut to the largest."""
-    counts = ((counts + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000
-    try:
-        return _tach.pack(device, flags, counts, delta)
-    except error:
-        return _tach.pack(*fitted(_tach, (device, flags, counts, delta)))
+    """Eight bytes; `counts` wraps at 32 bits (it runs free), `delta` is of a 16-bit counter."""
+    word = device | flags << 8 | (counts & 0xFFFF_FFFF) << 16 | (delta & 0xFFFF) << 48
+    return word.to_bytes(8, "little")
 
 
 def unpack_tach(data: bytes) -> Tach:

@@ -23,8 +23,8 @@ class Oscillator:
     ppm: rate error at true time 0, parts per million (positive runs fast).
     phase_ns: what the local clock reads at true time 0.
     drift_ppm_per_hour: linear ageing or warming of the rate.
-    Both directions are monotone, and `local_ns(true_ns(x)) >= x > local_ns(true_ns(x) - 1)`:
-    a timer set for a local time fires at the first true nanosecond at which the local clock has reached it.
+    Both directions are monotone, and `local_ns(true_ns(x)) >= x > local_ns(true_ns(x) - 1)`. So a timer that
+    is set for a local time fires at the first true nanosecond at which the local clock has reached it.
     """
 
     __slots__ = ("_drift", "_rate", "phase_ns")

@@ -27,15 +27,14 @@ _COMPILED: Final = not hasattr(_search, "__code__")
 class EventQueue:
     """Calls in order of time; at the same time, in the order in which they were asked for.
 
-    Times are integer nanoseconds since the start of the simulation. Both lists are sorted, the earliest event
-    last, and times stand in them with the sign turned: a network has an event or two per node waiting, and
-    for so few an insertion is quicker than a heap.
+    Times are integer nanoseconds since the start of the simulation.
     """
 
     __slots__ = ("_before", "_calls", "now_ns")
 
     def __init__(self) -> None:
         self.now_ns: int = 0
+        # Sorted, the earliest event last, times negated: for an event or two per node quicker than a heap.
         self._before: list[int] = []
         self._calls: list[Callable[[int], None]] = []
 

@@ -2,12 +2,13 @@
 
 from bus.protocol.nodes.codec import FrameCodec
 from bus.protocol.nodes.command import Argument, arguments_of
-from bus.protocol.nodes.kind import Kind, KindError, ParameterRow, declare, declared_kinds, kind_of
-from bus.protocol.nodes.kinds import AUXILIARY, DOME, KINDS, POWER, WEATHER
+from bus.protocol.nodes.kind import Kind, KindError, ParameterRow, check_kind, kind_of
+from bus.protocol.nodes.kinds import AUXILIARY, DEVICES, DOME, KINDS, POWER, WEATHER
 from bus.protocol.nodes.messages import documented, messages_of, own_messages
 
 __all__ = [
     "AUXILIARY",
+    "DEVICES",
     "DOME",
     "KINDS",
     "POWER",
@@ -18,8 +19,7 @@ __all__ = [
     "KindError",
     "ParameterRow",
     "arguments_of",
-    "declare",
-    "declared_kinds",
+    "check_kind",
     "documented",
     "kind_of",
     "messages_of",

@@ -1,11 +1,9 @@
 """A declared kind's own opcodes: layout, names and bounds of their arguments, from its DBC."""
 
 from functools import cache
-from struct import Struct
 from typing import NamedTuple
 
-from bus.protocol.command import LAYOUTS
-from bus.protocol.names import Opcode, declared_opcode
+from bus.protocol.names import Opcode
 from bus.protocol.nodes.kind import Kind, KindError
 from bus.protocol.nodes.messages import command_of, opcode_names
 
@@ -31,9 +29,9 @@ class Argument(NamedTuple):
 
 @cache
 def arguments_of(kind: Kind) -> dict[Opcode, tuple[Argument, ...]]:
-    """Opcodes of the kind's own and their arguments; makes them known to `pack_command`.
+    """Opcodes of the kind's own, as `pack_command` takes them, and their arguments.
 
-    Raises KindError for arguments that are not whole bytes and for an opcode that is somebody else's.
+    Raises KindError for arguments that are not whole bytes and for an opcode no declared board can have.
     """
     command = command_of(kind)
     found: dict[Opcode, tuple[Argument, ...]] = {}
@@ -58,10 +56,6 @@ def arguments_of(kind: Kind) -> dict[Opcode, tuple[Argument, ...]]:
                 round((each - signal.offset) / signal.scale) for each in (signal.minimum, signal.maximum)
             )
             arguments.append(Argument(signal.name.rpartition("_")[2].lower(), low, high))
-        struct = Struct(f"{layout}{(_LAST - at) // 8}x")
-        known = LAYOUTS.setdefault(number, (struct, tuple(each.name for each in arguments)))
-        if known[0].format != struct.format:
-            raise KindError(f"{kind.dbc}: opcode {number:#04x} is another board's, with other arguments")
-        opcode = declared_opcode(name, number)
-        found[opcode] = tuple(arguments)
+        declared = f"{layout}{(_LAST - at) // 8}x", tuple(each.name for each in arguments)
+        found[Opcode.further(name, number, declared)] = tuple(arguments)
     return found

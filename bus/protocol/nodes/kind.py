@@ -1,10 +1,10 @@
 """What a kind of board says of itself on the bus, in one place; identifiers and common frames follow."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from bus.protocol.names import DECLARED, Device, declared_device
+from bus.protocol.names import Device
 
 _LAST_TYPE = 0x7F
 """Device types have seven bits."""
@@ -41,44 +41,37 @@ class Kind:
     def __hash__(self) -> int:
         return hash(self.name)
 
+    def device(self, name: str) -> Device:
+        """One of its boards."""
+        return Device.further(name, self.nodes[name], self)
 
-_kinds: dict[str, Kind] = {}
-_by_type: dict[int, Kind] = {}
+    def devices(self) -> tuple[Device, ...]:
+        """All of its boards."""
+        return tuple(self.device(name) for name in self.nodes)
 
 
-def declare(kind: Kind) -> tuple[Device, ...]:
-    """Make a kind known, so that `Device(number)` finds its boards; the same one twice changes nothing.
+def kind_of(device: Device) -> Kind | None:
+    """The kind of a declared board; None: one that is written by hand."""
+    kind: Kind | None = device.declared
+    return kind
 
-    Raises KindError for names and device types that are taken or cannot be.
-    """
-    if _kinds.get(kind.name) == kind:
-        return tuple(Device(number) for number in kind.nodes.values())
-    if kind.name in _kinds:
-        raise KindError(f"board kind {kind.name}: declared twice, and differently")
+
+def check_kind(kind: Kind, beside: Iterable[Kind]) -> None:
+    """Raises KindError for names and device types that cannot be, or that the lab's boards or another of
+    `beside` have; the same kind twice is one."""
     if not kind.name.isalnum() or kind.name != kind.name.upper():
-        raise KindError(f"board kind {kind.name!r}: a name is capitals and digits")
-    names = {device.name for device in [*Device, *DECLARED.values()]}
-    for name, number in kind.nodes.items():
+        raise KindError(f"board kind {kind.name!r}: a name is capitals and digits, without an underscore")
+    others = [each for each in beside if each != kind]
+    if kind.name in {each.name for each in others}:
+        raise KindError(f"board kind {kind.name}: declared twice, and differently")
+    taken = [*Device, *(device for each in others for device in each.devices())]
+    for device in kind.devices():
+        name, number = device.name, int(device)
         if name.partition("_")[0] != kind.name:
             raise KindError(
                 f"board {name}: boards of kind {kind.name} are called {kind.name} or {kind.name}_…"
             )
         if not 0 < number <= _LAST_TYPE:
             raise KindError(f"board {name}: device type {number:#04x} is not within 0x01..{_LAST_TYPE:#04x}")
-        taken = next((device.name for device in Device if device == number), None) or DECLARED.get(number)
-        if taken is not None or name in names:
+        if any(name == each.name or number == each for each in taken):
             raise KindError(f"board {name}: name or device type {number:#04x} is taken")
-    _kinds[kind.name] = kind
-    for number in kind.nodes.values():
-        _by_type[number] = kind
-    return tuple(declared_device(name, number) for name, number in kind.nodes.items())
-
-
-def declared_kinds() -> tuple[Kind, ...]:
-    """All kinds so far, in the order of their declaration."""
-    return tuple(_kinds.values())
-
-
-def kind_of(device: int) -> Kind | None:
-    """The kind of a device type; None: a board written by hand, or nobody."""
-    return _by_type.get(device)

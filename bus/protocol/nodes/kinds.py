@@ -7,7 +7,8 @@ network the paper's "over sixteen".
 
 from pathlib import Path
 
-from bus.protocol.nodes.kind import Kind, ParameterRow, declare
+from bus.protocol.names import Device
+from bus.protocol.nodes.kind import Kind, ParameterRow
 
 _HERE = Path(__file__).parent
 
@@ -45,5 +46,5 @@ POWER = Kind(
     ),
 )
 KINDS = (AUXILIARY, DOME, WEATHER, POWER)
-for _kind in KINDS:
-    declare(_kind)
+DEVICES = (*Device, *(device for kind in KINDS for device in kind.devices()))
+"""All boards that come along, the lab's first."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bus.protocol.database import database
-from bus.protocol.names import COMMAND_BASE, MEASUREMENT_BASE, SUMMARY_BASE, SUMMARY_KIND
+from bus.protocol.names import COMMAND_BASE, MEASUREMENT_BASE, SUMMARY_BASE, SUMMARY_KIND, Device
 from bus.protocol.nodes.kind import Kind, KindError, kind_of
 
 if TYPE_CHECKING:
@@ -46,6 +46,8 @@ def own_messages(kind: Kind) -> list[Any]:
                 f"{kind.dbc}: {message.name} is {message.length} bytes at {message.frame_id};"
                 f" a declared board's frames have 8, at {' or '.join(map(str, _BASES))}"
             )
+        if "_" in message.name:
+            raise KindError(f"{kind.dbc}: frame {message.name}: a frame's name has no underscore")
     sent = [message for message in found if message.frame_id != COMMAND_BASE]
     if not sent or any(not message.cycle_time for message in sent):
         raise KindError(f"{kind.dbc}: needs a frame at {MEASUREMENT_BASE}, and GenMsgCycleTime for each")
@@ -126,7 +128,7 @@ def _kind_byte() -> Sequence[Any]:
     return (Signal("Kind", 8, 8, raw_initial=SUMMARY_KIND, minimum=SUMMARY_KIND, maximum=SUMMARY_KIND),)
 
 
-def documented(devices: Iterable[int]) -> Database:
+def documented(devices: Iterable[Device]) -> Database:
     """schmidt.dbc and the frames of those kinds that some of `devices` belong to."""
     from cantools.database import Database
     from cantools.database.can import Node

@@ -8,10 +8,10 @@ import can
 
 from bus.can.frame import Frame, FrameError, check
 from bus.can.wire import Wire
-from bus.errorframes import ErrorFrames
-from bus.messages import to_frame, to_message
-from bus.node import OutsideNode
-from bus.overflow import kernel_drops, overflow_message
+from bus.outside.errorframes import ErrorFrames
+from bus.outside.messages import to_frame, to_message
+from bus.outside.node import OutsideNode
+from bus.outside.overflow import kernel_drops, overflow_message
 from bus.time import EventQueue
 
 _FRAMES_PER_POLL = 64
@@ -37,7 +37,7 @@ class Door:
     Frames from outside are stamped with the simulated time of the `poll()` that found them and
     arbitrated like any other. Frames from the wire go out once; none that came in goes back out. When the
     node's memory is full, a frame is refused, counted, and an error frame "receive overflow" goes out. So do
-    the error frames of the node's controller (`bus.errorframes`): bus off, passive, missing acknowledge.
+    the error frames of the node's controller (`ErrorFrames`): bus off, passive, missing acknowledge.
 
     enter: what to do with a frame that comes in; by default it arrives at the node.
     frames_in, frames_out; refused: the wire could not carry more; rejected: no CAN 2.0 frame; lost_out: the

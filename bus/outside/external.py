@@ -1,11 +1,21 @@
 """`INTERFACE:CHANNEL[,key=value…]` as users write it on the command line, opened as a python-can bus."""
 
 import logging
+import os
+import socket
+import sys
+from contextlib import suppress
 
 import can
 
 logging.getLogger("can").addHandler(logging.NullHandler())
 """What python-can has to say arrives as an exception; its logger would write a second line to the screen."""
+
+_ALL_GROUPS = (
+    (socket.AF_INET, socket.IPPROTO_IP, 49),  # IP_MULTICAST_ALL
+    (socket.AF_INET6, socket.IPPROTO_IPV6, 29),  # IPV6_MULTICAST_ALL
+)
+"""Linux' option by which a socket hears every group that anybody on the machine has joined, by default on."""
 
 
 class SpecError(ValueError):
@@ -31,7 +41,18 @@ def open_bus(spec: str) -> can.BusABC:
             raise SpecError(f'"{spec}": option "{option}" is not key=value')
         settings[key] = int(value) if value.isdecimal() and len(value) < 19 else value
     try:
-        return can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
+        bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option
         reason = " ".join(str(error).split()) or type(error).__name__
         raise SpecError(f'"{spec}" cannot be opened: {reason}') from None
+    if interface == "udp_multicast" and sys.platform == "linux":
+        _hear_one_group(bus)
+    return bus
+
+
+def _hear_one_group(bus: can.BusABC) -> None:
+    """Let a multicast socket hear its own group alone; the port is shared by all buses of this machine."""
+    with socket.socket(fileno=os.dup(bus.fileno())) as copy, suppress(OSError):  # a kernel without it
+        for family, level, option in _ALL_GROUPS:
+            if copy.family == family:
+                copy.setsockopt(level, option, 0)

@@ -1,7 +1,7 @@
 """A wire in simulated time for programs that send and then wait in a thread of their own, such as `canopen`.
 
-Such a program waits for what another thread puts into its queue. Here there is no other thread: before `send`
-returns, simulated time has gone on and whatever came has been handed over, so the answer is there when the
+Such a program waits for what another thread puts into its queue. Here there is no other thread. Before `send`
+returns, simulated time has gone on and whatever came has been handed over. So the answer is there when the
 program looks for it.
 """
 
@@ -11,7 +11,7 @@ from math import ceil
 import can
 
 from bus.can.wire import Wire
-from bus.pythoncan import SchmidtBus
+from bus.outside.pythoncan import SchmidtBus
 
 
 class LockstepBus(SchmidtBus):

@@ -3,7 +3,7 @@
 from collections import deque
 from time import perf_counter
 
-from bus.pacer import Pacer
+from bus.outside.pacer import Pacer
 
 TICK_NS = 5_000_000
 ON_TIME_S = 1e-3
@@ -33,7 +33,7 @@ class Punctuality:
     """A probe on the queue every 5 ms of simulated time. It changes nothing that the boards do.
 
     due is when the pacer's schedule wants it; a schedule that was dropped (`Pacer.slips`) is late once.
-    late: (due, lateness) of the last ticks that were more than 1 ms off, s on the clock of `perf_counter`,
+    late: (due, lateness), s, of the last ticks that were more than 1 ms off. The clock is `perf_counter`,
     which other programs on the machine can read too.
     """
 

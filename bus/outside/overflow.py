@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import can
 
-from bus.errorframes import CAN_ERR_CRTL, CRTL_RX_OVERFLOW, error_message
+from bus.outside.errorframes import CAN_ERR_CRTL, CRTL_RX_OVERFLOW, error_message
 
 _SO_MEMINFO = 55
 _DROPS = 8
