@@ -1,15 +1,16 @@
 """Commands and parameters of the axis board, as tables."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
-from boards.axis.config import STEPS_PER_TURN, rate_q16
-from boards.axis.motion import POINTING
+from boards.axis.counter import CounterTorque
+from boards.axis.limits import SoftLimits
+from boards.axis.motion import POINTING, Motion
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, Parameter
-from boards.core.commands import Handler, i8, i16, i32, u8, u32
+from boards.core.commands import Handler, commands
+from boards.core.parameters import kept
+from boards.silicon.pwm import MotorPwm
 from bus.protocol import AxisMode, Opcode, SpeedClass
-
-if TYPE_CHECKING:
-    from boards.axis.firmware import AxisBoard
+from bus.protocol.scales import STEPS_PER_TURN, rate_q16
 
 RATE_LIMIT: Final = rate_q16(3.1 * 3600)
 """Fastest rate that is accepted: the paper reports up to 3 deg/s (Fig. 12)."""
@@ -21,16 +22,39 @@ _GAIN_BOUND: Final = 1 << 20
 _CLASS_NAMES: Final = ("slew", "set", "guide", "fine", "track")
 
 
-class AxisCommands:
-    """Handlers: (t_ns, arguments) -> reply."""
+class Commanded(Protocol):
+    """What the commands need of the board."""
 
-    def __init__(self, board: "AxisBoard") -> None:
+    motion: Motion
+    limits: SoftLimits
+    pwm: MotorPwm
+    velocity: int
+
+    def clock_ns(self, t_ns: int) -> int:
+        """Its own clock."""
+
+    def powered(self) -> bool:
+        """Whether the motors are under control."""
+
+    def switch(self, on: bool) -> None:
+        """Motors on or off."""
+
+    def stop(self) -> None:
+        """Brake to rest."""
+
+    def command_effort(self, effort: int | None) -> None:
+        """Fixed effort, or None: the loop decides."""
+
+
+class AxisCommands:
+    """Methods: (t_ns, arguments as on the wire) -> reply."""
+
+    def __init__(self, board: Commanded) -> None:
         self._board = board
         self._motion = board.motion
 
-    def power(self, t_ns: int, data: bytes) -> Answer:
+    def power(self, t_ns: int, on: int) -> Answer:
         """POWER: refused while the position is unknown."""
-        on = u8(data)
         if on > 1:
             return OUT_OF_RANGE
         if on and not self._motion.fresh(self._board.clock_ns(t_ns)):
@@ -38,21 +62,19 @@ class AxisCommands:
         self._board.switch(bool(on))
         return OK
 
-    def stop(self, _t_ns: int, _data: bytes) -> Answer:
+    def stop(self, _t_ns: int) -> Answer:
         """STOP: always allowed."""
         self._board.stop()
         return OK
 
-    def set_rate(self, _t_ns: int, data: bytes) -> Answer:
+    def set_rate(self, _t_ns: int, rate: int) -> Answer:
         """SET_RATE: velocity loop at any rate."""
-        rate = i32(data)
         if abs(rate) > RATE_LIMIT:
             return OUT_OF_RANGE
         return self._run(AxisMode.RATE, rate, 0)
 
-    def set_class(self, _t_ns: int, data: bytes) -> Answer:
+    def set_class(self, _t_ns: int, number: int, direction: int) -> Answer:
         """SET_CLASS: slew, set, guide, fine or track, forward, backward or at rest."""
-        number, direction = u8(data), i8(data, 1)
         if not 1 <= number <= len(_CLASS_NAMES) or direction not in (-1, 0, 1):
             return OUT_OF_RANGE
         return self._run(AxisMode.CLASS, self._motion.classes[number - 1] * direction, number)
@@ -65,9 +87,8 @@ class AxisCommands:
         self._motion.selected = selected
         return OK
 
-    def move_to(self, t_ns: int, data: bytes) -> Answer:
+    def move_to(self, t_ns: int, target: int, number: int) -> Answer:
         """MOVE_TO: refused beyond the soft limits, before anything moves."""
-        target, number = u32(data), u8(data, 4)
         if not 1 <= number <= len(_CLASS_NAMES) or not self._board.limits.inside(target):
             return OUT_OF_RANGE
         if not self._ready(t_ns):
@@ -79,9 +100,8 @@ class AxisCommands:
         self._motion.selected = number
         return OK
 
-    def track_rate(self, t_ns: int, data: bytes) -> Answer:
+    def track_rate(self, t_ns: int, rate: int) -> Answer:
         """TRACK_RATE: the target moves at this rate from now on."""
-        rate = i32(data)
         if abs(rate) > self._motion.classes[0]:
             return OUT_OF_RANGE
         if not self._ready(t_ns):
@@ -92,9 +112,8 @@ class AxisCommands:
             self._motion.selected = SpeedClass.TRACK
         return OK
 
-    def open_loop(self, _t_ns: int, data: bytes) -> Answer:
+    def open_loop(self, _t_ns: int, effort: int) -> Answer:
         """OPEN_LOOP: effort in 1/3000 of the supply, as it is."""
-        effort = i16(data)
         if abs(effort) > _EFFORT_LIMIT:
             return OUT_OF_RANGE
         if not self._board.powered():
@@ -103,9 +122,8 @@ class AxisCommands:
         self._motion.open_loop()
         return OK
 
-    def nudge(self, t_ns: int, data: bytes) -> Answer:
+    def nudge(self, t_ns: int, offset: int) -> Answer:
         """NUDGE: shift the target of a move, of tracking or of holding."""
-        offset = i32(data)
         motion = self._motion
         if motion.mode not in POINTING or not self._ready(t_ns):
             return NOT_ALLOWED
@@ -118,41 +136,31 @@ class AxisCommands:
         return self._board.powered() and self._motion.fresh(self._board.clock_ns(t_ns))
 
 
-def axis_commands(board: "AxisBoard") -> dict[int, Handler]:
+def axis_commands(board: Commanded) -> dict[int, Handler]:
     """Opcode to handler."""
-    commands = AxisCommands(board)
-    return {
-        Opcode.POWER: commands.power,
-        Opcode.STOP: commands.stop,
-        Opcode.SET_RATE: commands.set_rate,
-        Opcode.SET_CLASS: commands.set_class,
-        Opcode.MOVE_TO: commands.move_to,
-        Opcode.TRACK_RATE: commands.track_rate,
-        Opcode.OPEN_LOOP: commands.open_loop,
-        Opcode.NUDGE: commands.nudge,
-    }
+    own = AxisCommands(board)
+    return commands(
+        {
+            Opcode.POWER: own.power,
+            Opcode.STOP: own.stop,
+            Opcode.SET_RATE: own.set_rate,
+            Opcode.SET_CLASS: own.set_class,
+            Opcode.MOVE_TO: own.move_to,
+            Opcode.TRACK_RATE: own.track_rate,
+            Opcode.OPEN_LOOP: own.open_loop,
+            Opcode.NUDGE: own.nudge,
+        }
+    )
 
 
-def axis_parameters(board: "AxisBoard") -> list[Parameter]:
+def axis_parameters(motion: Motion, limits: SoftLimits, counter: CounterTorque) -> list[Parameter]:
     """Parameters 1..11; what depends on one is worked out again when it changes."""
-    motion, limits = board.motion, board.limits
-
-    def set_split(value: int) -> None:
-        board.counter.split = value
 
     def set_kp(value: int) -> None:
         motion.set_gains(value, motion.ki_q12)
 
     def set_ki(value: int) -> None:
         motion.set_gains(motion.kp_q12, value)
-
-    def set_low(value: int) -> None:
-        motion.low = value
-        limits.refresh()
-
-    def set_high(value: int) -> None:
-        motion.high = value
-        limits.refresh()
 
     def set_acceleration(value: int) -> None:
         motion.set_acceleration(value)
@@ -168,11 +176,11 @@ def axis_parameters(board: "AxisBoard") -> list[Parameter]:
         )
 
     return [
-        Parameter(1, "counter_split_percent", *_SPLIT_BOUNDS, lambda: board.counter.split, set_split),
+        kept(1, "counter_split_percent", _SPLIT_BOUNDS, counter, "split"),
         Parameter(2, "kp_q12", 0, _GAIN_BOUND, lambda: motion.kp_q12, set_kp),
         Parameter(3, "ki_q12", 0, _GAIN_BOUND, lambda: motion.ki_q12, set_ki),
-        Parameter(4, "soft_limit_low_steps", 0, STEPS_PER_TURN - 1, lambda: motion.low, set_low),
-        Parameter(5, "soft_limit_high_steps", 0, STEPS_PER_TURN - 1, lambda: motion.high, set_high),
+        kept(4, "soft_limit_low_steps", (0, STEPS_PER_TURN - 1), motion, "low", limits.refresh),
+        kept(5, "soft_limit_high_steps", (0, STEPS_PER_TURN - 1), motion, "high", limits.refresh),
         Parameter(
             6, "acceleration_q16", 1, rate_q16(7200.0) // 20, lambda: motion.acceleration, set_acceleration
         ),

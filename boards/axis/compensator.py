@@ -9,6 +9,7 @@ from math import cos, pi, sin
 from typing import Final
 
 from bus.protocol import HARMONICS
+from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN
 
 _TABLE_BITS: Final = 10
 _SIZE: Final = 1 << _TABLE_BITS
@@ -19,7 +20,7 @@ _PART_BITS: Final = 12
 _PART_MASK: Final = (1 << _PART_BITS) - 1
 _COS: Final = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
 _SIN: Final = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
-_LEAD_Q16: Final = round(1.5 * (1 << 29) / 112_896_000 * 65536)
+_LEAD_Q16: Final = round(1.5 * STEPS_PER_TURN / COUNTS_PER_TURN * 65536)
 """Steps per count, one and a half ticks: the mean age of a position frame (up to one tick, both boards run on
 their own crystals) and half the tick in which the effort will be in force. ASSUMPTION."""
 

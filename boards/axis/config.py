@@ -4,24 +4,16 @@ them."""
 from dataclasses import dataclass, field
 from typing import Final
 
-COUNTS_PER_TURN: Final = 112_896_000
-"""Incremental encoder: 4.608e6 counts x 735/30 (paper, sections 2.2 and 3.2; hardware.md 2.1)."""
-STEPS_PER_TURN: Final = 1 << 29
-"""Absolute encoder RCN 829 (paper, section 3.2)."""
+from bus.protocol.scales import STEPS_PER_TURN, TICKS_PER_S, rate_q16
+from bus.units import ARCSEC_PER_TURN
+
 TICK_NS: Final = 5_000_000
 """Sampling time of the controller (paper, section 3.3)."""
-_ARCSEC_PER_TURN: Final = 1_296_000
-_TICKS_PER_S: Final = 200
-
-
-def rate_q16(arcsec_per_s: float) -> int:
-    """A rate in arcsec/s as counts per 5 ms in Q16: 15 becomes 6.53333."""
-    return round(arcsec_per_s * COUNTS_PER_TURN / _ARCSEC_PER_TURN / _TICKS_PER_S * 65536)
 
 
 def steps(arcsec: float) -> int:
     """An angle in arcsec as steps of the absolute encoder."""
-    return round(arcsec * STEPS_PER_TURN / _ARCSEC_PER_TURN)
+    return round(arcsec * STEPS_PER_TURN / ARCSEC_PER_TURN)
 
 
 def _classes() -> tuple[int, ...]:
@@ -31,7 +23,18 @@ def _classes() -> tuple[int, ...]:
     return tuple(rate_q16(rate) for rate in (7200.0, 600.0, 100.0, 15.0, 15.041))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
+class AxisPeers:
+    """Device types of the boards it listens to: its EnDat board, its motors, its auxiliary encoder's board
+    (None: not on this network)."""
+
+    position: int
+    motor_a: int
+    motor_b: int
+    auxiliary: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AxisConfig:
     """Settings of one axis board.
 
@@ -67,7 +70,7 @@ class AxisConfig:
     creep_rate: int = rate_q16(200.0)
     correction: int = rate_q16(1500.0)
     lag_steps: int = steps(900.0)
-    acceleration: int = rate_q16(7200.0) // _TICKS_PER_S
+    acceleration: int = rate_q16(7200.0) // TICKS_PER_S
     classes: tuple[int, ...] = field(default_factory=_classes)
     low: int = 0
     high: int = STEPS_PER_TURN - 1

@@ -1,10 +1,10 @@
 """Duty register of the lagging motor: a share of the effort, in whole PWM steps (paper, section 3.3).
 
-Rounded anew at every tick, the register would move with the effort itself: at 10 % every tenth step of the
-effort would raise both duties and change no torque, and a loop that rests there has a dead band. So the
-register stays until it is a whole step off. When it moves while the loop's effort creeps by single steps, the
-effort takes the same step with it: the torque goes on without a bump. ASSUMPTION: the paper gives the share
-and not its rounding.
+Rounded anew at every tick, the register would move with the effort itself. At 10 % every tenth step of the
+effort would raise both duties and change no torque. A loop that rests there has a dead band. So the register
+stays until it is a whole step off. When it moves while the loop's effort creeps by single steps, the effort
+takes the same step with it. The torque goes on without a bump. ASSUMPTION: the paper gives the share and not
+its rounding.
 """
 
 from typing import Final

@@ -1,14 +1,13 @@
 """Parameters 12 to 42: spread duty, compensation table, friction model, bias, lock, blend."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from boards.axis.config import COUNTS_PER_TURN
+from boards.axis.motion import Motion
+from boards.axis.output import FineOutput
 from boards.core import Parameter
+from boards.core.parameters import kept
 from bus.protocol import HARMONICS, AxisParameter
-
-if TYPE_CHECKING:
-    from boards.axis.motion import Motion
-    from boards.axis.output import FineOutput
+from bus.protocol.scales import COUNTS_PER_TURN
 
 _EFFORT_Q8: Final = 3000 << 8
 """All of the supply."""
@@ -18,7 +17,7 @@ _ORDER_Q16: Final = (1 << 31) - 1
 """32767 cycles per turn of the axis: motor orders up to 90."""
 
 
-def fine_parameters(output: "FineOutput", motion: "Motion") -> list[Parameter]:
+def fine_parameters(output: FineOutput, motion: Motion) -> list[Parameter]:
     """Rows of the parameter table; the interrupt table is booked again when one changes."""
     compensator = output.compensator
 
@@ -29,12 +28,6 @@ def fine_parameters(output: "FineOutput", motion: "Motion") -> list[Parameter]:
 
         low = 0 if column is compensator.orders_q16 else -bound
         return Parameter(number, f"{name}_{line}", low, bound, lambda: column[line], write)
-
-    def write_level(value: int) -> None:
-        compensator.level_q8 = value
-
-    def write_travel(value: int) -> None:
-        compensator.travel = value
 
     columns: tuple[tuple[str, int, list[int]], ...] = (
         ("harmonic_order_q16", _ORDER_Q16, compensator.orders_q16),
@@ -51,13 +44,12 @@ def fine_parameters(output: "FineOutput", motion: "Motion") -> list[Parameter]:
             AxisParameter.COMPENSATION, "compensation", 0, 1,
             lambda: compensator.on, output.set_compensation,
         ),
-        Parameter(
-            AxisParameter.FRICTION_LEVEL_Q8, "friction_level_q8", 0, _EFFORT_Q8,
-            lambda: compensator.level_q8, write_level,
+        kept(
+            AxisParameter.FRICTION_LEVEL_Q8, "friction_level_q8", (0, _EFFORT_Q8), compensator, "level_q8",
         ),
-        Parameter(
-            AxisParameter.FRICTION_TRAVEL_COUNTS, "friction_travel_counts", 1, COUNTS_PER_TURN,
-            lambda: compensator.travel, write_travel,
+        kept(
+            AxisParameter.FRICTION_TRAVEL_COUNTS, "friction_travel_counts", (1, COUNTS_PER_TURN), compensator,
+            "travel",
         ),
         *(
             cell(first + 3 * line + place, name, bound, column, line)

@@ -4,7 +4,7 @@ from typing import Final
 
 from boards.axis.auxiliary import RemoteAuxiliary
 from boards.axis.commands import axis_commands, axis_parameters
-from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.config import TICK_NS, AxisConfig, AxisPeers
 from boards.axis.counter import CounterTorque
 from boards.axis.fineparameters import fine_parameters
 from boards.axis.interrupts import FCY_HZ, TABLE
@@ -16,13 +16,12 @@ from boards.axis.pins import AxisPins
 from boards.axis.profile import UNITS_PER_STEP
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
-from boards.core import PeriodicBoard
+from boards.core import PacketLine, PeriodicBoard, Place
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.can import FULL_MASK
 from boards.silicon.pwm import MotorPwm
 from boards.silicon.qei import Qei
-from boards.silicon.uart import Uart
-from bus.can import Frame, Wire
+from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
     MEASUREMENT_BASE,
@@ -34,50 +33,36 @@ from bus.protocol import (
     pack_motion,
     pack_target,
 )
-from bus.protocol.serial import NO_SETPOINT, SAMPLES, STAMP_UNIT_NS, pack_packet
-from bus.time import EventQueue, Oscillator
+from bus.protocol.serial import NO_SETPOINT
 
 _EFFORT_SCALE: Final = 3000
 """Effort on the wire and in the logs is in 1/3000 of the supply, whatever the PWM's own resolution."""
 _TARGET_TICKS: Final = 50
 _HEARTBEAT_TICKS: Final = 200
-_POWERED, _MOVING, _LIMIT, _FAULT = map(
-    int, (MotionFlag.POWERED, MotionFlag.MOVING, MotionFlag.SOFT_LIMIT, MotionFlag.FAULT)
+_POWERED, _MOVING, _LIMIT, _FAULT = (
+    int(flag) << 4
+    for flag in (MotionFlag.POWERED, MotionFlag.MOVING, MotionFlag.SOFT_LIMIT, MotionFlag.FAULT)
 )
+"""Above the mode, in the frame's second byte."""
 
 
 class AxisBoard(PeriodicBoard):
-    """dsPIC30F3011 + MCP2515, one per axis.
-
-    position_type, motor_types, auxiliary_type: device types of the boards it listens to: its EnDat board,
-        its motors A and B, its auxiliary encoder's (None: not on this network).
-    """
+    """dsPIC30F3011 + MCP2515, one per axis."""
 
     __slots__ = (
         "_identifier", "adc", "auxiliary", "config", "counter", "effort", "effort_command",
-        "fault", "fine", "limits", "motion", "pi", "poscnt", "pwm", "qei", "samples", "sequence",
-        "stamp_ns", "tach_a", "tach_b", "uart", "velocity", "watch",
+        "fault", "fine", "limits", "motion", "output", "packets", "pi", "poscnt", "pwm", "qei",
+        "tach_a", "tach_b", "uart", "velocity", "watch",
     )  # fmt: skip
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        pins: AxisPins,
-        oscillator: Oscillator,
-        config: AxisConfig,
-        position_type: int,
-        motor_types: tuple[int, int],
-        auxiliary_type: int | None = None,
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+    def __init__(self, place: Place, pins: AxisPins, config: AxisConfig, peers: AxisPeers) -> None:
+        super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.config = config
         self.qei = Qei(pins.encoder)
         self.pwm = MotorPwm(pins.drive, config.pwm_steps, config.pwm_hz)
         self.adc = CurrentAdc(pins.current)
-        self.uart = Uart(queue)
+        self.packets = PacketLine(place, self.clip)
+        self.uart = self.packets.uart
         self.pi = IncrementalPi(round(config.kp * 4096), round(config.ki * 4096), config.pwm_steps)
         self.motion = Motion(config, self.pi)
         self.limits = SoftLimits(self.motion)
@@ -88,28 +73,28 @@ class AxisBoard(PeriodicBoard):
         self.poscnt = 0
         self.effort = 0
         self.effort_command: int | None = 0
-        self.samples: list[tuple[int, ...]] = []
-        self.stamp_ns = 0
-        self.sequence = 0
         self.fault = False
         self.watch = EncoderWatch()
-        self._identifier = MEASUREMENT_BASE + device_type
+        self._identifier = MEASUREMENT_BASE + self.device_type
         self.auxiliary = RemoteAuxiliary(config.frame_ns)
-        remote = [
-            MEASUREMENT_BASE + position_type,
-            MEASUREMENT_BASE + motor_types[0],
-            MEASUREMENT_BASE + motor_types[1],
-        ]
+        remote = [MEASUREMENT_BASE + each for each in (peers.position, peers.motor_a, peers.motor_b)]
         calls = [self.motion.take_position, self.tach_a.take, self.tach_b.take]
-        if auxiliary_type is not None:  # the last of the four filters that go with the second mask
-            remote.append(MEASUREMENT_BASE + auxiliary_type)
+        if peers.auxiliary is not None:  # the last of the four filters that go with the second mask
+            remote.append(MEASUREMENT_BASE + peers.auxiliary)
             calls.append(self.auxiliary.take)
         self.mail.update(zip(remote, calls, strict=True))
-        self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]), (FULL_MASK, remote))
+        self.can.accept((FULL_MASK, [COMMAND_BASE + self.device_type]), (FULL_MASK, remote))
         self.commands = self.common_commands() | axis_commands(self)
         self.fine: FineOutput | None = None
         """Set while parameter 12 or 13 is: duties finer than a PWM step, compensation."""
-        self.set_parameters([*axis_parameters(self), *fine_parameters(FineOutput(self), self.motion)])
+        self.output = FineOutput(self.cpu, self.pwm, self.pi, self.counter, self.motion)
+        self.output.changed = self._output_changed
+        self.set_parameters(
+            [
+                *axis_parameters(self.motion, self.limits, self.counter),
+                *fine_parameters(self.output, self.motion),
+            ]
+        )
 
     def reset(self) -> None:
         """After power-up: off."""
@@ -126,7 +111,7 @@ class AxisBoard(PeriodicBoard):
         self.fault = False
         self.poscnt = self.qei.poscnt(self.queue.now_ns)
         self.watch.forget()
-        self.samples = []
+        self.packets.clear()
 
     def unpowered(self, t_ns: int) -> None:
         """The gates fall without supply."""
@@ -154,7 +139,7 @@ class AxisBoard(PeriodicBoard):
         else:
             counter.follow(effort, velocity)
         if self.fine is not None:
-            effort = self.fine.drive(end, velocity, setpoint)
+            effort = self.fine.drive(end, end - self.epoch_ns, velocity, setpoint, self.effort_command)
         elif effort >= 0:
             self.pwm.write(end, effort, counter.register)
         else:
@@ -165,9 +150,9 @@ class AxisBoard(PeriodicBoard):
         else:
             self._telemetry(t_ns, end, setpoint)
 
-    def set_split(self, percent: int) -> None:
-        """Share of the effort that the lagging motor gets."""
-        self.counter.split = percent
+    def _output_changed(self) -> None:
+        self.cost_ns = self.cpu.top.cost_ns
+        self.fine = self.output if self.output.active else None
 
     def command_effort(self, effort: int | None) -> None:
         """Fixed effort in PWM steps, or None: the loop decides."""
@@ -188,35 +173,26 @@ class AxisBoard(PeriodicBoard):
         if limits.hit(velocity) or (motion.mode in POINTING and now - motion.good_ns > STALE_NS):
             self.stop()
         mode = motion.mode
-        flags = _POWERED if mode else 0
+        status = mode | _POWERED if mode else 0
         if velocity:
-            flags |= _MOVING
+            status |= _MOVING
         if limits.reached:
-            flags |= _LIMIT
+            status |= _LIMIT
         if self.fault:
-            flags |= _FAULT
+            status |= _FAULT
         effort = self.effort * _EFFORT_SCALE // self.pwm.steps
         adc_a = self.adc.read(t_ns, 0)
         adc_b = self.adc.read(t_ns, 1)
-        data = pack_motion(self.device_type, mode, flags, velocity, effort, adc_a, adc_b, self.clip)
+        data = pack_motion(self.device_type, status, velocity, effort, (adc_a, adc_b), self.clip)
         if not self.send(Frame(self._identifier, data), end_ns):
             self.drop()
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT
         position = motion.measured(now, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF
         tach_a, tach_b = self.tach_a.sample(now), self.tach_b.sample(now)
-        if not self.samples:
-            self.stamp_ns = t_ns
         aux = self.auxiliary.sample(now)
-        self.samples.append((effort, position, velocity, adc_a, adc_b, tach_a, tach_b, aux, setpoint))
-        if len(self.samples) == SAMPLES:
-            self._packet(end_ns)
-
-    def _packet(self, end_ns: int) -> None:
-        samples, self.samples = self.samples, []
-        stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
-        self.uart.send(end_ns, pack_packet(self.device_type, self.sequence, stamp, samples, self.clip))
-        self.sequence = self.sequence + 1 & 0xFF
+        sample = (effort, position, velocity, adc_a, adc_b, tach_a, tach_b, aux, setpoint)
+        self.packets.take(t_ns, end_ns, sample)
 
     def _slow(self, t_ns: int, end_ns: int) -> None:
         """The ticks between: TARGET every 250 ms, heartbeat every second, spread so that three buffers do."""

@@ -2,9 +2,10 @@
 
 RATE and CLASS close a loop around the velocity alone, so a torque that comes and goes every few seconds
 leaves its mark. The lock sums the velocity error up and returns it as a correction of the set point.
-The absolute encoder errs within each of its lines, by up to a few tenths of an arcsec every 2.6 s at the
-tracking rate, and the position loop follows. The blend takes what is faster than its time constant from the
-incremental encoder, which was sampled in the same tick, and only the slow rest from the absolute one.
+The absolute encoder errs within each of its lines, by up to a few tenths of an arcsec. At the tracking rate
+the error comes every 2.6 s, and the position loop follows. The blend takes what is faster than its time
+constant from the incremental encoder, which was sampled in the same tick. It takes only the slow rest from
+the absolute encoder.
 
 Widths: the lock's sum is 32 bits, limited to 2 arcsec in a 64-bit register before it is stored; its product
 with the gain and the blend's position are 64 bits.
@@ -12,10 +13,11 @@ with the gain and the blend's position are 64 bits.
 
 from typing import Final
 
-from boards.axis.config import COUNTS_PER_TURN
 from boards.axis.profile import UNIT_SHIFT
+from bus.protocol.scales import COUNTS_PER_TURN
+from bus.units import ARCSEC_PER_TURN
 
-LOCK_LIMIT_Q16: Final = round(2.0 / 1_296_000 * COUNTS_PER_TURN) << 16
+LOCK_LIMIT_Q16: Final = round(2.0 / ARCSEC_PER_TURN * COUNTS_PER_TURN) << 16
 """Largest position error the lock remembers, 2 arcsec: more is a set point that the axis cannot follow, and
 would be paid back with a swing. ASSUMPTION."""
 

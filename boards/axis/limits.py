@@ -5,7 +5,7 @@ from typing import Final
 from boards.axis.motion import POINTING, Motion
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP
 from boards.core.widths import INT64_TOP
-from bus.protocol import AxisMode
+from bus.protocol import AxisMode, PositionFlag
 
 _REACTION_TICKS: Final = 30
 """Time in which the velocity loop begins to follow the braking set point, 150 ms. ASSUMPTION: its settling
@@ -44,13 +44,18 @@ class SoftLimits:
         """True when the axis has to stop now."""
         motion = self._motion
         position = motion.position
-        if self._near_low < position < self._near_high:
+        if self._near_low < position < self._near_high and not motion.ends:
             self.reached = False
             return False
         braking = 0 if motion.mode in POINTING else self._braking_steps(velocity)
         outward_high = velocity > 0 and position + braking >= motion.high
         outward_low = velocity < 0 and position - braking <= motion.low
         outside = position > motion.high or position < motion.low
+        if motion.ends:  # the encoder board has limits of its own, and is beyond one
+            setpoint = motion.setpoint_q16  # with it, as at rest a count of either sign comes now and then
+            outward_high |= velocity > 0 <= setpoint and bool(motion.ends & PositionFlag.LIMIT_HIGH)
+            outward_low |= velocity < 0 >= setpoint and bool(motion.ends & PositionFlag.LIMIT_LOW)
+            outside = True
         self.reached = outward_high or outward_low or outside
         return (outward_high or outward_low) and motion.mode not in (AxisMode.OFF, AxisMode.STOP)
 

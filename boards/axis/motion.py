@@ -23,6 +23,7 @@ _SETTLE_TICKS: Final = 100
 """The axis is settled when it has been near its target for this long, 0.5 s. ASSUMPTION."""
 _BAD_POSITION: Final = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 """Position flags that make a reading worthless: alarm, CRC error."""
+_ENDS: Final = int(PositionFlag.LIMIT_LOW | PositionFlag.LIMIT_HIGH)
 POINTING: Final = (AxisMode.MOVE, AxisMode.TRACK)
 """Modes with the position loop closed. A finished move without tracking rate stays in MOVE and holds its
 target."""
@@ -36,7 +37,7 @@ class Motion:
 
     __slots__ = (
         "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_pointing",
-        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "good_ns",
+        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "ends", "good_ns",
         "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks", "position",
         "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
     )  # fmt: skip
@@ -62,6 +63,8 @@ class Motion:
         self._settle = config.settle_steps * UNITS_PER_STEP
         self._frame_ns = config.frame_ns
         self.position = 0
+        self.ends = 0
+        """Limit bits of the last POSITION."""
         self.latch_ns = -STALE_NS
         self.good_ns = -STALE_NS
         self.rate = 0
@@ -80,6 +83,7 @@ class Motion:
         if data[1] & _BAD_POSITION:
             return
         self.good_ns = now_ns
+        self.ends = data[1] & _ENDS
         self.position = (data[2] | data[3] << 8 | data[4] << 16 | data[5] << 24) & _POSITION_MASK
         self.latch_ns = now_ns - data[6] * AGE_UNIT_NS - self._frame_ns
 

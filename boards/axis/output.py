@@ -4,13 +4,16 @@ The paper's firmware rounds effort and counter torque to whole steps (firmware.p
 parameters 12 and 13 put in its place.
 """
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
+from typing import Final
 
 from boards.axis.compensator import Compensator
+from boards.axis.counter import CounterTorque
 from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
-
-if TYPE_CHECKING:
-    from boards.axis.firmware import AxisBoard
+from boards.axis.motion import Motion
+from boards.axis.pi import IncrementalPi
+from boards.core import InterruptController
+from boards.silicon.pwm import MotorPwm
 
 _HALF: Final = 1 << 15
 
@@ -18,14 +21,26 @@ _HALF: Final = 1 << 15
 class FineOutput:
     """Parameters 12 to 42 of the axis board.
 
-    bias_q8: duty both motors always get, PWM steps in Q8. It cancels at the axis, and keeps the lagging one's
-        teeth together where its share of a small effort would drown in dead band and cogging.
+    bias_q8: duty both motors always get, PWM steps in Q8. It cancels at the axis. It keeps the lagging
+        motor's teeth together where that motor's share of a small effort would drown in dead band and
+        cogging.
     """
 
-    __slots__ = ("_board", "bias_q8", "compensator", "spread")
+    __slots__ = (
+        "_counter", "_cpu", "_motion", "_pi", "_pwm", "bias_q8", "changed", "compensator", "spread",
+    )  # fmt: skip
 
-    def __init__(self, board: "AxisBoard") -> None:
-        self._board = board
+    def __init__(
+        self,
+        cpu: InterruptController,
+        pwm: MotorPwm,
+        pi: IncrementalPi,
+        counter: CounterTorque,
+        motion: Motion,
+    ) -> None:
+        self._cpu, self._pwm, self._pi, self._counter, self._motion = cpu, pwm, pi, counter, motion
+        self.changed: Callable[[], None] = _nobody
+        """Told when the routines cost something else."""
         self.spread = 0
         self.bias_q8 = 0
         self.compensator = Compensator()
@@ -53,40 +68,43 @@ class FineOutput:
 
     def refresh(self) -> None:
         """Book what the routines now cost."""
-        board = self._board
-        cpu, pwm = board.cpu, board.pwm
+        cpu = self._cpu
         extra = 0
         if self.compensator.on:
             self.compensator.refresh()
             extra = self.compensator.lines * HARMONIC_CYCLES + FRICTION_CYCLES
         cpu.top.own_ns = cpu.cycles_ns(cpu.top.source.cost_cycles + extra)
-        cpu.steal(PWM_ROUTINE if self.spread else None, pwm.period_ns)
-        board.cost_ns = cpu.top.cost_ns
-        board.fine = self if self.active else None
+        cpu.steal(PWM_ROUTINE if self.spread else None, self._pwm.period_ns)
+        self.changed()
 
-    def drive(self, end_ns: int, velocity: int, setpoint_q16: int) -> int:
-        """Write the duties for the loop's effort; returns the effort that went out, whole PWM steps."""
-        board = self._board
-        pwm = board.pwm
-        command = board.effort_command
+    def drive(self, end_ns: int, now_ns: int, velocity: int, setpoint_q16: int, command: int | None) -> int:
+        """Write the duties at `end_ns`, `now_ns` of the board's own clock; returns the effort that went out.
+
+        command: a fixed effort; None: the loop's. Efforts in whole PWM steps.
+        """
+        pwm, counter, motion = self._pwm, self._counter, self._motion
         if command is None:
-            effort_q16 = board.pi.effort_q16
-            if self.compensator.on and board.motion.fresh(board.clock_ns(end_ns)):
-                effort_q16 += self.compensator.effort_q16(board.motion.position, velocity, setpoint_q16)
+            effort_q16 = self._pi.effort_q16
+            if self.compensator.on and motion.fresh(now_ns):
+                effort_q16 += self.compensator.effort_q16(motion.position, velocity, setpoint_q16)
                 limit = pwm.steps << 16
                 effort_q16 = max(-limit, min(limit, effort_q16))
         else:
             effort_q16 = command << 16
         size = effort_q16 if effort_q16 >= 0 else -effort_q16
         if self.spread:
-            lag = board.counter.share_q16(size, velocity)
+            lag = counter.share_q16(size, velocity)
         else:
             size = (size + _HALF) >> 16 << 16
-            board.counter.follow(size >> 16, velocity)
-            lag = board.counter.register << 16
-        bias = self.bias_q8 << 8 if board.motion.mode else 0
+            counter.follow(size >> 16, velocity)
+            lag = counter.register << 16
+        bias = self.bias_q8 << 8 if motion.mode else 0
         if effort_q16 >= 0:
             pwm.write_spread(end_ns, size + bias, lag + bias)
         else:
             pwm.write_spread(end_ns, lag + bias, size + bias)
         return (effort_q16 + _HALF) >> 16
+
+
+def _nobody() -> None:
+    """Nobody is told."""

@@ -1,10 +1,10 @@
-"""Pins of the axis board: what `scenarios/network.py` connects to the plant."""
+"""Pins of the axis board: what `scenarios/lab/network.py` connects to the plant."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AxisPins:
     """encoder: quadrature inputs, (t_ns) -> counts. drive: gates of the two MOSFETs, (t_ns, duty_a,
     duty_b).

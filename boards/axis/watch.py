@@ -3,8 +3,10 @@
 from typing import Final
 
 from boards.axis.profile import UNIT_SHIFT
+from bus.protocol.scales import COUNTS_PER_TURN
+from bus.units import ARCSEC_PER_TURN
 
-_LIMIT: Final = round(40.0 / 1_296_000 * 112_896_000) << UNIT_SHIFT
+_LIMIT: Final = round(40.0 / ARCSEC_PER_TURN * COUNTS_PER_TURN) << UNIT_SHIFT
 """Difference that may build up between two looks, 250 ms apart: 40 arcsec, in Q18 counts. ASSUMPTION.
 
 The age of a position is known to 0.1 ms, 0.7 arcsec at slew. A position loop whose encoder is stuck

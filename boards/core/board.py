@@ -6,24 +6,25 @@ from typing import Final
 
 from mypy_extensions import mypyc_attr
 
-from boards.core.commands import Handler, answer, i32, u8
+from boards.core.commands import Handler, answer, commands
 from boards.core.interrupts import InterruptController, Source
 from boards.core.parameters import Parameter, ParameterTable
+from boards.core.place import Place
 from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK, CanController
-from bus.can import Frame, Wire
+from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
     FRAME_BYTES,
     HEARTBEAT_BASE,
     REPLY_BASE,
     Health,
+    Opcode,
     Result,
     State,
     pack_heartbeat,
     pack_reply,
 )
-from bus.time import EventQueue, Oscillator
 
 CAN_LINE: Final = "can"
 """Name of the CAN interrupt in every board's table."""
@@ -41,9 +42,9 @@ _INBOX: Final = 8
 class Board:
     """A microcontroller board on the bus.
 
-    Subclasses give it `reset()` (state after power-up) and `start(t_ns)` (arm the timers), fill `mail`
-    with what to do with measurement frames (identifier -> call(now_ns, data)) and call `heartbeat(t_ns)`
-    once a second. A mailed frame is eight bytes long and begins with the device type its identifier ends
+    Subclasses write `reset()`, the state after power-up, and `start(t_ns)`, which arms the timers. They call
+    `heartbeat(t_ns)` once a second. `mail` says what to do with measurement frames: identifier ->
+    call(now_ns, data). Such a frame is eight bytes long and begins with the device type its identifier ends
     in; any other is dropped and counted as `foreign`.
 
     Times called t_ns are true: when pins are read and outputs take effect. What firmware decides by is the
@@ -80,25 +81,16 @@ class Board:
         "send",
     )
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        oscillator: Oscillator,
-        fcy_hz: int,
-        table: tuple[Source, ...],
-    ) -> None:
-        self.name = name
-        self.device_type = device_type
-        self.queue = queue
-        self.oscillator = oscillator
-        self.cpu = InterruptController(queue, fcy_hz, table)
+    def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...]) -> None:
+        self.name = place.name
+        self.device_type = device_type = place.device_type
+        self.queue = place.queue
+        self.oscillator = place.oscillator
+        self.cpu = InterruptController(place.queue, fcy_hz, table)
         self.cpu.lines[CAN_LINE].body = self._serve
         self.mail: dict[int, Callable[[int, bytes], None]] = {COMMAND_BASE + device_type: self._take_command}
         self.inbox: deque[bytes] = deque()
-        self.port = wire.attach(name)
+        self.port = place.wire.attach(place.name)
         self.can = CanController(self.port, self._receive)
         self.send = self.can.send
         self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]))
@@ -121,7 +113,13 @@ class Board:
 
     def common_commands(self) -> dict[int, Handler]:
         """The commands every board knows."""
-        return {0x01: self._ping, 0x02: self._get_parameter, 0x03: self._set_parameter}
+        return commands(
+            {
+                Opcode.PING: self._ping,
+                Opcode.GET_PARAMETER: self._get_parameter,
+                Opcode.SET_PARAMETER: self._set_parameter,
+            }
+        )
 
     def set_parameters(self, rows: Iterable[Parameter]) -> None:
         """Give the board its parameter table."""
@@ -299,11 +297,11 @@ class Board:
             bits |= Health.RANGE
         return bits
 
-    def _ping(self, _t_ns: int, _arguments: bytes) -> Answer:
+    def _ping(self, _t_ns: int) -> Answer:
         return Answer(Result.OK, 0, int(self.health()))
 
-    def _get_parameter(self, _t_ns: int, arguments: bytes) -> Answer:
-        return self.parameters.get(u8(arguments))
+    def _get_parameter(self, _t_ns: int, number: int) -> Answer:
+        return self.parameters.get(number)
 
-    def _set_parameter(self, _t_ns: int, arguments: bytes) -> Answer:
-        return self.parameters.set(u8(arguments), i32(arguments, 1))
+    def _set_parameter(self, _t_ns: int, number: int, value: int) -> Answer:
+        return self.parameters.set(number, value)

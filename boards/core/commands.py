@@ -1,9 +1,9 @@
 """Command dispatch: opcode to handler, and exactly one reply for each command, whatever is wrong with it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
-from boards.core.results import Answer
-from bus.protocol import FRAME_BYTES, Result
+from boards.core.results import OK, OUT_OF_RANGE, Answer
+from bus.protocol import FRAME_BYTES, Opcode, Result, layout_of
 
 Handler = Callable[[int, bytes], Answer]
 """(t_ns, the six bytes after device type and opcode) -> reply."""
@@ -23,26 +23,29 @@ def answer(device_type: int, table: Mapping[int, Handler], t_ns: int, data: byte
     return opcode, handler(t_ns, data[2:])
 
 
-def u8(data: bytes, offset: int = 0) -> int:
-    """Unsigned byte of a command's arguments."""
-    return data[offset]
+class Command:
+    """Takes the arguments of one opcode apart as the protocol lays them out, then calls `method` with the
+    time and them; it returns an Answer, or None for OK.
+
+    bounds: (low, high) of each argument, beyond which the answer is "out of range"; none: the method looks.
+    """
+
+    __slots__ = ("bounds", "method", "opcode")
+
+    def __init__(
+        self, opcode: Opcode, method: Callable[..., Answer | None], bounds: Sequence[tuple[int, int]] = ()
+    ) -> None:
+        self.opcode, self.method, self.bounds = opcode, method, bounds
+
+    def __call__(self, t_ns: int, data: bytes) -> Answer:
+        """Serve it; `data` is bytes 2..7."""
+        values = layout_of(self.opcode)[0].unpack(data)
+        for value, (low, high) in zip(values, self.bounds, strict=False):
+            if not low <= value <= high:
+                return OUT_OF_RANGE
+        return self.method(t_ns, *values) or OK
 
 
-def i8(data: bytes, offset: int = 0) -> int:
-    """Signed byte of a command's arguments."""
-    return int.from_bytes(data[offset : offset + 1], "little", signed=True)
-
-
-def i16(data: bytes, offset: int = 0) -> int:
-    """Signed 16-bit argument."""
-    return int.from_bytes(data[offset : offset + 2], "little", signed=True)
-
-
-def i32(data: bytes, offset: int = 0) -> int:
-    """Signed 32-bit argument."""
-    return int.from_bytes(data[offset : offset + 4], "little", signed=True)
-
-
-def u32(data: bytes, offset: int = 0) -> int:
-    """Unsigned 32-bit argument."""
-    return int.from_bytes(data[offset : offset + 4], "little")
+def commands(methods: Mapping[Opcode, Callable[..., Answer | None]]) -> dict[int, Handler]:
+    """A table of commands whose methods look at their arguments themselves."""
+    return {opcode: Command(opcode, method) for opcode, method in methods.items()}

@@ -1,8 +1,8 @@
 """The debug port that every board has (B9): a serial line with the board's own frames as text.
 
 The text is the LAWICEL protocol (`slcan`) that python-can and Linux know: `O` opens, `C` closes, `tIIILDD..`
-is a frame. The board takes COMMANDs for itself from it, as if they had come by CAN, and repeats on it what
-it has put on the bus. ASSUMPTION: the paper says "serial debugging" and no more.
+is a frame. The board takes COMMANDs for itself from the port, as if they had come by CAN. It repeats on the
+port what it has put on the bus. ASSUMPTION: the paper says "serial debugging" and no more.
 """
 
 import re

@@ -1,35 +1,44 @@
 """A board made from its declaration: a class with its kind, interrupt table, pins and one routine.
 
 Identifiers, parameters, commands and their bounds, frames and their periods, heartbeat and RS232 packets
-follow from the kind's DBC (`bus/protocol/nodes/`); wiring and schema from the pins (`scenarios/nodes.py`).
+follow from the kind's DBC (`bus/protocol/nodes/`); wiring and schema from the pins
+(`scenarios/lab/nodes.py`).
 """
 
+import sys
 from collections.abc import Callable, Mapping
-from typing import ClassVar, NamedTuple
+from math import isfinite
+from typing import Any, ClassVar, NamedTuple
 
 from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
-from boards.core.commands import Handler
+from boards.core.commands import Command, Handler
 from boards.core.interrupts import Source
+from boards.core.packets import PacketLine
 from boards.core.parameters import Parameter
 from boards.core.periodic import PeriodicBoard
-from boards.core.results import OK, OUT_OF_RANGE, Answer
+from boards.core.place import Place
+from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK
 from boards.silicon.uart import Uart
-from bus.can import Wire
-from bus.protocol import COMMAND_BASE, LAYOUTS, SUMMARY_BASE
+from bus.protocol import COMMAND_BASE, SUMMARY_BASE, pack_reply
 from bus.protocol.nodes import FrameCodec, Kind, arguments_of, messages_of
-from bus.protocol.nodes.command import Argument
-from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
-from bus.time import EventQueue, Oscillator
 
 _SECOND_NS = 1_000_000_000
 
 
+class BoardError(ValueError):
+    """A declared board's own code fails; one line with board, file and simulated time."""
+
+
 class Pin(NamedTuple):
-    """One pin. source: the plant's method it is wired to, such as `ra.auxiliary`, `{side}` being ra or dec by
-    the board's name; empty: an input that a scenario sets, `default` otherwise, in `unit`."""
+    """One pin.
+
+    source: the plant's method it is wired to, such as `ra.auxiliary`, or `part.` and a method of the board's
+    PART. `{side}` stands for ra or dec, by the board's name. Without a source a scenario sets the pin.
+    default: what it reads before, in `unit`.
+    """
 
     name: str
     source: str = ""
@@ -54,64 +63,89 @@ class Cell:
         self.value = value
 
 
-class Command:
-    """Checks the arguments of one opcode against the DBC's bounds, then calls the method of its name."""
+def board_error(board: type, name: str, t_ns: int, error: BaseException, what: str = "") -> BoardError:
+    """What is said of an error in the code of `board`, of which `name` is one. what: said instead of the
+    error."""
+    file = getattr(sys.modules.get(board.__module__), "__file__", board.__module__)
+    reason = what or f"{type(error).__name__}: {' '.join(str(error).split())}".rstrip(": ")
+    return BoardError(f"{file}: board {name} fails at {t_ns * 1e-9:.6g} s: {reason}")
 
-    __slots__ = ("arguments", "board", "method", "opcode")
 
-    def __init__(
-        self, board: "DeclaredBoard", opcode: int, method: str, arguments: tuple[Argument, ...]
-    ) -> None:
-        self.board, self.opcode, self.method, self.arguments = board, opcode, method, arguments
+def _unusable(values: Any) -> str:
+    """Why no frame can be made of what `measure` returned; "" when that is not to blame."""
+    if not isinstance(values, Mapping):
+        return f"measure returned {type(values).__name__}, expected a mapping of signals"
+    for name, value in values.items():
+        if not isinstance(value, (int, float)):
+            return f"measure returned {name} as {type(value).__name__}, expected a number"
+        try:
+            usable = isfinite(value)
+        except OverflowError:
+            usable = False
+        if not usable:
+            return f"measure returned {name} that is no finite number"
+    return ""
 
-    def __call__(self, t_ns: int, data: bytes) -> Answer:
-        """Serve it; `data` is bytes 2..7."""
-        values = LAYOUTS[self.opcode][0].unpack(data)
-        if any(
-            not each.low <= value <= each.high for each, value in zip(self.arguments, values, strict=True)
-        ):
-            return OUT_OF_RANGE
-        return getattr(self.board, self.method)(t_ns, *values) or OK
+
+class Own:
+    """A command's method as a board's author wrote it; its errors name the board."""
+
+    __slots__ = ("board", "method")
+
+    def __init__(self, board: "DeclaredBoard", method: Callable[..., Answer | None]) -> None:
+        self.board = board
+        self.method = method
+
+    def __call__(self, t_ns: int, *arguments: int) -> Answer | None:
+        """Call it; raises BoardError, also for an answer that no reply can hold."""
+        board = self.board
+        try:
+            found = self.method(t_ns, *arguments)
+            if found is not None:
+                pack_reply(board.device_type, 0, *found)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(board), board.name, t_ns, error) from None
+        return found
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class DeclaredBoard(PeriodicBoard):
-    """Subclasses name KIND, TABLE, PINS and write `measure(t_ns)`; for an opcode X of their own a method
-    `x(t_ns, arguments as on the wire)` that returns an Answer, or None for OK."""
+    """Subclasses name KIND, TABLE, PINS and write `measure(t_ns)`.
+
+    For an opcode X of their own they write `x(t_ns, arguments as on the wire)`; it returns an Answer, or None
+    for OK. PART is the class of what the pins with the source `part` drive and read. Each board makes one,
+    without arguments.
+    """
 
     KIND: ClassVar[Kind]
     FCY_HZ: ClassVar[int] = 10_000_000
     TABLE: ClassVar[tuple[Source, ...]]
     PINS: ClassVar[tuple[Pin, ...]] = ()
+    PART: ClassVar[type | None] = None
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        pins: Mapping[str, Callable[..., float]],
-        oscillator: Oscillator,
-    ) -> None:
+    def __init__(self, place: Place, pins: Mapping[str, Callable[..., float]]) -> None:
+        device_type = place.device_type
         messages = [each for each in messages_of(self.KIND) if each.frame_id & 0x7F == device_type]
         own = [each for each in messages if 0x200 <= each.frame_id < 0x400]
         self.codecs = sorted((FrameCodec(each) for each in own), key=lambda codec: codec.period_ns)
         tick_ns = self.codecs[0].period_ns
         if _SECOND_NS % tick_ns or any(codec.period_ns % tick_ns for codec in self.codecs):
             raise ValueError(f"{self.KIND.dbc}: periods must be multiples of the shortest, which divides 1 s")
-        super().__init__(name, device_type, queue, wire, oscillator, self.FCY_HZ, self.TABLE, tick_ns)
+        super().__init__(place, self.FCY_HZ, self.TABLE, tick_ns)
         self.pins = dict(pins)
-        self.uart = Uart(queue)
-        self.packets = 0
-        self.stamp_ns = 0
-        self.samples: list[bytes] = []
+        self.packets = PacketLine(place, self.clip)
+        self.uart = self.packets.uart
         self.values = {row.name: Cell(row.default) for row in self.KIND.parameters}
         self.set_parameters(
             Parameter(row.number, row.name, row.low, row.high, cell.get, cell.set)
             for row, cell in zip(self.KIND.parameters, self.values.values(), strict=True)
         )
         own_commands: dict[int, Handler] = {
-            int(opcode): Command(self, opcode, opcode.name.lower(), arguments)
+            int(opcode): Command(
+                opcode,
+                Own(self, getattr(self, opcode.name.lower())),
+                [(each.low, each.high) for each in arguments],
+            )
             for opcode, arguments in arguments_of(self.KIND).items()
         }
         self.commands = self.common_commands() | own_commands
@@ -133,7 +167,7 @@ class DeclaredBoard(PeriodicBoard):
 
     def reset(self) -> None:
         """After power-up: parameters as declared."""
-        self.samples = []
+        self.packets.clear()
         for row in self.KIND.parameters:
             self.values[row.name].value = row.default
 
@@ -143,26 +177,26 @@ class DeclaredBoard(PeriodicBoard):
         if not end:
             return
         ticks = self.ticks
-        values = self.measure(t_ns)
-        for codec in self.codecs:
-            if not ticks * self.period_ns % codec.period_ns:
-                data = codec.pack(values, self.clip)
-                self.transmit(codec.identifier, data, end)
-                if codec.identifier < SUMMARY_BASE:
-                    self._sample(t_ns, end, data)
+        for identifier, data in self._frames(t_ns):
+            self.transmit(identifier, data, end)
+            if identifier < SUMMARY_BASE:
+                self.packets.take(t_ns, end, data[1:])
         if not (ticks - 1) % self._heartbeat_ticks:
             self.heartbeat(end)
 
-    def _sample(self, t_ns: int, end_ns: int, data: bytes) -> None:
-        """RS232: 25 measurement frames, device type off, make a packet."""
-        if not self.samples:
-            self.stamp_ns = t_ns
-        self.samples.append(data[1:])
-        if len(self.samples) == SAMPLES:
-            stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
-            self.uart.send(end_ns, pack_packet(self.device_type, self.packets, stamp, self.samples))
-            self.packets = self.packets + 1 & 0xFF
-            self.samples = []
+    def _frames(self, t_ns: int) -> list[tuple[int, bytes]]:
+        """Identifiers and data of what is due now; raises BoardError."""
+        passed_ns = self.ticks * self.period_ns
+        values: Any = {}
+        try:
+            values = self.measure(t_ns)
+            return [
+                (codec.identifier, codec.pack(values, self.clip))
+                for codec in self.codecs
+                if not passed_ns % codec.period_ns
+            ]
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error, _unusable(values)) from None
 
 
 def uart_of(board: Board) -> Uart | None:

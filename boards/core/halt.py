@@ -31,6 +31,11 @@ class Halt:
         calls = [board._routine, *(line.complete for line in self._running)]
         self._events = board.queue.take_out(calls.__contains__)
 
+    @property
+    def due_ns(self) -> int | None:
+        """When the first interrupt was due that is not served; None: there is none."""
+        return self._events[0][0] if self._events else None
+
     def hear(self, _t_ns: int, frame: Frame) -> None:
         """A frame that passes the filters."""
         if len(self._kept) < RECEIVE_BUFFERS:

@@ -7,9 +7,8 @@ from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
 from boards.core.interrupts import Source
+from boards.core.place import Place
 from boards.core.timer import Timer
-from bus.can import Wire
-from bus.time import EventQueue, Oscillator
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -19,21 +18,11 @@ class PeriodicBoard(Board):
 
     __slots__ = ("_routine", "cost_ns", "period_ns", "ticks", "timer")
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        oscillator: Oscillator,
-        fcy_hz: int,
-        table: tuple[Source, ...],
-        period_ns: int,
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, fcy_hz, table)
+    def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...], period_ns: int) -> None:
+        super().__init__(place, fcy_hz, table)
         self.period_ns = period_ns
         self.cost_ns = self.cpu.top.cost_ns
-        self.timer = Timer(oscillator, period_ns, self.cpu.top.latency_ns)
+        self.timer = Timer(place.oscillator, period_ns, self.cpu.top.latency_ns)
         self.ticks = 0
         self._routine: Callable[[int], None] = self.routine
 

@@ -1,8 +1,8 @@
 """Integers as wide as registers: Python's never overflow, a controller's do.
 
 C on the dsPIC30F and the PIC18 has 16, 32 and 64 bit; 64-bit products and quotients are library calls.
-Whatever a board accumulates has one of these widths. It either fits for every parameter and input that is
-accepted (the tests compute with integers that complain), or it saturates (the firmware compares) or wraps
+Whatever a board accumulates has one of these widths. It fits for every parameter and input that is accepted
+(the tests compute with integers that complain). Otherwise it saturates (the firmware compares) or wraps
 (counters). Times are 64-bit nanoseconds and ticks are 32 bits, 248 days of 5 ms. The focus' half steps are 32
 bits: a search for the index that fails adds 440, so 73 days of failing searches fit.
 """

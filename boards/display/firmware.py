@@ -1,11 +1,10 @@
 """Firmware of the display: shows the last SUMMARY of each axis and the last FOCUS, four times a second."""
 
-from boards.core import OK, OUT_OF_RANGE, Answer, PeriodicBoard
-from boards.core.commands import u8
+from boards.core import PeriodicBoard, Place
+from boards.core.commands import Command
 from boards.display.interrupts import FCY_HZ, TABLE
 from boards.display.text import focus_line, position_line
 from boards.silicon.can import FULL_MASK
-from bus.can import Wire
 from bus.protocol import (
     COMMAND_BASE,
     MEASUREMENT_BASE,
@@ -14,7 +13,6 @@ from bus.protocol import (
     unpack_focus,
     unpack_summary,
 )
-from bus.time import EventQueue, Oscillator
 
 TICK_NS = 250_000_000
 _HEARTBEAT_TICKS = 4
@@ -25,24 +23,17 @@ class DisplayBoard(PeriodicBoard):
 
     __slots__ = ("_dec", "_focus", "_ra", "_shown", "brightness")
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        oscillator: Oscillator,
-        position_types: tuple[int, int],
-        focus_type: int,
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+    def __init__(self, place: Place, position_types: tuple[int, int], focus_type: int) -> None:
+        super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.brightness = 100
         self.reset()
         ra, dec = (SUMMARY_BASE + position for position in position_types)
         focus = MEASUREMENT_BASE + focus_type
         self.mail |= {ra: self._take_ra, dec: self._take_dec, focus: self._take_focus}
-        self.can.accept((FULL_MASK, [COMMAND_BASE + device_type]), (FULL_MASK, [ra, dec, focus]))
-        self.commands = self.common_commands() | {Opcode.BRIGHTNESS: self._set_brightness}
+        self.can.accept((FULL_MASK, [COMMAND_BASE + self.device_type]), (FULL_MASK, [ra, dec, focus]))
+        self.commands = self.common_commands() | {
+            Opcode.BRIGHTNESS: Command(Opcode.BRIGHTNESS, self._set_brightness, [(0, 100)])
+        }
 
     def reset(self) -> None:
         """After power-up nothing is known."""
@@ -79,9 +70,5 @@ class DisplayBoard(PeriodicBoard):
     def _take_focus(self, _t_ns: int, data: bytes) -> None:
         self._focus = data
 
-    def _set_brightness(self, _t_ns: int, arguments: bytes) -> Answer:
-        percent = u8(arguments)
-        if percent > 100:
-            return OUT_OF_RANGE
+    def _set_brightness(self, _t_ns: int, percent: int) -> None:
         self.brightness = percent
-        return OK

@@ -1,10 +1,10 @@
 """What the display shows, from raw measurements. Four lines of twenty characters, ASSUMPTION."""
 
 from bus.protocol import Focus, FocusFlag, PositionFlag, Summary
+from bus.protocol.scales import STEPS_PER_TURN
+from bus.units import ARCSEC_PER_TURN
 
 COLUMNS = 20
-_STEPS_PER_TURN = 1 << 29
-_ARCSEC_PER_TURN = 1_296_000
 _HALF_STEP_NM = 6250
 """6.25 um per half step (paper, section 3.2)."""
 _BAD = PositionFlag.ALARM | PositionFlag.CRC_ERROR
@@ -12,7 +12,7 @@ _BAD = PositionFlag.ALARM | PositionFlag.CRC_ERROR
 
 def angle(steps: int) -> str:
     """Encoder angle as degrees, minutes, seconds and tenths, in the integers a PIC would use."""
-    tenths = steps * _ARCSEC_PER_TURN * 10 // _STEPS_PER_TURN
+    tenths = steps * ARCSEC_PER_TURN * 10 // STEPS_PER_TURN
     seconds, tenth = divmod(tenths, 10)
     minutes, second = divmod(seconds, 60)
     degree, minute = divmod(minutes, 60)

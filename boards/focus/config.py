@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FocusConfig:
     """half_steps_per_turn: of the motor (paper, 3.2: 0.9 deg). counts_per_turn: of its encoder.
 

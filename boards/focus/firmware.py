@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PeriodicBoard
-from boards.core.commands import i8, i16
+from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PacketLine, PeriodicBoard, Place
+from boards.core.commands import commands
 from boards.core.widths import wrap
 from boards.focus.config import FocusConfig
 from boards.focus.interrupts import FCY_HZ, TABLE
@@ -13,11 +13,7 @@ from boards.focus.stepping import Stepping
 from boards.silicon.adc import VoltageAdc
 from boards.silicon.qei import Qei, difference
 from boards.silicon.stepper import StepperDriver
-from boards.silicon.uart import Uart
-from bus.can import Wire
 from bus.protocol import MEASUREMENT_BASE, FocusFlag, Health, Opcode, State, pack_focus
-from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
-from bus.time import EventQueue, Oscillator
 
 TICK_NS: Final = 10_000_000
 _FRAME_TICKS: Final = 5
@@ -34,37 +30,29 @@ class FocusBoard(PeriodicBoard):
     __slots__ = (
         "_encoder_zero", "_identifier", "_index", "_last_move_ns", "_timer_ns", "adc", "config", "driver",
         "encoder", "free", "index_pin", "lvdt", "packets", "poscnt", "qei", "reference", "referenced",
-        "samples", "stamp_ns", "stepping", "uart",
+        "stepping", "uart",
     )  # fmt: skip
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        pins: FocusPins,
-        oscillator: Oscillator,
-        config: FocusConfig,
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+    def __init__(self, place: Place, pins: FocusPins, config: FocusConfig) -> None:
+        super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.config = config
         self.qei = Qei(pins.encoder)
         self.adc = VoltageAdc(pins.lvdt)
         self.index_pin = pins.index
         self.driver = StepperDriver(pins.coils)
-        self.uart = Uart(queue)
-        self.packets = 0
-        self.stamp_ns = 0
-        self._identifier = MEASUREMENT_BASE + device_type
+        self.packets = PacketLine(place, self.clip)
+        self.uart = self.packets.uart
+        self._identifier = MEASUREMENT_BASE + self.device_type
         self.cpu.lines["step"].body = self._step
-        self.commands = self.common_commands() | {
-            Opcode.FOCUS_STEP: self._command_step,
-            Opcode.FOCUS_MOVE_TO: self._command_move,
-            Opcode.FOCUS_HOLD: self._command_hold,
-            Opcode.FOCUS_FREE: self._command_free,
-            Opcode.FOCUS_REFERENCE: self._command_reference,
-        }
+        self.commands = self.common_commands() | commands(
+            {
+                Opcode.FOCUS_STEP: self._command_step,
+                Opcode.FOCUS_MOVE_TO: self._go,
+                Opcode.FOCUS_HOLD: self._command_hold,
+                Opcode.FOCUS_FREE: self._command_free,
+                Opcode.FOCUS_REFERENCE: self._command_reference,
+            }
+        )
         self.reset()
 
     def reset(self) -> None:
@@ -76,7 +64,7 @@ class FocusBoard(PeriodicBoard):
         self.encoder = 0
         self.poscnt = self.qei.poscnt(self.queue.now_ns)
         self.lvdt = 0
-        self.samples: list[tuple[int, int, int]] = []
+        self.packets.clear()
         self._encoder_zero = 0
         self._index = False
         self._last_move_ns = 0
@@ -103,14 +91,7 @@ class FocusBoard(PeriodicBoard):
             and self.clock_ns(t_ns) - self._last_move_ns > _REST_NS
         ):
             self.driver.rest(end)
-        if not self.samples:
-            self.stamp_ns = t_ns
-        self.samples.append((stepping.position, self._counts(), self.lvdt))
-        if len(self.samples) == SAMPLES:
-            stamp = self.oscillator.local_ns(self.stamp_ns) // STAMP_UNIT_NS
-            self.uart.send(end, pack_packet(self.device_type, self.packets, stamp, self.samples, self.clip))
-            self.packets = self.packets + 1 & 0xFF
-            self.samples = []
+        self.packets.take(t_ns, end, (stepping.position, self._counts(), self.lvdt))
         if not self.ticks % _FRAME_TICKS:
             self._index = self.index_pin(t_ns)
             data = pack_focus(
@@ -184,11 +165,8 @@ class FocusBoard(PeriodicBoard):
         return position * self.config.counts_per_turn // self.config.half_steps_per_turn
 
     # --- commands
-    def _command_step(self, t_ns: int, arguments: bytes) -> Answer:
-        return self._go(t_ns, self.stepping.target + i8(arguments))
-
-    def _command_move(self, t_ns: int, arguments: bytes) -> Answer:
-        return self._go(t_ns, i16(arguments))
+    def _command_step(self, t_ns: int, steps: int) -> Answer:
+        return self._go(t_ns, self.stepping.target + steps)
 
     def _go(self, t_ns: int, target: int) -> Answer:
         if abs(target) > self.config.travel:
@@ -199,7 +177,7 @@ class FocusBoard(PeriodicBoard):
             self._begin(t_ns, target)
         return OK
 
-    def _command_hold(self, t_ns: int, _arguments: bytes) -> Answer:
+    def _command_hold(self, t_ns: int) -> Answer:
         """Motor power off: stop, then hold by the free-wheeling diodes."""
         self.reference.active = False
         if self.free:
@@ -208,7 +186,7 @@ class FocusBoard(PeriodicBoard):
         self.stepping.brake()
         return OK
 
-    def _command_free(self, t_ns: int, _arguments: bytes) -> Answer:
+    def _command_free(self, t_ns: int) -> Answer:
         """Control power off: nothing holds the shaft, so the origin cannot be trusted any more."""
         self.reference.active = False
         self.stepping.rebase(self.stepping.position)
@@ -217,7 +195,7 @@ class FocusBoard(PeriodicBoard):
         self.driver.release(t_ns)
         return OK
 
-    def _command_reference(self, t_ns: int, _arguments: bytes) -> Answer:
+    def _command_reference(self, t_ns: int) -> Answer:
         if self.free or self.stepping.moving:
             return NOT_ALLOWED
         self.referenced = False

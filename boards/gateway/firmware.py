@@ -3,11 +3,11 @@
 from collections import deque
 from typing import Final
 
-from boards.core import PeriodicBoard, answer
+from boards.core import PeriodicBoard, Place, answer
 from boards.gateway.interrupts import FCY_HZ, TABLE
 from boards.silicon.can import FULL_MASK
 from boards.silicon.hid import FRAME_NS, HidEndpoint, next_frame_ns
-from bus.can import Frame, Wire
+from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
     HEARTBEAT_BASE,
@@ -16,8 +16,7 @@ from bus.protocol import (
     SUMMARY_BASE,
     pack_reply,
 )
-from bus.protocol.report import SLOTS, ReportError, pack_report, slot, unpack_commands
-from bus.time import EventQueue, Oscillator
+from bus.protocol.report import SLOTS, ReportError, place, slot, unpack_commands
 
 TICK_NS: Final = 1_000_000_000
 HOLD_NS: Final = 4_000_000
@@ -48,10 +47,8 @@ class GatewayBoard(PeriodicBoard):
         "ring",
     )
 
-    def __init__(
-        self, name: str, device_type: int, queue: EventQueue, wire: Wire, oscillator: Oscillator
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
+    def __init__(self, place: Place) -> None:
+        super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.hid = HidEndpoint()
         self.hid.from_host = self._take_report
         self.hid.ready = self._ready
@@ -61,7 +58,7 @@ class GatewayBoard(PeriodicBoard):
         self._flush_ns = _NEVER
         self._reports: deque[bytes] = deque()
         self._commands: deque[Frame] = deque()
-        self._own_command = COMMAND_BASE + device_type
+        self._own_command = COMMAND_BASE + self.device_type
         self.cpu.lines["usb"].body = self._unpack
         self.port.on_sent = self._sent
         bases = [REPLY_BASE, MEASUREMENT_BASE, SUMMARY_BASE, HEARTBEAT_BASE]
@@ -119,7 +116,7 @@ class GatewayBoard(PeriodicBoard):
             return
         self._flush_ns = _NEVER
         ring = self.ring
-        report = pack_report(ring[:SLOTS])
+        report = place(ring[:SLOTS])
         del ring[:SLOTS]
         if ring:
             self._arm(t_ns + (FRAME_NS if len(ring) >= SLOTS else self.hold_ns))

@@ -1,6 +1,5 @@
 """Motor velocity board (B4): a CP-850 encoder on a motor shaft as digital tachometer."""
 
 from boards.motor_velocity.firmware import MotorVelocityBoard
-from boards.motor_velocity.pins import MotorVelocityPins
 
-__all__ = ["MotorVelocityBoard", "MotorVelocityPins"]
+__all__ = ["MotorVelocityBoard"]

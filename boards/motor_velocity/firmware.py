@@ -1,38 +1,32 @@
 """Firmware of the motor velocity board: one TACH frame every 10 ms."""
 
+from collections.abc import Callable
 from typing import Final
 
-from boards.core import PeriodicBoard
+from boards.core import PeriodicBoard, Place
 from boards.motor_velocity.interrupts import FCY_HZ, TABLE
-from boards.motor_velocity.pins import MotorVelocityPins
 from boards.silicon.qei import Qei
-from bus.can import Frame, Wire
-from bus.protocol import MEASUREMENT_BASE
-from bus.time import EventQueue, Oscillator
+from bus.can import Frame
+from bus.protocol import MEASUREMENT_BASE, pack_tach
 
 TICK_NS: Final = 10_000_000
 _HEARTBEAT_TICKS: Final = 100
 
 
 class MotorVelocityBoard(PeriodicBoard):
-    """One per motor. The count runs free in 32 bits; only differences of it mean something."""
+    """One per motor. The count runs free in 32 bits; only differences of it mean something.
+
+    encoder: quadrature inputs, (t_ns) -> counts, 4096 a motor turn (1024 lines, ASSUMPTION).
+    """
 
     __slots__ = ("_identifier", "count", "poscnt", "qei")
 
-    def __init__(
-        self,
-        name: str,
-        device_type: int,
-        queue: EventQueue,
-        wire: Wire,
-        pins: MotorVelocityPins,
-        oscillator: Oscillator,
-    ) -> None:
-        super().__init__(name, device_type, queue, wire, oscillator, FCY_HZ, TABLE, TICK_NS)
-        self.qei = Qei(pins.encoder)
+    def __init__(self, place: Place, encoder: Callable[[int], int]) -> None:
+        super().__init__(place, FCY_HZ, TABLE, TICK_NS)
+        self.qei = Qei(encoder)
         self.poscnt = 0
         self.count = 0
-        self._identifier = MEASUREMENT_BASE + device_type
+        self._identifier = MEASUREMENT_BASE + self.device_type
 
     def reset(self) -> None:
         """The count starts at zero, wherever the motor stands."""
@@ -48,9 +42,7 @@ class MotorVelocityBoard(PeriodicBoard):
         delta = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
         self.poscnt = poscnt
         self.count = count = (self.count + delta) & 0xFFFF_FFFF
-        # TACH: no flag is defined yet, byte 1 stays zero
-        data = (self.device_type | count << 16 | (delta & 0xFFFF) << 48).to_bytes(8, "little")
-        if not self.send(Frame(self._identifier, data), end):
+        if not self.send(Frame(self._identifier, pack_tach(self.device_type, 0, count, delta)), end):
             self.drop()
         if self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

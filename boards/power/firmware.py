@@ -1,7 +1,7 @@
 """Firmware of a power board: eight relays in the supplies, a POWER frame every 250 ms. All an ASSUMPTION.
 
 The relays are normally closed: a power board that fails leaves the telescope as it is. Which boards hang on
-which relay is wiring (`scenarios/nodes.py`).
+which relay is wiring (`scenarios/lab/nodes.py`).
 """
 
 from collections.abc import Mapping

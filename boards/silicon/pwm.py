@@ -30,6 +30,10 @@ def steps_for(fcy_hz: int, pwm_hz: int) -> int:
     return 2 * (ptper + 1)
 
 
+STEPS: Final = steps_for(FCY_HZ, PWM_HZ)
+"""3000, of one period."""
+
+
 class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
@@ -41,7 +45,7 @@ class MotorPwm:
     def __init__(
         self,
         drive: Callable[[int, float, float], None],
-        steps: int = 3000,
+        steps: int = STEPS,
         pwm_hz: int = PWM_HZ,
         phase_ns: int = 0,
     ) -> None:

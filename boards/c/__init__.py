@@ -1,0 +1,1 @@
+"""Boards whose firmware is compiled C (docs/guides/firmware-in-c.md)."""

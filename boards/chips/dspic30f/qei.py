@@ -1,0 +1,55 @@
+"""Quadrature encoder interface (DS70141F p. 93, DS70135G p. 92)."""
+
+from boards.chips.dspic30f.registers import Qeim, Registers
+from boards.chips.quadrature import Decoder, Filter
+
+_X2 = (Qeim.X2_INDEX, Qeim.X2_MATCH)
+_BY_INDEX = (Qeim.X2_INDEX, Qeim.X4_INDEX)
+
+
+class QeiModule:
+    """registers: QEICON, DFLTCON, POSCNT, MAXCNT. interrupt: QEIIF, for firmware to clear."""
+
+    __slots__ = ("_decoder", "_filters", "_index", "interrupt", "registers")
+
+    def __init__(self) -> None:
+        self.registers = Registers(QEICON=0, DFLTCON=0, POSCNT=0, MAXCNT=0xFFFF)
+        self.interrupt = False
+        self._decoder = Decoder()
+        self._filters = (Filter(), Filter(), Filter())
+        self._index = 0
+
+    def sample(self, a: int, b: int, index: int = 0) -> None:
+        """One clock of the input filter (without the filter: levels count at once)."""
+        registers = self.registers
+        mode = registers.field("QEIM")
+        if registers.field("QEOUT"):
+            a, b, index = (
+                each.sample(level) for each, level in zip(self._filters, (a, b, index), strict=True)
+            )
+        if registers.field("SWPAB"):
+            a, b = b, a
+        if mode not in tuple(Qeim) or mode == Qeim.OFF:
+            return
+        step = self._decoder.edge(a, b, x2=mode in _X2)
+        if step:
+            registers.put("UPDN", int(step > 0))
+            self._count(mode, step)
+        # The index counts where it coincides with A = B = low.
+        pulse = int(bool(index) and not a and not b)
+        registers.put("INDX", int(bool(index)))
+        if pulse and not self._index and mode in _BY_INDEX:
+            registers["POSCNT"] = 0 if registers.field("UPDN") else registers["MAXCNT"]
+            self.interrupt = True
+        self._index = pulse
+
+    def _count(self, mode: int, step: int) -> None:
+        registers = self.registers
+        position, top = registers["POSCNT"], registers["MAXCNT"]
+        if mode not in _BY_INDEX and position == (top if step > 0 else 0):
+            registers["POSCNT"] = 0 if step > 0 else top
+            self.interrupt = True
+            return
+        registers["POSCNT"] = position + step
+        if mode in _BY_INDEX and registers["POSCNT"] == (top + 1 & 0xFFFF if step > 0 else 0xFFFF):
+            registers.put("CNTERR", 1)  # an index pulse was missed

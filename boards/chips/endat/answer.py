@@ -1,0 +1,133 @@
+"""What the encoder says to each mode command, and what the command does to it."""
+
+from boards.chips.endat import registers as at
+from boards.chips.endat.memory import Memory
+from boards.chips.endat.registers import Alarm, Info, Mode, Reply
+from boards.silicon.crc5 import crc_bits
+
+
+def bits_of(value: int, count: int) -> list[int]:
+    """`value` in transmission order of everything but the position: most significant bit first."""
+    return [value >> shift & 1 for shift in range(count - 1, -1, -1)]
+
+
+class Answers:
+    """Memory, additional information and test values of an encoder of `position_bits`.
+
+    temperature: 0.1 K, content 4Ch. silent_until_ns: no answer before (after a reset).
+    """
+
+    __slots__ = (
+        "_info_1", "_info_2", "_parameter", "_position_bits", "_test_port", "busy_until_ns", "memory",
+        "silent_until_ns", "temperature", "test_values",
+    )  # fmt: skip
+
+    def __init__(self, position_bits: int) -> None:
+        self._position_bits = position_bits
+        self.memory = Memory(position_bits)
+        self.temperature = 2932
+        self.test_values = 0
+        self.silent_until_ns = 0
+        self.busy_until_ns = 0
+        self._info_1: int | None = None
+        self._info_2: int | None = None
+        self._parameter = (0, 0)
+        self._test_port = 0
+
+    def bits(self, t_ns: int, code: int, mode: Mode, position: int, argument: int) -> list[int]:
+        """Bits after the start bit, CRCs and additional information included."""
+        if mode.reply is Reply.PARAMETER:
+            echo = bits_of(self._act(t_ns, code, argument >> 16, argument & 0xFFFF), 24)
+            return echo + crc_bits(echo)
+        alarm = bool(self.memory.alarms)
+        if mode.reply is Reply.TEST:
+            values = [int(alarm), *bits_of(self.test_values, 40)]
+            return values + crc_bits(values)
+        flags = [int(alarm)] if mode.reply is Reply.POSITION else [int(alarm), int(not alarm)]
+        data = flags + [position >> k & 1 for k in range(self._position_bits)]
+        out = data + crc_bits(data)
+        if mode.reply is Reply.POSITION_22:
+            for info in (self._info_2, self._info_1):
+                if info is not None:
+                    out += self._info(t_ns, info, position)
+        return out
+
+    def _info(self, t_ns: int, info: int, position: int) -> list[int]:
+        """One additional information: a start bit, 24 bits, CRC."""
+        memory = self.memory
+        status = info & 0x1F | at.RM
+        if memory.warnings:
+            status |= at.WRN
+        if t_ns < self.busy_until_ns:
+            status |= at.BUSY
+        word = bits_of(status << 16 | self._content(info, position), 24)
+        return [1, *word, *crc_bits(word)]
+
+    def _content(self, info: int, position: int) -> int:
+        """16 bits of what `info` selects; 0 for what this encoder has not got."""
+        address, value = self._parameter
+        wrapped = position & (1 << self._position_bits) - 1
+        return {
+            Info.POSITION2_LOW: wrapped & 0xFFFF,
+            Info.POSITION2_MIDDLE: wrapped >> 16 & 0xFFFF,
+            Info.POSITION2_HIGH: wrapped >> 32,
+            Info.MEMORY_LSB: address << 8 | value & 0xFF,
+            Info.MEMORY_MSB: address << 8 | value >> 8,
+            Info.MRS_ACKNOWLEDGE: self.memory.area,
+            Info.TEST_ACKNOWLEDGE: self._test_port,
+            Info.TEST_LOW: self.test_values & 0xFFFF,
+            Info.TEST_MIDDLE: self.test_values >> 16 & 0xFFFF,
+            Info.TEST_HIGH: self.test_values >> 32,
+            Info.TEMPERATURE_1: self.temperature,
+            Info.ERROR_SOURCE: self.memory.alarms,
+        }.get(Info(info) if info in tuple(Info) else Info.NOP_1, 0)
+
+    def _act(self, t_ns: int, code: int, head: int, data: int) -> int:
+        """Do what a command with an argument says; the 24 bits it answers with."""
+        if code == at.SELECT_MEMORY:
+            self._select(head)
+        elif code == at.RECEIVE_PARAMETER:
+            self.memory.write(head, data)
+            data = self.memory.read(head)
+        elif code == at.SEND_PARAMETER:
+            data = self.memory.read(head)
+        elif code == at.RECEIVE_TEST:
+            self._test_port = head
+        elif code == at.RECEIVE_RESET:
+            self.power_up(t_ns)
+        return head << 16 | data
+
+    def supplement(self, t_ns: int, code: int, argument: int) -> None:
+        """What the master adds to a position (2.2) takes effect; the next transfer shows it."""
+        head, data = argument >> 16, argument & 0xFFFF
+        if code == at.POSITION_SELECT:
+            self._select(head)
+        elif code == at.POSITION_RECEIVE:
+            self.memory.write(head, data)
+            self.busy_until_ns = t_ns + at.ACCESS_NS
+        elif code == at.POSITION_SEND:
+            self._parameter = (head, self.memory.read(head))
+            self.busy_until_ns = t_ns + at.ACCESS_NS
+        elif code == at.POSITION_ERROR_RESET:
+            self.memory.clear_errors()
+        elif code == at.POSITION_TEST:
+            self._test_port = head
+
+    def _select(self, mrs: int) -> None:
+        """An MRS code selects additional information or a memory area; others do nothing."""
+        if mrs >> 4 == Info.NOP_1 >> 4:
+            self._info_1 = None if mrs == Info.STOP_1 else mrs
+        elif mrs >> 4 == Info.NOP_2 >> 4:
+            self._info_2 = None if mrs == Info.STOP_2 else mrs
+        elif mrs in tuple(at.Area):
+            self.memory.area = mrs
+
+    def power_up(self, t_ns: int) -> None:
+        """Reset command or supply: additional information off, the usual alarm, silence for 50 ms after the
+        answer."""
+        self._info_1 = self._info_2 = None
+        self._parameter = (0, 0)
+        self._test_port = 0
+        self.busy_until_ns = 0
+        self.memory.power_up(int(Alarm.UNDER_VOLTAGE))
+        self.silent_until_ns = t_ns + at.ACCESS_NS + at.RESET_NS

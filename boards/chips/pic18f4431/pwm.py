@@ -1,0 +1,148 @@
+"""Power control PWM of the PIC18F4431: time base, buffered duties, dead time, override, special event.
+
+One PDC step is one Q clock (1/Fosc) without prescaler: the upper 12 bits meet PTMR, the lower two name the Q
+clock (DS39616D 18.6). With a prescaler the match is at Q1, the lower two do nothing. Times: Q clocks.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from boards.chips.pic18f4431.pwmregisters import (
+    AT_RESET,
+    CHANNELS,
+    DTPS,
+    ENABLED,
+    FIELDS,
+    FREE_RUNNING,
+    PAIRS,
+    PTCKPS,
+    PTMIF,
+    WIDTHS,
+)
+
+
+class Edge(NamedTuple):
+    """Output 0..7 changes at `q_clocks` since the start."""
+
+    q_clocks: int
+    channel: int
+    on: bool
+
+
+class Pwm4431:
+    """Edge aligned, pairs complementary or independent. PTPER and PDCx are double buffered: what is written
+    counts from the next period on, unless UDIS holds it back. pir3: PTMIF, for firmware to clear.
+
+    special_event: called with the Q clock when PTMR meets SEVTCMP, every SEVOPS + 1 times.
+    """
+
+    __slots__ = (
+        "_events", "_loaded", "_matches", "_period", "_registers", "_start", "outputs", "pir3",
+        "special_event",
+    )  # fmt: skip
+
+    def __init__(self) -> None:
+        self._registers = dict(AT_RESET)
+        self.pir3 = 0
+        self.special_event: Callable[[int], None] | None = None
+        self.outputs = [False] * CHANNELS
+        self._start = self._period = self._events = self._matches = 0
+        self._loaded = (0,) * PAIRS
+
+    def __getitem__(self, register: str) -> int:
+        return self._registers[register]
+
+    def __setitem__(self, register: str, value: int) -> None:
+        """Write a register; bits it does not have read as 0. Raises KeyError for one there is not."""
+        self._registers[register] = value & ((1 << WIDTHS[register]) - 1)
+        if not self.field("PTEN"):
+            self._load()  # a stopped time base takes the buffers at once
+
+    def field(self, name: str) -> int:
+        """Value of a field."""
+        register, shift, bits = FIELDS[name]
+        return self._registers[register] >> shift & (1 << bits) - 1
+
+    def put(self, name: str, value: int) -> None:
+        """Change a field; raises ValueError when it does not fit."""
+        register, shift, bits = FIELDS[name]
+        mask = (1 << bits) - 1
+        if not 0 <= value <= mask:
+            raise ValueError(f"{name} has {bits} bits, {value} does not fit")
+        self[register] = self._registers[register] & ~(mask << shift) | value << shift
+
+    def _load(self) -> None:
+        scale = PTCKPS[self.field("PTCKPS")]
+        self._period = 4 * (self["PTPER"] + 1) * scale
+        # with a prescaler a match is at Q1: the two lowest bits do nothing
+        keep = 0x3FFF if scale == 1 else 0x3FFC
+        self._loaded = tuple((self[f"PDC{pair}"] & keep) * scale for pair in range(PAIRS))
+
+    @property
+    def period(self) -> int:
+        """Length of the running period, Q clocks."""
+        return self._period
+
+    def duty(self, pair: int) -> float:
+        """Share of the running period in which the odd channel of a pair is asked for: 0..1."""
+        return min(self._loaded[pair] / self._period, 1.0)
+
+    def run(self) -> list[Edge]:
+        """One period: its edges in order; `outputs` is what it leaves. Raises ValueError in a mode other than
+        free running."""
+        if self.field("PTMOD") != FREE_RUNNING:
+            raise ValueError("PWM: only the free running time base (PTMOD = 00) is built")
+        if not self.field("PTEN"):
+            return []
+        wanted = [edge for channel in range(CHANNELS) for edge in self._channel(channel)]
+        edges = []
+        for edge in sorted(wanted, key=lambda each: (each.q_clocks, each.on, each.channel)):
+            if self.outputs[edge.channel] != edge.on:
+                self.outputs[edge.channel] = edge.on
+                edges.append(edge)
+        self._end()
+        return edges
+
+    def _channel(self, channel: int) -> list[Edge]:
+        """Levels of one output from the start of the period on."""
+        begin, end = self._start, self._start + self._period
+        if channel not in ENABLED[self.field("PWMEN")]:
+            return [Edge(begin, channel, False)]
+        if not self["OVDCOND"] >> channel & 1:  # overridden: OVDCONS says what
+            return [Edge(begin, channel, bool(self["OVDCONS"] >> channel & 1))]
+        pair = channel // 2
+        switch = begin + min(self._loaded[pair], self._period)
+        independent = self.field("PMOD") >> pair & 1
+        first = channel & 1 or independent  # the odd channel is active first, the even one is its complement
+        since, until = (begin, switch) if first else (switch, end)
+        full = until - since == self._period
+        on = since if full or independent else since + self._dead()
+        if on >= until:
+            return [Edge(begin, channel, False)]
+        edges = [Edge(on, channel, True)]
+        if on > begin:
+            edges.append(Edge(begin, channel, False))
+        if until < end:
+            edges.append(Edge(until, channel, False))
+        return edges
+
+    def _dead(self) -> int:
+        """Dead time, Q clocks."""
+        return self.field("DT") * DTPS[self.field("DTPS")]
+
+    def _end(self) -> None:
+        """The period is over: special event, time base interrupt, buffers."""
+        at = 4 * self["SEVTCMP"] * PTCKPS[self.field("PTCKPS")]
+        if at < self._period:
+            self._events += 1
+            if self._events > self.field("SEVOPS"):
+                self._events = 0
+                if self.special_event is not None:
+                    self.special_event(self._start + at)
+        self._matches += 1
+        if self._matches > self.field("PTOPS"):
+            self._matches = 0
+            self.pir3 |= PTMIF
+        self._start += self._period
+        if not self.field("UDIS"):
+            self._load()

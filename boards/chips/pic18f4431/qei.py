@@ -1,0 +1,71 @@
+"""Quadrature encoder interface of the PIC18F4431."""
+
+from boards.chips.pic18f4431.registers import (
+    BY_INDEX,
+    IC2QEIF,
+    IC3DRIF,
+    QEIM_MASK,
+    QEIM_SHIFT,
+    QERR,
+    UP_DOWN,
+    X2,
+    Mode,
+)  # fmt: skip
+from boards.chips.quadrature import Decoder
+
+
+class Qei4431:
+    """qeicon, poscnt, maxcnt (16 bits), pir3: IC2QEIF and IC3DRIF, for firmware to clear."""
+
+    __slots__ = ("_decoder", "_index", "maxcnt", "pir3", "poscnt", "qeicon")
+
+    def __init__(self) -> None:
+        self.qeicon = UP_DOWN
+        self.poscnt = 0
+        self.maxcnt = 0xFFFF
+        self.pir3 = 0
+        self._decoder = Decoder()
+        self._index = 0
+
+    @property
+    def mode(self) -> int:
+        """QEIM."""
+        return self.qeicon >> QEIM_SHIFT & QEIM_MASK
+
+    def sample(self, a: int, b: int, index: int = 0) -> None:
+        """New levels of QEA, QEB and INDX."""
+        mode = self.mode
+        if mode not in tuple(Mode) or mode == Mode.OFF:
+            return
+        lost = self._decoder.lost
+        step = self._decoder.edge(a, b, x2=mode in X2)
+        if self._decoder.lost != lost:
+            self.qeicon |= QERR
+        if step:
+            self._turn(step)
+            self._count(mode, step)
+        self._reset_by_index(mode, index)
+
+    def _turn(self, step: int) -> None:
+        up = UP_DOWN if step > 0 else 0
+        if up != self.qeicon & UP_DOWN:
+            self.qeicon ^= UP_DOWN
+            self.pir3 |= IC3DRIF
+
+    def _count(self, mode: int, step: int) -> None:
+        """Up: MAXCNT is followed by 0; down: 0 by MAXCNT (by index: the counter just wraps)."""
+        limit = self.maxcnt if step > 0 else 0
+        if mode not in BY_INDEX and self.poscnt == limit:
+            self.poscnt = 0 if step > 0 else self.maxcnt
+            self.pir3 |= IC2QEIF
+        else:
+            self.poscnt = self.poscnt + step & 0xFFFF
+
+    def _reset_by_index(self, mode: int, index: int) -> None:
+        """Forward at the rising edge of INDX, reverse at its falling edge."""
+        forward = bool(self.qeicon & UP_DOWN)
+        rose, fell = index and not self._index, self._index and not index
+        self._index = index
+        if mode in BY_INDEX and (rose if forward else fell):
+            self.poscnt = 0 if forward else self.maxcnt
+            self.pir3 |= IC2QEIF

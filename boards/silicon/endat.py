@@ -1,0 +1,95 @@
+"""EnDat 2.2 position transfer, both ends: the encoder makes frames, the master checks them.
+
+Frame after the start bit, in transmission order: F1 (error, active high), F2 (active low), position
+LSB first, CRC-5 MSB first (hardware.md 3.1). The whole frame is one integer here, first bit lowest;
+the CRC sits on top as the number its five bits spell.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+from boards.silicon.crc5 import crc5
+
+POSITION_BITS: Final = 29
+CLOCK_HZ: Final = 1_000_000
+"""ASSUMPTION: within the 2 MHz that need no delay compensation."""
+_DATA_BITS: Final = POSITION_BITS + 2
+_POSITION_MASK: Final = (1 << POSITION_BITS) - 1
+_HEALTHY_FLAGS: Final = 0b10
+"""F1 = 0 in bit 0, F2 = 1 in bit 1."""
+_ALARM_FLAGS: Final = 0b01
+
+COMMAND_CLOCKS: Final = 2 + 6 + 2
+"""Two clocks, six mode bits, two clocks turn-round before the encoder may answer."""
+CALCULATION_NS: Final = 5_000
+"""t_cal, position calculation: <= 5 us assumed, the catalogue value was not found (hardware.md 1.3)."""
+RECOVERY_NS: Final = 20_000
+"""t_m, 10..30 us (hardware.md 3.1)."""
+
+
+def _share(low: int, count: int) -> list[int]:
+    """CRC share of bits `low`..`low + count - 1` for each of their values (the CRC is linear but for its
+    constant)."""
+    constant = crc5(0, _DATA_BITS)
+    single = [crc5(1 << (low + k), _DATA_BITS) ^ constant for k in range(count)]
+    table = [0]
+    for share in single:
+        table += [entry ^ share for entry in table]
+    return table
+
+
+_LOW: Final = [entry ^ crc5(0, _DATA_BITS) for entry in _share(0, 11)]
+_MIDDLE: Final = _share(11, 10)
+_HIGH: Final = _share(21, 10)
+
+
+Reading = tuple[int, bool, bool]
+"""What the master makes of a frame: position, alarm, whether the CRC is right. A plain tuple, 200 times a
+second."""
+
+
+class EndatEncoder:
+    """The RCN 829's end. pin: (t_ns) -> position, any int; wraps to 29 bits. alarm: the encoder reports an
+    error."""
+
+    __slots__ = ("alarm", "pin")
+
+    def __init__(self, pin: Callable[[int], int]) -> None:
+        self.pin = pin
+        self.alarm = False
+
+    def transfer(self, latch_ns: int) -> int:
+        """The frame for a position latched at `latch_ns`: 31 data bits and the CRC above them."""
+        flags = _ALARM_FLAGS if self.alarm else _HEALTHY_FLAGS
+        data = (self.pin(latch_ns) & _POSITION_MASK) << 2 | flags
+        return data | (_LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]) << _DATA_BITS
+
+
+class EndatMaster:
+    """The board's end: clocks the encoder over a line that may be disturbed.
+
+    line: what the cable does to a frame (int -> int), None for nothing.
+    latch_to_data_ns: from the first clock edge, where the position is latched, to the last CRC bit.
+    """
+
+    __slots__ = ("encoder", "latch_to_data_ns", "line")
+
+    def __init__(self, encoder: EndatEncoder, clock_hz: int = CLOCK_HZ) -> None:
+        self.encoder = encoder
+        self.line: Callable[[int], int] | None = None
+        clocks = COMMAND_CLOCKS + 1 + _DATA_BITS + 5
+        self.latch_to_data_ns = CALCULATION_NS + clocks * 1_000_000_000 // clock_hz
+
+    def poll(self, latch_ns: int) -> Reading:
+        """One "send position" whose first clock edge is at `latch_ns`."""
+        encoder = self.encoder
+        if self.line is None:  # what is sent arrives, so the CRC need not be made to be found right
+            return encoder.pin(latch_ns) & _POSITION_MASK, encoder.alarm, True
+        return check(self.line(encoder.transfer(latch_ns)))
+
+
+def check(frame: int) -> Reading:
+    """Take a received frame apart. F1 and F2 that agree mean an alarm too: one of them is wrong."""
+    data = frame & 0x7FFFFFFF
+    good = frame >> _DATA_BITS == _LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]
+    return data >> 2, data & 3 != _HEALTHY_FLAGS, good

@@ -1,6 +1,0 @@
-"""QEI and power control PWM of the PIC18F4431 at register level (DS39616D)."""
-
-from boards.silicon.pic18f4431.pwm import Pwm4431
-from boards.silicon.pic18f4431.qei import Qei4431
-
-__all__ = ["Pwm4431", "Qei4431"]

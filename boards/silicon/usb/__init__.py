@@ -1,5 +1,0 @@
-"""USB full-speed HID device of the PIC18F4550: descriptors as tables, endpoints and control requests."""
-
-from boards.silicon.usb.device import HidDevice, Stall
-
-__all__ = ["HidDevice", "Stall"]
