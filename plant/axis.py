@@ -2,12 +2,9 @@
 
 from collections.abc import Callable
 from math import floor
-from typing import TYPE_CHECKING
 
+from plant.grid import Grid
 from plant.kernels import layout as at
-
-if TYPE_CHECKING:
-    from plant.plant import Plant
 
 
 class AxisPort:
@@ -23,10 +20,10 @@ class AxisPort:
     """
 
     def __init__(
-        self, plant: "Plant", row: int, delays_ns: dict[str, int], absolute_bits: int, auxiliary_bits: int
+        self, grid: Grid, row: int, delays_ns: dict[str, int], absolute_bits: int, auxiliary_bits: int
     ):
-        self._plant = plant
-        self._view = plant.view
+        self._grid = grid
+        self._view = grid.view
         self._base = row * at.WIDTH
         self._current_delay_ns = delays_ns["currents"]
         out = self._base + at.OUT
@@ -47,11 +44,11 @@ class AxisPort:
         """
         if not (0.0 <= duty_a <= 1.0 and 0.0 <= duty_b <= 1.0):
             raise ValueError(f"duty cycles must lie within 0..1, not {duty_a}, {duty_b}")
-        plant = self._plant
-        if t_ns >= plant.next_ns:
-            plant.advance(t_ns)
+        grid = self._grid
+        if t_ns >= grid.next_ns:
+            grid.advance(t_ns)
         view = self._view
-        rest = (plant.next_ns - t_ns) / plant.grid_ns
+        rest = (grid.next_ns - t_ns) / grid.grid_ns
         duty, mean = self._duty, self._mean
         view[mean] += (duty_a - view[duty]) * rest
         view[mean + 1] += (duty_b - view[duty + 1]) * rest
@@ -60,29 +57,29 @@ class AxisPort:
 
     def _pin(self, reading: int, delay_ns: int, mask: int = -1) -> Callable[[int], int]:
         """Return a counter's pin. Made once: it is read hundreds of times a second."""
-        plant, view = self._plant, self._view
+        grid, view = self._grid, self._view
         place = self._base + at.OUT + reading
         slope = place + 1
 
         def now(t_ns: int) -> int:
-            if t_ns >= plant.next_ns:
-                plant.advance(t_ns)
+            if t_ns >= grid.next_ns:
+                grid.advance(t_ns)
             count: float = view[place]
             rate: float = view[slope]
-            return floor(count + rate * (t_ns - plant.now_ns)) & mask
+            return floor(count + rate * (t_ns - grid.now_ns)) & mask
 
         def late(t_ns: int) -> int:
-            plant.advance(t_ns)
+            grid.advance(t_ns)
             return floor(self._late(t_ns - delay_ns, reading)) & mask
 
         return late if delay_ns else now
 
     def _late(self, t_ns: int, reading: int) -> float:
         """Return a reading of the past from the ring of kept ones; before the start, the first one."""
-        grid = self._plant.grid_ns
-        step = max(0, t_ns // grid)
+        grid_ns = self._grid.grid_ns
+        step = max(0, t_ns // grid_ns)
         place = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE + reading
-        return self._view[place] + self._view[place + 1] * max(0, t_ns - step * grid)
+        return self._view[place] + self._view[place + 1] * max(0, t_ns - step * grid_ns)
 
     def tachometer(self, t_ns: int, motor: int) -> int:
         """Return the counts of a motor's encoder since start, unbounded."""
@@ -90,18 +87,18 @@ class AxisPort:
 
     def _current_now(self, t_ns: int, motor: int) -> float:
         """Return a motor's current at the PWM's falling edge, A, as the sense chain sees it."""
-        plant = self._plant
-        if t_ns >= plant.next_ns:
-            plant.advance(t_ns)
+        grid = self._grid
+        if t_ns >= grid.next_ns:
+            grid.advance(t_ns)
         if self._current_delay_ns:
-            step = max(0, (t_ns - self._current_delay_ns) // plant.grid_ns)
+            step = max(0, (t_ns - self._current_delay_ns) // grid.grid_ns)
             row = self._base + at.DELAYS + (step % at.DELAY_ROWS) * at.OUT_SIZE
             return float(self._view[row + at.OUT_CURRENT_A + motor])
         return self._view[self._current[motor]]
 
     def truth(self, t_ns: int) -> tuple[float, float]:
         """Return the true angle, rad, and rate, rad/s."""
-        self._plant.advance(t_ns)
+        self._grid.advance(t_ns)
         view, place = self._view, self._base + at.OUT + at.OUT_ANGLE
-        angle = view[place] + view[place + 1] * (t_ns - self._plant.now_ns)
+        angle = view[place] + view[place + 1] * (t_ns - self._grid.now_ns)
         return angle, view[self._base + at.RATE]

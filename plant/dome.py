@@ -13,8 +13,11 @@ COUNTS: Final = 3600
 """Of the encoder on the rail, per turn, ASSUMPTION."""
 
 
-class _Drive:
-    """A place that moves at one speed while its motor is on. span: where it ends (None: it goes round)."""
+class Travel:
+    """A place that moves at one speed while its motor is on, and stops at once.
+
+    speed: per second. place: where it is at first. span: it ends at 0 and there (None: it goes round).
+    """
 
     def __init__(self, speed: float, place: float, span: float | None) -> None:
         self.speed = speed
@@ -39,8 +42,8 @@ class DomePort:
     """Pins of the dome board."""
 
     def __init__(self) -> None:
-        self._dome = _Drive(TURN_DEG_S, 0.0, None)
-        self._shutter = _Drive(1.0 / SHUTTER_S, 0.0, 1.0)
+        self._dome = Travel(TURN_DEG_S, 0.0, None)
+        self._shutter = Travel(1.0 / SHUTTER_S, 0.0, 1.0)
 
     def turn(self, t_ns: int, direction: int) -> None:
         """Rotation motor: 1 towards larger azimuth, -1 back, 0 off."""

@@ -4,17 +4,12 @@ Orders are computed from the tooth counts, so that calibration can ask for "one 
 for it.
 """
 
-from math import pi
-
 # paper 2.2: three stages, pinion : wheel, from the motor to the axis
 TRAIN: tuple[tuple[int, int], ...] = ((27, 113), (21, 123), (17, 250))
 # paper 2.2: friction roller of the incremental encoder, wheel : roller
 ROLLER: tuple[int, int] = (735, 30)
 # paper 2.2: auxiliary encoder, 1:10.8
 AUXILIARY: float = 10.8
-
-ARCSEC = pi / 648000.0
-TURN = 2.0 * pi
 
 
 def ratio(train: tuple[tuple[int, int], ...] = TRAIN) -> float:
@@ -30,7 +25,7 @@ def orders(
 ) -> dict[str, float]:
     """Return cycles per axis turn of every stage, by name, slowest first.
 
-    `shaft2` carries the second wheel and the third pinion, `shaft1` the first wheel and the second pinion,
+    `shaft2` carries the second wheel and the third pinion, `shaft1` the first wheel and the second pinion.
     `mesh1` is the mesh at the motor, `mesh3` the one at the bull gear.
     """
     (pinion1, wheel1), (pinion2, wheel2), (pinion3, wheel3) = train

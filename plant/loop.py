@@ -9,17 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.effects import cable_wrap, structural_mode, unknown, winding_heating
-from plant.effects.evaluate import values_over
-from plant.effects.rows import KINDS
-from plant.gears import ARCSEC, TURN
+from plant.evaluate import values_over
 from plant.kernels import control as at_control
 from plant.kernels import layout as at
 from plant.kernels.advance import advance
 from plant.kernels.control import control_loop
+from plant.kernels.dispatch import TERMS
 from plant.kernels.friction import stribeck
 from plant.parts import AxisModel, PlantModel
 from plant.plant import delays_ns
+from plant.units import ARCSEC, TURN
 from plant.world import AXES, build, grid_ns
 
 Floats = NDArray[np.float64]
@@ -56,16 +55,19 @@ TRUTH_COLUMNS = (
 )
 
 
-LASTING = [KINDS[effect.formula] for effect in (cable_wrap, unknown, winding_heating)]
-
-
 @dataclass(frozen=True)
 class LogColumns:
     """Columns of the axis log (units as in log-format.md: raw counts), and the truth beside them.
 
-    setpoint arcsec/s (NaN in open loop), effort 1/3000, position 29-bit counts, velocity counts in the last 5
-    ms, adc_a, adc_b 10-bit counts, tach_a, tach_b counts in the last 10 ms, aux 17-bit counts; truth by
-    TRUTH_COLUMNS.
+    t: s.
+    setpoint: arcsec/s, NaN in open loop.
+    effort: 1/3000 of the supply.
+    position: counts of 29 bits.
+    velocity: counts in the last 5 ms.
+    adc_a, adc_b: counts of 10 bits.
+    tach_a, tach_b: counts in the last 10 ms.
+    aux: counts of 17 bits.
+    truth: by TRUTH_COLUMNS, SI units.
     """
 
     t: Floats
@@ -81,57 +83,69 @@ class LogColumns:
     truth: dict[str, Floats]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Excitation:
+    """What drives an axis, and the state it starts from.
+
+    setpoint: arcsec/s, a number, one value per 10 ms sample or one per 5 ms tick (closed loop where it is not
+    NaN). effort: 1/3000 of the supply, a number or one value per sample. It counts where there is no set
+    point; between samples it is the mean of two, as a logged effort needs. start_steps: absolute encoder;
+    start_rate: arcsec/s, both motors and the bristle following. start_s: time on the plant's clock of the
+    first sample, for effects that know the time. history: signal vectors (2 motors, n, VECTOR) of the motion
+    before the start (plant/effects/signals.py), which give cables, stops and windings their state. Raises
+    ValueError when there is neither set point nor effort.
+    """
+
+    setpoint: float | Floats | None = None
+    effort: float | Floats | None = None
+    start_steps: float = 0.0
+    start_rate: float = 0.0
+    start_s: float = 0.0
+    history: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if self.setpoint is None and self.effort is None:
+            raise ValueError("simulate: give a set point or an effort")
+
+
 def simulate(
     model: PlantModel,
     axis: str,
     duration: float,
+    excitation: Excitation,
     *,
-    setpoint: float | Floats | None = None,
-    effort: float | Floats | None = None,
     seed: int = 0,
-    start_steps: float = 0.0,
-    start_rate: float = 0.0,
-    start_s: float = 0.0,
-    history: Floats | None = None,
     adc_counts_per_A: float = ADC_COUNTS_PER_A,
 ) -> LogColumns:
-    """Run `axis` (`ra` or `dec`) for `duration` s and return its log.
-
-    setpoint: arcsec/s, a number, one value per 10 ms sample or one per 5 ms tick (closed loop where it is not
-    NaN). effort: 1/3000 of the supply, a number or one value per sample (open loop where there is no set
-    point; between samples the mean of two, as a logged effort needs). start_steps: absolute encoder;
-    start_rate: arcsec/s, both motors and the bristle following. start_s: time on the plant's clock of the
-    first sample, for effects that know the time. history: signal vectors (2 motors, n, VECTOR) of the motion
-    before the start (plant/effects/signals.py), which give cables, stops and windings their state. Raises
-    ValueError for shapes that do not fit, or when neither is given.
-    """
+    """Return the log of `axis` (`ra` or `dec`) over `duration` s; ValueError for a shape that is wrong."""
     if axis not in AXES:
         raise ValueError(f"simulate: axis '{axis}' is not known; expected ra or dec")
     rows = round(duration / SAMPLE_S)
     if rows < 1:
         raise ValueError("simulate: the duration must be at least one sample of 0.01 s")
-    if setpoint is None and effort is None:
-        raise ValueError("simulate: give a set point or an effort")
     part: AxisModel = getattr(model.axes, axis)
-    w = build(model, seed, {axis: start_steps * TURN / 2 ** int(part.encoders.absolute.si)})[AXES.index(axis)]
-    if start_rate:
-        _start(w, start_rate * ARCSEC)
+    w = build(model, seed, {axis: excitation.start_steps * TURN / 2 ** int(part.encoders.absolute.si)})[
+        AXES.index(axis)
+    ]
+    if excitation.start_rate:
+        _start(w, excitation.start_rate * ARCSEC)
     settings = _settings(model, part, adc_counts_per_A)
     w[at.DELAY_ON] = float(settings[at_control.DELAYS :].any())
-    w[at.STEP] = round(start_s / w[at.GRID])
-    if history is not None:
-        _remember(w, history)
+    w[at.STEP] = round(excitation.start_s / w[at.GRID])
+    if excitation.history is not None:
+        _remember(w, excitation.history)
     advance(w.reshape(1, -1), 0)
     ring = w[at.DELAYS : at.DELAYS + at.OUT_SIZE * at.DELAY_ROWS].reshape(at.DELAY_ROWS, at.OUT_SIZE)
     ring[:] = w[at.OUT : at.OUT + at.OUT_SIZE]  # before the start the readings were those of the start
     ring[:, 1 : at.OUT_CURRENT_A : 2] = 0.0
 
     counts = part.encoders.incremental.si * part.encoders.roller_ratio.si * model.controller.period.si
-    wanted = _ticks(setpoint, rows)
+    wanted = _ticks(excitation.setpoint, rows)
     ticks = np.rint(wanted * ARCSEC / TURN * counts * 65536.0)
     log = np.zeros((rows, at_control.LOG_SIZE))
     truth = np.zeros((rows, at_control.TRUTH_SIZE))
-    control_loop(w, settings, ticks, _between(_column(effort, rows, 0.0, "effort"), model), log, truth)
+    open_loop = _between(_column(excitation.effort, rows, 0.0, "effort"), model)
+    control_loop(w, settings, ticks, open_loop, log, truth)
 
     mask = 2.0 ** int(part.encoders.absolute.si)
     log[:, at_control.POSITION] %= mask
@@ -192,8 +206,9 @@ def _remember(w: Floats, history: Floats) -> None:
     out = np.zeros(history.shape[1])
     for r in range(int(w[at.ROWS_ALL])):
         row = w[at.EFFECTS + r * at.ROW : at.EFFECTS + (r + 1) * at.ROW]
-        if row[at.ROW_KIND] in LASTING:
-            motors = history if row[at.ROW_KIND] == KINDS[winding_heating.formula] else history[:1]
+        _, term = TERMS[int(row[at.ROW_KIND])]
+        if term.lasting:
+            motors = history if term.of_motors else history[:1]
             for rows in motors:
                 values_over(int(row[at.ROW_KIND]), rows, row[at.ROW_MEMORY :], out)
 
@@ -208,8 +223,9 @@ def _start(w: Floats, rate: float) -> None:
     w[at.FRICTION] = level + rate * w[at.DECLARED_FRICTION + at.F_SIGMA2]
     for r in range(int(w[at.ROWS_ALL])):
         row = w[at.EFFECTS + r * at.ROW : at.EFFECTS + (r + 1) * at.ROW]
-        if row[at.ROW_KIND] == KINDS[structural_mode.formula]:
-            row[at.ROW_MEMORY + 1 : at.ROW_MEMORY + 3] = rate  # the second mass moves along
+        _, term = TERMS[int(row[at.ROW_KIND])]
+        for word in term.moving:
+            row[at.ROW_MEMORY + term.memory.index(word)] = rate
     half = 0.5 * w[at.GRID]
     w[at.ANGLE] += half * rate
     for m in range(2):

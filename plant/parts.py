@@ -96,6 +96,11 @@ class Motor:
     switch_resistance: Number = field(metadata=bounds("ohm", 0.0, 10.0))
     sense_resistance: Number = field(metadata=bounds("ohm", 0.0, 10.0))
 
+    @property
+    def loop(self) -> float:
+        """Resistance of the whole loop, ohm."""
+        return self.resistance.si + self.switch_resistance.si + self.sense_resistance.si
+
 
 @dataclass(frozen=True)
 class Encoders:

@@ -17,6 +17,8 @@ from plant.parts import AxisModel, EffectModel, Function, Number
 from plant.units import UNITS, factor
 
 MAX_KNOTS = 32
+MAX_EFFECTS = 100
+"""Of an axis: three times the catalogue."""
 
 
 class ModelError(ValueError):
@@ -43,12 +45,7 @@ class Reader:
         """Return key -> (key node, value node)."""
         if not isinstance(node, yaml.MappingNode):
             raise self.fail(node, path, "expected a mapping of fields")
-        found: dict[str, tuple[yaml.Node, yaml.Node]] = {}
-        for key, value in node.value:
-            if str(key.value) in found:
-                raise self.fail(key, f"{path}.{key.value}".lstrip("."), "given twice")
-            found[str(key.value)] = (key, value)
-        return found
+        return {str(key.value): (key, value) for key, value in node.value}
 
     def fields(
         self, node: yaml.Node, path: str, required: list[str], optional: list[str]
@@ -139,6 +136,8 @@ class Reader:
             return ()
         if not isinstance(node, yaml.SequenceNode):
             raise self.fail(node, path, "expected a list of effects")
+        if len(node.value) > MAX_EFFECTS:
+            raise self.fail(node, path, f"{len(node.value)} effects; at most {MAX_EFFECTS}")
         return tuple(self.effect(child, f"{path}.{k}") for k, child in enumerate(node.value))
 
     def effect(self, node: yaml.Node, path: str) -> EffectModel:

@@ -3,9 +3,9 @@
 Two-phase hybrid motor (K: any text on stepping motors). Electrical angle e = 50 x mechanical angle; one
 electrical turn is eight half steps.
 
-    L di/dt = v - R i - emf        emf_a = -K w sin e,  emf_b = K w cos e
-    torque  = K (i_b cos e - i_a sin e)
-    J dw/dt = torque - load - friction sign(w) - damping w
+    L di/dt = v - R i - emf;       emf_a = -K w sin e,  emf_b = K w cos e;
+    torque  = K (i_b cos e - i_a sin e);
+    J dw/dt = torque - load - friction sign(w) - damping w.
 
 `FocusPort` (kinematic) is what the night runs on; `MotorFocusPort` has the same pins and gives the same
 positions once the rotor is at rest (tests/plant/test_stepper.py).

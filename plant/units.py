@@ -2,7 +2,12 @@
 
 from math import pi
 
-from plant.gears import ARCSEC, RATIO
+from plant.gears import RATIO
+
+TURN = 2.0 * pi
+ARCSEC_PER_TURN = 1296000.0
+ARCSEC = TURN / ARCSEC_PER_TURN
+"""rad"""
 
 UNITS: dict[str, tuple[str, float]] = {
     "1": ("1", 1.0),

@@ -1,17 +1,42 @@
 """From a plant model to the world array of the kernels."""
 
 from collections.abc import Mapping
-from math import exp
+from operator import attrgetter
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.effects.rows import number_from, values, write
-from plant.gears import RATIO, TURN
+from plant.effects import REGISTRY
+from plant.effects.base import Switch
+from plant.gears import RATIO
 from plant.kernels import layout as at
-from plant.parts import AxisModel, PlantModel
+from plant.kernels.prepare import Numbers, prepare
+from plant.parts import AxisModel, Number, PlantModel
+from plant.rows import number_from, values, write
 
 AXES = ("ra", "dec")
+_PARTS = {
+    "numerics": ("grid",),
+    "supply": ("voltage",),
+    "environment": ("temperature", "warming"),
+    "controller": ("pwm_frequency",),
+    "axis": ("inertia",),
+    "axis.gear": ("stiffness", "damping", "backlash"),
+    "axis.motor": (
+        "torque_constant", "resistance", "inductance", "rotor_inertia", "drag", "switch_resistance",
+        "sense_resistance",
+    ),
+    "axis.encoders": (
+        "incremental", "roller_ratio", "absolute", "auxiliary", "auxiliary_ratio", "tachometer"
+    ),
+    "axis.friction": (
+        "bristle_stiffness", "bristle_damping", "viscous", "coulomb", "stiction", "stribeck_rate",
+        "stribeck_exponent", "bristle_decay",
+    ),
+}  # fmt: skip
+PATHS = {name: f"{part}.{name}" for part, names in _PARTS.items() for name in names}
+"""Where in a plant file the declared ones of `Numbers` stand."""
 
 
 def grid_ns(model: PlantModel) -> int:
@@ -23,86 +48,41 @@ def build(model: PlantModel, seed: int, start_angles: Mapping[str, float]) -> ND
     """Return the world at rest at the start angles (rad), one row per axis, teeth in contact."""
     world = np.zeros((len(AXES), at.WIDTH))
     for row, name in zip(world, AXES, strict=True):
-        _axis(row, model, getattr(model.axes, name), seed, name, start_angles.get(name, 0.0))
+        axis: AxisModel = getattr(model.axes, name)
+        prepare(row, numbers_of(model, name, seed, start_angles.get(name, 0.0)))
+        if row[at.INERTIA] <= 0.0:
+            raise ValueError(f"plant model: axes.{name}.effects: more swings than the axis' inertia")
+        write(row, axis.effects, constants(axis), seed, name)
     return world
 
 
+def declared(model: PlantModel, axis: str) -> dict[str, Number]:
+    """Return the declared numbers of an axis, by their names in `Numbers`."""
+    return {name: attrgetter(path.replace("axis", f"axes.{axis}", 1))(model) for name, path in PATHS.items()}
+
+
+def numbers_of(model: PlantModel, name: str, seed: int, angle: float) -> Numbers:
+    """Return what the row of an axis is made of, at the start angle, rad."""
+    axis: AxisModel = getattr(model.axes, name)
+    return Numbers(
+        **{word: number.si for word, number in declared(model, name).items()},
+        **_switches(axis),
+        angle=angle,
+        incremental_phase=_fraction(seed, f"{name}.incremental"),
+        phase_a=_fraction(seed, f"{name}.tach.0"),
+        phase_b=_fraction(seed, f"{name}.tach.1"),
+    )
+
+
 def _switches(axis: AxisModel) -> dict[str, float]:
-    """Return what effects change once: diode share and drop, extra compliance, inertia of swinging masses."""
-    changed = {"diode": 0.0, "drop": 0.0, "compliance": 0.0, "swinging": 0.0}
+    """Return what effects change once, summed."""
+    changed = dict.fromkeys(get_args(Switch), 0.0)
     for effect in axis.effects:
-        if not effect.enabled:
-            continue
-        given = values(effect)
-        if effect.name == "diode_braking":
-            changed["diode"], changed["drop"] = given["share"], given["drop"]
-        elif effect.name == "shaft_compliance":
-            changed["compliance"] += given["compliance"]
-        elif effect.name == "structural_mode":
-            changed["swinging"] += given["inertia"]
+        if effect.enabled:
+            given = values(effect)
+            for parameter, switch in REGISTRY[effect.name].switches.items():
+                changed[switch] += given[parameter]
     return changed
-
-
-def _axis(
-    w: NDArray[np.float64], model: PlantModel, axis: AxisModel, seed: int, name: str, angle: float
-) -> None:
-    step = model.numerics.grid.si
-    motor, gear, friction, encoders = axis.motor, axis.gear, axis.friction, axis.encoders
-    switches = _switches(axis)
-    resistance = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
-    inertia = axis.inertia.si - switches["swinging"]
-    if inertia <= 0.0:
-        raise ValueError(
-            f"plant model: axes.{name}.effects: structural_mode swings more than the axis' inertia"
-        )
-
-    w[at.GRID] = step
-    w[at.INERTIA] = inertia
-    w[at.ROTOR_INERTIA] = motor.rotor_inertia.si
-    w[at.RATIO] = RATIO
-    # Table 1 gives one stiffness per axis: both trains in contact, side by side
-    w[at.GEAR_STIFFNESS] = 0.5 / (1.0 / gear.stiffness.si + switches["compliance"])
-    w[at.GEAR_DAMPING] = 0.5 * gear.damping.si
-    w[at.HALF_PLAY] = 0.5 * gear.backlash.si
-    w[at.RESISTANCE] = resistance
-    w[at.WINDING] = motor.resistance.si
-    w[at.INDUCTANCE] = motor.inductance.si
-    w[at.TORQUE_CONSTANT] = motor.torque_constant.si
-    w[at.VOLTAGE] = model.supply.voltage.si
-    w[at.ROTOR_DRAG] = motor.drag.si
-    decay = exp(-resistance * step / motor.inductance.si)
-    w[at.CURRENT_DECAY] = decay
-    w[at.CURRENT_BLEND] = (1.0 - decay) * motor.inductance.si / (resistance * step)
-    w[at.RIPPLE] = model.supply.voltage.si / (2.0 * motor.inductance.si * model.controller.pwm_frequency.si)
-    w[at.DIODE], w[at.DIODE_DROP] = switches["diode"], switches["drop"]
-    w[at.TEMPERATURE] = model.environment.temperature.si
-    w[at.WARMING] = model.environment.warming.si
-
-    f = at.DECLARED_FRICTION
-    w[f + at.F_SIGMA0] = friction.bristle_stiffness.si
-    w[f + at.F_SIGMA1] = friction.bristle_damping.si
-    w[f + at.F_SIGMA2] = friction.viscous.si
-    w[f + at.F_COULOMB] = friction.coulomb.si
-    w[f + at.F_STICTION] = friction.stiction.si
-    w[f + at.F_RATE] = friction.stribeck_rate.si
-    w[f + at.F_EXPONENT] = friction.stribeck_exponent.si
-    w[f + at.F_DECAY] = friction.bristle_decay.si
-    w[at.STRIBECK] = friction.stiction.si / friction.bristle_stiffness.si
-
-    w[at.INCREMENTAL_SCALE] = encoders.incremental.si * encoders.roller_ratio.si / TURN
-    w[at.ABSOLUTE_SCALE] = 2.0 ** int(encoders.absolute.si) / TURN
-    w[at.AUXILIARY_SCALE] = encoders.auxiliary_ratio.si * 2.0 ** int(encoders.auxiliary.si) / TURN
-    w[at.TACH_SCALE] = encoders.tachometer.si / TURN
-
-    w[at.ANGLE] = angle
-    w[at.REVERSED_AT] = angle
-    # where within a count the incremental encoders wake up is anybody's guess, but always the same one
-    w[at.INCREMENTAL_ZERO] = angle - _fraction(seed, f"{name}.incremental") / w[at.INCREMENTAL_SCALE]
-    for m, side in enumerate((1.0, -1.0)):
-        o = at.MOTORS + m * at.MOTOR_SIZE
-        w[o + at.M_ANGLE] = RATIO * (angle + side * w[at.HALF_PLAY])
-        w[at.TACH_ZERO + m] = w[o + at.M_ANGLE] - _fraction(seed, f"{name}.tach.{m}") / w[at.TACH_SCALE]
-    write(w, axis.effects, constants(axis), seed, name)
 
 
 def constants(axis: AxisModel) -> dict[str, float]:
@@ -110,7 +90,7 @@ def constants(axis: AxisModel) -> dict[str, float]:
     motor = axis.motor
     return {
         "torque_constant": motor.torque_constant.si,
-        "resistance": motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
+        "resistance": motor.loop,
         "winding": motor.resistance.si,
         "ratio": RATIO,
     }

@@ -4,8 +4,7 @@ An alias stands for a whole tree, so a few lines can name more values than a mac
 nested deeper than the parser's stack. Both are seen in the event stream, which costs neither.
 """
 
-from __future__ import annotations
-
+from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
@@ -25,24 +24,32 @@ class TextError(ValueError):
         super().__init__(what if line is None else f"line {line}: {what}")
 
 
-def read_text(path: Path, limit: int = MAX_BYTES) -> str:
-    """The text of a regular file of at most `limit` bytes; raises TextError, FileNotFoundError.
-
-    A pipe or a device is refused: it may never end, or never begin.
-    """
+def check_regular(path: Path) -> None:
+    """Raise TextError for what is there and is no regular file: a pipe or a device may never end."""
     try:
         if path.exists() and not path.is_file():
             raise TextError("cannot be read: it is no regular file")
-        with path.open("rb") as file:
-            data = file.read(limit + 1)
-    except FileNotFoundError:
-        raise
     except OSError as error:
         raise TextError(f"cannot be read: {error.strerror}") from None
     except ValueError as error:
         if isinstance(error, TextError):
             raise
         raise TextError(f"has an impossible name: {error}") from None
+
+
+def read_text(path: Path, limit: int = MAX_BYTES) -> str:
+    """The text of a regular file of at most `limit` bytes; raises TextError, FileNotFoundError.
+
+    A pipe or a device is refused: it may never end, or never begin.
+    """
+    check_regular(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(limit + 1)
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise TextError(f"cannot be read: {error.strerror}") from None
     if len(data) > limit:
         raise TextError(f"is longer than {limit} bytes")
     try:
@@ -53,7 +60,8 @@ def read_text(path: Path, limit: int = MAX_BYTES) -> str:
 
 
 def check_yaml(text: str) -> None:
-    """Raise TextError for YAML that is broken, nested too deeply, or names too many values by aliases."""
+    """Raise TextError for YAML that is broken, nested too deeply, names too many values by aliases or a key
+    twice."""
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         _check_events(yaml.parse(text, Loader=loader))
@@ -66,17 +74,37 @@ def check_yaml(text: str) -> None:
         raise TextError(f"is not YAML: {str(error).splitlines()[0]}", 1) from None
 
 
+@dataclass
+class _Open:
+    """A collection that is open: its anchor, how many values stand before it, a mapping's keys by line."""
+
+    anchor: str | None
+    before: int
+    keys: dict[str, int] | None
+    nodes: int = 0
+
+    def take(self, event: yaml.NodeEvent, line: int) -> None:
+        """The next node inside, every other one a mapping's key; raises TextError for a key that is there."""
+        if self.keys is not None and self.nodes % 2 == 0 and isinstance(event, yaml.ScalarEvent):
+            if event.value in self.keys:
+                first = self.keys[event.value]
+                raise TextError(f"'{event.value}' is given twice (first in line {first})", line)
+            self.keys[event.value] = line
+        self.nodes += 1
+
+
 def _check_events(events: object) -> None:
     sizes: dict[str, int] = {}
     """Values an anchor stands for."""
-    open_: list[tuple[str | None, int]] = []
-    """Of every collection that is open: its anchor, and how many values there were before it."""
+    open_: list[_Open] = []
     count = 0
     for event in events:  # type: ignore[attr-defined]
         line = event.start_mark.line + 1
+        if open_ and isinstance(event, yaml.NodeEvent):
+            open_[-1].take(event, line)
         if isinstance(event, yaml.AliasEvent):
             # an alias of a collection that is still open holds itself
-            if any(anchor == event.anchor for anchor, _ in open_):
+            if any(each.anchor == event.anchor for each in open_):
                 raise TextError(f"the alias {event.anchor!r} holds itself", line)
             count += sizes.get(event.anchor or "", 1)
         elif isinstance(event, yaml.ScalarEvent):
@@ -85,14 +113,15 @@ def _check_events(events: object) -> None:
             if event.anchor:
                 sizes[event.anchor] = 1
         elif isinstance(event, yaml.CollectionStartEvent):
-            open_.append((event.anchor, count))
+            keys: dict[str, int] | None = {} if isinstance(event, yaml.MappingStartEvent) else None
+            open_.append(_Open(event.anchor, count, keys))
             count += 1
             if len(open_) > MAX_DEPTH:
                 raise TextError("nested too deeply", line)
         elif isinstance(event, yaml.CollectionEndEvent):
-            anchor, before = open_.pop()
-            if anchor:
-                sizes[anchor] = count - before
+            closed = open_.pop()
+            if closed.anchor:
+                sizes[closed.anchor] = count - closed.before
         if count > MAX_VALUES:
             raise TextError(f"names more than {MAX_VALUES} values (aliases of aliases?)", line)
 

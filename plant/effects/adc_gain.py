@@ -1,20 +1,18 @@
 """The current reading has another gain."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
-from plant.effects.signals import CURRENT, MEMORY, MOTOR, Hook
+from plant.effects.signals import CURRENT, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, gain: float) -> float:
     """Return the error of the reading, A."""
-    if p[MEMORY + 1] != 0.0 and p[MEMORY + 1] != x[MOTOR] + 1.0:
-        return 0.0
-    return (p[MEMORY] - 1.0) * x[CURRENT]
+    return (gain - 1.0) * x[CURRENT]
 
 
 EFFECT = Effect(
     name="adc_gain",
+    catalogue_row=25,
     channel="E",
     domain="current",
     equation="reading -> gain i",

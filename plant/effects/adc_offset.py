@@ -1,20 +1,18 @@
 """The current reading is shifted."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, MOTOR, Hook
+from plant.effects.signals import Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, offset: float) -> float:
     """Return the error of the reading, A."""
-    if p[MEMORY + 1] != 0.0 and p[MEMORY + 1] != x[MOTOR] + 1.0:
-        return 0.0
-    return p[MEMORY]
+    return offset
 
 
 EFFECT = Effect(
     name="adc_offset",
+    catalogue_row=24,
     channel="E",
     domain="current",
     equation="reading -> i + offset",

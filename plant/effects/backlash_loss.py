@@ -1,18 +1,18 @@
 """The lagging motor holds less counter torque than friction: teeth part at reversal."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COMMAND, LAGGING, MEMORY, Hook
+from plant.effects.signals import COMMAND, LAGGING, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, loss: float) -> float:
     """Return the change of the lagging motor's duty."""
-    return -p[MEMORY] * x[COMMAND] if x[LAGGING] > 0.0 else 0.0
+    return -loss * x[COMMAND] if x[LAGGING] > 0.0 else 0.0
 
 
 EFFECT = Effect(
     name="backlash_loss",
+    catalogue_row=17,
     channel="K",
     domain="reversal",
     equation="duty of the lagging motor -> (1 - a) duty",

@@ -1,21 +1,20 @@
 """Something starts to drag: a constant torque against the motion, from one moment to another."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COULOMB, MEMORY, STICTION, TIME, Hook
+from plant.effects.signals import COULOMB, STICTION, TIME, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, torque: float, start: float, duration: float) -> None:
     """Add the drag to Tc and Ts while it lasts."""
-    if p[MEMORY + 1] <= x[TIME] < p[MEMORY + 1] + p[MEMORY + 2]:
-        x[COULOMB] += p[MEMORY]
-        x[STICTION] += p[MEMORY]
-    return 0.0
+    if start <= x[TIME] < start + duration:
+        x[COULOMB] += torque
+        x[STICTION] += torque
 
 
 EFFECT = Effect(
     name="brake_drag",
+    catalogue_row=33,
     channel="T",
     domain="time",
     equation="Tc, Ts -> Tc, Ts + T_drag for start <= t < start + duration",

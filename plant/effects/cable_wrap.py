@@ -2,26 +2,25 @@
 
 from math import exp
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, RATE, Hook
+from plant.effects.signals import ANGLE, RATE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the torque, N m at the axis (p[0]: the hysteresis, -1..1)."""
-    return -p[MEMORY] * (x[ANGLE] - p[MEMORY + 1]) - p[MEMORY + 2] * p[0]
+def formula(x: Floats, wrap: float, stiffness: float, centre: float, hysteresis: float) -> float:
+    """Return the torque, N m at the axis."""
+    return -stiffness * (x[ANGLE] - centre) - hysteresis * wrap
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
-    """Dahl hysteresis, exact for a constant rate."""
+def update(x: Floats, dt: float, wrap: float, width: float) -> float:
+    """Return the wrap, -1..1: Dahl hysteresis, exact for a constant rate."""
     goal = 1.0 if x[RATE] > 0.0 else -1.0
-    p[0] = goal + (p[0] - goal) * exp(-abs(x[RATE]) * dt / p[MEMORY + 3])
+    return goal + (wrap - goal) * exp(-abs(x[RATE]) * dt / width)
 
 
 EFFECT = Effect(
     name="cable_wrap",
+    catalogue_row=32,
     channel="T",
     domain="axis_angle",
     equation="T = -k (angle - centre) - h z, dz/dangle = (1 - z sign w) / width",
@@ -32,5 +31,5 @@ EFFECT = Effect(
         Parameter("width", "deg", 0.001, 30.0, 1.0, ASSUMED),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.AXIS_TORQUE, formula, update),),
+    terms=(Term(Hook.AXIS_TORQUE, formula, update, memory=("wrap",), lasting=True),),
 )

@@ -2,19 +2,12 @@
 
 The plant delays the reading itself; effort is delayed by the log writer."""
 
-from plant.compiled import Floats, inner
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, Hook
-
-
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the delay, s."""
-    return p[MEMORY + 1]
-
+from plant.effects.signals import Hook
 
 EFFECT = Effect(
     name="channel_delay",
+    catalogue_row=36,
     channel="S",
     domain="clock",
     equation="reading(t) -> reading(t - delay)",
@@ -30,5 +23,5 @@ EFFECT = Effect(
         Parameter("delay", "s", 0.0, 0.12, 0.005, "ASSUMPTION: one control period"),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.LOG, formula),),
+    terms=(Term(Hook.LOG),),
 )

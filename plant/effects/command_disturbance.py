@@ -2,24 +2,24 @@
 
 from math import pi, sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import LAGGING, MEMORY, MOTOR, TIME, Hook
+from plant.effects.signals import LAGGING, MOTOR, TIME, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, amplitude: float, frequency: float, phase: float, shape: float) -> float:
     """Return the change of the leading motor's duty."""
     if x[LAGGING] > 0.0:
         return 0.0
-    wave = sin(2.0 * pi * p[MEMORY + 1] * x[TIME] + p[MEMORY + 2])
-    if p[MEMORY + 3] > 0.5:
+    wave = sin(2.0 * pi * frequency * x[TIME] + phase)
+    if shape > 0.5:
         wave = 1.0 if wave > 0.0 else -1.0
-    return p[MEMORY] * (wave if x[MOTOR] == 0.0 else -wave)
+    return amplitude * (wave if x[MOTOR] == 0.0 else -wave)
 
 
 EFFECT = Effect(
     name="command_disturbance",
+    catalogue_row=40,
     channel="T",
     domain="time",
     equation="u -> u + A sin(2 pi f t + phase), or its sign (shape 1); u > 0 pulls with motor A",

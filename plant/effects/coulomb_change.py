@@ -1,20 +1,19 @@
 """Coulomb friction differs from the declared one."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COULOMB, MEMORY, STICTION, Hook
+from plant.effects.signals import COULOMB, STICTION, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, factor: float) -> None:
     """Scale Tc; Ts never falls below it."""
-    x[COULOMB] *= p[MEMORY]
+    x[COULOMB] *= factor
     x[STICTION] = max(x[STICTION], x[COULOMB])
-    return 0.0
 
 
 EFFECT = Effect(
     name="coulomb_change",
+    catalogue_row=4,
     channel="T",
     domain="velocity",
     equation="Tc -> a Tc",

@@ -2,21 +2,21 @@
 
 from math import exp, floor, pi
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, SHAFTS, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, Hook
+from plant.effects.signals import ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, order: float, amplitude: float, phase: float, width: float) -> float:
     """Return the torque, N m at the axis: a Gaussian pulse in the angle of the shaft."""
-    turn = (p[MEMORY] * x[ANGLE] - p[MEMORY + 2]) / (2.0 * pi)
-    away = (turn - floor(turn + 0.5)) * 2.0 * pi / p[MEMORY + 3]
-    return p[MEMORY + 1] * exp(-0.5 * away * away)
+    turn = (order * x[ANGLE] - phase) / (2.0 * pi)
+    away = (turn - floor(turn + 0.5)) * 2.0 * pi / width
+    return amplitude * exp(-0.5 * away * away)
 
 
 EFFECT = Effect(
     name="damaged_tooth",
+    catalogue_row=13,
     channel="T",
     domain="axis_angle",
     equation="T = A exp(-(shaft angle - phase)^2 / (2 width^2)), once per turn of the shaft",

@@ -1,21 +1,22 @@
 """The lagging motor drives current through its freewheel diode and brakes."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, MOTOR, MOTOR_RATE, Hook
+from plant.effects.signals import MOTOR, MOTOR_RATE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(
+    x: Floats, share: float, drop: float, torque_constant: float, resistance: float, ratio: float
+) -> float:
     """Return the braking torque of the motor concerned, N m at the axis."""
-    share = p[MEMORY]
     speed = x[MOTOR_RATE] if x[MOTOR] == 0.0 else -x[MOTOR_RATE]
-    pull = max(0.0, -speed * p[MEMORY + 2] - p[MEMORY + 1])
-    return (share * p[MEMORY + 2] * p[MEMORY + 4] * pull / p[MEMORY + 3]) * (1.0 if x[MOTOR] == 0.0 else -1.0)
+    pull = max(0.0, -speed * torque_constant - drop)
+    return (share * torque_constant * ratio * pull / resistance) * (1.0 if x[MOTOR] == 0.0 else -1.0)
 
 
 EFFECT = Effect(
     name="diode_braking",
+    catalogue_row=27,
     channel="T",
     domain="velocity",
     equation="T = a K N i_d, R i_d = K |w_motor| - drop, on the motor that turns against its pull",
@@ -28,5 +29,6 @@ EFFECT = Effect(
     source="hardware.md 2.3; " + CATALOGUE,
     terms=(Term(Hook.SWITCH, formula),),
     constants=("torque_constant", "resistance", "ratio"),
+    switches={"share": "diode", "drop": "diode_drop"},
     odd=True,
 )

@@ -4,20 +4,22 @@ The stage names the encoder: axis the absolute, roller the incremental, aux the 
 
 from math import sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY
+from plant.effects.signals import ANGLE
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(
+    x: Floats, order: float, amplitude: float, phase: float, second: float, second_phase: float
+) -> float:
     """Return the error of the reading, rad at the axis."""
-    turn = p[MEMORY] * x[ANGLE]
-    return p[MEMORY + 1] * sin(turn + p[MEMORY + 2]) + p[MEMORY + 3] * sin(2.0 * turn + p[MEMORY + 4])
+    turn = order * x[ANGLE]
+    return amplitude * sin(turn + phase) + second * sin(2.0 * turn + second_phase)
 
 
 EFFECT = Effect(
     name="encoder_eccentricity",
+    catalogue_row=20,
     channel="K",
     domain="axis_angle",
     equation="reading -> angle + A sin(order angle + phase) + B sin(2 order angle + phase2)",

@@ -2,20 +2,22 @@
 
 from math import sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY
+from plant.effects.signals import ANGLE
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(
+    x: Floats, lines: float, amplitude: float, second: float, phase: float, second_phase: float
+) -> float:
     """Return the error of the reading, rad at the axis."""
-    line = p[MEMORY] * x[ANGLE]
-    return p[MEMORY + 1] * sin(line + p[MEMORY + 3]) + p[MEMORY + 2] * sin(2.0 * line + p[MEMORY + 5])
+    line = lines * x[ANGLE]
+    return amplitude * sin(line + phase) + second * sin(2.0 * line + second_phase)
 
 
 EFFECT = Effect(
     name="encoder_subdivision",
+    catalogue_row=21,
     channel="S",
     domain="axis_angle",
     equation="reading -> angle + A sin(lines angle + phase) + B sin(2 lines angle + phase2)",

@@ -1,20 +1,20 @@
 """One encoder drifts with the ambient temperature."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, TEMPERATURE
+from plant.effects.signals import TEMPERATURE
 
 REFERENCE = 20.0  # degC
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, drift: float) -> float:
     """Return the error of the reading, rad at the axis."""
-    return p[MEMORY] * (x[TEMPERATURE] - REFERENCE)
+    return drift * (x[TEMPERATURE] - REFERENCE)
 
 
 EFFECT = Effect(
     name="encoder_thermal_drift",
+    catalogue_row=35,
     channel="S",
     domain="temperature",
     equation="reading -> angle + a (temperature - 20 degC)",

@@ -4,25 +4,24 @@
 
 from math import sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, SHAFTS, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, Hook
+from plant.effects.signals import ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, order: float, amplitude: float, phase: float) -> float:
     """Return the torque, N m at the axis."""
-    return p[MEMORY + 1] * sin(p[MEMORY] * x[ANGLE] + p[MEMORY + 3])
+    return amplitude * sin(order * x[ANGLE] + phase)
 
 
-@inner
-def twist(x: Floats, p: Floats) -> float:
+def twist(x: Floats, order: float, kinematic: float, phase: float) -> float:
     """Return the kinematic error, rad at the axis."""
-    return p[MEMORY + 2] * sin(p[MEMORY] * x[ANGLE] + p[MEMORY + 3])
+    return kinematic * sin(order * x[ANGLE] + phase)
 
 
 EFFECT = Effect(
     name="gear_eccentricity",
+    catalogue_row=11,
     channel="T",
     domain="axis_angle",
     equation="T = A sin(order angle + phase); twist = B sin(order angle + phase)",

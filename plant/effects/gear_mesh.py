@@ -2,19 +2,19 @@
 
 from math import sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, MESHES, PHASE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, Hook
+from plant.effects.signals import ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, order: float, amplitude: float, phase: float) -> float:
     """Return the torque, N m at the axis."""
-    return p[MEMORY + 1] * sin(p[MEMORY] * x[ANGLE] + p[MEMORY + 2])
+    return amplitude * sin(order * x[ANGLE] + phase)
 
 
 EFFECT = Effect(
     name="gear_mesh",
+    catalogue_row=12,
     channel="T",
     domain="axis_angle",
     equation="T = A sin(order angle + phase)",

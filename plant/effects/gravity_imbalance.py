@@ -2,19 +2,19 @@
 
 from math import cos
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, Hook
+from plant.effects.signals import ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, amplitude: float, phase: float) -> float:
     """Return the torque, N m."""
-    return p[MEMORY] * cos(x[ANGLE] - p[MEMORY + 1])
+    return amplitude * cos(x[ANGLE] - phase)
 
 
 EFFECT = Effect(
     name="gravity_imbalance",
+    catalogue_row=10,
     channel="T",
     domain="axis_angle",
     equation="T = m g r cos(angle - phase)",

@@ -1,21 +1,20 @@
 """Friction that grows with the torque the gears transmit."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COULOMB, MEMORY, STICTION, TORQUE, Hook
+from plant.effects.signals import COULOMB, STICTION, TORQUE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, coefficient: float) -> None:
     """Add mu |T| to Tc and Ts."""
-    change = p[MEMORY] * abs(x[TORQUE])
+    change = coefficient * abs(x[TORQUE])
     x[COULOMB] += change
     x[STICTION] += change
-    return 0.0
 
 
 EFFECT = Effect(
     name="load_friction",
+    catalogue_row=7,
     channel="T",
     domain="current",
     equation="Tc, Ts -> Tc, Ts + mu |T_gear|",

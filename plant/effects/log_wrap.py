@@ -1,18 +1,11 @@
 """A counter of the log wraps or saturates."""
 
-from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, Hook
-
-
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the number of bits that are kept."""
-    return p[MEMORY + 1]
-
+from plant.effects.signals import Hook
 
 EFFECT = Effect(
     name="log_wrap",
+    catalogue_row=39,
     channel="S",
     domain="clock",
     equation="column -> column modulo 2^bits, signed (mode 0), or clipped to it (mode 1)",
@@ -29,5 +22,5 @@ EFFECT = Effect(
         Parameter("mode", "1", 0.0, 1.0, 0.0, "choice: 0 wrap, 1 saturate"),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.LOG, formula),),
+    terms=(Term(Hook.LOG),),
 )

@@ -1,20 +1,18 @@
 """The magnets are weaker than declared: torque and back EMF fall together."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, MOTOR, Hook
+from plant.effects.signals import Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, loss: float) -> float:
     """Return the relative change of the torque constant."""
-    if p[MEMORY + 1] != 0.0 and p[MEMORY + 1] != x[MOTOR] + 1.0:
-        return 0.0
-    return -p[MEMORY]
+    return -loss
 
 
 EFFECT = Effect(
     name="magnet_weakening",
+    catalogue_row=30,
     channel="E",
     domain="velocity",
     equation="K -> K (1 - a)",

@@ -2,21 +2,19 @@
 
 from math import sin
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, MOTOR, MOTOR_ANGLE, Hook
+from plant.effects.signals import MOTOR_ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, cycles: float, amplitude: float, phase: float) -> float:
     """Return the torque, N m at the motor."""
-    if p[MEMORY + 3] != 0.0 and p[MEMORY + 3] != x[MOTOR] + 1.0:
-        return 0.0
-    return p[MEMORY + 1] * sin(p[MEMORY] * x[MOTOR_ANGLE] + p[MEMORY + 2])
+    return amplitude * sin(cycles * x[MOTOR_ANGLE] + phase)
 
 
 EFFECT = Effect(
     name="motor_cogging",
+    catalogue_row=14,
     channel="T",
     domain="motor_angle",
     equation="T_motor = A sin(N motor_angle + phase)",

@@ -1,25 +1,24 @@
 """The coupling of one encoder has a gap: its reading stands still at a reversal until the gap is closed."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, RATE
+from plant.effects.signals import RATE
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return how far the encoder's shaft is from the middle of the gap, rad at the axis (p[0])."""
-    return p[0]
+def formula(x: Floats, offset: float) -> float:
+    """Return how far the encoder's shaft is from the middle of the gap, rad at the axis."""
+    return offset
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
-    """Let the axis move within the gap, and push the encoder's shaft along at either end."""
-    half = 0.5 * p[MEMORY]
-    p[0] = min(max(p[0] - x[RATE] * dt, -half), half)
+def update(x: Floats, dt: float, offset: float, gap: float) -> float:
+    """Return the offset: the axis moves within the gap and pushes the encoder's shaft along at either end."""
+    half = 0.5 * gap
+    return min(max(offset - x[RATE] * dt, -half), half)
 
 
 EFFECT = Effect(
     name="play",
+    catalogue_row=16,
     channel="K",
     domain="reversal",
     equation="reading -> angle + e; de/dt = -w within |e| <= gap / 2 (the play operator)",
@@ -35,5 +34,5 @@ EFFECT = Effect(
         ),
     ),
     source=CATALOGUE + "; paper 2.2: auxiliary encoder through a gear",
-    terms=(Term("encoder", formula, update),),
+    terms=(Term("encoder", formula, update, memory=("offset",)),),
 )

@@ -2,22 +2,21 @@
 
 from math import cos
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, PHASE, STAGES, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, COULOMB, MEMORY, STICTION, Hook
+from plant.effects.signals import ANGLE, COULOMB, STICTION, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, order: float, amplitude: float, phase: float) -> None:
     """Add a wave over the angle to Tc and Ts."""
-    change = p[MEMORY + 1] * cos(p[MEMORY] * x[ANGLE] - p[MEMORY + 2])
+    change = amplitude * cos(order * x[ANGLE] - phase)
     x[COULOMB] = max(0.0, x[COULOMB] + change)
     x[STICTION] = max(x[COULOMB], x[STICTION] + change)
-    return 0.0
 
 
 EFFECT = Effect(
     name="position_friction",
+    catalogue_row=6,
     channel="T",
     domain="axis_angle",
     equation="Tc, Ts -> Tc, Ts + c cos(order angle - phase)",

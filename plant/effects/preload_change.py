@@ -1,23 +1,22 @@
 """The bearing preload changes: Ts and sigma2 scale together."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COULOMB, MEMORY, SIGMA2, STICTION, TIME, Hook
+from plant.effects.signals import COULOMB, SIGMA2, STICTION, TIME, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, change: float, start: float, duration: float) -> None:
     """Scale Ts and sigma2 by a ramp in time."""
-    share = (x[TIME] - p[MEMORY + 1]) / p[MEMORY + 2]
+    share = (x[TIME] - start) / duration
     share = min(1.0, max(0.0, share))
-    factor = 1.0 + p[MEMORY] * share
+    factor = 1.0 + change * share
     x[STICTION] = max(x[COULOMB], x[STICTION] * factor)
     x[SIGMA2] *= factor
-    return 0.0
 
 
 EFFECT = Effect(
     name="preload_change",
+    catalogue_row=9,
     channel="T",
     domain="time",
     equation="Ts, sigma2 -> (1 + a ramp((t - t0) / tau)) Ts, sigma2",

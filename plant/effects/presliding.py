@@ -1,20 +1,19 @@
 """Bristle stiffness and damping differ from the declared ones."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, SIGMA0, SIGMA1, Hook
+from plant.effects.signals import SIGMA0, SIGMA1, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, stiffness_factor: float, damping_factor: float) -> None:
     """Scale sigma0 and sigma1."""
-    x[SIGMA0] *= p[MEMORY]
-    x[SIGMA1] *= p[MEMORY + 1]
-    return 0.0
+    x[SIGMA0] *= stiffness_factor
+    x[SIGMA1] *= damping_factor
 
 
 EFFECT = Effect(
     name="presliding",
+    catalogue_row=2,
     channel="T",
     domain="reversal",
     equation="sigma0 -> a sigma0, sigma1 -> b sigma1",

@@ -1,18 +1,18 @@
 """The driver swallows the first part of each pulse."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import COMMAND, MEMORY, Hook
+from plant.effects.signals import COMMAND, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, deadband: float) -> float:
     """Return the change of the duty."""
-    return -min(x[COMMAND], p[MEMORY])
+    return -min(x[COMMAND], deadband)
 
 
 EFFECT = Effect(
     name="pwm_deadband",
+    catalogue_row=26,
     channel="E",
     domain="command",
     equation="duty -> max(0, duty - u0)",

@@ -1,18 +1,18 @@
 """The friction roller is not 735:30: the incremental encoder has another scale."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import ANGLE, MEMORY, Hook
+from plant.effects.signals import ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, error: float) -> float:
     """Return the error of the incremental reading, rad at the axis."""
-    return p[MEMORY] * x[ANGLE]
+    return error * x[ANGLE]
 
 
 EFFECT = Effect(
     name="roller_ratio",
+    catalogue_row=22,
     channel="K",
     domain="axis_angle",
     equation="incremental -> (1 + e) angle",

@@ -1,18 +1,11 @@
 """Packets of 25 samples are missing, samples are repeated."""
 
-from plant.compiled import Floats, inner
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, Hook
-
-
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the share of packets that are lost."""
-    return p[MEMORY]
-
+from plant.effects.signals import Hook
 
 EFFECT = Effect(
     name="sample_loss",
+    catalogue_row=38,
     channel="S",
     domain="clock",
     equation="a packet is lost with probability p, a sample repeats its predecessor with probability q",
@@ -23,5 +16,5 @@ EFFECT = Effect(
         Parameter("repeats", "1", 0.0, 0.5, 0.0, ASSUMED),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.LOG, formula),),
+    terms=(Term(Hook.LOG),),
 )

@@ -1,18 +1,18 @@
 """The trains wind up more than declared."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, TORQUE, Hook
+from plant.effects.signals import TORQUE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, compliance: float) -> float:
     """Return the extra wind-up of the axis behind the motors, rad."""
-    return -p[MEMORY] * x[TORQUE]
+    return -compliance * x[TORQUE]
 
 
 EFFECT = Effect(
     name="shaft_compliance",
+    catalogue_row=18,
     channel="K",
     domain="current",
     equation="twist -> twist - c T_gear",
@@ -23,4 +23,5 @@ EFFECT = Effect(
     ),
     source=CATALOGUE,
     terms=(Term(Hook.SWITCH, formula),),
+    switches={"compliance": "compliance"},
 )

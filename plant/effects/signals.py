@@ -32,7 +32,8 @@ STRIBECK_RATE: Final = 21  # rad/s
 STRIBECK_EXPONENT: Final = 22
 VECTOR: Final = 24  # length of the whole vector
 
-MEMORY: Final = 4  # parameters start here in a formula's p; before them its own memory (p[3]: its seed)
+MEMORY: Final = 4  # parameters start here in an effect's numbers; before them its memory and its seed
+SEED: Final = 3
 
 
 class Hook(IntEnum):

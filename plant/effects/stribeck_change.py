@@ -1,21 +1,20 @@
 """Static friction, Stribeck rate or exponent differ from the declared ones."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, STICTION, STRIBECK_EXPONENT, STRIBECK_RATE, Hook
+from plant.effects.signals import STICTION, STRIBECK_EXPONENT, STRIBECK_RATE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, stiction_factor: float, velocity_factor: float, exponent_change: float) -> None:
     """Scale Ts and the Stribeck rate, shift the exponent."""
-    x[STICTION] *= p[MEMORY]
-    x[STRIBECK_RATE] *= p[MEMORY + 1]
-    x[STRIBECK_EXPONENT] += p[MEMORY + 2]
-    return 0.0
+    x[STICTION] *= stiction_factor
+    x[STRIBECK_RATE] *= velocity_factor
+    x[STRIBECK_EXPONENT] += exponent_change
 
 
 EFFECT = Effect(
     name="stribeck_change",
+    catalogue_row=1,
     channel="T",
     domain="velocity",
     equation="Ts -> a Ts, ws -> b ws, delta -> delta + d",

@@ -2,31 +2,30 @@
 
 from math import pi
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, RATE, Hook
+from plant.effects.signals import RATE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the torque of the second mass on the axis, N m (p[0]: its lead, rad; p[1]: its rate; p[2]: the
-    axis').
-    """
-    pulse = 2.0 * pi * p[MEMORY]
-    return p[MEMORY + 2] * (pulse * pulse * p[0] + 2.0 * p[MEMORY + 1] * pulse * (p[1] - x[RATE]))
+def formula(x: Floats, lead: float, rate: float, frequency: float, damping: float, inertia: float) -> float:
+    """Return the torque of the second mass on the axis, N m (lead, rad, and rate are those of that mass)."""
+    pulse = 2.0 * pi * frequency
+    return inertia * (pulse * pulse * lead + 2.0 * damping * pulse * (rate - x[RATE]))
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
-    """Leapfrog of the second mass, whose lead is kept at the step's middle."""
-    pulse = 2.0 * pi * p[MEMORY]
-    p[1] -= dt * (pulse * pulse * p[0] + 2.0 * p[MEMORY + 1] * pulse * (p[1] - p[2]))
-    p[0] += dt * (p[1] - x[RATE])
-    p[2] = x[RATE]
+def update(
+    x: Floats, dt: float, lead: float, rate: float, axis_rate: float, frequency: float, damping: float
+) -> tuple[float, float, float]:
+    """Return the memory: leapfrog of the second mass, whose lead is kept at the step's middle."""
+    pulse = 2.0 * pi * frequency
+    rate -= dt * (pulse * pulse * lead + 2.0 * damping * pulse * (rate - axis_rate))
+    lead += dt * (rate - x[RATE])
+    return lead, rate, x[RATE]
 
 
 EFFECT = Effect(
     name="structural_mode",
+    catalogue_row=19,
     channel="T",
     domain="time",
     equation="T = J2 (w0^2 y + 2 zeta w0 dy/dt), J2 d2(angle + y)/dt2 = -T; J2: part of the inertia",
@@ -36,5 +35,14 @@ EFFECT = Effect(
         Parameter("inertia", "kg m2", 1.0, 1000.0, 200.0, ASSUMED),
     ),
     source="paper Table 1: lock-rotor modes; " + CATALOGUE,
-    terms=(Term(Hook.AXIS_TORQUE, formula, update),),
+    terms=(
+        Term(
+            Hook.AXIS_TORQUE,
+            formula,
+            update,
+            memory=("lead", "rate", "axis_rate"),
+            moving=("rate", "axis_rate"),
+        ),
+    ),
+    switches={"inertia": "swinging"},
 )

@@ -1,18 +1,18 @@
 """The supply gives way under load."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, SUPPLY_CURRENT, Hook
+from plant.effects.signals import SUPPLY_CURRENT, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, resistance: float) -> float:
     """Return the change of the supply, V."""
-    return -p[MEMORY] * x[SUPPLY_CURRENT]
+    return -resistance * x[SUPPLY_CURRENT]
 
 
 EFFECT = Effect(
     name="supply_sag",
+    catalogue_row=28,
     channel="E",
     domain="current",
     equation="V = V0 - Rs sum(duty i)",

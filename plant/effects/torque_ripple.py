@@ -2,21 +2,19 @@
 
 from math import cos
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, MOTOR, MOTOR_ANGLE, Hook
+from plant.effects.signals import MOTOR_ANGLE, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, cycles: float, ripple: float, phase: float) -> float:
     """Return the relative change of the torque constant."""
-    if p[MEMORY + 3] != 0.0 and p[MEMORY + 3] != x[MOTOR] + 1.0:
-        return 0.0
-    return p[MEMORY + 1] * cos(p[MEMORY] * x[MOTOR_ANGLE] + p[MEMORY + 2])
+    return ripple * cos(cycles * x[MOTOR_ANGLE] + phase)
 
 
 EFFECT = Effect(
     name="torque_ripple",
+    catalogue_row=15,
     channel="T",
     domain="motor_angle",
     equation="K -> K (1 + r cos(N motor_angle + phase))",

@@ -55,7 +55,6 @@ def stops(p: Floats) -> float:
     return total
 
 
-@inner
 def formula(x: Floats, p: Floats) -> float:
     """Return the function of its domain at the signal vector; constant beyond the outer knots."""
     if p[MEMORY + CHOICE] != 0.0 and p[MEMORY + CHOICE] != x[MOTOR] + 1.0:
@@ -86,8 +85,7 @@ def formula(x: Floats, p: Floats) -> float:
     return y0 + s * (m0 + s * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * (y1 - y0))))
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
+def update(x: Floats, dt: float, p: Floats) -> None:
     """Let the stops follow the domain (p[0]: its last value; p[1]: 1 once there is one)."""
     if p[MEMORY + KIND] < 4.0:
         return
@@ -103,10 +101,11 @@ def update(x: Floats, p: Floats, dt: float) -> None:
 
 EFFECT = Effect(
     name="unknown",
+    catalogue_row=41,
     channel="T",
     domain="axis_angle",
     equation="y = f(domain) through the knots, linear or cubic (Hermite), or a sum of stops",
     parameters=(),
     source="issue 3: an effect outside the catalogue enters as a smooth function",
-    terms=(Term("target", formula, update),),
+    terms=(Term("target", formula, update, lasting=True),),
 )

@@ -1,19 +1,18 @@
 """Viscous friction differs from the declared one."""
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, SIGMA2, Hook
+from plant.effects.signals import SIGMA2, Hook
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
+def formula(x: Floats, factor: float) -> None:
     """Scale sigma2."""
-    x[SIGMA2] *= p[MEMORY]
-    return 0.0
+    x[SIGMA2] *= factor
 
 
 EFFECT = Effect(
     name="viscous_change",
+    catalogue_row=3,
     channel="T",
     domain="velocity",
     equation="sigma2 -> a sigma2",

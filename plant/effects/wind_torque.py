@@ -2,28 +2,29 @@
 
 from math import exp, sqrt
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import MEMORY, Hook
+from plant.effects.signals import Hook
 from plant.kernels.noise import normal
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the torque, N m at the axis (p[0]: the broadband part in units of its own deviation)."""
-    return p[MEMORY] + p[MEMORY + 1] * p[0]
+def formula(x: Floats, gust: float, mean: float, deviation: float) -> float:
+    """Return the torque, N m at the axis."""
+    return mean + deviation * gust
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
-    """Ornstein-Uhlenbeck step; the noise depends on the seed (p[3]) and the count of steps (p[1]) only."""
-    keep = exp(-dt / p[MEMORY + 2])
-    p[0] = keep * p[0] + sqrt(1.0 - keep * keep) * normal(p[3], p[1])
-    p[1] += 1.0
+def update(
+    x: Floats, dt: float, gust: float, steps: float, seed: float, correlation_time: float
+) -> tuple[float, float]:
+    """Ornstein-Uhlenbeck step of the gust, in deviations; its noise is that of seed and count of steps."""
+    keep = exp(-dt / correlation_time)
+    gust = keep * gust + sqrt(1.0 - keep * keep) * normal(seed, steps)
+    return gust, steps + 1.0
 
 
 EFFECT = Effect(
     name="wind_torque",
+    catalogue_row=31,
     channel="T",
     domain="time",
     equation="T = mean + deviation n(t), n: Ornstein-Uhlenbeck, correlation time tau",
@@ -33,5 +34,5 @@ EFFECT = Effect(
         Parameter("correlation_time", "s", 0.05, 100.0, 2.0, ASSUMED),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.AXIS_TORQUE, formula, update),),
+    terms=(Term(Hook.AXIS_TORQUE, formula, update, memory=("gust", "steps")),),
 )

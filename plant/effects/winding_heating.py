@@ -2,29 +2,29 @@
 
 from math import exp
 
-from plant.compiled import Floats, inner
+from plant.compiled import Floats
 from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
-from plant.effects.signals import CURRENT, MEMORY, MOTOR, Hook
+from plant.effects.signals import CURRENT, Hook
 
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
 
 
-@inner
-def formula(x: Floats, p: Floats) -> float:
-    """Return the change of the winding resistance of the motor concerned, ohm (p[0], p[1]: warmth, K)."""
-    return p[MEMORY + 2] * COPPER * p[int(x[MOTOR])]
+def formula(x: Floats, warmth: float, winding: float) -> float:
+    """Return the change of the winding resistance of the motor concerned, ohm."""
+    return winding * COPPER * warmth
 
 
-@inner
-def update(x: Floats, p: Floats, dt: float) -> None:
-    """First-order heating by i^2 R; called once per motor."""
-    m = int(x[MOTOR])
-    goal = p[MEMORY] * x[CURRENT] * x[CURRENT] * p[MEMORY + 2]
-    p[m] += (goal - p[m]) * (1.0 - exp(-dt / p[MEMORY + 1]))
+def update(
+    x: Floats, dt: float, warmth: float, thermal_resistance: float, time_constant: float, winding: float
+) -> float:
+    """Return the warmth of the motor concerned, K: first-order heating by i^2 R."""
+    goal = thermal_resistance * x[CURRENT] * x[CURRENT] * winding
+    return warmth + (goal - warmth) * (1.0 - exp(-dt / time_constant))
 
 
 EFFECT = Effect(
     name="winding_heating",
+    catalogue_row=29,
     channel="E",
     domain="time",
     equation="R -> R (1 + alpha dT), tau d(dT)/dt = Rth i^2 R - dT",
@@ -33,6 +33,6 @@ EFFECT = Effect(
         Parameter("time_constant", "s", 10.0, 7200.0, 600.0, ASSUMED),
     ),
     source=CATALOGUE,
-    terms=(Term(Hook.RESISTANCE, formula, update),),
+    terms=(Term(Hook.RESISTANCE, formula, update, memory=("warmth",), lasting=True),),
     constants=("winding",),
 )

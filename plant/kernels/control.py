@@ -1,8 +1,8 @@
 """The axis board's velocity loop around one axis, in one compiled loop.
 
-The arithmetic is the firmware's: gains in Q12, errors and effort in Q16, effort limited where it accumulates,
-a counter torque that stays until it is a whole step off and then takes the effort along, current read before
-the new duty. A test compares it with the emulator.
+The arithmetic is the firmware's. Gains are in Q12, errors and effort in Q16. The effort is limited where it
+accumulates. A counter torque stays until it is a whole step off and then takes the effort along. The current
+is read before the new duty. A test compares the loop with the emulator.
 """
 
 from math import floor

@@ -23,10 +23,10 @@ def winding(current: float, target: float, decay: float, blend: float) -> tuple[
 def back_emf(speed: float, constant: float, applied: float, leads: bool, diode: float, drop: float) -> float:
     """Return the voltage that opposes the current, V; `speed` counts positive in the motor's own direction.
 
-    Turned against its pull, the leading motor's EMF adds to the applied voltage, but no more than that
-    voltage (a switch that is off conducts nothing), and the lagging motor gives the torque of its duty alone:
-    the paper's superposition. In truth the EMF drives current through the freewheel diode; `diode` 0..1 is
-    the share of that, `drop` the diode's forward voltage.
+    Motors turned against their pull follow the paper's superposition. The leading motor's EMF adds to the
+    applied voltage, but no more than that voltage (a switch that is off conducts nothing). The lagging motor
+    gives the torque of its duty alone. In truth the EMF drives current through the freewheel diode; `diode`
+    0..1 is the share of that, `drop` the diode's forward voltage.
     """
     emf = constant * speed
     if emf >= 0.0:

@@ -7,9 +7,9 @@ step before.
 
 from plant.compiled import Floats, inner
 from plant.effects import signals as sig
-from plant.effects.dispatch import update, value
 from plant.effects.signals import HOOK_COUNT, MOTOR_HOOKS
 from plant.kernels import layout as at
+from plant.kernels.dispatch import update, value
 
 
 @inner

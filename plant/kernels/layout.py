@@ -74,7 +74,6 @@ SUMS_OF_B = SUMS + 12
 EFFECTS = SUMS_OF_B + 6
 ROW = 80  # hook, kind, memory, parameters
 ROW_KIND, ROW_MEMORY = 1, 2
-MEMORY_SIZE = 4
 MAX_EFFECTS = 32
 
 # --- rings

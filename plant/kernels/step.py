@@ -1,6 +1,6 @@
 """One grid step of one axis: leapfrog for the mechanics, exact updates for the windings and the bristles.
 
-Rates live at grid points, angles and the bristle half a step later, so one evaluation of the torques per step
+Rates live at grid points, angles and the bristle half a step later. So one evaluation of the torques per step
 is second order, and springs keep their energy. Rate-dependent torques use the rate extrapolated to the step's
 middle.
 """

@@ -9,17 +9,16 @@ from numpy.typing import NDArray
 
 from plant.effects import REGISTRY
 from plant.effects.base import Effect
-from plant.effects.dispatch import KINDS as KINDS
 from plant.effects.signals import MOTOR_HOOKS, Hook
 from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import CHOICE, COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD
 from plant.effects.unknown import KINDS as INTERPOLATIONS
 from plant.gears import ORDERS
-from plant.kernels.layout import EFFECTS, MAX_EFFECTS, MEMORY_SIZE, ROW, ROW_MEMORY, ROWS_ALL, ROWS_MOTOR
+from plant.kernels.dispatch import KINDS as KINDS
+from plant.kernels.layout import EFFECTS, MAX_EFFECTS, ROW, ROWS_ALL, ROWS_MOTOR
 from plant.parts import EffectModel, Function
 from plant.units import to_si
 
-FIRST_PARAMETER = ROW_MEMORY + MEMORY_SIZE
 ENCODERS = (Hook.INCREMENTAL, Hook.ABSOLUTE, Hook.AUXILIARY)
 STAGE_ENCODER = {"axis": Hook.ABSOLUTE, "roller": Hook.INCREMENTAL, "aux": Hook.AUXILIARY}
 
@@ -31,30 +30,22 @@ def number_from(seed: int, name: str) -> float:
 
 
 def values(model: EffectModel) -> dict[str, float]:
-    """Return the parameters of an effect in SI units, defaults filled in."""
+    """Return the parameters of an effect in SI units, defaults filled in; of a staged effect the order, too,
+    in cycles per axis turn.
+    """
     effect = REGISTRY[model.name]
     result: dict[str, float] = {}
+    if model.stage is not None:
+        result["order"] = ORDERS[model.stage] * model.harmonic
     for spec in effect.parameters:
         given = model.parameters.get(spec.name)
         result[spec.name] = to_si(spec.default, spec.unit) if given is None else given.si
     return result
 
 
-def vector(
-    effect: Effect, order: float, parameters: Mapping[str, float], constants: Mapping[str, float]
-) -> list[float]:
-    """Return what follows the memory in a formula's `p`: [order,] parameters, constants; SI units."""
-    start = [order] if effect.staged else []
-    return [
-        *start,
-        *(parameters[spec.name] for spec in effect.parameters),
-        *(constants[name] for name in effect.constants),
-    ]
-
-
-def order_of(model: EffectModel) -> float:
-    """Return the order of a staged effect, cycles per axis turn; 0 for the others."""
-    return ORDERS[model.stage] * model.harmonic if model.stage is not None else 0.0
+def vector(effect: Effect, numbers: Mapping[str, float]) -> list[float]:
+    """Return what follows memory and seed in an effect's row."""
+    return [numbers[name] for name in effect.numbers]
 
 
 def _function(function: Function) -> list[float]:
@@ -80,28 +71,20 @@ def _hook(model: EffectModel, hook: Any, parameters: Mapping[str, float]) -> Hoo
     return STAGE_ENCODER[str(model.stage)]
 
 
-def write(
-    world: NDArray[np.float64],
-    effects: tuple[EffectModel, ...],
-    constants: Mapping[str, float],
-    seed: int,
-    axis: str,
-) -> None:
-    """Write the enabled effects of one axis into its row of the world; ValueError when they are too many.
+def rows_of(
+    effects: tuple[EffectModel, ...], constants: Mapping[str, float], seed: int, axis: str
+) -> list[tuple[Hook, int, list[float]]]:
+    """Return the rows of the enabled effects in the order of the kernel: hook, place in `effects`, numbers.
 
     Effects of the hooks SWITCH and LOG do not act in the step and are left out (see world.py and AxisPort).
     """
-    rows: list[tuple[Hook, list[float]]] = []
+    rows: list[tuple[Hook, int, list[float]]] = []
     for k, model in enumerate(effects):
         if not model.enabled:
             continue
         effect = REGISTRY[model.name]
         parameters = values(model)
-        numbers = (
-            _function(model.function)
-            if model.function
-            else vector(effect, order_of(model), parameters, constants)
-        )
+        numbers = _function(model.function) if model.function else vector(effect, {**constants, **parameters})
         for term in effect.terms:
             hook = _hook(model, term.hook, parameters)
             if hook in (Hook.SWITCH, Hook.LOG) or (
@@ -109,15 +92,26 @@ def write(
             ):
                 continue
             memory = [0.0, 0.0, 0.0, number_from(seed, f"{axis}.{model.name}.{k}")]
-            rows.append((hook, [float(hook), float(KINDS[term.formula]), *memory, *numbers]))
+            rows.append((hook, k, [float(hook), float(KINDS[term.formula]), *memory, *numbers]))
     if len(rows) > MAX_EFFECTS:
         raise ValueError(
             f"plant model: axes.{axis}.effects: {len(rows)} effects, at most {MAX_EFFECTS} can act at once"
         )
-    rows.sort(key=lambda row: row[0])  # stable: the file's order within a hook
-    for place, (_, row) in enumerate(rows):
+    return sorted(rows, key=lambda row: row[0])  # stable: the file's order within a hook
+
+
+def write(
+    world: NDArray[np.float64],
+    effects: tuple[EffectModel, ...],
+    constants: Mapping[str, float],
+    seed: int,
+    axis: str,
+) -> None:
+    """Write the enabled effects of one axis into its row of the world; ValueError when they are too many."""
+    rows = rows_of(effects, constants, seed, axis)
+    for place, (_, _, row) in enumerate(rows):
         start = EFFECTS + place * ROW
         world[start : start + ROW] = 0.0
         world[start : start + len(row)] = row
-    world[ROWS_MOTOR] = sum(1 for hook, _ in rows if hook < MOTOR_HOOKS)
+    world[ROWS_MOTOR] = sum(1 for hook, _, _ in rows if hook < MOTOR_HOOKS)
     world[ROWS_ALL] = len(rows)

@@ -7,11 +7,11 @@ import numpy as np
 from plant.compiled import Floats, kernel
 from plant.effects import REGISTRY, unknown
 from plant.effects.base import Term
-from plant.effects.dispatch import update, value
-from plant.effects.rows import KINDS, vector
-from plant.effects.signals import ANGLE, MEMORY, RATE, SIGMA0, TIME, VECTOR, Hook
+from plant.effects.signals import ANGLE, MEMORY, RATE, SEED, SIGMA0, TIME, VECTOR, Hook
+from plant.kernels.dispatch import update, value
 from plant.kernels.friction import steady
 from plant.kernels.layout import ROW, ROW_MEMORY
+from plant.rows import KINDS, vector
 
 
 @kernel
@@ -60,27 +60,21 @@ def evaluate_function(knots: Floats, heights: Floats, u: Floats, period: float =
 def evaluate(
     name: str,
     rows: Floats,
-    parameters: Mapping[str, float],
-    *,
-    order: float = 0.0,
-    constants: Mapping[str, float] | None = None,
+    numbers: Mapping[str, float],
     term: int = 0,
-    memory: Floats | None = None,
 ) -> Floats:
     """Return one value per row, in the unit of the term's hook.
 
-    rows: (n, VECTOR) signal vectors in time order. parameters: SI units, all of them. order: cycles per axis
-    turn, for staged effects. constants: those the effect names. memory: 4 numbers to start from. Friction
-    terms need the friction parameters in the vectors and give the change of the steady torque on the axis, N
-    m.
+    rows: (n, VECTOR) signal vectors in time order. numbers: what the effect's formulas name, SI units: all
+    parameters, order (cycles per axis turn) and constants, and a `seed` for noise; memory begins at zero.
+    Friction terms need the friction parameters in the vectors and give the change of the steady torque on the
+    axis, N m.
     """
     effect = REGISTRY[name]
     chosen: Term = effect.terms[term]
     p = np.zeros(ROW - ROW_MEMORY)
-    numbers = vector(effect, order, parameters, constants or {})
-    p[MEMORY : MEMORY + len(numbers)] = numbers
-    if memory is not None:
-        p[:MEMORY] = memory
+    p[SEED] = numbers.get("seed", 0.0)
+    p[MEMORY : MEMORY + len(effect.numbers)] = vector(effect, numbers)
     y = np.zeros(len(rows))
     kind = KINDS[chosen.formula]
     work = np.array(rows, dtype=float)

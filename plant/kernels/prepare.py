@@ -1,0 +1,112 @@
+"""From the numbers of one axis to its row of the world: what a network and an exported axis begin with."""
+
+from math import exp
+from typing import NamedTuple
+
+from plant.compiled import Floats, inner
+from plant.gears import RATIO
+from plant.kernels import layout as at
+from plant.units import TURN
+
+
+class Numbers(NamedTuple):
+    """The declared numbers of one axis, SI units, by their names in a plant file (`world.PATHS`).
+
+    Then what effects change once: share of freewheel braking; its drop, V; wind-up of the trains, rad/(N m);
+    inertia taken off the axis, kg m2. Then the start: angle, rad, and where within a count the incremental
+    encoders wake up, 0..1.
+    """
+
+    grid: float
+    voltage: float
+    temperature: float
+    warming: float
+    pwm_frequency: float
+    inertia: float
+    stiffness: float
+    damping: float
+    backlash: float
+    bristle_stiffness: float
+    bristle_damping: float
+    viscous: float
+    coulomb: float
+    stiction: float
+    stribeck_rate: float
+    stribeck_exponent: float
+    bristle_decay: float
+    torque_constant: float
+    resistance: float
+    inductance: float
+    rotor_inertia: float
+    drag: float
+    switch_resistance: float
+    sense_resistance: float
+    incremental: float
+    roller_ratio: float
+    absolute: float
+    auxiliary: float
+    auxiliary_ratio: float
+    tachometer: float
+    diode: float
+    diode_drop: float
+    compliance: float
+    swinging: float
+    angle: float
+    incremental_phase: float
+    phase_a: float
+    phase_b: float
+
+
+@inner
+def prepare(w: Floats, n: Numbers) -> None:
+    """Fill the parameters of one axis and its state at rest, teeth in contact; the row is zero before."""
+    resistance = n.resistance + n.switch_resistance + n.sense_resistance
+    w[at.GRID] = n.grid
+    w[at.INERTIA] = n.inertia - n.swinging
+    w[at.ROTOR_INERTIA] = n.rotor_inertia
+    w[at.RATIO] = RATIO
+    # Table 1 gives one stiffness per axis: both trains in contact, side by side
+    w[at.GEAR_STIFFNESS] = 0.5 / (1.0 / n.stiffness + n.compliance)
+    w[at.GEAR_DAMPING] = 0.5 * n.damping
+    w[at.HALF_PLAY] = 0.5 * n.backlash
+    w[at.RESISTANCE] = resistance
+    w[at.WINDING] = n.resistance
+    w[at.INDUCTANCE] = n.inductance
+    w[at.TORQUE_CONSTANT] = n.torque_constant
+    w[at.VOLTAGE] = n.voltage
+    w[at.ROTOR_DRAG] = n.drag
+    decay = exp(-resistance * n.grid / n.inductance)
+    w[at.CURRENT_DECAY] = decay
+    w[at.CURRENT_BLEND] = (1.0 - decay) * n.inductance / (resistance * n.grid)
+    w[at.RIPPLE] = n.voltage / (2.0 * n.inductance * n.pwm_frequency)
+    w[at.DIODE] = n.diode
+    w[at.DIODE_DROP] = n.diode_drop
+    w[at.TEMPERATURE] = n.temperature
+    w[at.WARMING] = n.warming
+
+    f = at.DECLARED_FRICTION
+    w[f + at.F_SIGMA0] = n.bristle_stiffness
+    w[f + at.F_SIGMA1] = n.bristle_damping
+    w[f + at.F_SIGMA2] = n.viscous
+    w[f + at.F_COULOMB] = n.coulomb
+    w[f + at.F_STICTION] = n.stiction
+    w[f + at.F_RATE] = n.stribeck_rate
+    w[f + at.F_EXPONENT] = n.stribeck_exponent
+    w[f + at.F_DECAY] = n.bristle_decay
+    w[at.STRIBECK] = n.stiction / n.bristle_stiffness
+
+    w[at.INCREMENTAL_SCALE] = n.incremental * n.roller_ratio / TURN
+    w[at.ABSOLUTE_SCALE] = 2.0**n.absolute / TURN
+    w[at.AUXILIARY_SCALE] = n.auxiliary_ratio * 2.0**n.auxiliary / TURN
+    w[at.TACH_SCALE] = n.tachometer / TURN
+
+    w[at.ANGLE] = n.angle
+    w[at.REVERSED_AT] = n.angle
+    # where within a count the incremental encoders wake up is anybody's guess, but always the same one
+    w[at.INCREMENTAL_ZERO] = n.angle - n.incremental_phase / w[at.INCREMENTAL_SCALE]
+    for m in range(2):
+        o = at.MOTORS + m * at.MOTOR_SIZE
+        side = 1.0 - 2.0 * m
+        phase = n.phase_a if m == 0 else n.phase_b
+        w[o + at.M_ANGLE] = RATIO * (n.angle + side * w[at.HALF_PLAY])
+        w[at.TACH_ZERO + m] = w[o + at.M_ANGLE] - phase / w[at.TACH_SCALE]
