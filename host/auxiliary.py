@@ -13,20 +13,18 @@ standard deviations of their difference are not combined: one of the two is wron
 one is for. Both encoders are taken to be aligned to one zero (ASSUMPTION; the plant's are).
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import NamedTuple
 
-from bus.protocol import Device
 from bus.protocol.nodes import AUXILIARY, FrameCodec, messages_of
+from bus.units import ARCSEC_PER_TURN
 from host.link import HidLink
 from host.sky.mount import STEP_ARCSEC
 
 RATIO = 10.8
 """Turns of the auxiliary encoder per turn of the axis (paper, section 3.2)."""
-TURN_ARCSEC = 1296000 / RATIO
+TURN_ARCSEC = ARCSEC_PER_TURN / RATIO
 AUXILIARY_STEP_ARCSEC = TURN_ARCSEC / 2**17
 ABSOLUTE_ARCSEC = 1.0 / math.sqrt(3.0)
 """Standard deviation of the on-shaft encoder: an error within ±1″ (RCN 800's system accuracy, hardware.md
@@ -38,7 +36,7 @@ TIME_S = 0.005 * math.sqrt(2.0 / 12.0)
 and a USB frame), uniform."""
 APART = 5.0
 """Standard deviations of the difference beyond which the two do not measure the same. ASSUMPTION."""
-BOARDS = {"ra": Device(AUXILIARY.nodes["AUXILIARY_RA"]), "dec": Device(AUXILIARY.nodes["AUXILIARY_DEC"])}
+BOARDS = {axis: AUXILIARY.device(f"AUXILIARY_{axis.upper()}") for axis in ("ra", "dec")}
 
 
 class Auxiliary(NamedTuple):

@@ -4,8 +4,6 @@ It is a participant of the event queue: `tick` is called every 50 ms of simulate
 generator that yields whenever it has to wait for the next tick; several run side by side.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -27,7 +25,6 @@ from bus.protocol import (
     unpack_position,
     unpack_reply,
 )
-from bus.protocol.names import DECLARED
 from host.link import HidLink
 from host.logs.journal import Logs
 
@@ -58,7 +55,7 @@ class _Pending:
     """A command on its way and how often it has been tried."""
 
     device: Device
-    opcode: int
+    opcode: Opcode
     arguments: tuple[int, ...]
     sent_ns: int = -1
     tries: int = 0
@@ -70,7 +67,7 @@ class _Pending:
         self.data = pack_command(self.device, self.opcode, *self.arguments)
 
     def text(self) -> str:
-        return " ".join([Opcode(self.opcode).name, *map(str, self.arguments)])
+        return " ".join([self.opcode.name, *map(str, self.arguments)])
 
 
 class Client:
@@ -87,13 +84,13 @@ class Client:
         """What each board answered to its last PING."""
         self.now_ns = 0
         self._watch_ns = 0
-        self._waiting: dict[Device, list[_Pending]] = {}
+        self._waiting: dict[int, list[_Pending]] = {}
         self._silent: set[Device] = set()
         self._states: dict[Device, tuple[int, int]] = {}
         link.on_reply = self._take_reply
 
     # --- what a procedure calls ---
-    def ask(self, device: Device, opcode: int, *arguments: int) -> Generator[None, None, Reply]:
+    def ask(self, device: Device, opcode: Opcode, *arguments: int) -> Generator[None, None, Reply]:
         """Send a command and wait for its reply, with retries; `ClientError` when it is refused or lost."""
         pending = _Pending(device, opcode, arguments)
         self._waiting.setdefault(device, []).append(pending)
@@ -182,8 +179,7 @@ class Client:
 
     def _take_reply(self, t_ns: int, data: bytes) -> None:
         reply = unpack_reply(data)
-        known = reply.device in _KNOWN or reply.device in DECLARED
-        queue = self._waiting.get(Device(reply.device)) if known else None
+        queue = self._waiting.get(reply.device)
         if not queue or queue[0].opcode != reply.opcode:
             self.logs.status(
                 t_ns, f"device {reply.device:#04x}", f"late answer to opcode {reply.opcode:#04x}"
@@ -219,5 +215,4 @@ class Client:
                 self.logs.status(t_ns, device.name, f"state {state[0]}, overruns {state[1]}, tec {data[7]}")
 
 
-_KNOWN: Final = {int(device) for device in Device}
 _RESULTS: Final = {int(result) for result in Result}

@@ -1,7 +1,5 @@
 """The PC's end of the USB link: HID reports in and out, nothing decoded before somebody asks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from struct import Struct
 from typing import Final
@@ -12,14 +10,12 @@ from bus.protocol.report import REPORT_BYTES, SLOTS, pack_report
 _NOT_MEASUREMENT: Final = 0x80
 _slots: Final = Struct("8s" * SLOTS).unpack
 
-Subscriber = Callable[[int, bytes], None]
-
 
 class HidLink:
     """Keeps the last eight bytes of every device and kind, hands replies on, and sends commands.
 
-    send: `(t_ns, report)` brings a 64-byte OUT report to the gateway. Measurement frames cost a dictionary
-    entry; who needs every one of them subscribes.
+    send: `(t_ns, report)` brings a 64-byte OUT report to the gateway. A measurement frame costs a dictionary
+    entry.
     """
 
     def __init__(self, send: Callable[[int, bytes], None]) -> None:
@@ -31,15 +27,9 @@ class HidLink:
         """Arrival of the last heartbeat per device."""
         self.reports = 0
         self.bad_reports = 0
-        self.last_report_ns = -1
         self.on_reply: Callable[[int, bytes], None] | None = None
         self._send = send
-        self._subscribers: dict[int, Subscriber] = {}
         self._outgoing: list[bytes] = []
-
-    def subscribe(self, device: int, call: Subscriber) -> None:
-        """Have `call(t_ns, data)` made for every measurement frame of a device (one subscriber each)."""
-        self._subscribers[device] = call
 
     def receive(self, t_ns: int, report: bytes) -> None:
         """Take an IN report; a report of the wrong length or with an unknown kind is counted and dropped."""
@@ -47,8 +37,6 @@ class HidLink:
             self.bad_reports += 1
             return
         self.reports += 1
-        self.last_report_ns = t_ns
-        subscribers = self._subscribers
         measurements, measured_ns = self.measurements, self.measured_ns
         for data in _slots(report):
             device = data[0]
@@ -57,8 +45,6 @@ class HidLink:
             if device < _NOT_MEASUREMENT:
                 measurements[device] = data
                 measured_ns[device] = t_ns
-                if subscribers and device in subscribers:
-                    subscribers[device](t_ns, data)
             else:
                 self._other(t_ns, device & 0x7F, data)
 

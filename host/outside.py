@@ -45,9 +45,8 @@ class Outside:
     def __init__(self) -> None:
         sys.setswitchinterval(_SWITCH_S)
         self._loop = asyncio.new_event_loop()
-        self.lost_errors = 0
-        """Errors of tasks that nobody waited for, such as a library's after a client broke off."""
-        self._loop.set_exception_handler(self._lost)
+        # of tasks that nobody waited for, such as a library's after a client broke off
+        self._loop.set_exception_handler(lambda _loop, _context: None)
         self._thread = threading.Thread(target=self._loop.run_forever, name="outside", daemon=True)
         self._thread.start()
 
@@ -75,9 +74,6 @@ class Outside:
         self._thread.join(_CLOSE_S)
         if not self._thread.is_alive():
             self._loop.close()
-
-    def _lost(self, _loop: asyncio.AbstractEventLoop, _context: dict[str, Any]) -> None:
-        self.lost_errors += 1
 
     async def _keep(self, work: Coroutine[Any, Any, object]) -> asyncio.Task[object]:
         task = asyncio.ensure_future(work)

@@ -1,8 +1,8 @@
 """Rates and efforts as the axis boards take them."""
 
-from __future__ import annotations
+from bus.units import ARCSEC_PER_TURN
 
-COUNT_ARCSEC = 1296000 / (4_608_000 * 24.5)
+COUNT_ARCSEC = ARCSEC_PER_TURN / (4_608_000 * 24.5)
 """One count of the incremental encoder on the axis, 0.0114796″ (P7: 4.608 M counts, roller 735:30)."""
 LOOP_S = 0.005
 """Period of the velocity loop (paper, section 3.3)."""
@@ -10,12 +10,6 @@ EFFORT_FULL = 3000
 """Control effort that is 100 % duty."""
 CURRENT_A_PER_COUNT = 0.0061
 """Motor current per ADC count (axis log, version 1)."""
-_Q16 = 1 << 16
-
-
-def rate_q16(rate_arcsec_s: float) -> int:
-    """Q16 counts per 5 ms, as SET_RATE and TRACK_RATE carry it."""
-    return round(rate_arcsec_s * LOOP_S / COUNT_ARCSEC * _Q16)
 
 
 def rate_arcsec_s(counts_per_loop: float) -> float:

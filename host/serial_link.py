@@ -1,7 +1,5 @@
 """One serial port of the PC: bytes in, whole packets out; what breaks here stays here (H1)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Final
 

@@ -1,7 +1,5 @@
 """The web server under the consoles and under Alpaca: answers on a listening socket until it is cancelled."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import socket

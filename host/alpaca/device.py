@@ -1,7 +1,5 @@
 """What all Alpaca devices have: connection, names, actions, state; and how members are found."""
 
-from __future__ import annotations
-
 import asyncio
 import importlib.metadata
 from collections.abc import Callable, Coroutine, Mapping

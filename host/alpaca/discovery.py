@@ -1,7 +1,5 @@
 """Alpaca discovery: the answer to `alpacadiscovery1` on UDP port 32227."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import socket

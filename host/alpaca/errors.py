@@ -1,7 +1,5 @@
 """ASCOM's error numbers, and which refusal gets which."""
 
-from __future__ import annotations
-
 from typing import NoReturn
 
 from host.telescope import Reason, Refused

@@ -1,7 +1,5 @@
 """IFocuserV4: the focus drive in half steps of 6.25 µm, 0 at the inner end."""
 
-from __future__ import annotations
-
 from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters

@@ -1,7 +1,5 @@
 """Parameters of a request: GET takes their names in any case, PUT exactly; unreadable is HTTP 400."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from urllib.parse import parse_qsl

@@ -1,7 +1,5 @@
 """Alpaca over HTTP: requests to members, answers as Alpaca's JSON; management and the devices' list."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import itertools
 import socket
@@ -16,6 +14,7 @@ from host.alpaca.errors import AlpacaError, Malformed
 from host.alpaca.focuser import FocuserDevice
 from host.alpaca.parameters import Parameters
 from host.alpaca.telescope import TelescopeDevice
+from host.guard import Guard
 from host.telescope import AsyncDesk, Telescope
 from host.web import answer
 
@@ -31,7 +30,7 @@ class Alpaca:
         self.devices = {device.kind: device for device in devices}
         self.requests = 0
         self._numbers = itertools.count(1)
-        self.app = Starlette(
+        app = Starlette(
             routes=[
                 Route("/api/v1/{kind}/{number}/{member}", self._device, methods=["GET", "PUT"]),
                 Route("/management/apiversions", self._versions),
@@ -41,6 +40,7 @@ class Alpaca:
                 Route("/setup/v1/{kind}/{number}/setup", self._setup),
             ]
         )
+        self.app = Guard(app, token=None)
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer on a listening socket until cancelled."""

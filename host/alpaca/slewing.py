@@ -1,29 +1,30 @@
 """The methods of ITelescopeV4 that move the telescope, or say where it points."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Coroutine
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
 
-from host.alpaca.device import Member, missing_put
+from host.alpaca.device import Device, Member, Put, missing_put
 from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_NOT_SET, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, star_of_apparent
 from host.sky.catalogue import Star
 from host.telescope.paddle import FASTEST_ARCSEC_S
 
-if TYPE_CHECKING:
-    from host.alpaca.telescope import TelescopeDevice
-
-    Where = Callable[[TelescopeDevice, Parameters], Star]
-    Put = Callable[[TelescopeDevice, Parameters], Coroutine[Any, Any, None]]
-
 FASTEST_DEG_S = FASTEST_ARCSEC_S / 3600
 _AXES = ("ra", "dec")
 _DIRECTIONS = "nsew"
 """By ASCOM's GuideDirections."""
 _LONGEST_PULSE_MS = 60_000
+
+
+class SlewingDevice(Device):
+    """What slews aim at; None: nobody has set it."""
+
+    target_ra_h: float | None = None
+    target_dec_deg: float | None = None
+
+
+Where = Callable[[SlewingDevice, Parameters], Star]
 
 
 def right_ascension_h(value: float) -> float:
@@ -33,7 +34,7 @@ def right_ascension_h(value: float) -> float:
     return value
 
 
-def _star(device: TelescopeDevice, ra_h: float, dec_deg: float) -> Star:
+def _star(device: SlewingDevice, ra_h: float, dec_deg: float) -> Star:
     place = Place(
         right_ascension_h(ra_h) * math.pi / 12, math.radians(within("Declination", dec_deg, -90, 90))
     )
@@ -41,20 +42,20 @@ def _star(device: TelescopeDevice, ra_h: float, dec_deg: float) -> Star:
     return star_of_apparent(place, about.clock, device.now.t_s, "Alpaca target")
 
 
-def _coordinates(device: TelescopeDevice, given: Parameters) -> Star:
+def _coordinates(device: SlewingDevice, given: Parameters) -> Star:
     ra_h, dec_deg = given.number("RightAscension"), given.number("Declination")
     star = _star(device, ra_h, dec_deg)
     device.target_ra_h, device.target_dec_deg = ra_h, dec_deg
     return star
 
 
-def _target(device: TelescopeDevice, _: Parameters) -> Star:
+def _target(device: SlewingDevice, _: Parameters) -> Star:
     if device.target_ra_h is None or device.target_dec_deg is None:
         raise AlpacaError(VALUE_NOT_SET, "TargetRightAscension and TargetDeclination have not been set")
     return _star(device, device.target_ra_h, device.target_dec_deg)
 
 
-def _must_track(device: TelescopeDevice, on: bool) -> None:
+def _must_track(device: SlewingDevice, on: bool) -> None:
     """Slews to the sky need tracking, slews to the ground need it off, none happens while parked."""
     if device.now.parked:
         raise AlpacaError(PARKED, "the telescope is parked")
@@ -65,7 +66,7 @@ def _must_track(device: TelescopeDevice, on: bool) -> None:
 def _slew(where: Where, wait: bool) -> Put:
     """To a place in the sky; wait: answered when the telescope is there."""
 
-    async def put(device: TelescopeDevice, given: Parameters) -> None:
+    async def put(device: SlewingDevice, given: Parameters) -> None:
         star = where(device, given)
         _must_track(device, True)
         if wait:
@@ -85,7 +86,7 @@ def _ground(given: Parameters) -> tuple[float, float]:
 def _slew_ground(wait: bool) -> Put:
     """To a place over the ground."""
 
-    async def put(device: TelescopeDevice, given: Parameters) -> None:
+    async def put(device: SlewingDevice, given: Parameters) -> None:
         azimuth, altitude = _ground(given)
         _must_track(device, False)
         if wait:
@@ -99,7 +100,7 @@ def _slew_ground(wait: bool) -> Put:
 def _sync(where: Where) -> Put:
     """The telescope points there."""
 
-    async def put(device: TelescopeDevice, given: Parameters) -> None:
+    async def put(device: SlewingDevice, given: Parameters) -> None:
         star = where(device, given)
         _must_track(device, True)
         await device.do(lambda t: t.drive.sync(star))
@@ -107,26 +108,26 @@ def _sync(where: Where) -> Put:
     return put
 
 
-async def _abort(device: TelescopeDevice, _: Parameters) -> None:
+async def _abort(device: SlewingDevice, _: Parameters) -> None:
     if device.now.parked:
         raise AlpacaError(PARKED, "the telescope is parked")
     await device.do(lambda t: t.drive.abort())
 
 
-async def _park(device: TelescopeDevice, _: Parameters) -> None:
+async def _park(device: SlewingDevice, _: Parameters) -> None:
     await device.do(lambda t: t.drive.park())
 
 
-async def _unpark(device: TelescopeDevice, _: Parameters) -> None:
+async def _unpark(device: SlewingDevice, _: Parameters) -> None:
     if device.now.parked:
         await device.run(lambda t: t.drive.power_on())
 
 
-async def _set_park(device: TelescopeDevice, _: Parameters) -> None:
+async def _set_park(device: SlewingDevice, _: Parameters) -> None:
     await device.do(lambda t: t.drive.set_park())
 
 
-async def _move_axis(device: TelescopeDevice, given: Parameters) -> None:
+async def _move_axis(device: SlewingDevice, given: Parameters) -> None:
     """Axis 0: hour angle, positive west; axis 1: declination. Rates in °/s; 0 lets go."""
     axis = int(within("Axis", given.integer("Axis"), 0, 1))
     rate = within("Rate", given.number("Rate"), -FASTEST_DEG_S, FASTEST_DEG_S)
@@ -138,7 +139,7 @@ async def _move_axis(device: TelescopeDevice, given: Parameters) -> None:
         await device.do(lambda t: t.paddle.release(_AXES[axis]))
 
 
-async def _pulse(device: TelescopeDevice, given: Parameters) -> None:
+async def _pulse(device: SlewingDevice, given: Parameters) -> None:
     direction = int(within("Direction", given.integer("Direction"), 0, 3))
     milliseconds = within("Duration", given.integer("Duration"), 0, _LONGEST_PULSE_MS)
     if device.now.parked:

@@ -1,12 +1,10 @@
 """ITelescopeV4: properties, and which members there are. What moves is in `slewing.py`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
 from host.alpaca import slewing
-from host.alpaca.device import Device, Get, Member, Put, fixed, missing, missing_put, table, unknown
+from host.alpaca.device import Get, Member, Put, fixed, missing, missing_put, table, unknown
 from host.alpaca.errors import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, sidereal_time_rad
@@ -24,7 +22,7 @@ _SECONDS_RA_PER_ARCSEC = 1 / SIDEREAL_ARCSEC_S
 """ASCOM's RightAscensionRate counts seconds of right ascension per sidereal second."""
 
 
-class TelescopeDevice(Device):
+class TelescopeDevice(slewing.SlewingDevice):
     """Equatorial coordinates are apparent places of date (`equTopocentric`); azimuth: N through E."""
 
     kind = "telescope"
@@ -36,8 +34,6 @@ class TelescopeDevice(Device):
         "PowerOff": lambda telescope: telescope.drive.power_off(),
         "EmergencyStop": lambda telescope: telescope.emergency_stop(),
     }
-    target_ra_h: float | None = None
-    target_dec_deg: float | None = None
 
     def place(self) -> Place:
         """Where it points, apparent."""

@@ -1,7 +1,5 @@
 """Frames as a person reads them on the bus page: by the protocol's own database."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from host.console.views import SeenFrame

@@ -1,13 +1,12 @@
 """The bus page's view of real boards: what reaches the host's own link, and what the heartbeats say."""
 
-from __future__ import annotations
-
 from collections import deque
 from concurrent.futures import Future
 
 from bus.can.length import frame_bits
 from bus.can.wire import MAX_BITRATE
 from bus.protocol import Device, unpack_heartbeat
+from bus.protocol.nodes import DEVICES
 from bus.protocol.report import ReportError, unpack_report
 from host.client import SILENCE_NS, Client
 from host.console.decoded import seen
@@ -63,8 +62,9 @@ class HeardBus:
 
     def frames(self, most: int) -> list[SeenFrame]:
         """The last ones, by the protocol."""
+        names = {int(device): device.name for device in (*DEVICES, *self._client.devices)}
         return [
-            seen(t_ns, _name(data[0]), identifier, data)
+            seen(t_ns, names.get(data[0], f"{data[0]:#04x}"), identifier, data)
             for t_ns, identifier, data in tuple(self._frames)[-most:]
         ]
 
@@ -97,13 +97,6 @@ class HeardBus:
             return Node(device.name, False, "silent", 0, 0)
         tec = unpack_heartbeat(data).tec
         return Node(device.name, True, "passive" if tec >= _PASSIVE else "active", tec, 0)
-
-
-def _name(device: int) -> str:
-    try:
-        return Device(device).name
-    except ValueError:
-        return f"{device:#04x}"
 
 
 def _refused() -> Future[str]:

@@ -1,13 +1,14 @@
 """The last minutes of the telescope, sampled once for all browsers."""
 
-from __future__ import annotations
-
 import asyncio
 from collections import deque
 from typing import NamedTuple
 
 from bus.protocol import Device, unpack_tach
+from bus.units import ARCSEC_PER_TURN
+from host.console.views import BusView
 from host.telescope import Snapshot, Telescope
+from host.telescope.alarms import Alarms, of_bus
 
 PERIOD_S = 0.25
 """Wall time between samples; the RS232 links of the paper's console are as fast."""
@@ -16,7 +17,6 @@ KEPT = 480
 RATIO = (113 / 27) * (123 / 21) * (250 / 17)
 """Motor turns per axis turn (paper, section 2.2)."""
 TACH_COUNTS = 4096
-ARCSEC_PER_TURN = 1296000.0
 LEAST_ARCSEC_S = 50.0
 """Slower than this the tachometers' counts do not tell a gear reduction (4.6″/s per count)."""
 
@@ -36,8 +36,10 @@ class Sample(NamedTuple):
 class Live:
     """Samples of one telescope; `run` is the one task that takes them."""
 
-    def __init__(self, telescope: Telescope) -> None:
+    def __init__(self, telescope: Telescope, bus: BusView) -> None:
         self.telescope = telescope
+        self.alarms = Alarms()
+        self._bus = bus
         self.samples: deque[Sample] = deque(maxlen=KEPT)
 
     async def run(self) -> None:
@@ -51,6 +53,8 @@ class Live:
         now = self.telescope.snapshot
         if self.samples and now.t_s <= self.samples[-1].t_s:
             return
+        found = self.alarms.of_telescope(now) | of_bus(self._bus.load(), self._bus.running())
+        self.alarms.take(now.t_s, found)
         errors = None if now.slewing else now.errors_arcsec  # degrees to go hide arcseconds
         self.samples.append(
             Sample(

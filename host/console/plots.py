@@ -1,7 +1,5 @@
 """Live plots: four small ones over the last two minutes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -71,7 +69,7 @@ def options(names: tuple[str, ...], mode: str) -> dict[str, Any]:
     axis = {"axisLabel": text, "splitLine": {"lineStyle": {"color": LINE[mode]}}}
     return {
         "animation": False,
-        "color": [INK[mode], SOFT[mode], "#ffffff" if mode == "day" else "#ffb3a8", "#888888"],
+        "color": [INK[mode], SOFT[mode], "#16202c" if mode == "day" else "#ff8f80", "#888888"],
         "grid": {"left": 55, "right": 24, "top": 24, "bottom": 24},
         "legend": {"textStyle": text, "top": 0},
         "xAxis": {"type": "value", "min": -SHOWN_S, "max": 0, "name": "s", "nameTextStyle": text, **axis},

@@ -1,7 +1,5 @@
 """The consoles' web server: one per process, in the thread of the outside world."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import socket
@@ -11,7 +9,6 @@ from fastapi import FastAPI
 from nicegui import Client, ui
 from nicegui import app as nicegui_app
 
-from host.console.guard import Guard
 from host.console.live import Live
 from host.console.pages.alignment import alignment
 from host.console.pages.bus import bus
@@ -22,6 +19,7 @@ from host.console.pages.main import main
 from host.console.pages.maintenance import maintenance
 from host.console.shell import Shell
 from host.console.views import BusView, Runs
+from host.guard import Guard
 from host.telescope import Telescope
 from host.web import answer
 
@@ -52,7 +50,7 @@ class Consoles:
     keeps its pages in the module."""
 
     def __init__(self, telescope: Telescope, bus_view: BusView, runs: Runs, token: str) -> None:
-        self.live = Live(telescope)
+        self.live = Live(telescope, bus_view)
         nicegui_app.add_static_files(REPORTS, runs.folder)
         pages = {
             "/": main,

@@ -1,7 +1,5 @@
 """What every page has: the way to the others, the state in one line, the lock, the stop, the space bar."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -13,6 +11,7 @@ from host.console.figures import summary
 from host.console.live import PERIOD_S, Live
 from host.console.theme import CSS
 from host.telescope import AsyncDesk, Refused, Telescope
+from host.telescope.alarms import Alarm
 
 PAGES = (
     ("/", "Main"),
@@ -43,6 +42,10 @@ for (const kind of ['keydown', 'keyup']) window.addEventListener(kind, event => 
 </script>"""
 """The space bar is the stop wherever the focus is but in a text: a focused button would swallow the key and
 be clicked by it instead, and the telescope sent on."""
+
+_BEEP = """(() => { const sound = new AudioContext(), tone = sound.createOscillator();
+tone.frequency.value = 880; tone.connect(sound.destination); tone.start();
+tone.stop(sound.currentTime + 0.4); })()"""
 
 
 class Shell:
@@ -146,12 +149,36 @@ class Shell:
             self._mode_button()
             lock = button("Lock", on_click=self._lock)
             self._stop_button()
+            self._alarms()
             self._said = ui.label().classes("said").props('role="log" aria-label="Last answer"')
         with ui.element("div").classes("w-full"):
             yield
         self.each(lambda: state.set_text(summary(self.desk.now)))
         self.each(lambda: lock.set_text("Unlock" if self.desk.now.locked else "Lock"))
         ui.timer(PERIOD_S, self._tick)
+
+    def _alarms(self) -> None:
+        """What is wrong, on every page, until somebody acknowledges it; with a sound if wanted."""
+        with ui.element("div").classes("alarms") as bar:
+            lines = ui.html(sanitize=False).props('role="alert" aria-label="Alarms"')
+            alarms = self.live.alarms
+            self.control(button("Acknowledge", on_click=alarms.acknowledge))
+            sound = ui.switch("sound").props('aria-label="Sound at a new alarm"')
+        heard = [0]
+
+        def refresh() -> None:
+            standing = alarms.standing
+            bar.set_visibility(bool(standing))
+            clock = self.telescope.observatory.clock
+            text = "".join(alarm_line(alarm, clock.iso(alarm.since_s)) for alarm in standing)
+            if text != lines.content:
+                lines.set_content(text)
+            new = sum(not alarm.acknowledged for alarm in standing)
+            if new > heard[0] and sound.value:
+                ui.run_javascript(_BEEP)
+            heard[0] = new
+
+        self.each(refresh)
 
     def _stop_button(self) -> None:
         """In force at the press already, as of any such button: the click comes only with the release."""
@@ -167,6 +194,20 @@ class Shell:
             self._locked = locked
             for element in self._controls:
                 element.set_enabled(not locked)
+
+
+def alarm_line(alarm: Alarm, since: str) -> str:
+    """One alarm for the bar: how bad, what, since when (ISO 8601, UTC), whether it is over or seen."""
+    state = " (over)" if alarm.until_s is not None else " (acknowledged)" if alarm.acknowledged else ""
+    kind = alarm.severity.name.lower()
+    new = "" if alarm.acknowledged else " new"
+    words = f"<b>{kind.upper()}</b> {escape(alarm.what)}, since {since[11:19]} UTC{state}"
+    return f'<div class="{kind}{new}">{words}</div>'
+
+
+def stale(element: Any, old: bool) -> None:
+    """Mark a value that is older than it may be."""
+    element.classes(add="stale" if old else None, remove=None if old else "stale")
 
 
 def button(text: str, on_click: Any = None) -> ui.button:

@@ -1,7 +1,5 @@
 """The sky from the zenith to the horizon, with what the soft limits and the horizon limit leave of it."""
 
-from __future__ import annotations
-
 import math
 
 from host.sky.apparent import horizontal

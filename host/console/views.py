@@ -1,7 +1,5 @@
 """What the consoles are shown beyond the telescope: whoever serves them fills these in."""
 
-from __future__ import annotations
-
 from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple, Protocol

@@ -1,7 +1,5 @@
 """Kinds of ports: the gateway as hidraw device or local socket, the bus by python-can, a serial port."""
 
-from __future__ import annotations
-
 import os
 import select
 import socket
@@ -10,7 +8,7 @@ import can
 import serial
 
 from bus.can.frame import Frame
-from bus.external import open_bus
+from bus.outside.external import open_bus
 from bus.protocol.report import REPORT_BYTES, pack_report, slot, unpack_commands
 from host.links.task import READ_S
 

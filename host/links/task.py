@@ -1,7 +1,5 @@
 """One link, one task: it opens its port, reads, and opens it again when it breaks. Others never notice."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from queue import SimpleQueue

@@ -1,7 +1,5 @@
 """The four ASCII logs (H6): user commands, device status, sensor data, errors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

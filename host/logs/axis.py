@@ -1,7 +1,5 @@
 """The axis log, version 1: what an axis board sends over RS232, one row per 10 ms sample."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final

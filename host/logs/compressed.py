@@ -4,8 +4,6 @@ Level 1: the log of a short night shrinks to a seventh (987 to 143 kB).
 Programs such as zstdcat, and pyarrow, read the frames of a file as one.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Final
 

@@ -1,6 +1,7 @@
-"""What a log effect does to the rows of a packet: samples lost or repeated, stamps jittered, columns cut."""
+"""What a log effect does to the rows of a packet: samples lost or repeated, stamps jittered, columns cut.
 
-from __future__ import annotations
+A function is called as its effect, and takes a generator and the effect's parameters by name, SI units.
+"""
 
 from collections.abc import Callable, Sequence
 
@@ -14,7 +15,7 @@ WRAPPED = (("effort",), ("position",), ("velocity",), ("adc_a", "adc_b"), ("tach
 _UNSIGNED = {"position", "adc_a", "adc_b"}
 
 
-def sample_loss(packet_loss: float, repeats: float, random: np.random.Generator) -> Distortion:
+def sample_loss(random: np.random.Generator, *, packet_loss: float, repeats: float) -> Distortion:
     """Lose whole packets with probability `packet_loss`; repeat the sample before with `repeats`."""
 
     def distort(rows: list[Row]) -> list[Row]:
@@ -30,22 +31,22 @@ def sample_loss(packet_loss: float, repeats: float, random: np.random.Generator)
     return distort
 
 
-def clock_jitter(deviation_s: float, random: np.random.Generator) -> Distortion:
+def clock_jitter(random: np.random.Generator, *, deviation: float) -> Distortion:
     """Move every time stamp by a normal deviate."""
 
     def distort(rows: list[Row]) -> list[Row]:
-        off = random.normal(0.0, deviation_s, len(rows))
+        off = random.normal(0.0, deviation, len(rows))
         return [(t + float(delta), sample) for (t, sample), delta in zip(rows, off, strict=True)]
 
     return distort
 
 
-def log_wrap(column: int, bits: int, saturate: bool) -> Distortion:
-    """Keep only `bits` bits of a column: wrapped, or clipped to what they hold."""
-    names = WRAPPED[column]
+def log_wrap(random: np.random.Generator, *, column: float, bits: float, mode: float) -> Distortion:
+    """Keep only `bits` bits of a column: wrapped (mode 0), or clipped to what they hold (1)."""
+    names = WRAPPED[int(column)]
 
     def distort(rows: list[Row]) -> list[Row]:
-        return [(t, _cut(sample, names, bits, saturate)) for t, sample in rows]
+        return [(t, _cut(sample, names, int(bits), mode >= 0.5)) for t, sample in rows]
 
     return distort
 
@@ -82,13 +83,13 @@ def _clip(bits: int) -> Callable[[int, bool], int]:
     return clip
 
 
-def effort_delay(delay_s: float) -> Distortion:
-    """Show the effort late: the one in force `delay_s` earlier (the plant itself delays other columns)."""
+def channel_delay(random: np.random.Generator, *, column: float, delay: float) -> Distortion:
+    """Show the effort late: the one in force `delay` earlier (the plant itself delays other columns)."""
     past: list[tuple[float, int]] = []
 
     def late(t: float, effort: int) -> int:
         past.append((t, effort))
-        while len(past) > 1 and past[1][0] <= t - delay_s + 1e-9:
+        while len(past) > 1 and past[1][0] <= t - delay + 1e-9:
             past.pop(0)
         return past[0][1]
 

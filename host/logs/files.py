@@ -1,7 +1,5 @@
 """Text files that grow line by line and stay readable whatever happens to the disk."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from pathlib import Path
@@ -14,11 +12,19 @@ class LogError(ValueError):
     """A log cannot be written; the message says which and why."""
 
 
+def write_file(path: Path, data: str | bytes) -> None:
+    """Write a whole file, text as UTF-8; raises `LogError` that names it."""
+    try:
+        path.write_bytes(data.encode() if isinstance(data, str) else data)
+    except OSError as error:
+        raise LogError(f"{path}: {_reason(error)}") from None
+
+
 class BlockFile:
     """Blocks of whole lines to a file, unbuffered.
 
-    When the disk fills up in the middle of a line, the file is cut back to its last whole line, or, where
-    blocks are not lines, to its last whole block. After a failure it takes nothing more.
+    When the disk fills up in the middle of a line, the file is cut back to its last whole line. Where blocks
+    are not lines, it is cut back to its last whole block. After a failure it takes nothing more.
     """
 
     def __init__(self, path: Path, lines: bool = True) -> None:

@@ -1,7 +1,5 @@
 """What the host has to say, kept for whoever looks and passed on to the ASCII logs (H2, H6)."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol

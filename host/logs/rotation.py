@@ -1,7 +1,5 @@
 """Logs that do not grow for ever: a full file is put aside under a number, the oldest is dropped (H6)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from host.logs.files import LineFile

@@ -1,7 +1,5 @@
 """One line of readings for the sensor log and the status window, in units people read (H2, H5)."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

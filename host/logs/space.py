@@ -1,7 +1,5 @@
 """Room on the disk, asked before it is needed, so that files with a footer can still be closed."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Traces as Parquet: columns of floats, streamed in row groups so that a night never sits in memory."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

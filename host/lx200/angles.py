@@ -1,7 +1,5 @@
 """Coordinates as LX200 programs write and read them: rounded, not cut, in fixed columns."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,7 +1,5 @@
 """What an LX200 remembers besides the telescope: local time, frequency, site names."""
 
-from __future__ import annotations
-
 import datetime as dt
 
 from host.sky.observed import Clock

@@ -1,7 +1,5 @@
 """The commands that move: slew, stop, keys, pulses, tracking, park, sync, focus."""
 
-from __future__ import annotations
-
 from bus.protocol import SpeedClass
 from host.lx200.handbox import FREQUENCIES
 from host.lx200.session import Handler, Session

@@ -1,7 +1,5 @@
 """From bytes to commands, however they were cut: split, joined, doubled, with rubbish between them."""
 
-from __future__ import annotations
-
 ACK = "\x06"
 """Asks for the alignment mode; a command of one byte."""
 _LONGEST = 40

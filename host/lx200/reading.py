@@ -1,7 +1,5 @@
 """The `:G…#` commands and what else only looks: answers come from the last snapshot."""
 
-from __future__ import annotations
-
 import importlib.metadata
 
 from host.lx200 import angles
@@ -15,14 +13,14 @@ _SLEWING = "\x7f"
 
 async def right_ascension(session: Session, _: str) -> str:
     """`:GR#`, apparent place of date."""
-    place = session.place()
-    return angles.hours(place.right_ascension_rad if place else 0.0, session.precise) + "#"
+    place = await session.place()
+    return angles.hours(place.right_ascension_rad, session.precise) + "#"
 
 
 async def declination(session: Session, _: str) -> str:
     """`:GD#`, apparent place of date."""
-    place = session.place()
-    return angles.signed(place.declination_rad if place else 0.0, session.precise) + "#"
+    place = await session.place()
+    return angles.signed(place.declination_rad, session.precise) + "#"
 
 
 async def target_right_ascension(session: Session, _: str) -> str:
@@ -37,17 +35,17 @@ async def target_declination(session: Session, _: str) -> str:
 
 async def altitude(session: Session, _: str) -> str:
     """`:GA#`, with refraction, as the tube stands."""
-    return angles.signed(_observed(session).altitude_rad, session.precise, "'") + "#"
+    return angles.signed((await _observed(session)).altitude_rad, session.precise, "'") + "#"
 
 
 async def azimuth(session: Session, _: str) -> str:
     """`:GZ#`, from north through east."""
-    return angles.unsigned(_observed(session).azimuth_rad, session.precise, "'") + "#"
+    return angles.unsigned((await _observed(session)).azimuth_rad, session.precise, "'") + "#"
 
 
-def _observed(session: Session) -> Observed:
-    now = session.now
-    return session.telescope.observatory.observed(now.ra.steps or 0, now.dec.steps or 0)
+async def _observed(session: Session) -> Observed:
+    ra, dec, _ = await session.desk.encoders()
+    return session.telescope.observatory.observed(ra, dec)
 
 
 async def sidereal_time(session: Session, _: str) -> str:

@@ -1,7 +1,5 @@
 """LX200 over TCP and over a pseudo-terminal: bytes to sessions, answers back in one piece."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import fcntl
@@ -11,6 +9,7 @@ import tty
 from pathlib import Path
 from time import monotonic
 
+from host.browser import HEAD_BYTES, is_http
 from host.lx200.handbox import Handbox
 from host.lx200.moving import MOVING, TAKING
 from host.lx200.reading import READING
@@ -50,8 +49,12 @@ class Lx200:
     async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self.clients += 1
         session = self.session(str(writer.get_extra_info("peername")))
+        head = b""
         try:
             while self.clients <= _CLIENTS and (data := await reader.read(_BYTES)):
+                head = (head + data)[:HEAD_BYTES]
+                if is_http(head):  # a web page, whose text may hold commands
+                    break
                 answer = await session.feed(data)
                 if answer:
                     writer.write(answer)
@@ -65,15 +68,16 @@ class Lx200:
     async def serve_pty(self, name: Path) -> None:
         """A pseudo-terminal with a stable name, until cancelled. Raises OSError when the name is taken."""
         master, slave = os.openpty()
+        target = os.ttyname(slave)
         try:
             tty.setraw(slave)
             os.set_blocking(master, False)
-            if name.is_symlink() and not name.exists():
-                name.unlink()  # of a server that is no more
-            name.symlink_to(os.ttyname(slave))
+            if name.is_symlink() and (not name.exists() or os.readlink(name) == target):
+                name.unlink()  # of a server that is no more, whose terminal's number may be this one's
+            name.symlink_to(target)
             await self._pty(master, slave, self.session(str(name)))
         finally:
-            if name.is_symlink() and os.readlink(name) == os.ttyname(slave):
+            if name.is_symlink() and os.readlink(name) == target:
                 name.unlink()
             os.close(slave)
             os.close(master)

@@ -1,7 +1,5 @@
 """One LX200 client: its target, its key speed and its precision. Commands in, answers out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
@@ -48,7 +46,14 @@ class Session:
         return "".join(answers).encode("latin-1", "replace")
 
     async def answer(self, command: str) -> str:
-        """Carry out one command."""
+        """Carry out one command; what cannot be answered yet has no answer, and a line in the error log."""
+        try:
+            return await self._carry_out(command)
+        except Refused as refusal:
+            self.say(str(refusal))
+            return ""
+
+    async def _carry_out(self, command: str) -> str:
         if command == ACK:
             return "P"
         if command in self._plain:
@@ -70,12 +75,9 @@ class Session:
         """For what may be read from any thread."""
         return self.desk.telescope
 
-    def place(self) -> Place | None:
-        """Apparent place of date that the telescope points at; None before the first readings."""
-        now = self.now
-        if now.ra.steps is None or now.dec.steps is None:
-            return None
-        return self.telescope.observatory.apparent(now.ra.steps, now.dec.steps, now.ra.latched_s)
+    async def place(self) -> Place:
+        """Apparent place of date that the telescope points at."""
+        return self.telescope.observatory.apparent(*await self.desk.encoders())
 
     def target(self) -> Place:
         """What `:Sr` and `:Sd` have set; raises ValueError before both were."""

@@ -1,7 +1,5 @@
 """The `:S…#` commands: `1` when taken, `0` when not."""
 
-from __future__ import annotations
-
 import datetime as dt
 import math
 from collections.abc import Callable

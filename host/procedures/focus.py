@@ -1,7 +1,5 @@
 """The focus console: step, move to, hold, free, find the reference (H3)."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from bus.protocol import Device, FocusFlag, Opcode

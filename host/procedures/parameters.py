@@ -1,7 +1,5 @@
 """Parameters of a board, one after the other, each confirmed by the value in force."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from bus.protocol import Device, Opcode

@@ -1,15 +1,13 @@
 """Go to a star through the speed classes, track it, park (H2, B2)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
 from bus.protocol import Device, Opcode, SpeedClass
+from bus.protocol.scales import rate_q16
 from host.client import Client, ClientError, Procedure
 from host.procedures.power import AXES, power_off
-from host.rates import rate_q16
 from host.sky.mount import STEP_ARCSEC, Mount
 from host.sky.track import StarTrack
 
@@ -55,6 +53,11 @@ class Pointing:
         self.track: StarTrack | None = None
         self.on_target = False
         self.tracking = False
+        self.commanding = False
+        """Whether `follow` has rates on their way or is about to."""
+        self.guided = 0
+        """Pulses under way: `follow` leaves the rates to them."""
+        self.trims = [0.0, 0.0]
         self._errors_ns = -1
         self._errors: tuple[float, float] | None = None
 
@@ -105,14 +108,18 @@ class Pointing:
             raise ClientError("track: there is no target yet; go to one first")
         self.tracking = True
         end_ns = self.client.now_ns + round(seconds * 1e9)
-        trims = [0.0, 0.0]
+        trims = self.trims = [0.0, 0.0]
         while self.client.now_ns < end_ns:
+            self.commanding = True
             yield from self._send_rates((trims[0], trims[1]))
+            self.commanding = False
             sums, count = [0.0, 0.0], 0
             part_end_ns = min(end_ns, self.client.now_ns + round(REFRESH_S * 1e9))
-            while self.client.now_ns < part_end_ns:
+            while self.client.now_ns < part_end_ns or self.guided:
                 errors = self.errors_arcsec()
-                if errors is not None:
+                if self.guided:  # it lags behind a pulse, which is no drift
+                    sums, count = [0.0, 0.0], 0
+                elif errors is not None:
                     sums, count = [total + each for total, each in zip(sums, errors, strict=True)], count + 1
                 yield
             for index, axis in enumerate(AXES):

@@ -1,7 +1,5 @@
 """Power up with a health check, stop, power down (H2)."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from bus.protocol import Device, Health, MotionFlag, Opcode

@@ -1,11 +1,7 @@
 """Angles as astronomers write them, and wrapping."""
 
-from __future__ import annotations
-
 import math
 import re
-
-ARCSEC_PER_RAD = 180.0 * 3600.0 / math.pi
 
 _SEXAGESIMAL = re.compile(
     r"^\s*([+\-−]?)\s*(\d{1,3})\s*[:hd°\s]\s*(\d{1,2})\s*[:m′'\s]\s*(\d{1,2}(?:\.\d{0,15})?)"
@@ -37,22 +33,14 @@ def wrap_pi(angle_rad: float) -> float:
     return math.remainder(angle_rad, 2 * math.pi)
 
 
-def format_hours(angle_rad: float) -> str:
-    """An angle as signed hours, minutes and seconds, for people."""
-    return _sexagesimal(math.degrees(angle_rad) / 15, "h", "m", "s")
-
-
 def format_degrees(angle_rad: float) -> str:
     """An angle as signed degrees, minutes and seconds, for people."""
-    return _sexagesimal(math.degrees(angle_rad), "°", "′", "″")
-
-
-def _sexagesimal(value: float, whole: str, minute: str, second: str) -> str:
+    value = math.degrees(angle_rad)
     tenths = round(abs(value) * 36000)
-    units, rest = divmod(tenths, 36000)
+    degrees, rest = divmod(tenths, 36000)
     minutes, rest = divmod(rest, 600)
     sign = "−" if value < 0 else "+"
-    return f"{sign}{units:02d}{whole}{minutes:02d}{minute}{rest / 10:04.1f}{second}"
+    return f"{sign}{degrees:02d}°{minutes:02d}′{rest / 10:04.1f}″"
 
 
 def _split(text: str, what: str, example: str) -> tuple[int, int, int, float]:

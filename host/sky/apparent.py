@@ -5,8 +5,6 @@ aberration, without refraction. That is what INDI's LX200 drivers, Stellarium's 
 equatorial system 1 mean. ERFA's `atci13`, `atic13` and `atoi13` do all of it.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from typing import NamedTuple
@@ -23,14 +21,6 @@ class Place(NamedTuple):
 
     right_ascension_rad: float
     declination_rad: float
-
-
-def apparent_of_star(star: Star, clock: Clock, t_s: float) -> Place:
-    """Apparent place of date of a catalogue star (proper motion and parallax left out: below 1″ a year)."""
-    ra, dec, origins = erfa.atci13(
-        star.right_ascension_rad, star.declination_rad, 0.0, 0.0, 0.0, 0.0, *_terrestrial(clock, t_s)
-    )
-    return Place(float(erfa.anp(ra - origins)), float(dec))
 
 
 def star_of_apparent(place: Place, clock: Clock, t_s: float, name: str) -> Star:

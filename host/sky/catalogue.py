@@ -4,8 +4,6 @@ Source: the Hipparcos catalogue (ESA 1997; new reduction van Leeuwen 2007), plac
 as SIMBAD prints them. Only stars to align a telescope on; anything else is given by its coordinates.
 """
 
-from __future__ import annotations
-
 import difflib
 from dataclasses import dataclass
 

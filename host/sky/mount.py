@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bus.units import ARCSEC_PER_TURN
+
 STEPS_PER_TURN = 1 << 29
 """RCN 829, 29 bit (paper, section 3.2)."""
-STEP_ARCSEC = 1296000 / STEPS_PER_TURN
+STEP_ARCSEC = ARCSEC_PER_TURN / STEPS_PER_TURN
 """0.0024140″ on the sky, since the encoder sits on the axis itself."""
 CENTRE_STEPS = 1 << 28
 """Reading at hour angle 0 and declination 0. ASSUMPTION: aligned so that no wrap lies within the travel."""

@@ -1,10 +1,8 @@
 """From the catalogue to the sky as the telescope sees it: observed hour angle, declination and their rates.
 
 ERFA's `atco13` does precession and nutation (IAU 2006/2000A), aberration, light deflection, parallax, Earth
-rotation and refraction in one go, so none of it is written here.
+rotation and refraction in one go. So none of it is written here.
 """
-
-from __future__ import annotations
 
 import datetime as dt
 import math
@@ -16,7 +14,8 @@ import erfa
 import numpy as np
 import numpy.typing as npt
 
-from host.sky.angles import ARCSEC_PER_RAD, wrap_pi
+from bus.units import ARCSEC_PER_RAD
+from host.sky.angles import wrap_pi
 from host.sky.catalogue import Star
 from host.sky.site import Site
 

@@ -1,7 +1,5 @@
 """The place the telescope stands at, and the air above it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -11,8 +9,9 @@ class Site:
     """A place on the ground with its weather and the Earth's orientation.
 
     Latitude and longitude are geodetic (WGS84), positive north and east. UT1 − UTC and polar motion are
-    zero unless given: the first is at most 0.9 s by definition (13.5″ of hour angle, the same for every star
-    and so part of the zero point that the alignment console removes), the second at most 0.6″.
+    zero unless given. UT1 − UTC is at most 0.9 s by definition, 13.5″ of hour angle. This angle is the same
+    for every star and so part of the zero point that the alignment console removes. Polar motion is at most
+    0.6″.
     """
 
     latitude_rad: float

@@ -1,7 +1,6 @@
 """A star's place as the client needs it: cheap at every tick, exact every few seconds."""
 
-from __future__ import annotations
-
+from bus.units import ARCSEC
 from host.sky.catalogue import Star
 from host.sky.mount import Mount
 from host.sky.observed import Clock, Observed, Rates, observe, rates
@@ -9,7 +8,6 @@ from host.sky.site import Site
 
 _REFRESH_S = 5.0
 """Between two exact places the rates carry the place on: below 0.001″ of error at altitude 20°."""
-_RAD_PER_ARCSEC = 4.84813681109536e-06
 
 
 class StarTrack:
@@ -30,7 +28,7 @@ class StarTrack:
     def steps(self, t_s: float) -> tuple[int, int]:
         """Encoder readings of both axes on which the star is at a time."""
         self._renew(t_s)
-        since = (t_s - self._at_s) * _RAD_PER_ARCSEC
+        since = (t_s - self._at_s) * ARCSEC
         return (
             self._mount.ra.steps(self._place.hour_angle_rad + since * self._rates.hour_angle_arcsec_s),
             self._mount.dec.steps(self._place.declination_rad + since * self._rates.declination_arcsec_s),

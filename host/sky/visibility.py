@@ -1,8 +1,7 @@
 """Is a target within reach, now and until the end of what is planned? Asked before anything moves."""
 
-from __future__ import annotations
-
 import math
+from typing import Protocol
 
 import numpy as np
 
@@ -25,18 +24,34 @@ class BelowHorizon(Unreachable):
     """It is, or will be, below the horizon limit."""
 
 
-def check_reachable(
-    star: Star,
-    site: Site,
-    clock: Clock,
-    mount: Mount,
-    t_s: float,
-    stay_s: float = 0.0,
-    horizon_rad: float = HORIZON_RAD,
-) -> None:
-    """Raise `Unreachable` unless the target stays above the horizon and inside the soft limits."""
+class Standpoint(Protocol):
+    """Where a telescope stands, when, and how far it may point: an observatory, or a scenario."""
+
+    @property
+    def site(self) -> Site:
+        """Its place on the Earth."""
+
+    @property
+    def clock(self) -> Clock:
+        """What simulated second 0 is."""
+
+    @property
+    def mount(self) -> Mount:
+        """Encoders and soft limits."""
+
+    @property
+    def horizon_rad(self) -> float:
+        """Lowest altitude to point at."""
+
+
+def check_reachable(star: Star, place: Standpoint, t_s: float, stay_s: float = 0.0) -> None:
+    """Raise `Unreachable` unless the target stays above the horizon and inside the soft limits.
+
+    t_s: when it is to be reached; stay_s: for how long it is tracked then.
+    """
+    clock, mount, horizon_rad = place.clock, place.mount, place.horizon_rad
     times = t_s + np.linspace(0.0, stay_s, 2 + int(stay_s // _STEP_S))
-    hour_angle, declination, altitude, _ = observe_many(star, site, clock, times)
+    hour_angle, declination, altitude, _ = observe_many(star, place.site, clock, times)
     low = np.flatnonzero(altitude < horizon_rad)
     if low.size:
         index = int(low[0])

@@ -1,7 +1,5 @@
 """Looking after the boards: health, parameters, soft limits, display (H2)."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 
 from bus.protocol import AxisParameter, Device, Health, Opcode

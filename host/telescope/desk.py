@@ -8,8 +8,6 @@
 `do` returns when the command was taken or raises `Refused`; `run` waits until its job has ended.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeout
@@ -23,6 +21,9 @@ from host.telescope.telescope import Telescope
 T = TypeVar("T")
 ANSWER_S = 5.0
 """Wall time until a tick must have come; ticks are 50 ms apart at speed 1, 0.5 s at speed 0.1. ASSUMPTION."""
+
+_LOOK_S = 0.05
+"""Wall time between two looks at what comes with a tick."""
 
 
 class _Desk:
@@ -89,6 +90,15 @@ class AsyncDesk(_Desk):
             return await asyncio.wait_for(future, ANSWER_S)
         except TimeoutError:
             raise Refused(Reason.SILENT, f"no tick within {ANSWER_S:g} s; is it paused?") from None
+
+    async def encoders(self) -> tuple[int, int, float]:
+        """Readings of both axes and when RA's was latched, s; waits for the first ones, else `Refused`."""
+        for _ in range(round(ANSWER_S / _LOOK_S)):
+            now = self.now
+            if now.ra.steps is not None and now.dec.steps is not None:
+                return now.ra.steps, now.dec.steps, now.ra.latched_s
+            await asyncio.sleep(_LOOK_S)
+        raise Refused(Reason.SILENT, "no position has been received yet")
 
     async def run(self, act: Callable[[Telescope], Job[T]]) -> T:
         """Have a command carried out and wait until its job has ended."""

@@ -1,16 +1,14 @@
 """What the axes do: one thing at a time, and tracking again when it has ended, if tracking is on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Generator
 
-from bus.protocol import Device, Opcode, unpack_target
+from bus.protocol import AxisMode, Device, Opcode, unpack_target
+from bus.protocol.scales import rate_q16
 from host.client import Client, Procedure
 from host.logs.journal import Logs
 from host.procedures import power
 from host.procedures.pointing import ENCODERS, Pointing
-from host.rates import rate_q16
 from host.sky.angles import format_degrees
 from host.sky.apparent import equatorial, star_of_apparent
 from host.sky.catalogue import Star
@@ -239,6 +237,9 @@ class Drive:
         readings = [self.client.position(encoder) for encoder in ENCODERS]
         if None not in motions and None not in readings:
             self.parked = not self.powered and self._at_park()
+            if motions[0] is not None and motions[0].mode == AxisMode.TRACK:
+                self.tracking = True  # a host before this one has left the axes following the sky
+                self._lock_on()
 
     def _at_park(self) -> bool:
         ra, dec, _ = self.readings()
@@ -271,6 +272,7 @@ class Drive:
 
     def _follow_here(self) -> Procedure:
         """Move with the sky first and look then where that is: no jump, and nothing to catch up with."""
+        self.pointing.commanding = True
         rates = self._track_of(self.here()).rates(self._now_s())
         for axis, rate in zip(power.AXES, rates, strict=True):
             yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate))

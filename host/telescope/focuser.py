@@ -1,7 +1,5 @@
 """The focus drive: one thing at a time, in half steps of 6.25 µm (H3)."""
 
-from __future__ import annotations
-
 from bus.protocol import Device, Opcode
 from host.client import Client, Procedure
 from host.logs.journal import Logs

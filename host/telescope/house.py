@@ -1,7 +1,5 @@
 """Dome, weather and power (H7): what their boards say, and the few things they can be told."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from functools import cache
 
@@ -11,7 +9,7 @@ from host.client import Client
 from host.telescope.jobs import Activity, Job, Side
 from host.telescope.refused import Reason, Refused
 
-DOME_BOARD = Device(DOME.nodes["DOME"])
+DOME_BOARD = DOME.device("DOME")
 
 
 class House:
@@ -50,7 +48,7 @@ class House:
         """Switch a relay, 1 to 8, of a power board."""
         if board not in POWER.nodes or not 1 <= channel <= 8:
             raise Refused(Reason.VALUE, f"{board} has no relay {channel}")
-        return self._tell(POWER, Device(POWER.nodes[board]), "RELAY", channel, int(on))
+        return self._tell(POWER, POWER.device(board), "RELAY", channel, int(on))
 
     def _tell(self, kind: Kind, device: Device, opcode: str, *arguments: int) -> Job[None]:
         if device not in self._client.link.measurements:
@@ -67,4 +65,5 @@ class House:
 def _codecs() -> dict[str, FrameCodec]:
     """By board name."""
     found = [FrameCodec(m) for kind in KINDS for m in messages_of(kind) if 0x200 <= m.frame_id < 0x280]
-    return {Device(codec.identifier & 0x7F).name: codec for codec in found}
+    names = {int(device): device.name for kind in KINDS for device in kind.devices()}
+    return {names[codec.identifier & 0x7F]: codec for codec in found}

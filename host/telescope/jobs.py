@@ -1,7 +1,5 @@
 """Procedures with a handle: what runs, how it ended, and who may wait for it from another thread."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from concurrent.futures import Future
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Where the telescope stands and how its encoders are aligned: what turns steps into sky and back."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from host.sky.apparent import Place, apparent_of_observed, horizontal
@@ -15,7 +13,7 @@ from host.sky.visibility import HORIZON_RAD, check_reachable
 @dataclass
 class Observatory:
     """Site, clock and mount. The mount is replaced as a whole when the telescope is synchronised or its
-    limits change, so that a reader in another thread always sees one that fits together."""
+    limits change. So a reader in another thread always sees one that fits together."""
 
     site: Site
     clock: Clock
@@ -36,7 +34,7 @@ class Observatory:
 
     def check(self, star: Star, t_s: float) -> None:
         """Raise `Unreachable` unless the star is above the horizon limit and within the soft limits."""
-        check_reachable(star, self.site, self.clock, self.mount, t_s, horizon_rad=self.horizon_rad)
+        check_reachable(star, self, t_s)
 
     def align(self, ra_offset_steps: int, dec_offset_steps: int) -> None:
         """Both encoders read this much too much (H4)."""

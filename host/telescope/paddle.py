@@ -1,18 +1,16 @@
 """Moving by hand: keys held down, rates of one axis, and a guider's pulses."""
 
-from __future__ import annotations
-
 import math
 
-from bus.protocol import Device, Opcode, SpeedClass
+from bus.protocol import Opcode, SpeedClass
+from bus.protocol.scales import rate_q16
 from host.client import Procedure
-from host.procedures.manual import AXIS
-from host.rates import rate_q16
-from host.sky.mount import STEP_ARCSEC
+from host.procedures.manual import AXES
 from host.telescope.drive import Drive
-from host.telescope.jobs import Activity, Job, Side
+from host.telescope.guiding import Guider
+from host.telescope.jobs import Activity, Side
 from host.telescope.refused import Reason, Refused
-from host.telescope.tracks import SIDEREAL_ARCSEC_S, SkyTrack
+from host.telescope.tracks import SIDEREAL_ARCSEC_S
 
 CLASS_ARCSEC_S = {
     SpeedClass.SLEW: 7200.0,
@@ -28,7 +26,8 @@ LOCKED_ARCSEC_S = 1000.0
 DIRECTIONS = {"n": ("dec", 1), "s": ("dec", -1), "e": ("ra", -1), "w": ("ra", 1)}
 """Axis and sign; hour angle grows to the west."""
 GUIDE_ARCSEC_S = 0.5 * SIDEREAL_ARCSEC_S
-"""Guide rate until somebody sets another: half the sidereal rate, as is common. ASSUMPTION."""
+"""Guide rate until somebody sets another, and the fastest: half the sidereal rate, as is common. At
+the whole, RA runs west at 30″/s, where friction falls with speed faster than the loop follows. ASSUMPTION."""
 
 
 class Paddle:
@@ -40,15 +39,9 @@ class Paddle:
     def __init__(self, drive: Drive, side: Side) -> None:
         self.drive = drive
         self.guide_arcsec_s = (GUIDE_ARCSEC_S, GUIDE_ARCSEC_S)
-        self._side = side
+        self.guider = Guider(drive, side)
         self._rates: dict[str, float] = {}
         self._over_sky = True
-        self._pulse_end_ns = 0
-
-    @property
-    def pulsing(self) -> bool:
-        """Whether a pulse still lasts."""
-        return self.drive.client.now_ns < self._pulse_end_ns
 
     @property
     def held(self) -> frozenset[str]:
@@ -85,44 +78,28 @@ class Paddle:
         self.drive.abort()
 
     def pulse(self, direction: str, seconds: float) -> None:
-        """Shift what is tracked by guide rate × seconds, exactly; `pulsing` lasts as long as the pulse.
-
-        The shift is made at once, as a NUDGE: the boards have no guide input, and the sum is the same.
-        """
-        drive = self.drive
-        track = drive.pointing.track
-        if drive.activity is not Activity.TRACKING or not isinstance(track, SkyTrack):
-            raise Refused(Reason.STATE, "guiding needs a telescope that tracks")
+        """Shift what is tracked: move at the guide rate for a time."""
         if direction not in DIRECTIONS or not 0 <= seconds <= 60:
             raise Refused(Reason.VALUE, "a pulse is n, s, e or w and lasts 0 to 60 s")
-        axis, sign = DIRECTIONS[direction]
-        arcsec = sign * seconds * self.guide_arcsec_s[0 if axis == "ra" else 1]
-        steps = round(arcsec / STEP_ARCSEC)
-        if not steps:
-            return
-        track.shift(*((arcsec, 0.0) if axis == "ra" else (0.0, arcsec)))
-        self._pulse_end_ns = drive.client.now_ns + round(seconds * 1e9)
-        job = Job(f"pulse {direction}", self._nudge(AXIS[axis], steps), Activity.TRACKING)
-        self._side.start(job)
+        name, sign = DIRECTIONS[direction]
+        axis = 0 if name == "ra" else 1
+        self.guider.pulse(axis, sign * self.guide_arcsec_s[axis], seconds)
 
     def set_guide_rates(self, ra_arcsec_s: float, dec_arcsec_s: float) -> None:
-        """Rates of a pulse, ″/s, up to the sidereal rate."""
+        """Rates of a pulse, ″/s, up to `GUIDE_ARCSEC_S`."""
         for rate in (ra_arcsec_s, dec_arcsec_s):
-            if not (math.isfinite(rate) and 0 < rate <= SIDEREAL_ARCSEC_S * 1.0001):
-                raise Refused(Reason.VALUE, f"guide rate {rate:g}″/s is outside 0 to {SIDEREAL_ARCSEC_S:g}")
+            if not (math.isfinite(rate) and 0 < rate <= GUIDE_ARCSEC_S * 1.0001):
+                raise Refused(Reason.VALUE, f"guide rate {rate:g}″/s is outside 0 to {GUIDE_ARCSEC_S:.4g}")
         self.guide_arcsec_s = (ra_arcsec_s, dec_arcsec_s)
 
     def _run(self) -> Procedure:
         client, rates = self.drive.client, dict(self._rates)
         yield from self.drive.power()
         follow = SIDEREAL_ARCSEC_S if self.drive.tracking else 0.0
-        for name, device in AXIS.items():
+        for name, device in AXES.items():
             base = follow if name == "ra" and (self._over_sky or name not in rates) else 0.0
             rate = rates.get(name, 0.0) + base
             locked = abs(rate) <= LOCKED_ARCSEC_S
             yield from client.ask(device, Opcode.TRACK_RATE if locked else Opcode.SET_RATE, rate_q16(rate))
         while True:
             yield
-
-    def _nudge(self, device: Device, steps: int) -> Procedure:
-        yield from self.drive.client.ask(device, Opcode.NUDGE, steps)

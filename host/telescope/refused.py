@@ -1,7 +1,5 @@
 """Why the telescope does not do something, in a form each door can translate into its own numbers."""
 
-from __future__ import annotations
-
 from enum import Enum
 
 

@@ -1,7 +1,5 @@
 """What the telescope looks like at one moment, as plain values that any thread may read."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from bus.protocol import (
@@ -22,6 +20,12 @@ from host.sky.mount import STEP_ARCSEC
 
 _TACH_PERIOD_S = 0.01
 _TACH_COUNTS = 4096
+_PERIOD_NS = {"POSITION": 5_000_000, "AXIS": 10_000_000, "MOTOR": 10_000_000, "FOCUS": 50_000_000}
+"""Of their measurement frames (docs/reference/protocol.md)."""
+_MISSED = 5
+"""Frames in a row that may be late or lost before a value is called old. ASSUMPTION."""
+_TICK_NS = 50_000_000
+"""Of the host: what comes is looked at then."""
 AXES = {
     "ra": (Device.AXIS_RA, Device.POSITION_RA, Device.MOTOR_RA_A, Device.MOTOR_RA_B),
     "dec": (Device.AXIS_DEC, Device.POSITION_DEC, Device.MOTOR_DEC_A, Device.MOTOR_DEC_B),
@@ -93,6 +97,8 @@ class Snapshot(NamedTuple):
     errors_arcsec: tuple[float, float] | None
     """Target less encoder, hour angle and declination."""
     locked: bool
+    stale: frozenset[Device] = frozenset()
+    """Boards whose last measurement is older than it may be."""
 
 
 def axis_state(client: Client, name: str) -> AxisState:
@@ -166,6 +172,20 @@ def board_states(client: Client) -> tuple[BoardState, ...]:
             )
         )
     return tuple(states)
+
+
+def stale_boards(client: Client) -> frozenset[Device]:
+    """Boards whose measurement has not come for `_MISSED` of its periods, and a tick."""
+    oldest = {
+        device: client.now_ns - client.link.measured_ns.get(device, 0)
+        for device in client.devices
+        if device.name.partition("_")[0] in _PERIOD_NS
+    }
+    return frozenset(
+        device
+        for device, age_ns in oldest.items()
+        if age_ns > _MISSED * _PERIOD_NS[device.name.partition("_")[0]] + _TICK_NS
+    )
 
 
 _MODES = {int(mode) for mode in AxisMode}

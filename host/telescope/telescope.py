@@ -16,7 +16,7 @@ from bus.protocol import Device, Opcode
 from bus.protocol.nodes import DOME
 from host.client import Client
 from host.logs.journal import Journal
-from host.procedures.manual import AXIS
+from host.procedures.manual import AXES
 from host.telescope.boards import Boards
 from host.telescope.drive import Drive
 from host.telescope.focuser import Focuser
@@ -25,7 +25,7 @@ from host.telescope.jobs import Activity, Job, Side
 from host.telescope.observatory import Observatory
 from host.telescope.paddle import Paddle
 from host.telescope.refused import Reason, Refused
-from host.telescope.state import Snapshot, axis_state, board_states, focus_state
+from host.telescope.state import Snapshot, axis_state, board_states, focus_state, stale_boards
 
 T = TypeVar("T")
 _SLEWING = (Activity.SLEWING, Activity.PARKING, Activity.PADDLE, Activity.STOPPING)
@@ -59,7 +59,7 @@ class Telescope:
         after it."""
         self.journal.command(self.client.now_ns, "HOST", "emergency stop", "sent")
         job = self.drive.stop()
-        for device in AXIS.values():
+        for device in AXES.values():
             self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
         self.focuser.halt()
         if self.house.boards(DOME):
@@ -134,8 +134,9 @@ class Telescope:
             slewing=drive.activity in _SLEWING,
             tracking=drive.tracking,
             parked=bool(drive.parked),
-            pulse_guiding=self.paddle.pulsing,
+            pulse_guiding=self.paddle.guider.pulsing,
             target=track.star.name if track is not None else "",
             errors_arcsec=drive.pointing.errors_arcsec(),
             locked=self.locked,
+            stale=stale_boards(client),
         )

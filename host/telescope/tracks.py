@@ -1,8 +1,7 @@
 """What the axes can be made to follow: a star, a star and a guider's shifts, a place fixed to the ground."""
 
-from __future__ import annotations
-
 from enum import Enum
+from typing import NamedTuple
 
 from host.sky.catalogue import Star
 from host.sky.mount import STEP_ARCSEC, Mount
@@ -14,6 +13,12 @@ SIDEREAL_ARCSEC_S = 15.041067
 """Hour angle of the sky per second of UTC (IAU 2006 Earth rotation rate 7.292115e-5 rad/s)."""
 
 
+RAMP_S = 0.3
+"""A pulse's rate comes and goes over this: a step could break an axis out of its friction. ASSUMPTION."""
+_OLDEST_S = 1.0
+"""Readings are younger than this, so an older pulse is a plain shift. ASSUMPTION."""
+
+
 class DriveRate(Enum):
     """Rates of hour angle, ″/s: what the sky, the Moon and the Sun do on average (ASCOM's DriveRates)."""
 
@@ -21,6 +26,30 @@ class DriveRate(Enum):
     LUNAR = 14.685
     SOLAR = 15.0
     KING = 15.0369
+
+
+class Pulse(NamedTuple):
+    """A guider's shift of one axis (0: hour angle, 1: declination): ″/s, begun and lasting s.
+
+    It comes and goes over `RAMP_S`: the mean over that time of a pulse with edges.
+    """
+
+    axis: int
+    arcsec_s: float
+    begin_s: float
+    seconds: float
+
+    @property
+    def end_s(self) -> float:
+        """When it is all made."""
+        return self.begin_s + self.seconds + RAMP_S
+
+    def arcsec(self, t_s: float) -> float:
+        """How far it has shifted by a time, ″."""
+        age_s = min(t_s, self.end_s) - self.begin_s
+        corners = (age_s, age_s - self.seconds, age_s - RAMP_S, age_s - self.seconds - RAMP_S)
+        squares = [max(each, 0.0) ** 2 for each in corners]
+        return self.arcsec_s * (squares[0] - squares[1] - squares[2] + squares[3]) / (2 * RAMP_S)
 
 
 class SkyTrack(StarTrack):
@@ -41,11 +70,23 @@ class SkyTrack(StarTrack):
         super().__init__(star, site, clock, mount)
         self._drift = drift_arcsec_s
         self._since_s = since_s
-        self._shift = (0.0, 0.0)
+        self._shift = [0.0, 0.0]
+        self._pulses: list[Pulse] = []
 
-    def shift(self, hour_angle_arcsec: float, declination_arcsec: float) -> None:
-        """Follow a place beside the one followed so far."""
-        self._shift = (self._shift[0] + hour_angle_arcsec, self._shift[1] + declination_arcsec)
+    def guide(self, pulse: Pulse) -> None:
+        """Follow a place that a pulse moves, and leaves beside the one followed so far."""
+        over = [each for each in self._pulses if each.end_s < pulse.begin_s - _OLDEST_S]
+        for each in over:
+            self._shift[each.axis] += each.arcsec(each.end_s)
+            self._pulses.remove(each)
+        self._pulses.append(pulse)
+
+    def shifted(self, t_s: float) -> list[float]:
+        """What guiding has made of both axes by a time, ″."""
+        shift = list(self._shift)
+        for each in self._pulses:
+            shift[each.axis] += each.arcsec(t_s)
+        return shift
 
     def rates(self, t_s: float) -> Rates:
         """Rates of the axes at a time, ″/s."""
@@ -56,7 +97,7 @@ class SkyTrack(StarTrack):
         """Encoder readings on which the place is at a time."""
         ra, dec = super().steps(t_s)
         age_s = t_s - self._since_s
-        shifts = [each + drift * age_s for each, drift in zip(self._shift, self._drift, strict=True)]
+        shifts = [each + drift * age_s for each, drift in zip(self.shifted(t_s), self._drift, strict=True)]
         return ra + round(shifts[0] / STEP_ARCSEC), dec + round(shifts[1] / STEP_ARCSEC)
 
 

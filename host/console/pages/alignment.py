@@ -1,7 +1,5 @@
 """Maintenance console 1 (H4): encoder offsets from a reference star."""
 
-from __future__ import annotations
-
 from nicegui import ui
 
 from host.console.figures import pointing

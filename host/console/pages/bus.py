@@ -1,7 +1,5 @@
 """The bus: nodes with their error states, load, decoded frames, and faults that can be made."""
 
-from __future__ import annotations
-
 import asyncio
 from concurrent.futures import Future
 

@@ -1,7 +1,5 @@
 """Record a run, have the finder look at it, and show what it says."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Dome and weather consoles (H7), and the power boards, as far as the network has them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from nicegui import ui

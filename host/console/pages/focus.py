@@ -1,14 +1,13 @@
 """Focus console (H3): single steps, Move To, hold and free, LVDT and encoder four times a second."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 from nicegui import ui
 
+from bus.protocol import Device
 from host.console.figures import number
-from host.console.shell import Shell, box, button
+from host.console.shell import Shell, box, button, stale
 from host.telescope import Telescope
 
 MICRONS = 6.25
@@ -41,6 +40,8 @@ def _readings(shell: Shell) -> None:
         moving = now is not None and now.moving
         lamp.classes(add="on" if moving else None, remove=None if moving else "on")
         lamp.props(f'aria-label="{"moving" if moving else "not moving"}"')
+        for label in (steps, *labels.values()):
+            stale(label, Device.FOCUS in shell.desk.now.stale)
         if now is None:
             return
         steps.set_text(f"{now.half_steps:+d} half steps")

@@ -1,16 +1,14 @@
 """Main console (H2): power, health, slewing, tracking, hand paddle, targets, limits, parameters, status."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from nicegui import ui
 from nicegui.events import KeyEventArguments
 
 from bus.protocol import AxisParameter, Device, Health, SpeedClass
-from host.console.figures import number, pointing
+from host.console.figures import clocks, number, pointing
 from host.console.plots import plots
-from host.console.shell import Shell, box, button, table
+from host.console.shell import Shell, box, button, stale, table
 from host.console.skymap import svg
 from host.sky.angles import parse_declination, parse_right_ascension
 from host.sky.apparent import horizontal
@@ -27,6 +25,7 @@ ARROWS = {"ArrowUp": "n", "ArrowDown": "s", "ArrowLeft": "e", "ArrowRight": "w"}
 def main(shell: Shell) -> None:
     """The page."""
     with shell.page("/", "Main console"), ui.element("div").classes("boxes"):
+        _clocks(shell)
         _place(shell)
         _motors(shell)
         _paddle(shell)
@@ -36,6 +35,22 @@ def main(shell: Shell) -> None:
         plots(shell)
         _parameters(shell)
         _status(shell)
+
+
+def _clocks(shell: Shell) -> None:
+    with box("Clock"), ui.element("div").classes("pair"):
+        labels = []
+        for name in ("UTC", "sidereal", "airmass", "meridian", "limit in"):
+            ui.label(name).classes("small")
+            labels.append(ui.label("–").classes("mid"))
+
+    def refresh() -> None:
+        for label, text in zip(labels, clocks(shell.telescope), strict=True):
+            label.set_text(text)
+        for label in labels[2:]:
+            stale(label, not shell.desk.now.stale.isdisjoint((Device.POSITION_RA, Device.POSITION_DEC)))
+
+    shell.each(_seldom(refresh))
 
 
 def _place(shell: Shell) -> None:
@@ -56,6 +71,12 @@ def _place(shell: Shell) -> None:
         rates.set_text(f"{now.ra.rate_arcsec_s:+.1f}″/s  {now.dec.rate_arcsec_s:+.1f}″/s")
         found = now.errors_arcsec or (None, None)
         errors.set_text(f"{number(found[0], '+.2f', '″')}  {number(found[1], '+.2f', '″')}")
+        old = now.stale
+        for name, label in labels.items():
+            mine = (Device.POSITION_DEC,) if name == "Dec" else (Device.POSITION_RA, Device.POSITION_DEC)
+            stale(label, not old.isdisjoint(mine[:1] if name in ("RA", "HA", "Dec") else mine))
+        stale(errors, not old.isdisjoint((Device.POSITION_RA, Device.POSITION_DEC)))
+        stale(rates, not old.isdisjoint((Device.AXIS_RA, Device.AXIS_DEC)))
 
     shell.each(refresh)
 
@@ -269,7 +290,8 @@ def _status(shell: Shell) -> None:
         if last == seen[0]:
             return
         seen[0] = last
-        text = "\n".join(f"{e.t_s:9.1f} s  {e.where}: {e.text}" for e in reversed(entries))
+        utc = shell.telescope.observatory.clock.iso
+        text = "\n".join(f"{utc(e.t_s)[11:21]}  {e.where}: {e.text}" for e in reversed(entries))
         lines.set_content(f'<pre class="lines">{text.replace("&", "&amp;").replace("<", "&lt;")}</pre>')
 
     shell.each(refresh)

@@ -1,7 +1,5 @@
 """Maintenance console 2 (H5): currents, tachometers, live gear reduction, play, encoders combined."""
 
-from __future__ import annotations
-
 from nicegui import ui
 
 from host.auxiliary import ABSOLUTE_ARCSEC, APART, AUXILIARY_ARCSEC, combine
@@ -9,6 +7,9 @@ from host.console.figures import number
 from host.console.live import RATIO
 from host.console.plots import plots
 from host.console.shell import Shell, box, table
+from host.telescope.state import AXES
+
+_OLD = " (stale)"
 
 
 def maintenance(shell: Shell) -> None:
@@ -27,10 +28,11 @@ def _motors(shell: Shell) -> None:
     def refresh() -> None:
         now = shell.desk.now
         rows = []
-        for name, axis in (("RA", now.ra), ("Dec", now.dec)):
+        for name, axis, (board, _, *motors) in (("RA", now.ra, AXES["ra"]), ("Dec", now.dec, AXES["dec"])):
             for k, motor in enumerate("AB"):
-                turns = axis.motor_turns_s[k]
-                rows.append((f"{name} {motor}", f"{axis.currents_a[k]:.3f}", number(turns, "+.4f")))
+                current = f"{axis.currents_a[k]:.3f}{_OLD if board in now.stale else ''}"
+                turns = number(axis.motor_turns_s[k], "+.4f") + (_OLD if motors[k] in now.stale else "")
+                rows.append((f"{name} {motor}", current, turns))
         fill(rows)
 
     shell.each(refresh)
@@ -77,7 +79,8 @@ def _encoders(shell: Shell) -> None:
             rows.append(
                 (
                     name,
-                    number(found.absolute_arcsec, ".2f"),
+                    number(found.absolute_arcsec, ".2f")
+                    + (_OLD if AXES[name.lower()][1] in now.stale else ""),
                     number(found.auxiliary_arcsec, ".2f")
                     if found.auxiliary_arcsec is not None
                     else "no board",

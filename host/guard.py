@@ -1,0 +1,82 @@
+"""Who may look: this machine always, others only with the token, once in the address, then by a cookie.
+
+A request that names a foreign host, or comes from a page of one, is refused: a name server can point any name
+at this machine, and a browser lets any page open a websocket.
+"""
+
+import hmac
+from collections.abc import Awaitable, Callable, MutableMapping, Sequence
+from http.cookies import SimpleCookie
+from typing import Any
+from urllib.parse import parse_qs
+
+from host.browser import HOSTS_VARIABLE, is_own, is_same, more_names, own_names
+
+Scope = MutableMapping[str, Any]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+COOKIE = "schmidt-token"
+
+
+class Guard:
+    """An ASGI application around another. token: the word that other machines must know; None: there is none.
+
+    A protocol like Alpaca has no place for one.
+    """
+
+    def __init__(self, app: App, token: str | None) -> None:
+        self._app = app
+        self._open, self._token = token is None, token or ""
+        self._names, self._more = own_names(), more_names()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or refuse with 403."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+        elif not self._addressed(scope):
+            await _refuse(scope, send, f"foreign Host or Origin; {HOSTS_VARIABLE}=NAME,NAME allows more\n")
+        elif self._open or self._local(scope):
+            await self._app(scope, receive, send)
+        elif self._knows(scope):
+            await self._app(scope, receive, self._with_cookie(scope, send))
+        else:
+            await _refuse(scope, send, "open this page with ?token=WORD\n")
+
+    def _addressed(self, scope: Scope) -> bool:
+        headers = {name: value.decode("latin-1") for name, value in scope.get("headers", [])}
+        host, origin = headers.get(b"host", ""), headers.get(b"origin")
+        if host and not is_own(host, self._names):
+            return False
+        return origin is None or is_same(origin, host, self._more)
+
+    def _local(self, scope: Scope) -> bool:
+        client: Sequence[Any] = scope.get("client") or ("",)
+        return str(client[0]) in ("127.0.0.1", "::1", "localhost")
+
+    def _knows(self, scope: Scope) -> bool:
+        query = parse_qs(scope.get("query_string", b"").decode("latin-1"))
+        said = query.get("token", [""])[0]
+        for name, value in scope.get("headers", []):
+            if name == b"cookie":
+                cookie = SimpleCookie(value.decode("latin-1")).get(COOKIE)
+                said = said or (cookie.value if cookie else "")
+        return hmac.compare_digest(said.encode(), self._token.encode())
+
+    def _with_cookie(self, scope: Scope, send: Send) -> Send:
+        async def passing(message: MutableMapping[str, Any]) -> None:
+            if message["type"] == "http.response.start" and b"token=" in scope.get("query_string", b""):
+                cookie = f"{COOKIE}={self._token}; Path=/; HttpOnly; SameSite=Strict"
+                message.setdefault("headers", []).append((b"set-cookie", cookie.encode()))
+            await send(message)
+
+        return passing
+
+
+async def _refuse(scope: Scope, send: Send, why: str) -> None:
+    """403, or for a websocket the code that ends in it."""
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    await send({"type": "http.response.start", "status": 403, "headers": [(b"content-type", b"text/plain")]})
+    await send({"type": "http.response.body", "body": why.encode()})

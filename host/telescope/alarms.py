@@ -1,0 +1,117 @@
+"""Alarms of the telescope: what is wrong, how badly, since when; each stays until it is acknowledged."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Final
+
+from bus.protocol import State
+from host.client import SILENCE_NS
+from host.telescope.state import AxisState, Snapshot
+
+SILENCE_S: Final = SILENCE_NS * 1e-9
+_DISTURBED: Final = 96
+_PASSIVE: Final = 128
+"""Transmit error counters: heavily disturbed (CAN 2.0, part A, section 7), passive (ISO 11898-1)."""
+_BUSY: Final = 0.5
+_FULL: Final = 0.9
+"""Shares of the last second. The lab's network needs a fifth of 1 Mbit/s. ASSUMPTION."""
+
+
+class Severity(IntEnum):
+    """warning: look at it before long. alarm: look at it now."""
+
+    WARNING = 1
+    ALARM = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """since_s: when it came, simulated seconds. until_s: when it went, None while it stands."""
+
+    what: str
+    severity: Severity
+    since_s: float
+    until_s: float | None = None
+    acknowledged: bool = False
+
+
+class Alarms:
+    """standing: by what they say, the worst and then the newest first."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Alarm] = {}
+        self._overruns: dict[str, int] = {}
+
+    @property
+    def standing(self) -> tuple[Alarm, ...]:
+        """What has not gone and been acknowledged."""
+        return tuple(sorted(self._known.values(), key=lambda alarm: (-alarm.severity, -alarm.since_s)))
+
+    def take(self, t_s: float, found: Mapping[str, Severity]) -> None:
+        """What is wrong at `t_s`."""
+        for what, severity in found.items():
+            known = self._known.get(what)
+            if known is None or known.until_s is not None:
+                self._known[what] = Alarm(what, severity, t_s)
+            elif known.severity != severity:  # worse is news again
+                self._known[what] = Alarm(
+                    what, severity, known.since_s, None, known.acknowledged and severity < known.severity
+                )
+        for what, known in list(self._known.items()):
+            if what in found:
+                continue
+            if known.acknowledged:
+                del self._known[what]
+            elif known.until_s is None:
+                self._known[what] = Alarm(what, known.severity, known.since_s, t_s)
+
+    def acknowledge(self) -> None:
+        """Somebody has seen them all: what has gone goes."""
+        for what, alarm in list(self._known.items()):
+            if alarm.until_s is not None:
+                del self._known[what]
+            else:
+                self._known[what] = Alarm(what, alarm.severity, alarm.since_s, None, True)
+
+    def of_telescope(self, now: Snapshot) -> dict[str, Severity]:
+        """What a snapshot shows."""
+        found: dict[str, Severity] = {}
+        for name, axis in (("RA", now.ra), ("Dec", now.dec)):
+            found |= _of_axis(name, axis)
+        for device in now.stale:
+            found[f"{device.name}: no measurement"] = Severity.ALARM
+        for board in now.boards:
+            name = board.device.name
+            if not board.alive:
+                if now.t_s > SILENCE_S:  # heartbeats come every second
+                    found[f"{name} is silent"] = Severity.ALARM
+                continue
+            if board.state == State.FAULT:
+                found[f"{name}: FAULT"] = Severity.ALARM
+            if board.tec > _DISTURBED:
+                passive = board.tec >= _PASSIVE
+                found[f"{name}: errors on the bus"] = Severity.ALARM if passive else Severity.WARNING
+            if board.overruns > self._overruns.setdefault(name, board.overruns):
+                found[f"{name} loses interrupts"] = Severity.WARNING
+            self._overruns[name] = board.overruns
+        return found
+
+
+def _of_axis(name: str, axis: AxisState) -> dict[str, Severity]:
+    found = {}
+    if axis.fault:
+        found[f"{name}: FAULT, the motors are off"] = Severity.ALARM
+    if axis.soft_limit:
+        found[f"{name} is at its soft limit"] = Severity.WARNING
+    return found
+
+
+def of_bus(load: float, running: list[tuple[int, str]]) -> dict[str, Severity]:
+    """What the bus shows: its load in the last second, faults that somebody has made."""
+    found = {}
+    if load >= _BUSY:
+        found["the bus is loaded"] = Severity.ALARM if load >= _FULL else Severity.WARNING
+    for number, words in running:
+        found[f"fault {number} runs: {words.partition(',')[0]}"] = Severity.WARNING
+    return found

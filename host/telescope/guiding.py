@@ -1,0 +1,96 @@
+"""A guider's pulses: the axis runs at the guide rate for the time, beside what it tracks."""
+
+from typing import Final
+
+from bus.protocol import Opcode
+from bus.protocol.scales import rate_q16
+from host.client import TICK_NS, Procedure
+from host.procedures.power import AXES
+from host.telescope.drive import Drive
+from host.telescope.jobs import Activity, Job, Side
+from host.telescope.refused import Reason, Refused
+from host.telescope.tracks import Pulse, SkyTrack
+
+_TICK_S: Final = TICK_NS * 1e-9
+_LONGEST_S: Final = 60.0
+"""Pulses of an axis that may wait, together. ASSUMPTION: as long as the longest one."""
+_LEAD: Final = (0.0, 2.0)
+"""How far the board's target is led beyond the place wanted, per ″ still missing, by axis. Declination turns
+through its friction, a spring that the board's loop winds in 0.6 s; with this, in half that. ASSUMPTION:
+held on the low preload plant; with diodes at the motors Dec may still be 1.5″ off for seconds."""
+_MOST_LEAD_ARCSEC: Final = 8.0
+"""About the bristles' travel there. ASSUMPTION."""
+_SETTLE_S: Final = 1.0
+"""The lead is kept up for this long after a pulse. ASSUMPTION."""
+
+
+class Guider:
+    """Pulses of both axes (0: RA, 1: Dec); those of an axis follow one another.
+
+    A shift at once is none a mount can make. It takes RA over the peak of its Stribeck curve, where friction
+    falls to a third. The effort held against that friction throws the axis 60″ too far.
+    """
+
+    def __init__(self, drive: Drive, side: Side) -> None:
+        self._drive, self._side = drive, side
+        self._ends_s = [-1.0, -1.0]
+        self._jobs: list[Job[None] | None] = [None, None]
+
+    @property
+    def pulsing(self) -> bool:
+        """Whether a pulse still lasts."""
+        return any(map(self._busy, (0, 1)))
+
+    def pulse(self, axis: int, arcsec_s: float, seconds: float) -> None:
+        """Shift what is tracked, ″/s for a time."""
+        track = self._drive.pointing.track
+        if self._drive.activity is not Activity.TRACKING or not isinstance(track, SkyTrack):
+            raise Refused(Reason.STATE, "guiding needs a telescope that tracks")
+        begin_s = self._ends_s[axis] if self._busy(axis) else self._now_s
+        if begin_s - self._now_s > _LONGEST_S:
+            raise Refused(Reason.STATE, f"pulses of this axis for {_LONGEST_S:g} s wait already")
+        pulse = Pulse(axis, arcsec_s, begin_s, seconds)
+        track.guide(pulse)
+        self._ends_s[axis] = pulse.end_s
+        job = self._jobs[axis]
+        if job is None or not job.running:
+            self._jobs[axis] = self._side.start(Job("guide", self._guide(axis, track), Activity.TRACKING))
+
+    def _guide(self, axis: int, track: SkyTrack) -> Procedure:
+        """Rates, tick by tick, that bring the board's target where the pulses want it."""
+        pointing, client = self._drive.pointing, self._drive.client
+        made = track.shifted(self._now_s - _TICK_S)[axis]
+        rate, since_s = 0.0, self._now_s
+        while pointing.commanding and self._follows(track):
+            yield
+        pointing.guided += 1
+        try:
+            while self._follows(track):
+                now_s = self._now_s
+                made += rate * (now_s - since_s)
+                over = now_s > self._ends_s[axis] + _SETTLE_S
+                wanted = track.shifted(now_s + _TICK_S)[axis] + (0.0 if over else self._lead(axis))
+                rate, since_s = (wanted - made) / _TICK_S, now_s
+                base = track.rates(now_s)[axis] + pointing.trims[axis]
+                device = AXES[axis]
+                yield from client.ask(device, Opcode.TRACK_RATE, rate_q16(base + rate))
+                if over and not rate_q16(rate):
+                    return
+        finally:
+            pointing.guided -= 1
+
+    def _lead(self, axis: int) -> float:
+        errors = self._drive.pointing.errors_arcsec()
+        lead = _LEAD[axis] * errors[axis] if errors is not None else 0.0
+        return min(max(lead, -_MOST_LEAD_ARCSEC), _MOST_LEAD_ARCSEC)
+
+    def _busy(self, axis: int) -> bool:
+        job = self._jobs[axis]
+        return job is not None and job.running and self._now_s < self._ends_s[axis]
+
+    def _follows(self, track: SkyTrack) -> bool:
+        return self._drive.activity is Activity.TRACKING and self._drive.pointing.track is track
+
+    @property
+    def _now_s(self) -> float:
+        return self._drive.client.now_ns * 1e-9
