@@ -1,7 +1,5 @@
 """What the tool says when it cannot read an input: one line with the place and the way out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 

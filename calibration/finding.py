@@ -6,8 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
 from calibration.statistics.tails import median_reach
+
+#: the name of an effect that has none
+UNKNOWN = "unknown"
+# standard errors of a normal law's 95 % interval. arithmetic
+NORMAL = 1.96
 
 
 @dataclass(frozen=True)
@@ -29,16 +34,22 @@ class Parameter:
         """Upper half of the interval; zero where there is none."""
         return 0.0 if self.high is None else self.high - self.value
 
-    def as_dict(self) -> dict[str, object]:
-        """As in report.json."""
-        return {"value": self.value, "unit": self.unit, "low": self.low, "high": self.high}
-
 
 def middle(x: Array, unit: str) -> Parameter:
     """The median of several measurements (n,) of one size; without an interval where there is only one."""
     value = float(np.median(x))
     reach = median_reach(x) if len(x) > 1 else None
     return Parameter(value, unit) if reach is None else Parameter(value, unit, value - reach, value + reach)
+
+
+def normal(value: float, error: float, unit: str, reach: float = NORMAL) -> Parameter:
+    """An estimate and its 95 % interval, `reach` of its standard errors."""
+    return Parameter(value, unit, value - reach * error, value + reach * error)
+
+
+def deviation(sigma: float, rows: float, unit: str) -> Parameter:
+    """A standard deviation with what independent Gaussian `rows` leave open of it."""
+    return normal(sigma, sigma / float(np.sqrt(2 * rows)), unit)
 
 
 @dataclass(frozen=True)
@@ -71,6 +82,18 @@ class Finding:
     curve: Curve | None = None
 
     @property
+    def of_column(self) -> bool:
+        """Whether it is a column's or a clock's fault that takes nothing off a response's error."""
+        return self.channel == "S" and self.domain == "clock" and self.share == 0.0
+
+    @property
     def key(self) -> tuple[str, str | None, int | None]:
         """Name and place."""
         return (self.name, self.stage, self.harmonic)
+
+
+def of_columns(
+    name: str, parameters: dict[str, Parameter], evidence: float, share: float = 1.0, note: str = ""
+) -> Finding:
+    """A fault of columns or clocks, which is settled before any balance."""
+    return Finding(name, "S", "clock", parameters=parameters, evidence=evidence, share=share, note=note)

@@ -1,2 +1,1 @@
-"""The decision: gate, forward selection with out-of-run scores, equivalence classes, negative controls,
-verdict."""
+"""The decision: selection, equivalence classes, negative controls, verdict."""

@@ -1,116 +1,107 @@
-"""What is accepted, and what a log cannot tell from it."""
-
-from __future__ import annotations
+"""Acceptance of a contender beside the effects chosen before, and names that a log cannot tell from it."""
 
 import numpy as np
 
-from calibration.channels.problem import Problem
-from calibration.decide.heldout import HeldOut
+from calibration.balances.problem import Problem
+from calibration.decide import thresholds as limits
+from calibration.decide.heldout import HeldOut, Model, compare, cross_validate
+from calibration.decide.refine import never_begins
 from calibration.decide.scan import Contender
-from calibration.readers.run import Array
-from calibration.statistics.regression import Fit
+from calibration.decide.selection import Selection
+from calibration.finding import UNKNOWN
+from calibration.statistics.tails import wald_log10
 
-# of the cross-validated mean square; 2 % held the level on pure noise (effects.md, lesson 3), the rest is
-MARGIN = 0.05
-# for what a rigid balance misses of a compliant drive
-LUCK = 2.0  # z of the cross-validated gain over blocks
-NOISE = 0.02  # of the cross-validated mean square: that level (effects.md, lesson 3)
-PLAINLY = 0.25  # of the held-out mean square, unfiltered (ASSUMPTION)
-HANDICAP = 0.12  # of the mean square: an unnamed function must do more than a named one
-LEAST_EVIDENCE = (
-    10.0  # -log10 p of a candidate, beside the surrogate threshold: some 1e3 candidates are looked at
-)
-# of the mean square, gained in every fold: an effect that lives in a few bursts has a poor z over blocks
-BURST = 0.05
-# of a value, standard error: what the declared model itself is wrong by along a measured motion. From
-# development logs, where estimates scatter by this much about the truth when noise alone would allow a tenth
-MODEL_ERROR = 0.03
-WORSE = 0.001  # of the held-out mean square: rounding, not harm
-# of training rows: a covariance from fewer clusters is too small (the field's rule of thumb is 20 to 50), so
-# short logs would be named with confidence they do not have
-FEWEST_BLOCKS = 20
+SHORT = "the log is too short for it"
 
 
-def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float = MARGIN) -> str:
-    """Why a contender is not accepted; empty when it is.
+def scores(others: Selection, contender: Contender) -> tuple[HeldOut, HeldOut]:
+    """Of a contender beside `others`: on training rows it was not fitted to, and on the held-out rows."""
+    p, c, w = others.problem, contender.candidate, contender.fit.whitener
+    x = np.hstack([others.columns, c.columns])
+    beside = Model(x=x, beta=contender.fit.beta, phases=p.phases([*others.candidates, c]))
+    return cross_validate(p, others.columns, x, w), compare(p, others.model, beside, w)
 
-    `inside` is its score on training rows it was not fitted to, `held` the one on the held-out rows: an
-    effect that the
-    held-out run does not excite may gain nothing there, but none may make it worse.
+
+def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float) -> str:
+    """Why the scores of a contender do not let it in; empty when they do.
+
+    An effect that the held-out run does not excite may gain nothing there, but none may make it worse.
     """
     if contender.bayes <= 0:
         return "gains less than its parameters cost"
     if not np.isfinite(inside.after):
         return "too few rows to test it on"
-    least = max(HANDICAP, margin) if contender.candidate.name == "unknown" else margin
-    if contender.evidence < (contender.candidate.least or LEAST_EVIDENCE):
-        return f"too little evidence (-log10 p = {contender.evidence:.1f})"
-    if inside.share < least and not _plain(contender, inside, held):
+    named = contender.candidate.name != UNKNOWN
+    least = margin if named else max(limits.HANDICAP, margin)
+    # a steady effect is in the noise's filter, which is made of what it leaves
+    steady = inside.share > limits.NOISE_SHARE and inside.z > 2 * limits.LUCK_Z
+    if inside.share < least and not (named and steady and held.share > limits.PLAINLY):
         by = f"{'falls' if inside.share > 0 else 'grows'} by {100 * abs(inside.share):.1f} %"
         return f"cross-validated mean square {by}{' only' if inside.share > 0 else ''}"
-    if inside.z < LUCK and not (inside.everywhere and inside.share > BURST):
+    if inside.z < limits.LUCK_Z and not (inside.everywhere and inside.share > limits.MARGIN):
         return f"cross-validated gain is within luck (z = {inside.z:.1f})"
     if not np.isfinite(held.after):
         return "no held-out rows to test it on"
-    if held.share < -WORSE:
+    if held.share < -limits.ROUNDING:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
-    return ""
+    least = contender.candidate.least or limits.LEAST_EVIDENCE
+    if contender.evidence >= least:
+        return ""
+    times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)
+    if times and held.share > limits.MARGIN:
+        return (
+            f"{SHORT}: it takes {100 * held.share:.0f} % off the held-out mean square, by chance with"
+            f" -log10 p = {contender.evidence:.1f} of {least:.0f}, {times} times as long a log would tell"
+        )
+    return f"too little evidence (-log10 p = {contender.evidence:.1f})"
 
 
-def _plain(contender: Contender, inside: HeldOut, held: HeldOut) -> bool:
-    """Whether a name that gains little behind the noise's filter takes much of the held-out error as it is: a
-    steady effect is in the filter, which is made of what it leaves."""
-    named = contender.candidate.name != "unknown"
-    return named and inside.share > NOISE and inside.z > 2 * LUCK and held.share > PLAINLY
+def least_share(p: Problem) -> float:
+    """Share of the fitted rows' mean square from which on one line could be named: the power of the log."""
+    rows, blocks = int(p.train.sum()), p.train.sum() / p.block
+    shares = np.arange(1, 100) / 100
+    seen = wald_log10(rows * shares / (1 - shares), 2, blocks) >= limits.LEAST_EVIDENCE
+    return float(shares[np.argmax(seen)]) if seen.any() else 1.0
 
 
-def within_step(problem: Problem, null: Fit, contender: Contender) -> str:
-    """Why an effect is too small for the sensor's steps, which a steady motion does not average out; or
-    empty."""
-    rows = problem.train
-    taken = float(np.mean(null.residual[rows] ** 2 - contender.fit.residual[rows] ** 2))
-    if taken < problem.step**2:
-        taken_rms = f"takes {np.sqrt(max(taken, 0.0)):.2g} {problem.unit} rms away"
-        return f"{taken_rms}, less than its columns are sure to ({problem.step:.2g})"
-    return ""
+def too_small(others: Selection, contender: Contender, further: bool = True) -> str:
+    """Why an effect is too small, or empty.
 
-
-def within_model(problem: Problem, plain: Array, null: Fit, contender: Contender) -> str:
-    """Why a further effect is too small beside those that are taken: their own shapes are wrong by as much;
-    or empty. `plain` (n,) is what the declared terms alone leave."""
-    rows = problem.train
-    left = [float(np.mean(e[rows] ** 2)) for e in (plain, null.residual, contender.fit.residual)]
-    others, taken = left[0] - left[1], left[1] - left[2]
-    if taken < MODEL_ERROR**2 * others:
-        part = 100 * np.sqrt(max(taken, 0.0) / others)
+    It is within the sensor's steps, which a steady motion does not average out. Or it is a `further` one
+    within the error of the effects chosen before, or a change that never begins.
+    """
+    p = others.problem
+    fits = (others.before, others.after, contender.fit)
+    plain, null, now = (float(np.mean(fit.residual[p.train] ** 2)) for fit in fits)
+    found, taken = plain - null, null - now
+    if taken < p.step**2:
+        rms = f"{np.sqrt(max(taken, 0.0)):.2g} {p.unit} rms"
+        return f"takes {rms} away, less than its columns are sure to ({p.step:.2g})"
+    if further and taken < limits.MODEL_ERROR**2 * found:
+        part = 100 * np.sqrt(max(taken, 0.0) / found)
         return f"takes {part:.1f} % of what the others take, which is within their own error"
-    return ""
+    return never_begins(p, contender.candidate)
 
 
-def equivalents(problem: Problem, contenders: list[Contender], best: Contender) -> list[Contender]:
-    """Contenders with another name that fit as well within the scatter over blocks (a paired likelihood
-    test)."""
-    out = []
-    for other in contenders:
-        if other.candidate.key == best.candidate.key or other.gain < 0.5 * best.gain:
+def equivalents(others: Selection, contenders: list[Contender], best: Contender) -> list[Contender]:
+    """Contenders of another name that fit as well within the scatter over blocks (paired likelihoods)."""
+    out, first = [], best.candidate
+    for rival in contenders:
+        c = rival.candidate
+        same = c.key == first.key or c.name == first.name == UNKNOWN
+        # a richer form always fits as well
+        if same or c.width > first.width or rival.gain < limits.RIVAL_GAIN * best.gain:
             continue
-        if other.candidate.name == best.candidate.name == "unknown":
-            continue
-        if other.candidate.width > best.candidate.width:
-            continue  # a richer form always fits as well
-        loss, spread = _paired(problem, best, other)
-        if loss < max(2.0, 2.0 * spread):
-            out.append(other)
+        loss, spread = _paired(others, best, rival)
+        if loss < max(limits.PAIRED_LOSS, limits.LUCK_Z * spread):
+            out.append(rival)
     return out
 
 
-def _paired(problem: Problem, best: Contender, other: Contender) -> tuple[float, float]:
-    """Log likelihood lost by `other`, and its standard error over blocks, in the best model's noise."""
-    w = best.fit.whitener
-    rows = problem.train
-    use = w.usable(rows)
-    eb = w.apply(np.where(rows, best.fit.residual, 0.0))[use]
-    eo = w.apply(np.where(rows, other.fit.residual, 0.0))[use]
-    d = (eo**2 - eb**2) / (2 * best.fit.sigma**2)
-    sums = np.add.reduceat(d, np.arange(0, len(d), problem.block))
+def _paired(others: Selection, best: Contender, rival: Contender) -> tuple[float, float]:
+    """Log likelihood lost by `rival`, and its standard error over blocks, in the best model's noise."""
+    rows, w = others.problem.train, best.fit.whitener
+    squares = [w.whiten(c.fit.residual, rows) ** 2 / (2 * best.fit.sigma**2) for c in (best, rival)]
+    d = squares[1] - squares[0]
+    sums = np.add.reduceat(d, np.arange(0, len(d), others.problem.block))
     return float(d.sum()), float(np.std(sums) * np.sqrt(len(sums)))

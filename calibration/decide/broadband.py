@@ -1,19 +1,17 @@
-"""Effects without a phase: broadband torque over time (wind), and lines that only the full rate shows
-(pick-up)."""
+"""Effects without a phase: broadband torque (wind), and lines of the full rate (pick-up)."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from calibration.channels.frame import Frame, fill
-from calibration.channels.problem import Problem
-from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.sizes import quiet_noise
-from calibration.finding import Finding, Parameter
+from calibration.balances.frame import Frame, fill
+from calibration.balances.problem import Problem
+from calibration.decide.thresholds import FEWEST_BLOCKS, FEWEST_VALIDATED
+from calibration.finding import UNKNOWN, Finding, Parameter, deviation
 from calibration.finding import middle as middle_of
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
 from calibration.statistics.tails import rms_interval, variance_log10
-from calibration.statistics.whitening import Mask, autocovariance
+from calibration.statistics.whitening import Mask, autocovariance, white_noise
 
 MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
 EVEN = 0.17  # that quotient in white noise, see WIND
@@ -23,15 +21,21 @@ LONGEST_S = 20.0  # over which half of the variance is looked for
 # reversals, and the correlation of a second before with the second after: friction has -1, slow wind is
 # positive, and quick wind scatters by 1 / sqrt(reversals) about zero
 FEWEST_TURNS, OVER, LUCK = 3, 0.6, 3.0
+# cycles of a wind at its correlation time, that its deviation is known by at least. ASSUMPTION
+FEWEST_CYCLES = 4.0
 SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
 # amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
 COUNTS = 0.8
 
 
+def rate_of(torque: Problem) -> Array:
+    """Of the axis, rad/s: what its viscous friction goes by."""
+    return torque.base[:, torque.place("viscous")]
+
+
 def slow_ratio(e: Array, problem: Problem, white: float, rows: Mask, fewest: int = 21) -> float | None:
-    """rms of means over MEAN_S, over the white noise's rms per sample, while the axis slides; None where
-    there are fewer means."""
-    rows = rows & (np.abs(problem.base[:, 1]) > SLIDING)
+    """rms of means over MEAN_S over white noise's, while the axis slides; None where means are fewer."""
+    rows = rows & (np.abs(rate_of(problem)) > SLIDING)
     size = max(round(MEAN_S / problem.period_s), 2)
     n = len(e) // size * size
     ok = rows[:n].reshape(-1, size).mean(axis=1) > 0.9
@@ -54,26 +58,19 @@ def kurtosis(e: Array) -> float:
 
 
 def unexplained_volts(e: Array, problem: Problem, turns: Array) -> Finding | None:
-    """Volts far above the sensors' noise that no effect explains and that sit in one sector of a motor's
-    turn: a brush. `turns` (n,) of the motors; training and held-out rows must both show it.
-    """
+    """Volts above the sensors' noise in one sector of a motor's `turns` (n,), on all rows: a brush."""
     rows = problem.train
-    white = quiet_noise(e, problem)
-    if rows.sum() < FEWEST_BLOCKS * problem.block or problem.test.sum() < 100 or white <= 0:
+    white = white_noise(e, rows, bursts=False)
+    if problem.blocks < FEWEST_BLOCKS or problem.test.sum() < FEWEST_VALIDATED or white <= 0:
         return None
     size, low, high = rms_interval(e[rows], problem.block)
     contrasts = [_contrast(e[k] ** 2, turns[k]) for k in (rows, problem.test)]
     if size < VOLTS * white or min(contrasts) < SECTOR:
         return None
-    return Finding(
-        "unknown",
-        "E",
-        "motor_angle",
-        evidence=variance_log10((size / white) ** 2, rows.sum() / problem.block),
-        share=1 - (white / size) ** 2,
-        note=f"volts {size / white:.1f} times the quiet noise, in a sector of the motor's turn",
-        parameters={"rms": Parameter(size, "V", low, high)},
-    )
+    evidence = variance_log10((size / white) ** 2, rows.sum() / problem.block)
+    share, found = 1 - (white / size) ** 2, {"rms": Parameter(size, "V", low, high)}
+    note = f"volts {size / white:.1f} times the quiet noise, in a sector of the motor's turn"
+    return Finding(UNKNOWN, "E", "motor_angle", evidence=evidence, share=share, note=note, parameters=found)
 
 
 def _contrast(power: Array, turns: Array) -> float:
@@ -96,50 +93,37 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     r = autocovariance(e, problem.train, max(round(LONGEST_S / problem.period_s), 40))
     variance = max(float(r[1] + 0.5 * (r[1] - r[2])), 1e-9)
     below = np.flatnonzero(r < 0.5 * variance)
-    corner = np.log(2) / (2 * np.pi * max(int(below[0]), 1) * problem.period_s) if len(below) else None
+    time = max(int(below[0]), 1) * problem.period_s / np.log(2) if len(below) else None
     sigma = float(np.sqrt(variance))
     if sigma < STEPS * problem.step:
         return None  # two converters' rounding that a steady motion does not average out
-    tails = kurtosis(e[problem.train])
-    turns_over = follows_direction(e, problem)
-    evidence = variance_log10((ratio / EVEN) ** 2, problem.train.sum() * problem.period_s / MEAN_S)
+    rows, turns_over = problem.train, follows_direction(e, problem)
+    tails, logged_s = kurtosis(e[rows]), float(rows.sum()) * problem.period_s
+    evidence = variance_log10((ratio / EVEN) ** 2, logged_s / MEAN_S)
+    share = 1 - white**2 / float(np.mean(e[rows] ** 2))
     if tails > BURSTS or turns_over:
+        size, low, high = rms_interval(e[rows], problem.block)
         bursts = f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3)"
-        return Finding(
-            "unknown",
-            "T",
-            "velocity" if turns_over else "time",
-            evidence=evidence,
-            share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
-            note="torque that turns over with the direction: friction of no kind that has a name"
-            if turns_over
-            else f"{bursts} that no angle, speed or reversal explains",
-            parameters={"rms": Parameter(*_with_unit(e[problem.train], problem.block))},
-        )
-    turns = max(float(problem.train.sum()) * problem.period_s * (corner or 0.0), 4.0)
-    half = 1.96 * sigma / np.sqrt(2 * turns)
-    return Finding(
-        "wind_torque",
-        "T",
-        "time",
-        evidence=evidence,
-        share=1 - (white**2 / float(np.mean(e[problem.train] ** 2))),
-        parameters={
-            "sigma": Parameter(sigma, "N m", sigma - half, sigma + half),
-        }
-        # half of the variance is gone: no error known
-        | ({} if corner is None else {"corner": Parameter(float(corner), "Hz")}),
-    )
+        domain, note = "time", f"{bursts} that no angle, speed or reversal explains"
+        if turns_over:
+            domain = "velocity"
+            note = "torque that turns over with the direction: friction of no kind that has a name"
+        rms = {"rms": Parameter(size, "N m", low, high)}
+        return Finding(UNKNOWN, "T", domain, evidence=evidence, share=share, note=note, parameters=rms)
+    turns = FEWEST_CYCLES if time is None else max(logged_s / (2 * np.pi * time), FEWEST_CYCLES)
+    found = {"deviation": deviation(sigma, turns, "N m")}
+    if time is not None:  # half of the variance is gone: no error known
+        found["correlation_time"] = Parameter(float(time), "s")
+    return Finding("wind_torque", "T", "time", parameters=found, evidence=evidence, share=share)
 
 
 def follows_direction(e: Array, problem: Problem) -> bool:
     """Whether a torque turns over where the motion does: wind goes on as it was."""
-    rate = problem.base[:, 1]
+    rate = rate_of(problem)
     size = max(round(MEAN_S / problem.period_s), 2)
     rows = np.flatnonzero(problem.train & (np.abs(rate) > SLIDING))
-    turns = np.flatnonzero(
-        (rate[rows[1:]] * rate[rows[:-1]] < 0) & (problem.run[rows[1:]] == problem.run[rows[:-1]])
-    )
+    one_run = np.diff(problem.run[rows]) == 0
+    turns = np.flatnonzero((rate[rows[1:]] * rate[rows[:-1]] < 0) & one_run)
     pairs = [
         (float(e[rows[max(k + 1 - size, 0) : k + 1]].mean()), float(e[rows[k + 1 : k + 1 + size]].mean()))
         for k in turns.tolist()
@@ -149,11 +133,6 @@ def follows_direction(e: Array, problem: Problem) -> bool:
     a, b = np.array(pairs).T
     over = min(max(OVER, LUCK / np.sqrt(len(pairs))), 0.95)
     return bool(float(a @ b) < -over * np.sqrt(float(a @ a) * float(b @ b)))
-
-
-def _with_unit(e: Array, block: int) -> tuple[float, str, float, float]:
-    size, low, high = rms_interval(e, block)
-    return size, "N m", low, high
 
 
 def pick_up(frame: Frame) -> Finding | None:
@@ -178,7 +157,7 @@ def pick_up(frame: Frame) -> Finding | None:
     # a bin of a periodogram over its median is exponential with mean 1/ln 2; so many bins were looked at
     chances = [(b[1] * np.log(2) - np.log(b[4])) / np.log(10) for b in same]
     return Finding(
-        "unknown",
+        UNKNOWN,
         "E",
         "time",
         frequency=middle,

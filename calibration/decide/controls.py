@@ -1,103 +1,118 @@
 """Negative controls: the accepted effect made wrong on purpose, which must not be accepted."""
 
-from __future__ import annotations
-
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.decide.heldout import predict_residual
-from calibration.decide.judge import design
-from calibration.decide.select import Selection
-from calibration.decide.thresholds import FLIPPED_BY_LUCK
-from calibration.readers.run import Array
+from calibration.balances.candidate import Candidate, sine_columns
+from calibration.decide.heldout import Model
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import FEWEST_HELD, REVERSIBLE, ROUNDING, TOOTH_TURNS
+from calibration.inputs.run import Array
+from calibration.names import NAMES
+from calibration.names.scene import Scene
 from calibration.statistics.regression import under
 
-TEETH = {
-    "shaft1": (113, 123),
-    "shaft2": (123, 17),
-    "motor": (27, 27),
-    "mesh1": (27, 27),
-    "mesh2": (21, 21),
-    "mesh3": (250, 250),
-    "roller": (30, 30),
-}
+# of the larger gear on each shaft (hardware.md); a mesh has its pinion's
+TEETH = {"shaft1": 113, "shaft2": 123, "motor": 27, "mesh1": 27, "mesh2": 21, "mesh3": 250, "roller": 30}
+# resolution cells (1 / travel) by which a line's order is made wrong: beyond one they are apart (ASSUMPTION)
+CELLS = 1.5
+# effects of a drive whose order is made wrong: the weaker ones are close to nothing anyway (ASSUMPTION)
+MOST_LINES = 6
 
 
-def controls(selection: Selection, angle_turns: Array | None, span_turns: float) -> list[dict[str, Any]]:
-    """One tooth more and less, sign flipped and time reversed, for every chosen effect."""
+@dataclass(frozen=True, kw_only=True)
+class Wrong:
+    """A wrong version of an effect in words, and its columns; None, and why, where the log cannot try it."""
+
+    what: str
+    columns: Array | None = None
+    note: str = ""
+
+
+def controls(
+    s: Selection, wrong_of: Callable[[int, Candidate], Sequence[Wrong]], reversed_time: bool = True
+) -> list[dict[str, Any]]:
+    """The wrong versions of every chosen effect, its columns in reversed time, and its sign flipped."""
     out = []
-    for k, chosen in enumerate(selection.chosen):
-        c = chosen.candidate
+    for k, c in enumerate(s.candidates):
         place = {"name": c.name, "stage": c.stage, "harmonic": c.harmonic}
-        tests: list[tuple[str, Candidate]] = [
-            ("time reversed", replace(c, columns=c.columns[::-1].copy(), shape=None))
-        ]
-        if c.stage in TEETH and c.kind == "line" and c.order and angle_turns is not None:
-            teeth = TEETH[c.stage][0]
-            for step, word in ((1, "more"), (-1, "less")):
-                order = c.order * (teeth + step) / teeth
-                if abs(order - c.order) * span_turns < 0.7:
-                    out.append(
-                        {
-                            "what": f"one tooth {word} on {c.stage}",
-                            "accepted": False,
-                            "note": "this travel cannot tell one tooth from the next",
-                            **place,
-                        }
-                    )
-                    continue
-                x = 2 * np.pi * angle_turns * order
-                tests.append(
-                    (
-                        f"one tooth {word} on {c.stage}",
-                        replace(c, columns=np.column_stack([np.cos(x), np.sin(x)]), shape=None),
-                    )
-                )
-        for what, wrong in tests:
-            row = {"what": f"{what} ({c.say()})", "accepted": _better(selection, k, wrong), **place}
-            if what == "time reversed" and _alike(c.columns, wrong.columns):
-                row = {
-                    "what": row["what"],
-                    "accepted": False,
-                    "note": "no test here: this motion reads the same backwards",
-                    **place,
-                }
-            out.append(row)
-        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(selection, k), **place})
+        tests = list(wrong_of(k, c))
+        if reversed_time:
+            back = c.columns[::-1].copy()
+            what = f"time reversed ({c.say()})"
+            same = Wrong(what=what, note="no test here: this motion reads the same backwards")
+            tests.insert(0, same if _alike(c.columns, back) else Wrong(what=what, columns=back))
+        for x in tests:
+            accepted = x.columns is not None and _better(s, k, replace(c, columns=x.columns, shape=None))
+            note = {"note": x.note} if x.note else {}
+            out.append({"what": x.what, "accepted": accepted, **note, **place})
+        out.append({"what": f"sign flipped ({c.say()})", "accepted": _flipped(s, k), **place})
     return out
+
+
+def tooth_more_or_less(angle: Array | None, span: float) -> Callable[[int, Candidate], list[Wrong]]:
+    """Lines of a stage with one tooth more and less, over the axis' angle (n,) and its span in turns."""
+
+    def wrong_of(_: int, c: Candidate) -> list[Wrong]:
+        if c.stage not in TEETH or c.kind != "line" or not c.order or angle is None:
+            return []
+        out = []
+        for step, word in ((1, "more"), (-1, "less")):
+            order = c.order * (TEETH[c.stage] + step) / TEETH[c.stage]
+            what = f"one tooth {word} on {c.stage}"
+            if abs(order - c.order) * span < TOOTH_TURNS:
+                out.append(Wrong(what=what, note="this travel cannot tell one tooth from the next"))
+                continue
+            columns = sine_columns(angle * order, np.zeros(len(angle)))
+            out.append(Wrong(what=f"{what} ({c.say()})", columns=columns))
+        return out
+
+    return wrong_of
+
+
+def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[Wrong]]:
+    """Lines of a drive at an order beside their own."""
+    span, turn, x = scene.span or 1.0, scene.view.turn or 1.0, scene.view.x[scene.view.rows]
+
+    def wrong_of(k: int, c: Candidate) -> list[Wrong]:
+        scaled = c.name in NAMES and NAMES[c.name].scaled
+        whole_stage = c.harmonic is None and c.stage is not None
+        if k >= MOST_LINES or c.kind != "line" or not c.order or scaled or whole_stage:
+            return []
+        order, _ = c.fixed.get("order", (c.order, ""))
+        label = s.problem.session if c.per_run else np.zeros_like(s.problem.session)
+        rates = [order / turn + shift / span for shift in (CELLS, -CELLS)]
+        what = f"in place of {order:.4g} ({c.say()})"
+        return [Wrong(what=f"order {r * turn:.4g} {what}", columns=sine_columns(x * r, label)) for r in rates]
+
+    return wrong_of
 
 
 def _alike(a: Array, b: Array) -> bool:
     """True when b's columns lie mostly in the span of a's: the control is then the effect itself."""
     q, _ = np.linalg.qr(a)
-    return bool(np.sum((q.T @ b) ** 2) > 0.4 * np.sum(b**2))
+    return bool(np.sum((q.T @ b) ** 2) > REVERSIBLE * np.sum(b**2))
 
 
-def _better(selection: Selection, k: int, wrong: Candidate) -> bool:
-    """True when the wrong candidate in the place of the right one fits at least as well on training rows,
-    through the same filter."""
-    p = selection.problem
-    right = [x.candidate for x in selection.chosen]
-    other = [wrong if j == k else c for j, c in enumerate(right)]
-    true, false = (under(p.y, design(p, x), p.train, selection.after.whitener) for x in (right, other))
+def _better(s: Selection, k: int, wrong: Candidate) -> bool:
+    """True when the wrong candidate fits training rows at least as well, through the same filter."""
+    p, right = s.problem, s.candidates
+    others = [*right[:k], wrong, *right[k + 1 :]]
+    true, false = (under(p.y, p.design(x), p.train, s.after.whitener) for x in (right, others))
     return false >= true
 
 
-def _flipped(selection: Selection, k: int) -> bool:
+def _flipped(s: Selection, k: int) -> bool:
     """True when the effect with its sign turned leaves less on held-out rows than no effect."""
-    p = selection.problem
-    if p.test.sum() < 20:
+    p, x = s.problem, s.columns
+    if p.test.sum() < FEWEST_HELD:
         return False
-    at = p.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:k])
-    x = design(p, [c.candidate for c in selection.chosen])
-    beta = selection.after.beta.copy()
-    width = selection.chosen[k].candidate.width
-    without = beta.copy()
-    without[at : at + width] = 0.0
-    beta[at : at + width] *= -1
-    rows = p.test
-    e1, e0 = predict_residual(p, x, beta, rows), predict_residual(p, x, without, rows)
-    return bool(np.mean(e1**2) < (1 - FLIPPED_BY_LUCK) * np.mean(e0**2))
+    left = []
+    for factor in (-1.0, 0.0):
+        beta = s.after.beta.copy()
+        beta[s.at(k)] *= factor
+        left.append(float(np.mean(Model(x=x, beta=beta).residual(p.once, p.once.test) ** 2)))
+    return left[0] < (1 - ROUNDING) * left[1]

@@ -1,109 +1,107 @@
-"""Late columns: the lag between redundant columns, taken from the coefficients of their rates (effects.md,
-lesson 2)."""
+"""Late columns of an axis: lags from coefficients of rates (effects.md, lesson 2), against sound logs'."""
 
-from __future__ import annotations
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.decide.accept import FEWEST_BLOCKS
-from calibration.decide.judge import design
-from calibration.decide.select import Selection
-from calibration.declaredplant import Declared
+from calibration.decide import thresholds as limits
+from calibration.decide.selection import Selection
 from calibration.finding import Finding, Parameter
-from calibration.statistics.regression import gls
+from calibration.inputs.declaredplant import Declared
+from calibration.names.channel_delay import COLUMNS, late_column
 from calibration.statistics.tails import student_reach
 
-SMALLEST_S = 1.2e-4  # shorter lags than this are within an interrupt's latency
-WINDOW_DELAY_S = 0.0025  # the velocity column counts over the last 5 ms: half of it
-ELECTRICAL_S = (
-    0.003,
-    0.0105,
-)  # one tick of the loop, L/R of 0.5 to 5 ms and the output latch: what a sound log shows
+#: term of a channel's base that takes up a lag
+TERM = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
+#: s, least and most of that term on a sound log, where it is not zero
+SOUND = {"S": (-limits.WINDOW_DELAY_S, -limits.WINDOW_DELAY_S), "E": limits.SOUND_VOLTS_LAG_S}
+# s, of the volts. arithmetic
+SOUND_MIDDLE_S = sum(limits.SOUND_VOLTS_LAG_S) / 2
+REACH = student_reach(limits.LAG_FREEDOM)
+Selections = Mapping[str, Selection]
 
 
-# of the volts on sound logs: 0.0051 to 0.0068 on the plant's own and on development logs (seeds 1024 to
-# 1027), a tick and what the winding needs beyond it
-SOUND_LAG_S = 0.006
-# a measurement behind another frame on the bus, 130 bits each at 1 Mbit/s (FIDELITY.md: not in its age)
-BUS_WAIT_S = 2.6e-4
-TICK_S = 0.005  # paper 3.3
-COLUMN = {"K": 2, "S": 0}  # of the delay in the channel's base
-CONFIRMED = 0.6  # of the delay seen against the effort, that the torque must lag the motion
-SLACK_S = 0.002  # beyond that range before the volts alone call a column late
-MATTERS = 0.05  # of the mean square: a delay that explains less is a nuisance
-LATE_CURRENT_S = 0.0015  # against the encoder; a converter's own delay is well below a tick
+@dataclass(frozen=True, kw_only=True)
+class Late:
+    """A column that is late by `delay` s, and the reach of its 95 % interval."""
+
+    column: str
+    delay: float
+    reach: float
 
 
-def gain_of_column(s: Selection, column: int) -> float:
-    """Share of the training mean square that the base's `column` takes away."""
-    p = s.problem
-    x = design(p, [c.candidate for c in s.chosen])
-    without = gls(p.y, np.delete(x, column, axis=1), p.train, p.ar_order, p.block).residual[p.train]
-    return 1.0 - float(np.mean(s.after.residual[p.train] ** 2)) / max(float(np.mean(without**2)), 1e-300)
-
-
-def delay_findings(selections: dict[str, Selection], declared: Declared) -> list[Finding]:
-    """Compare every lag with what a sound log shows; one finding, on the column that is late.
-
-    On a log of the emulator's own boards the plant file's gear train may make torque lag the currents
-    (damping over stiffness), a measurement may have waited for the bus, and the effort's second tick is not
-    logged.
-    """
-    allowed = BUS_WAIT_S if declared.own else 0.0
-    lags: dict[str, tuple[float, float]] = {}
-    for key, nominal in (("K", 0.0), ("S", WINDOW_DELAY_S)):
-        index = COLUMN[key]
-        p = selections[key].problem if key in selections else None
-        if p is not None and p.train.sum() >= FEWEST_BLOCKS * p.block:
-            s = selections[key]
-            value, error = -float(s.after.beta[index]), float(np.sqrt(s.after.covariance[index, index]))
-            lags[key] = (value - nominal, error * student_reach(60))
-    late = {
-        k: v for k, (v, e) in lags.items() if abs(v) > SMALLEST_S + allowed and abs(v) > 2.5 * e and e < 3e-4
-    }
-    late = {k: v for k, v in late.items() if gain_of_column(selections[k], COLUMN[k]) > MATTERS}
-    name = None
-    if "K" in late and "S" in late and abs(late["K"] - late["S"]) < 0.3 * abs(late["K"]):
-        name, key, value = "position", "K", -late["K"]
-    elif "K" in late:
-        name, key, value = "tachometers", "K", late["K"]
-    elif "S" in late:
-        name, key, value = "velocity", "S", late["S"]
-    if name is None and "T" in selections:
-        s = selections["T"]
-        at = [label for label, _ in s.problem.base_labels].index("current_delay")
-        # the torque is what the currents say: currents that come late lead it by minus the delay
-        value = -float(s.after.beta[at]) - declared.gear_lag_s
-        error = float(np.sqrt(s.after.covariance[at, at])) * student_reach(60)
-        if value > LATE_CURRENT_S and value > 3 * error and "E" in selections:
-            lag = float(selections["E"].after.beta[2])
-            # a loop that changes its effort from tick to tick, of which every second one is logged, makes
-            # sound
-            # currents look late against the effort, but not against the motion
-            telling = lag - SOUND_LAG_S > CONFIRMED * value and gain_of_column(s, at) > MATTERS
-            if telling and value > CONFIRMED * (lag - sum(ELECTRICAL_S) / 2):
-                lags["T"] = (value, error)
-                name, key = "current", "T"
-    if name is None and "E" in selections and not selections["E"].chosen:
-        s = selections["E"]
-        value, error = float(s.after.beta[2]), float(np.sqrt(s.after.covariance[2, 2])) * student_reach(60)
-        slack = SLACK_S + (TICK_S if declared.own else 0.0)
-        off = value < ELECTRICAL_S[0] - slack or value > ELECTRICAL_S[1] + slack
-        if off and error < 1e-3 and gain_of_column(s, 2) > MATTERS:
-            lags["E"] = (abs(value - sum(ELECTRICAL_S) / 2), error)
-            name, key, value = ("current or effort", "E", lags["E"][0])
-    if name is None:
+def delay_findings(selections: Selections, declared: Declared) -> list[Finding]:
+    """One finding, on the column that is late: encoders tell most, volts alone least."""
+    rules = (_of_encoders, _of_currents, _of_volts)
+    late = next((x for x in (rule(selections, declared) for rule in rules) if x is not None), None)
+    if late is None:
         return []
-    error = lags[key][1]
-    z = value / max(error / student_reach(60), 1e-12)
-    return [
-        Finding(
-            "channel_delay",
-            "S",
-            "clock",
-            evidence=z * z / 2 / np.log(10),
-            share=1.0,
-            note=f"the {name} column is late",
-            parameters={"delay": Parameter(value, "s", value - error, value + error)},
-        )
-    ]
+    found = late_column(f"the {late.column} column is late", late.delay, late.reach / REACH, reach=REACH)
+    if late.column in COLUMNS:
+        found.parameters["column"] = Parameter(float(COLUMNS[late.column]), "1")
+    return [found]
+
+
+def _lag(s: Selection, key: str) -> tuple[float, float]:
+    """Coefficient of the channel's term, s, and the reach of its interval."""
+    lag = s.problem.named(s.after)[TERM[key]]
+    return lag.value, lag.error * REACH
+
+
+def _matters(s: Selection, key: str) -> bool:
+    """Whether the term takes more of the training mean square than what a balance errs by."""
+    p = s.problem
+    without = p.fit(np.delete(s.columns, p.place(TERM[key]), axis=1)).residual[p.train]
+    left = float(np.mean(s.after.residual[p.train] ** 2))
+    return 1.0 - left / max(float(np.mean(without**2)), 1e-300) > limits.MARGIN
+
+
+def _of_encoders(selections: Selections, declared: Declared) -> Late | None:
+    """On a log of the emulator's own boards a measurement may have waited for the bus."""
+    least = limits.SMALLEST_LAG_S + (limits.BUS_WAIT_S if declared.own else 0.0)
+    late: dict[str, Late] = {}
+    for key, column in (("K", "tachometers"), ("S", "velocity")):
+        s = selections.get(key)
+        if s is None or s.problem.blocks < limits.FEWEST_BLOCKS:
+            continue
+        value, reach = _lag(s, key)
+        delay = SOUND.get(key, (0.0, 0.0))[0] - value
+        sure = abs(delay) > max(least, limits.LAG_OVER_ERROR * reach) and reach < limits.SURE_LAG_S
+        if sure and _matters(s, key):
+            late[key] = Late(column=column, delay=delay, reach=reach)
+    both = len(late) == 2 and abs(late["K"].delay - late["S"].delay) < limits.SAME_LAG * abs(late["K"].delay)
+    if both:  # what they are compared with
+        return Late(column="position", delay=-late["K"].delay, reach=late["K"].reach)
+    return late.get("K", late.get("S"))
+
+
+def _of_currents(selections: Selections, declared: Declared) -> Late | None:
+    """Currents that come late make a torque that leads by the delay, but for a train's lag.
+
+    A loop may change its effort from tick to tick while only every second tick is logged. Sound currents then
+    look late against the effort, but not against the motion. So both must show the delay.
+    """
+    if "T" not in selections or "E" not in selections:
+        return None
+    s = selections["T"]
+    value, reach = _lag(s, "T")
+    delay, volts = -value - declared.gear_lag_s, _lag(selections["E"], "E")[0]
+    if delay <= max(limits.LATE_CURRENT_S, limits.CURRENT_OVER_ERROR * reach) or not _matters(s, "T"):
+        return None
+    by_volts = volts - limits.SOUND_LAG_S > limits.CONFIRMED * delay
+    seen = by_volts and delay > limits.CONFIRMED * (volts - SOUND_MIDDLE_S)
+    return Late(column="current", delay=delay, reach=reach) if seen else None
+
+
+def _of_volts(selections: Selections, declared: Declared) -> Late | None:
+    """Of which column is not known; the emulator's own boards log every second tick of the effort."""
+    s = selections.get("E")
+    if s is None or s.chosen:
+        return None
+    value, reach = _lag(s, "E")
+    slack = limits.SLACK_S + (limits.TICK_S if declared.own else 0.0)
+    sound = limits.SOUND_VOLTS_LAG_S[0] - slack <= value <= limits.SOUND_VOLTS_LAG_S[1] + slack
+    if sound or reach >= limits.SURE_VOLTS_LAG_S or not _matters(s, "E"):
+        return None
+    return Late(column="current or effort", delay=abs(value - SOUND_MIDDLE_S), reach=reach)

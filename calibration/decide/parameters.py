@@ -1,136 +1,102 @@
 """From coefficients to parameters with 95 % intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import chndtrix
 
-from calibration.candidates.candidate import Candidate
-from calibration.decide.accept import MODEL_ERROR
-from calibration.decide.refine import slopes
+from calibration.balances.candidate import pairs_by_section
+from calibration.decide import thresholds as limits
+from calibration.decide.refine import slopes, unseen
 from calibration.decide.scan import Contender
-from calibration.decide.select import Selection
-from calibration.decide.unseen import unseen
+from calibration.decide.selection import Selection
 from calibration.finding import Finding, Parameter
-from calibration.readers.run import Array
-from calibration.statistics.regression import gls
+from calibration.inputs.run import Array
 from calibration.statistics.tails import student_reach
-
-STEP_ERROR = 0.15  # of a nonlinear parameter's small step, likewise
 
 
 def interval(value: float, error: float, blocks: int, model: float | None = None) -> tuple[float, float]:
-    """Student's 95 % interval with as many degrees of freedom as there are blocks; `model` is the model's own
-    error, MODEL_ERROR of the value unless given."""
-    error = float(np.hypot(error, MODEL_ERROR * value if model is None else model))
-    reach = student_reach(max(blocks - 2, 3)) * error
+    """Student's 95 % interval, as free as there are blocks; `model` error: MODEL_ERROR unless given."""
+    error = float(np.hypot(error, limits.MODEL_ERROR * value if model is None else model))
+    reach = student_reach(max(blocks - 2, limits.FEWEST_FREEDOM)) * error
     return value - reach, value + reach
 
 
-def parameters_of(selection: Selection, index: int) -> dict[str, Parameter]:
-    """Parameters of the selection's chosen effect `index`, from the joint fit of all of them."""
-    problem = selection.problem
-    at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
-    candidate = selection.chosen[index].candidate
-    where = slice(at, at + candidate.width)
-    beta, cov = selection.after.beta[where], selection.after.covariance[where, where]
-    blocks = int(problem.train.sum() / problem.block)
-    out: dict[str, Parameter] = {}
-    if candidate.kind == "line" or candidate.per_run:
-        sections = pairs_by_section(candidate.columns)
-        out = _waves(candidate, beta, cov, blocks, sections)
-    else:
-        for k, (name, unit) in enumerate(candidate.labels):
-            low, high = interval(float(beta[k]), float(np.sqrt(cov[k, k])), blocks)
-            out[name] = Parameter(float(beta[k]), unit, low, high)
-    return out | _nonlinear(selection, index, blocks)
+def parameters_of(s: Selection, k: int) -> dict[str, Parameter]:
+    """Parameters of the chosen effect `k`, from the joint fit of all of them."""
+    c = s.candidates[k]
+    if c.kind == "line" or c.per_run:
+        return _waves(s, k) | _nonlinear(s, k)
+    errors = np.sqrt(np.diag(s.covariance(k)))
+    sizes = {
+        name: Parameter(float(value), unit, *interval(float(value), float(error), s.problem.blocks))
+        for (name, unit), value, error in zip(c.labels, s.sizes(k), errors, strict=False)
+    }
+    return sizes | _nonlinear(s, k)
 
 
-def _nonlinear(selection: Selection, index: int, blocks: int) -> dict[str, Parameter]:
+def _nonlinear(s: Selection, k: int) -> dict[str, Parameter]:
     """Intervals of refined parameters from a joint fit with their slopes; grid parameters have none."""
-    problem, candidate = selection.problem, selection.chosen[index].candidate
-    out = {name: Parameter(value, unit) for name, (value, unit) in candidate.fixed.items()}
-    if not candidate.steps:
+    p, c = s.problem, s.candidates[k]
+    out = {name: Parameter(value, unit) for name, (value, unit) in c.fixed.items()}
+    if not c.steps:
         return out
-    at = problem.base.shape[1] + sum(c.candidate.width for c in selection.chosen[:index])
-    extra = slopes(candidate, selection.after.beta[at : at + candidate.width])
-    x = np.hstack([problem.base, *[c.candidate.columns for c in selection.chosen], extra])
-    fit = gls(problem.y, x, problem.train, problem.ar_order, problem.block)
-    for k, name in enumerate(list(candidate.fixed)[: len(candidate.steps)]):
-        value, unit = candidate.fixed[name]
-        error = float(np.sqrt(fit.covariance[-len(candidate.steps) + k, -len(candidate.steps) + k]))
-        low, high = interval(value, error, blocks, STEP_ERROR * candidate.steps[k])
-        out[name] = Parameter(value, unit, low, high)
-    if "ramp" in out and out["ramp"].value < 0.0:  # any length below a second is a step of one
-        out["ramp"] = Parameter(0.0, out["ramp"].unit)
-    stretch = unseen(problem, candidate)
+    fit = p.fit(np.hstack([s.columns, slopes(c, s.sizes(k))]))
+    errors = np.sqrt(np.diag(fit.covariance)[-len(c.steps) :])
+    for name, error, step in zip(c.free, errors, c.steps, strict=True):
+        value, unit = c.fixed[name]
+        out[name] = Parameter(value, unit, *interval(value, float(error), p.blocks, limits.STEP_ERROR * step))
+    if "duration" in out and out["duration"].value < 0.0:  # any length below a second is a step of one
+        out["duration"] = Parameter(0.0, out["duration"].unit)
+    stretch = unseen(p, c)
     if stretch is not None:
-        out["onset"] = Parameter(*candidate.fixed["onset"], *stretch)
-        out |= {"ramp": Parameter(*candidate.fixed["ramp"])} if "ramp" in out else {}
+        out["start"] = Parameter(*c.fixed["start"], *stretch)
+        out |= {"duration": Parameter(*c.fixed["duration"])} if "duration" in out else {}
     return out
 
 
-MOST_WAVES = 6  # sine pairs of one section that are told
-
-
-def pairs_by_section(columns: Array) -> list[list[int]]:
-    """First columns of the sine pairs of every section: pairs that live on the same rows are harmonics of
-    one section, a pair on rows of its own is the same sine in another one."""
-    rows: list[Array] = []
-    out: list[list[int]] = []
-    for k in range(0, columns.shape[1] - 1, 2):
-        here = np.flatnonzero(np.any(columns[:, k : k + 2] != 0, axis=1))
-        ends = here[[0, -1]].astype(float) if len(here) else np.zeros(2)
-        for j, other in enumerate(rows):
-            if ends[0] <= other[1] and other[0] <= ends[1]:
-                out[j].append(k)
-                break
-        else:
-            rows.append(ends)
-            out.append([k])
-    return out
-
-
-def _waves(
-    candidate: Candidate, beta: Array, cov: Array, blocks: int, sections: list[list[int]]
-) -> dict[str, Parameter]:
-    """Amplitude of every harmonic, one for all sections, and its phase where there is one section only: a
-    section's phase is a nuisance."""
+def _waves(s: Selection, k: int) -> dict[str, Parameter]:
+    """Amplitude of every harmonic; its phase too where there is one section, else it is a nuisance."""
+    labels, sections = s.candidates[k].labels, pairs_by_section(s.candidates[k].columns)
+    beta, cov = s.sizes(k), s.covariance(k)
     out: dict[str, Parameter] = {}
-    name, unit = candidate.labels[0]
-    for h in range(min(max(len(s) for s in sections), MOST_WAVES)):
-        word = "" if h == 0 else f"_{h + 1}"
-        here = [s[h] for s in sections if len(s) > h]
-        if len(here) > 1:
-            out[name + word] = _common_amplitude(candidate, beta, cov, blocks, here)
+    for h in range(min(max(len(x) for x in sections), limits.MOST_WAVES)):
+        name, unit = labels[min(h, len(labels) - 1)]
+        word = "" if h < len(labels) else f"_{h + 1}"
+        pairs = [slice(x[h], x[h] + 2) for x in sections if len(x) > h]
+        if len(pairs) > 1:
+            found = [amplitude_interval(beta[at], cov[at, at], s.problem.blocks) for at in pairs]
+            out[name + word] = _common(found, labels[0][1])
             continue
-        pair = slice(here[0], here[0] + 2)
-        amplitude, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
-        out[name + word] = Parameter(amplitude, unit, low, high)
-        phase = float(np.arctan2(-beta[pair][1], beta[pair][0]))
-        spread = float(np.sqrt(np.trace(cov[pair, pair]) / 2)) / max(amplitude, 1e-300)
-        low, high = interval(phase, min(spread, 2.0), blocks)
-        out["phase" + word] = Parameter(phase, "rad", low, high)
+        phase_name = f"{name}_phase" if 0 < h < len(labels) else "phase" + word
+        at = pairs[0]
+        out[name + word], out[phase_name] = _wave(beta[at], cov[at, at], s.problem.blocks, unit)
     return out
 
 
-def _common_amplitude(
-    candidate: Candidate, beta: Array, cov: Array, blocks: int, pairs: Sequence[int]
-) -> Parameter:
-    """One amplitude of a line whose phase is every section's own; sections that hardly show it do not
-    count."""
-    found = []
-    top = max(float(np.hypot(beta[k], beta[k + 1])) for k in pairs)
-    for k in pairs:
-        pair = slice(k, k + 2)
-        if float(np.hypot(*beta[pair])) > 0.2 * top:
-            value, low, high = amplitude_interval(beta[pair], cov[pair, pair], blocks)
-            found.append((value, high - low))
-    value = float(np.mean([v for v, _ in found])) if found else 0.0
-    half = float(np.sqrt(np.sum([w**2 for _, w in found]))) / 2 / max(len(found), 1)
-    return Parameter(value, candidate.labels[0][1], value - half, value + half)
+def _wave(
+    beta: Array, cov: Array, blocks: int, unit: str, model: float | None = None
+) -> tuple[Parameter, Parameter]:
+    """Amplitude and phase of a sine pair; `model` error of the phase as in `interval`."""
+    value, low, high = amplitude_interval(beta, cov, blocks)
+    phase = float(np.arctan2(-beta[1], beta[0]))
+    around = interval(phase, min(_spread(cov) / max(value, 1e-300), 2.0), blocks, model)
+    return Parameter(value, unit, low, high), Parameter(phase, "rad", *around)
+
+
+def _spread(cov: Array) -> float:
+    """Standard error of either coefficient of a sine pair."""
+    return float(np.sqrt(max(np.trace(cov) / 2, 0.0)))
+
+
+def _common(found: Sequence[tuple[float, float, float]], unit: str) -> Parameter:
+    """One amplitude of several sections' (value, low, high); those that hardly show it do not count."""
+    least = limits.SHOWN_SECTION * max(value for value, _, _ in found)
+    seen = np.array([x for x in found if x[0] > least]).reshape(-1, 3)
+    value = float(seen[:, 0].mean()) if len(seen) else 0.0
+    half = float(np.linalg.norm(seen[:, 2] - seen[:, 1])) / 2 / max(len(seen), 1)
+    return Parameter(value, unit, max(value - half, 0.0), value + half)
 
 
 def amplitude_interval(beta: Array, cov: Array, blocks: int) -> tuple[float, float, float]:
@@ -145,23 +111,51 @@ def amplitude_interval(beta: Array, cov: Array, blocks: int) -> tuple[float, flo
     return amplitude, low, high
 
 
-def finding_of(selection: Selection, index: int, name: str | None = None) -> Finding:
-    """The chosen effect as a finding, with the names the log cannot separate from it."""
-    contender: Contender = selection.chosen[index]
-    c: Candidate = contender.candidate
-    names = [e.candidate.name for e in selection.classes[index]] + list(c.twins)
-    equivalent = [n for n in dict.fromkeys(names) if n != c.name]
-    step = selection.steps[index] if index < len(selection.steps) else selection.held
+def finding_of(s: Selection, k: int) -> Finding:
+    """The chosen effect as a finding, with the names, or the own name elsewhere, that tie with it."""
+    x, c = s.chosen[k], s.candidates[k]
+    tied = [e for e in x.confounded if e.candidate.key == c.key]
+    others = [*(e.candidate.name for e in x.confounded), *c.twins]
     return Finding(
-        name or c.name,
-        selection.problem.channel,
+        c.name,
+        s.problem.channel,
         c.domain,
-        c.stage,
-        c.harmonic,
-        c.fixed["order"][0] if "order" in c.fixed else c.order,
-        c.frequency,
-        equivalent,
-        parameters_of(selection, index),
-        contender.evidence,
-        step.share,
+        stage=c.stage,
+        harmonic=c.harmonic,
+        order=c.fixed["order"][0] if "order" in c.fixed else c.order,
+        frequency=c.frequency,
+        equivalent=[*(e.candidate.name for e in tied[:1]), *dict.fromkeys(n for n in others if n != c.name)],
+        parameters=parameters_of(s, k),
+        evidence=x.evidence,
+        share=x.held.share,
+        note="; ".join(f"fits exactly as well: {_told(e)}" for e in tied),
     )
+
+
+def _told(x: Contender) -> str:
+    """Sizes and place of an effect, for people, in its parameters' units."""
+    sizes = {name: size for (name, _), size in zip(x.candidate.labels, x.fit.beta[x.at], strict=False)}
+    return ", ".join(f"{name} {value:.3g}" for name, value in {**sizes, **x.candidate.place}.items())
+
+
+def findings_of(s: Selection, k: int) -> list[Finding]:
+    """The chosen effect as findings: one, or each harmonic of a stage that was taken as one candidate."""
+    c, whole = s.candidates[k], finding_of(s, k)
+    if "frequency" in whole.parameters:  # as refined
+        whole.frequency = whole.parameters["frequency"].value
+    sections = pairs_by_section(c.columns) if c.kind == "line" else [[]]
+    pairs = min(len(section) for section in sections)
+    if c.harmonic is not None or c.stage is None or pairs < 2:
+        return [whole]
+    beta, cov, (size, unit) = s.sizes(k), s.covariance(k), c.labels[0]
+    out = []
+    for h in range(pairs):
+        pair = [slice(section[h], section[h] + 2) for section in sections]
+        waves = [(*_wave(beta[x], cov[x, x], s.problem.blocks, unit, 0.0), _spread(cov[x, x])) for x in pair]
+        # the phase is the section's that shows the line best: one that is held out shows none
+        amplitude, phase, spread = max(waves, key=lambda w: w[0].value)
+        if pairs <= limits.MOST_WAVES or amplitude.value >= limits.CLEAR_Z * spread:
+            order = c.order * (h + 1) if c.order else None
+            sizes = {size: amplitude, "phase": phase}
+            out.append(replace(whole, harmonic=h + 1, order=order, parameters=sizes))
+    return sorted(out, key=lambda f: -f.parameters[size].value) or [whole]

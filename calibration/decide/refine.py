@@ -1,88 +1,64 @@
-"""Refinement of the parameters that enter a candidate nonlinearly (a time constant, an onset, a
-resonance)."""
-
-from __future__ import annotations
+"""Nonlinear parameters (a time constant, an onset, a resonance), and onsets that no fitted row saw."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.channels.problem import Problem
-from calibration.readers.run import Array
-from calibration.statistics.whitening import Whitener
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.decide import thresholds as limits
+from calibration.decide.heldout import Model, compare
+from calibration.inputs.run import Array
+from calibration.statistics.regression import Fit
+from calibration.statistics.whitening import Mask, Whitener
 
-ROUNDS = 3  # of coordinate searches, each on a finer grid
-EVALUATIONS = 90  # of the joint search
-POINTS = 7  # per coordinate and round
+Shape = Callable[[Array], Array]
 
 
-def refine(
-    problem: Problem, base: Array, residual: Array, candidate: Candidate, whitener: Whitener
-) -> Candidate:
-    """Move the nonlinear parameters to where the candidate takes most off the residual (whitened, training
-    rows)."""
-    if candidate.shape is None:
-        return candidate
-    names = list(candidate.fixed)[: len(candidate.steps)]
-    p = np.array([candidate.fixed[n][0] for n in names])
-    taken = _taken(problem, base, residual, candidate, whitener)
-    best = taken(p)
-    reach = np.array(candidate.steps) * 3.0
-    for _ in range(ROUNDS):
-        for k in range(len(p)):
-            for offset in np.linspace(-reach[k], reach[k], POINTS):
-                trial = p.copy()
+def refine(p: Problem, base: Array, residual: Array, c: Candidate, w: Whitener) -> Candidate:
+    """Move nonlinear parameters to where the candidate takes most off the whitened training residual."""
+    if c.shape is None:
+        return c
+    at, taken = c.point, _taken(p, base, residual, c.shape, w)
+    best = taken(at)
+    reach = np.array(c.steps) * limits.REFINE_REACH
+    for _ in range(limits.REFINE_ROUNDS):
+        for k in range(len(at)):
+            for offset in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS):
+                trial = at.copy()
                 trial[k] += offset
                 value = taken(trial)
                 if value > best:
-                    best, p = value, trial
-        reach /= 3.0
-    return _moved(candidate, p)
+                    best, at = value, trial
+        reach /= limits.REFINE_REACH
+    return c.moved(at)
 
 
-def polish(
-    problem: Problem, base: Array, residual: Array, candidate: Candidate, whitener: Whitener
-) -> Candidate:
-    """Move nonlinear parameters that depend on each other (an onset and a ramp, a frequency and its damping)
-    together; for the few candidates that were chosen."""
-    if candidate.shape is None or len(candidate.steps) < 2:
-        return candidate
+def polish(p: Problem, base: Array, residual: Array, c: Candidate, w: Whitener) -> Candidate:
+    """Move nonlinear parameters that depend on each other (onset and ramp) together, of chosen effects."""
+    if c.shape is None or len(c.steps) < 2:
+        return c
     from scipy.optimize import minimize
 
-    taken = _taken(problem, base, residual, candidate, whitener)
-    p = np.array([v for v, _ in candidate.fixed.values()])[: len(candidate.steps)]
-    corners = np.vstack([p, *(p + np.eye(len(p)) * np.array(candidate.steps))])
-    found = minimize(
-        lambda q: -taken(q),
-        p,
-        method="Nelder-Mead",
-        options={"initial_simplex": corners, "maxfev": EVALUATIONS, "fatol": 1e-6, "xatol": 1e-6},
-    )
-    return _moved(candidate, found.x) if -found.fun > taken(p) else candidate
+    at, taken = c.point, _taken(p, base, residual, c.shape, w)
+    simplex = np.vstack([at, at + np.diag(c.steps)])
+    ends = {"maxfev": limits.POLISH_EVALUATIONS, "fatol": 1e-6, "xatol": 1e-6}
+    options = {"initial_simplex": simplex, **ends}
+    found = minimize(lambda q: -taken(q), at, method="Nelder-Mead", options=options)
+    return c.moved(found.x) if -found.fun > taken(at) else c
 
 
-def _taken(
-    problem: Problem, base: Array, residual: Array, candidate: Candidate, whitener: Whitener
-) -> Callable[[Array], float]:
-    """What the candidate takes off the whitened residual of the training rows, over its nonlinear
-    parameters."""
-    train = problem.train
-    use = whitener.usable(train)
-    e = whitener.apply(np.where(train, residual, 0.0))[use]
-    b = whitener.apply(np.where(train[:, None], base, 0.0))[use]
+def _taken(p: Problem, base: Array, residual: Array, shape: Shape, w: Whitener) -> Callable[[Array], float]:
+    """What a shape takes off the whitened training residual, over its nonlinear parameters."""
+    e, b = w.whiten(residual, p.train), w.whiten(base, p.train)
     q, _ = np.linalg.qr(b / np.maximum(np.linalg.norm(b, axis=0), 1e-300))
-    shape = candidate.shape
-    assert shape is not None
 
     def taken(at: Array) -> float:
-        x = whitener.apply(np.where(train[:, None], shape(at), 0.0))[use]
+        x = w.whiten(shape(at), p.train)
         x = x - q @ (q.T @ x)
-        gram = x.T @ x
+        gram, c = x.T @ x, x.T @ e
         if np.trace(gram) <= 0:
             return 0.0
-        c = x.T @ e
         if len(c) == 1:
             return float(c[0] ** 2 / gram[0, 0])
         return float(c @ np.linalg.pinv(gram, rcond=1e-9, hermitian=True) @ c)
@@ -90,24 +66,81 @@ def _taken(
     return taken
 
 
-def _moved(candidate: Candidate, p: Array) -> Candidate:
-    """The candidate at nonlinear parameters `p`."""
-    assert candidate.shape is not None
-    fixed = dict(candidate.fixed)
-    for n, v in zip(list(fixed)[: len(p)], p, strict=True):
-        fixed[n] = (float(v), fixed[n][1])
-    return replace(candidate, columns=candidate.shape(p), fixed=fixed)
+def slopes(c: Candidate, beta: Array) -> Array:
+    """(n, len(steps)): d(columns beta)/d(parameter) of the nonlinear parameters, for their intervals."""
+    shape, at = c.shape, c.point
+    if shape is None:
+        return np.zeros((len(c.columns), 0))
+    small = np.diag(limits.SLOPE_STEP * np.array(c.steps))
+    return np.column_stack([(shape(at + h) - shape(at - h)) @ beta / (2 * h.sum()) for h in small])
 
 
-def slopes(candidate: Candidate, beta: Array) -> Array:
-    """Columns d(columns beta)/d(parameter) of the nonlinear parameters, for their intervals; (n,
-    len(steps))."""
-    if candidate.shape is None:
-        return np.zeros((candidate.columns.shape[0], 0))
-    p = np.array([v for v, _ in candidate.fixed.values()])[: len(candidate.steps)]
-    out = []
-    for k, step in enumerate(candidate.steps):
-        h = np.zeros(len(p))
-        h[k] = 0.3 * step
-        out.append((candidate.shape(p + h) - candidate.shape(p - h)) @ beta / (0.6 * step))
-    return np.column_stack(out)
+def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
+    """Earliest and latest onset, s, of a step between which fitted rows see no difference; None without."""
+    if "start" not in c.free:
+        return None
+
+    def same(onset: float) -> bool:
+        return _alike(c, _step(c, onset), problem.train)
+
+    middle = _begin(c)
+    if not np.any(c.columns[problem.train]) or not same(middle):
+        return None
+    low, high = (_edge(same, middle, way) for way in (-1.0, 1.0))
+    return (low, high) if high - low > limits.SHORTEST_UNSEEN_S else None
+
+
+def never_begins(problem: Problem, c: Candidate) -> str:
+    """Why a change in time is none: on all rows it is what it would be had it come long before; or empty."""
+    if "start" not in c.free or not _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
+        return ""
+    return "it came before the log begins: that is how the drive is, and no change"
+
+
+def settled(p: Problem, base: Array, c: Candidate, fit: Fit) -> Candidate:
+    """The candidate with its step where in an unseen stretch it leaves least on held-out rows.
+
+    Between fitted runs lie pauses, and the run that is held out: all onsets there fit alike. One choice of
+    ONSETS is made on held-out rows, like the phase of a line that is every run's own.
+    """
+    stretch = unseen(p, c)
+    if stretch is None or not p.test.any():
+        return c
+
+    def left(one: Candidate) -> float:
+        model = Model(x=np.hstack([base, one.columns]), beta=fit.beta)
+        return compare(p, model, model, fit.whitener).after
+
+    steps = [c.moved(_step(c, onset)) for onset in np.linspace(*stretch, limits.ONSETS).tolist()]
+    return min([c, *steps], key=left)
+
+
+def _begin(c: Candidate) -> float:
+    """Its onset; of a ramp the middle."""
+    at = {name: value for name, (value, _) in c.fixed.items() if name in c.free}
+    return at["start"] + at.get("duration", 0.0) / 2
+
+
+def _step(c: Candidate, onset: float) -> Array:
+    """Its nonlinear parameters as those of a step at `onset`, s."""
+    at = {"start": onset, "duration": 0.0}
+    return np.array([at.get(name, value) for name, value in zip(c.free, c.point, strict=True)])
+
+
+def _alike(c: Candidate, p: Array, rows: Mask) -> bool:
+    """Whether its columns would be the same with nonlinear parameters `p`."""
+    assert c.shape is not None
+    off, size = c.shape(p)[rows] - c.columns[rows], c.columns[rows]
+    return bool(np.mean(off**2) < limits.ONSET_ALIKE**2 * np.mean(size**2))
+
+
+def _edge(same: Callable[[float], bool], start: float, way: float) -> float:
+    """The last onset, to ONSET_FINE_S, that fits alike when going one way from `start`."""
+    good, step = 0.0, 1.0
+    while step < limits.LONGEST_UNSEEN_S and same(start + way * step):
+        good, step = step, 2 * step
+    bad = step
+    while bad - good > limits.ONSET_FINE_S:
+        half = (good + bad) / 2
+        good, bad = (half, bad) if same(start + way * half) else (good, half)
+    return start + way * good

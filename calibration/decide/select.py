@@ -1,212 +1,138 @@
 """Forward selection of effects in one channel, with out-of-run acceptance and re-tested earlier picks."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.channels.problem import Problem
-from calibration.decide.accept import FEWEST_BLOCKS, MARGIN, equivalents, refuse, within_model, within_step
-from calibration.decide.gate import gate
-from calibration.decide.heldout import HeldOut, compare
-from calibration.decide.judge import Refusal, design, joint, judge, phases
-from calibration.decide.refine import polish
-from calibration.decide.sameorder import lesser_of_one_order
-from calibration.decide.scan import Contender, fit_with, look
-from calibration.decide.superfluous import drop_needless, unphysical, without_superfluous
-from calibration.decide.unseen import never_begins, settled
-from calibration.readers.run import Array
-from calibration.statistics.regression import Fit, gls, under
-from calibration.statistics.surrogate import Scores
-
-MOST = 5  # effects per channel
-ROWS_PER_COLUMN = 8  # before a fit on a short log is tried at all
-CLOSEST = "the closest candidate"
-
-
-@dataclass
-class Selection:
-    """What one channel says."""
-
-    problem: Problem
-    chosen: list[Contender]
-    classes: list[list[Contender]]  # per chosen: those this log cannot separate from it
-    before: Fit
-    after: Fit
-    held: HeldOut
-    scores: Scores
-    looked_at: int  # candidates: their columns are the largest arrays, and are not kept
-    refused: list[Refusal] = field(default_factory=list)
-    steps: list[HeldOut] = field(default_factory=list)
-
-    @property
-    def statistic(self) -> float:
-        """The largest score of all candidates."""
-        return float(self.scores.value.max()) if len(self.scores.value) else 0.0
-
-
-def fitted(s: Selection) -> list[tuple[Candidate, Array]]:
-    """Every accepted effect with its coefficients in the joint fit."""
-    out, at = [], s.problem.base.shape[1]
-    for c in s.chosen:
-        out.append((c.candidate, s.after.beta[at : at + c.candidate.width]))
-        at += c.candidate.width
-    return out
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.decide import thresholds as limits
+from calibration.decide.accept import SHORT, equivalents, refuse, scores, too_small
+from calibration.decide.refine import polish, settled
+from calibration.decide.rules import (
+    below_surrogates,
+    leave_out,
+    lesser_of_one_order,
+    needless,
+    signed,
+    superfluous,
+)
+from calibration.decide.scan import Contender, few, fit_with, look
+from calibration.decide.selection import NO_SCORES, Refusal, Selection
+from calibration.statistics.regression import under
+from calibration.statistics.surrogate import Scores, orthonormal_blocks, score, together
 
 
 def select(
     problem: Problem,
     candidates: list[Candidate],
-    rng: np.random.Generator,
-    most: int = MOST,
-    margin: float = MARGIN,
+    rng: np.random.Generator | None = None,
+    most: int = limits.MOST_EFFECTS,
+    margin: float = limits.MARGIN,
 ) -> Selection:
-    """Pick effects one after another while each helps on held-out rows; then hold them against surrogates."""
-    picks: list[Contender] = []
-    classes: list[list[Contender]] = []
-    steps: list[HeldOut] = []
-    refused: list[Refusal] = []
-    left = list(candidates)
-    blocks = problem.train.sum() / problem.block
-    if left and blocks < FEWEST_BLOCKS:
-        need = FEWEST_BLOCKS * problem.block * problem.period_s
-        why = (
-            f"{problem.train.sum() * problem.period_s:.0f} s to fit are {blocks:.0f} independent blocks,"
-            f" an interval needs {FEWEST_BLOCKS} ({need:.0f} s)"
-        )
-        refused += [Refusal("every candidate", why), *_closest(problem, left)]
-        left = []
-    plain = left_by_base(problem)
-    while len(picks) < most and left:
-        base = design(problem, [p.candidate for p in picks])
-        now = look(problem, base, left)
-        taken = None
-        for one in now.contenders[:4]:
-            contender = settled(problem, base, one)
-            inside, held = judge(problem, now, picks, contender)
-            why = refuse(contender, inside, held, margin) or within_step(problem, now.null, contender)
-            why = why or within_model(problem, plain, now.null, contender)
-            why = why or never_begins(problem, contender.candidate)
-            if not why:
-                taken = contender
+    """Pick effects one by one while each helps on held-out rows; then hold them against surrogates."""
+    search = _Search(Selection.of(problem), candidates, margin)
+    search.pick(most)
+    search.revise()
+    s = replace(search.picks, looked_at=len(candidates))
+    s.scores = gate(s, candidates, np.random.default_rng(0) if rng is None else rng)
+    return leave_out(s, below_surrogates)
+
+
+def gate(s: Selection, candidates: list[Candidate], rng: np.random.Generator) -> Scores:
+    """All candidates' scores on the declared terms' residual, thresholds from what the selection leaves."""
+    if not candidates:
+        return NO_SCORES
+    p, w = s.problem, s.after.whitener
+    e, noise, base = (w.whiten(x, p.train) for x in (s.before.residual, s.after.residual, p.base))
+    signs = rng.choice([-1.0, 1.0], size=(limits.DRAWS, len(range(0, len(e), p.block))))
+    parts = []
+    for some in few(candidates):  # all at once would be the largest array of the whole analysis
+        x = w.whiten(np.hstack([c.columns for c in some]), p.train)
+        q, widths = orthonormal_blocks(x, base, [c.width for c in some])
+        parts.append(score(e, noise, q, widths, p.block, signs))
+    return together(parts, limits.GATE_LEVEL)
+
+
+@dataclass
+class _Search:
+    """The effects picked so far."""
+
+    picks: Selection
+    candidates: list[Candidate]
+    margin: float
+
+    def pick(self, most: int) -> None:
+        """Accept effects, strongest first, until none is acceptable or `most` are there."""
+        p, left = self.picks.problem, list(self.candidates)
+        if left and p.ar_order and p.blocks < limits.FEWEST_BLOCKS:  # they make the noise's filter, too
+            seconds = limits.FEWEST_BLOCKS * p.block * p.period_s
+            why = f"{SHORT}: coloured noise needs {limits.FEWEST_BLOCKS} independent blocks ({seconds:.0f} s)"
+            self.picks.refused.append(Refusal("every effect that no declared stage has", why))
+            left = [c for c in left if c.stage]
+        left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
+        while len(self.picks.chosen) < most and left:
+            found = self.first_accepted(self.picks, left, limits.TRIED)
+            if found is None:
                 break
-            refused.append(Refusal(contender.candidate.say(), why))
-        if taken is None:
-            break
-        picks.append(taken)
-        classes.append(equivalents(problem, now.contenders, taken))
-        steps.append(held)
-        picks, classes, steps = without_superfluous(problem, picks, classes, steps, refused)
-        left = [c for c in left if all(c.key != p.candidate.key for p in picks)]
-    if len(picks) > 1:
-        for k in range(len(picks)):
-            _again(problem, picks, classes, steps, k, candidates, margin, refused)
-        drop_needless(problem, picks, classes, steps, margin, refused)
-    while (lesser := lesser_of_one_order(problem, [p.candidate for p in picks])) is not None:
-        k, other = lesser
-        why = f"its order is that of {picks[other].candidate.say()}, whose shape leaves as much"
-        refused.append(Refusal(picks[k].candidate.say(), why))
-        del picks[k], classes[k], steps[k]
-    for k in range(len(picks)):
-        _polish(problem, picks, k)
-    before = gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block)
-    while (bad := unphysical(problem, picks)) is not None:
-        why = "beside the others its size comes out with a sign that physics excludes"
-        refused.append(Refusal(picks[bad].candidate.say(), why))
-        del picks[bad], classes[bad], steps[bad]
-    after = joint(problem, picks)
-    scores = gate(problem, before, after, candidates, problem.base, rng)
-    keep = [p.evidence >= scores.threshold for p in picks]
-    for p, good in zip(picks, keep, strict=True):
-        if not good:
-            refused.append(
-                Refusal(
-                    p.candidate.say(),
-                    f"below the surrogate threshold ({p.evidence:.1f} < {scores.threshold:.1f})",
-                )
-            )
-    if not all(keep):
-        picks = [x for x, k in zip(picks, keep, strict=True) if k]
-        classes = [x for x, k in zip(classes, keep, strict=True) if k]
-        steps = [x for x, k in zip(steps, keep, strict=True) if k]
-        after = joint(problem, picks)
-    held = compare(
-        problem,
-        problem.base,
-        before.beta,
-        design(problem, [p.candidate for p in picks]),
-        after.beta,
-        after.whitener,
-        (problem.base_phases, phases(problem, [p.candidate for p in picks])),
-    )
-    return Selection(problem, picks, classes, before, after, held, scores, len(candidates), refused, steps)
+            self.picks = leave_out(self.picks.keep([*self.picks.chosen, found]), superfluous)
+            left = [c for c in left if c.key != found.candidate.key]
+
+    def revise(self) -> None:
+        """Look at every pick again beside the others; drop what needs no name or has a size that none has."""
+        if len(self.picks.chosen) > 1:
+            for k in range(len(self.picks.chosen)):
+                self._look_again(k)
+        self.picks = leave_out(self.picks, needless(self.margin), lesser_of_one_order)
+        for k in range(len(self.picks.chosen)):
+            self.picks = _polished(self.picks, k)
+        self.picks = signed(self.picks)
+
+    def _look_again(self, k: int) -> None:
+        """What was picked while the others were missing may be another's name."""
+        others = self.picks.without(k)
+        taken = {c.key for c in others.candidates}
+        left = [c for c in self.candidates if c.key not in taken]
+        found = self.first_accepted(others, left, limits.TRIED_AGAIN, further=False)
+        if found is None:
+            return
+        was, now = self.picks.candidates[k], found.candidate
+        if now.key != was.key:
+            self.picks.refused.append(Refusal(was.say(), f"{now.say()} explains it better"))
+        self.picks = self.picks.put(k, found)
+
+    def first_accepted(
+        self, others: Selection, candidates: list[Candidate], tries: int, further: bool = True
+    ) -> Contender | None:
+        """The first of the best `tries` that nothing speaks against; no `further` one replaces a pick."""
+        p, base = others.problem, others.columns
+        contenders = look(p, base, others.after, candidates)
+        for one in contenders[:tries]:
+            contender = replace(one, candidate=settled(p, base, one.candidate, one.fit))
+            inside, held = scores(others, contender)
+            why = refuse(contender, inside, held, self.margin) or too_small(others, contender, further)
+            if not why:
+                rivals = [*contender.confounded, *equivalents(others, contenders, contender)]
+                return replace(contender, held=held, confounded=rivals)
+            if further:
+                self.picks.refused.append(Refusal(contender.candidate.say(), why))
+        return None
 
 
-def left_by_base(problem: Problem) -> Array:
-    """What the declared terms alone leave, (n,)."""
-    return gls(problem.y, problem.base, problem.train, problem.ar_order, problem.block).residual
-
-
-def _closest(problem: Problem, candidates: list[Candidate]) -> list[Refusal]:
-    """The candidate that would have been looked at first, had the rows been enough."""
-    room = problem.base.shape[1] + max(c.width for c in candidates)
-    if problem.train.sum() < ROWS_PER_COLUMN * room:
-        return []
-    now = look(problem, problem.base, candidates).contenders[:1]
-    return [
-        Refusal(c.candidate.say(), f"{CLOSEST} (-log10 p = {c.evidence:.1f}), but too few rows to name it")
-        for c in now
-        if c.bayes > 0
-    ]
-
-
-def _polish(problem: Problem, picks: list[Contender], k: int) -> None:
-    """Move pick `k`'s nonlinear parameters together, beside the others."""
-    if len(picks[k].candidate.steps) < 2:
-        return
-    base = design(problem, [p.candidate for j, p in enumerate(picks) if j != k])
-    null = gls(problem.y, base, problem.train, problem.ar_order, problem.block)
-    better = polish(problem, base, null.residual, picks[k].candidate, picks[k].fit.whitener)
-    found = fit_with(problem, base, better)
+def _polished(s: Selection, k: int) -> Selection:
+    """Pick `k`'s nonlinear parameters moved together, beside the others."""
+    pick, p = s.chosen[k], s.problem
+    if len(pick.candidate.steps) < 2:
+        return s
+    others = s.without(k)
+    base = others.columns
+    better = polish(p, base, others.after.residual, pick.candidate, pick.fit.whitener)
+    found = fit_with(p, base, better)
     if found is None:
-        return
-    common = found.fit.whitener
+        return s
     now, was = (
-        under(problem.y, np.hstack([base, c.columns]), problem.train, common)
-        for c in (found.candidate, picks[k].candidate)
+        under(p.y, np.hstack([base, c.columns]), p.train, found.fit.whitener)
+        for c in (found.candidate, pick.candidate)
     )
-    picks[k] = settled(problem, base, found if now > was else picks[k])
-
-
-def _again(
-    problem: Problem,
-    picks: list[Contender],
-    classes: list[list[Contender]],
-    steps: list[HeldOut],
-    k: int,
-    candidates: list[Candidate],
-    margin: float,
-    refused: list[Refusal],
-) -> None:
-    """Look at pick `k` again beside all the others: what was taken while they were missing may be another's
-    name."""
-    others = [p for j, p in enumerate(picks) if j != k]
-    base = design(problem, [p.candidate for p in others])
-    taken = {p.candidate.key for p in others}
-    now = look(problem, base, [c for c in candidates if c.key not in taken])
-    for one in now.contenders[:3]:
-        contender = settled(problem, base, one)
-        inside, held = judge(problem, now, others, contender)
-        if refuse(contender, inside, held, margin) or within_step(problem, now.null, contender):
-            continue
-        if never_begins(problem, contender.candidate):
-            continue
-        if contender.candidate.key != picks[k].candidate.key:
-            refused.append(
-                Refusal(picks[k].candidate.say(), f"{contender.candidate.say()} explains it better")
-            )
-        picks[k], steps[k] = contender, held
-        classes[k] = equivalents(problem, now.contenders, contender)
-        return
+    kept = found if now > was else pick
+    return s.put(k, replace(kept, candidate=settled(p, base, kept.candidate, kept.fit)))

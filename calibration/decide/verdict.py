@@ -1,16 +1,18 @@
 """The verdict: found, ambiguous, unknown, nothing or cannot tell; how sure; what the log could not tell."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from typing import Any
 
-from calibration.decide.experiments import experiment
-from calibration.decide.probability import probability
-from calibration.decide.thresholds import Earned
-from calibration.finding import Finding, Parameter
+from calibration.decide.thresholds import STILL_MISSING, Earned
+from calibration.finding import UNKNOWN, Finding
+from calibration.names import NAMES
 
+UNNAMED = "unknown: repeat the run: what is fixed to angle, to time or to neither tells where to look"
+# experiments of a class of names that are told: a longer sentence is not read. ASSUMPTION
+MOST = 3
+#: channel of an effect -> the row of the error table it is judged by
+ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}
 PHASES = (
     "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
     "effect, or of the difference of two encoders; plant.yaml, where one is written, has the effect's own"
@@ -19,41 +21,47 @@ PHASES = (
 PLACES = "The phase of a damaged tooth is its place on its part, in turns from where the position is zero."
 
 
-@dataclass
-class Verdict:
-    """The answer, channel-independent; `error` and `controls` as in report.json."""
-
-    verdict: str
-    effects: list[Finding]
-    error: dict[str, dict[str, Any]] = field(default_factory=dict)
-    held_out: list[str] = field(default_factory=list)
-    calibrated: dict[str, Parameter] = field(default_factory=dict)
-    not_identifiable: list[str] = field(default_factory=list)
-    controls: list[dict[str, Any]] = field(default_factory=list)
-    separating: str | None = None
-    reasons: list[str] = field(default_factory=list)
-    remarks: list[str] = field(default_factory=list)  # of the reasons, what the terminal repeats
-    thresholds: dict[str, dict[str, float]] = field(default_factory=dict)
-    refused: list[tuple[str, str, str]] = field(default_factory=list)
-    closed_loop: dict[str, dict[str, Any]] = field(default_factory=dict)
-    earned: Mapping[str, Earned] | None = None  # of this kind of drive; without it no probability is told
-
-
 def judge(effects: list[Finding], lacks: Sequence[str] = ()) -> tuple[str, str | None]:
-    """Verdict and separating experiment for ranked effects; `lacks` says what the log would need before
-    "nothing" could be said of it."""
-    if not effects:
+    """Verdict and separating experiment for ranked effects; `lacks`: needed before "nothing" is said."""
+    responses = [e for e in effects if not e.of_column]
+    if not responses and (lacks or not effects):
         return ("cannot tell", "; ".join(lacks)) if lacks else ("nothing", None)
     names = [n for e in effects if e.equivalent for n in (e.name, *e.equivalent)]
-    if any(e.name != "unknown" for e in effects):
-        verdict = "ambiguous" if effects[0].equivalent else "found"
-    else:
-        verdict, names = "unknown", ["unknown"]
-    return verdict, experiment(names)
+    if responses and all(e.name == UNKNOWN for e in responses):
+        return UNKNOWN, UNNAMED
+    texts = [f"{n}: {NAMES[n].experiment}" for n in dict.fromkeys(names) if n in NAMES]
+    return "ambiguous" if effects[0].equivalent else "found", "; ".join(texts[:MOST]) or None
 
 
-def effect_as_dict(effect: Finding, sure: float | None) -> dict[str, Any]:
-    """One effect as in report.json, `sure` its probability."""
+def kind_of(effect: Finding, place: int, error: Mapping[str, Mapping[str, Any]]) -> str | None:
+    """Kind of an answer: by what is left, whether its name is alone, its place; None without a floor."""
+    row = error.get(ROWS.get(effect.channel, ""))
+    if not row or not row["floor"]:
+        return None
+    if row["after"] > STILL_MISSING * row["floor"]:
+        return "above"
+    if set(effect.equivalent) - {effect.name}:
+        return "ambiguous"
+    return "sole" if place == 0 else "further"
+
+
+def probability(
+    effect: Finding,
+    place: int,
+    error: Mapping[str, Mapping[str, Any]],
+    earned: Mapping[str, Earned] | None,
+) -> float | None:
+    """How often answers of its kind had the right name on sealed logs; None where none were made."""
+    kind = kind_of(effect, place, error)
+    known = (earned or {}).get(kind or "")
+    return None if known is None else known.probability
+
+
+def effect_as_dict(
+    effect: Finding, place: int, error: Mapping[str, dict[str, Any]], earned: Mapping[str, Earned] | None
+) -> dict[str, Any]:
+    """One effect as in report.json; `earned` of this kind of drive, without it no probability is told."""
+    sure = probability(effect, place, error, earned)
     return {
         "name": effect.name,
         "equivalent": effect.equivalent,
@@ -61,7 +69,7 @@ def effect_as_dict(effect: Finding, sure: float | None) -> dict[str, Any]:
         "harmonic": effect.harmonic,
         "channel": effect.channel,
         "probability": None if sure is None else round(sure, 4),
-        "parameters": {k: p.as_dict() for k, p in effect.parameters.items()},
+        "parameters": {k: asdict(p) for k, p in effect.parameters.items()},
         "domain": effect.domain,
         "order": effect.order,
         "frequency_Hz": effect.frequency,
@@ -70,26 +78,7 @@ def effect_as_dict(effect: Finding, sure: float | None) -> dict[str, Any]:
     } | ({} if effect.curve is None else {"curve": asdict(effect.curve)})
 
 
-def as_dict(v: Verdict) -> dict[str, Any]:
-    """report.json, with a few fields beside the contract's."""
-    return {
-        "verdict": v.verdict,
-        "effects": [effect_as_dict(e, probability(e, k, v.error, v.earned)) for k, e in enumerate(v.effects)],
-        "error": v.error,
-        **({"closed_loop": v.closed_loop} if v.closed_loop else {}),
-        "held_out": v.held_out,
-        "calibrated": {k: p.as_dict() for k, p in v.calibrated.items()},
-        "not_identifiable": v.not_identifiable,
-        "separating_experiment": v.separating,
-        "controls": v.controls,
-        "thresholds": v.thresholds,
-        "reasons": v.reasons,
-        "conventions": _conventions(v.effects),
-        "refused": [{"channel": c, "what": w, "why": y} for c, w, y in v.refused],
-    }
-
-
-def _conventions(effects: Sequence[Finding]) -> list[str]:
-    """What the phases that are told are phases of."""
+def conventions(effects: Sequence[Finding]) -> list[str]:
+    """Definitions of the phases in the report."""
     units = {e.parameters["phase"].unit for e in effects if "phase" in e.parameters}
     return [PHASES] * bool(units - {"turn"}) + [PLACES] * ("turn" in units)

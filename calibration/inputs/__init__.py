@@ -1,2 +1,1 @@
-"""From files to records: a declaration of the drive, and columns with unit, clock, quantum, gaps and
-wraps."""
+"""From files to runs: the declaration of a drive, and columns with unit, clock, quantum, gaps and wraps."""

@@ -1,29 +1,64 @@
-"""A drive as its rig file declares it."""
+"""A drive as its rig file declares it (rig.schema.json); fields bear the file's keys, without SI units."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, field
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+
+from calibration.inputs.thresholds import DEFAULT_HOLD_OUT
+from calibration.inputs.units import is_rate
+from plant.effects import REGISTRY
 
 #: what a response stands for: a balance of forces, or one sensor against another
-FORCES = ("effort", "force", "current", "acceleration")
+FORCES = ("effort", "force", "current", "acceleration", "velocity")
 SENSORS = ("position2", "position")
 #: terms of the declared model of a force
 TERMS = ("inertia", "viscous", "coulomb", "offset", "drift", "stiffness", "gravity")
+#: the SI unit at the end of a key
+_UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")
+T = TypeVar("T")
+
+
+def made(kind: type[T], given: Mapping[str, Any], **more: Any) -> T:
+    """The dataclass `kind` of a file's mapping; keys that are no field are left out, `more` are fields as
+    they are."""
+    hints = get_type_hints(kind)
+    named = {key if key in hints else _UNIT.sub("", key): value for key, value in given.items()}
+    found = {name: _as(hints[name], value) for name, value in named.items() if name in hints.keys() - more}
+    return kind(**found, **more)
+
+
+def _as(hint: Any, value: Any) -> Any:
+    """A file's value as a field has it: a whole number as a float, a list as a tuple, a mapping as the
+    dataclass."""
+    kinds = get_args(hint) or (hint,)
+    if isinstance(value, list):
+        return tuple(_as(kinds[0], x) for x in value)
+    if isinstance(value, dict) and get_origin(hint) is dict:
+        return {key: _as(kinds[1], x) for key, x in value.items()}
+    if isinstance(value, dict):
+        record: Any = next(k for k in kinds if is_dataclass(k))
+        return made(record, value)
+    return float(value) if float in kinds else value
 
 
 @dataclass(frozen=True)
 class Column:
     """Where a channel is in the file, its unit, and the factor to the rig's unit."""
 
-    column: str | int
     unit: str
+    column: str | int = ""  # none: `files` and `steps` say it
     scale: float = 1.0
     offset: float = 0.0  # rig units, added after the scale
     wrap: float | None = None  # length of the counter, file units
     delay_s: float = 0.0  # known lateness, taken out
     window_s: float | None = None  # over which a counted rate counts, up to the row's stamp
+    format: str = ""  # of stamps that are no numbers: iso, or strptime's
+    sign_bit: int | None = None  # of sign-magnitude words, from 0
+    files: dict[str, float] = field(default_factory=dict)  # a factor per file, by the name's pattern
+    steps: tuple[tuple[float, float], ...] = ()  # (s, factor from then on)
+    integrated: bool = False  # over time, after all that
 
 
 @dataclass(frozen=True)
@@ -35,6 +70,18 @@ class Stage:
     period_s: float | None
     harmonics: int
     kind: str | None
+    listed: tuple[int, ...] = ()  # the only ones that are looked for
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Its harmonics that are looked for."""
+        return tuple(h for h in self.listed or range(1, self.harmonics + 1) if h <= self.harmonics)
+
+    @property
+    def of_motor(self) -> bool:
+        """Whether it is a motor: its shaft, or what its torque does over its angle."""
+        effect = REGISTRY.get(self.kind or "")
+        return self.kind == "motor" or (effect is not None and effect.domain == "motor_angle")
 
 
 @dataclass(frozen=True)
@@ -50,8 +97,13 @@ class Response:
 
     @property
     def is_force(self) -> bool:
-        """True for a balance of forces, False for one sensor against another."""
+        """True for a balance of forces or a speed, False for one sensor against another."""
         return self.channel in FORCES
+
+    @property
+    def is_speed(self) -> bool:
+        """True for a speed, whatever its column is called: no balance, so only lines are looked for in it."""
+        return self.channel == "velocity" or (self.is_force and is_rate(self.unit))
 
 
 @dataclass(frozen=True)
@@ -79,13 +131,13 @@ class Motors:
 class Friction:
     """LuGre friction with a Stribeck curve, as declared for one state of a drive; SI at the axis."""
 
-    state: str
     coulomb: float
     stiction: float
     stribeck_rate: float
-    stribeck_exponent: float
     viscous: float
     bristle_stiffness: float
+    stribeck_exponent: float = 2.0
+    state: str = ""
 
 
 @dataclass(frozen=True)
@@ -107,18 +159,19 @@ class Rig:
     path: Path
     columns: dict[str, Column]
     responses: tuple[Response, ...]
-    estimate: tuple[str, ...]
     stages: tuple[Stage, ...]
-    constants: dict[str, float]
-    runs: dict[str, Any]
-    wall_time: dict[str, Any]
-    delimiter: str | None
-    names: tuple[str, ...]
-    hold_out: float
-    smooth_s: float | None
-    analyse_period_s: float | None
-    turn: float | None  # position units per turn
-    sample_period_s: float | None
+    estimate: tuple[str, ...] = ()
+    constants: dict[str, float] = field(default_factory=dict)
+    runs: dict[str, Any] = field(default_factory=dict)
+    wall_time: dict[str, Any] = field(default_factory=dict)
+    delimiter: str | None = None
+    names: tuple[str, ...] = ()
+    long: dict[str, str] = field(default_factory=dict)  # `name` and `value`: columns of a long table
+    hold_out: float = DEFAULT_HOLD_OUT
+    smooth_s: float | None = None
+    analyse_period_s: float | None = None
+    turn: float | None = None  # position units per turn
+    sample_period_s: float | None = None
     controller: Controller | None = None
     supply_V: float | None = None  # what a duty of one gives
     format: str = "table"  # of its logs; axis-log and phd2 say their columns themselves
@@ -126,7 +179,6 @@ class Rig:
     friction: tuple[Friction, ...] = ()  # by state, the usual one first
     friction_law: FrictionLaw | None = None  # of a drive with one motor
     encoder_periods: int | None = None  # per turn of the position encoder
-    raw: dict[str, Any] = field(default_factory=dict)
 
     @property
     def drifts(self) -> bool:

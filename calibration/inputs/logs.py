@@ -1,21 +1,21 @@
 """Logs of any format, and the declaration of the drive behind them."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from calibration.errors import CalibrationInputError
+from calibration.inputs.axislog import is_axis_log, read_axis_log
 from calibration.inputs.declaration import Rig
-from calibration.inputs.drift import sections_of
-from calibration.inputs.record import Record
+from calibration.inputs.guidelog import is_guide_log, read_guide_log
+from calibration.inputs.rigfile import telescope
+from calibration.inputs.run import Run
 from calibration.inputs.stuck import check_stuck
-from calibration.inputs.tables import read_table, set_starts
-from calibration.inputs.telescope import telescope
+from calibration.inputs.tables import READERS, read_table, set_starts
+from calibration.inputs.text import load_text
 from calibration.inputs.twomotors import runs_of
-from calibration.readers.axis import is_axis_log, read_axis_log
-from calibration.readers.guide import is_guide_log, read_guide_log
-from calibration.readers.run import Run
 
 #: what a log of each format is called
 CALLED = {"axis-log": "an axis log", "phd2": "a PHD2 guide log", "table": "a table"}
@@ -30,7 +30,7 @@ class Drive:
 
     rig: Rig | None
     runs: list[Run]
-    records: list[Record] = field(default_factory=list)
+    records: list[Run] = field(default_factory=list)
     clock: str = ""
 
     @property
@@ -49,50 +49,56 @@ def read_drive(logs: list[Path], rig: Rig | None) -> Drive:
         found, more = _read(path, rig)
         formats[found] = path
         runs += more
-    if len(formats) > 1:
-        (a, _), (b, second) = list(formats.items())[:2]
-        raise CalibrationInputError(
-            second, f"is {CALLED[b]}, the one before is {CALLED[a]}: calibrate one kind at a time"
-        )
-    found = next(iter(formats))
+    found = _only(formats, lambda kind: CALLED[kind], "kind")
     if rig is not None and rig.format != found:
-        raise CalibrationInputError(
-            rig.path,
-            f"format: {rig.format}, but {formats[found]} is {CALLED[found]}: declare format: {found}",
-        )
+        what = f"format: {rig.format}, but {formats[found]} is {CALLED[found]}: declare format: {found}"
+        raise CalibrationInputError(rig.path, what)
     if found == "axis-log":
-        return Drive(rig or telescope(_one_axis(runs)), runs)
+        axis = _only({r.header["axis"]: r.path for r in runs}, lambda name: f"an axis log of {name}", "axis")
+        return Drive(rig or telescope(axis), runs)
     if found == "phd2":
         return Drive(rig, runs)
     assert rig is not None
-    records = [r for r in runs if isinstance(r, Record)]
-    check_stuck(records, rig)
-    clock = set_starts(records, rig)
+    check_stuck(runs, rig)
+    clock = set_starts(runs, rig)
     if rig.motors is not None:
-        return Drive(rig, runs_of(records, rig), records, clock)
-    if rig.drifts:
-        return Drive(rig, sections_of(records, rig), records, clock)
-    return Drive(rig, runs, records, clock)
+        return Drive(rig, runs_of(runs, rig), runs, clock)
+    return Drive(rig, sections_of(runs, rig) if rig.drifts else runs, runs, clock)
 
 
-def _one_axis(runs: list[Run]) -> str:
-    axes = {r.header["axis"]: r.path for r in runs}
-    if len(axes) > 1:
-        (a, first), (b, second) = list(axes.items())[:2]
-        raise CalibrationInputError(
-            second, f"is an axis log of {b}, {first} one of {a}: calibrate one axis at a time"
-        )
-    return next(iter(axes))
+def sections_of(records: list[Run], rig: Rig) -> list[Run]:
+    """Tables of a position at constant rate, as the sections that a guide log has: `ra` the response, in its
+    unit; no dithers, no jumps but repaired ones."""
+    response = next(r for r in rig.responses if r.channel == "position")
+    out = []
+    for r in records:
+        y = r.columns["position"] * response.gain
+        good = np.isfinite(y)
+        columns = {"t": r.columns["t"][good], "ra": y[good], "segment": np.zeros(int(good.sum()))}
+        header = {"unit": response.unit, "mount": rig.name}
+        notes = [f"{r.name}, {x.channel}: {x.note}" for x in r.repairs]
+        start_s = r.start_s if rig.wall_time else None  # else only the files' order is known
+        out.append(Run(r.name, r.path, r.name, columns, header=header, notes=notes, start_s=start_s))
+    return out
+
+
+def _only(found: dict[str, Path], called: Callable[[str], str], what: str) -> str:
+    """The one key of `found`; raises CalibrationInputError where files differ in it."""
+    (first, path), *others = found.items()
+    for other, where in others:
+        what = f"is {called(other)}, {path} is {called(first)}: calibrate one {what} at a time"
+        raise CalibrationInputError(where, what)
+    return first
 
 
 def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
     """Format of one file, by what it looks like, and its runs."""
     if path.exists() and not path.is_file():  # a pipe may never begin, a device never end
-        raise CalibrationInputError(
-            path, "cannot be read (Is a directory)" if path.is_dir() else "cannot be read (no regular file)"
-        )
-    if path.suffix.lower() != ".mat":
-        text, bad = _text(path)
+        what = "Is a directory" if path.is_dir() else "no regular file"
+        raise CalibrationInputError(path, f"cannot be read ({what})")
+    text = None
+    if path.suffix.lower() not in READERS:
+        text, bad = load_text(path)
         if bad is None and is_axis_log(text):
             return "axis-log", [read_axis_log(path, text)]
         if is_guide_log(text):
@@ -102,24 +108,10 @@ def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
         if not text.strip():
             raise CalibrationInputError(path, "is empty", 1)
     if rig is None or rig.format != "table":
-        raise CalibrationInputError(
-            path,
+        what = (
             "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
-            "another drive's file needs --rig FILE" + (", of format: table" if rig is not None else ""),
-            1,
+            f"another drive's file needs --rig FILE, which schmidt rig --new {path.name} drafts"
+            + (", of format: table" if rig is not None else "")
         )
-    return "table", list(read_table(path, rig))
-
-
-def _text(path: Path) -> tuple[str, int | None]:
-    """The file's text, and the first line that is not UTF-8: names in a guide log may be in the computer's
-    code page, its numbers are ASCII."""
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
-    try:
-        text, bad = raw.decode("utf-8-sig"), None
-    except UnicodeDecodeError as error:
-        text, bad = raw.decode("latin-1"), error.object[: error.start].count(b"\n") + 1
-    return text.replace("\r\n", "\n").replace("\r", "\n"), bad
+        raise CalibrationInputError(path, what, 1)
+    return "table", read_table(path, rig, text)

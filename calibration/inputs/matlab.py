@@ -1,15 +1,14 @@
 """MATLAB files in MATLAB's own words: q, log.motor.q, data(:,3), Y{2}(1,:), Y{*}(1,:) for a run per cell."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from calibration.errors import CalibrationInputError
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
 
 TOKEN = re.compile(r"\.?([A-Za-z]\w*)|\{(\d+|\*)\}|\(([^()]*)\)")
 
@@ -22,74 +21,99 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     try:
         content = loadmat(path)
     except NotImplementedError:
-        raise CalibrationInputError(
-            path, "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
-        ) from None
+        what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
+        raise CalibrationInputError(path, what) from None
     except (OSError, ValueError, TypeError, MatReadError) as error:
         text = " ".join(str(error).split())
         raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({text})") from None
-    found = {name: _resolve(path, content, name) for name in wanted}
+    found: dict[str, list[Array]] = {}
+    for name in wanted:
+        try:
+            found[name] = [_numbers(value) for value in _resolve(content, name)]
+        except LookupError as error:
+            raise CalibrationInputError(path, str(error), None, name) from None
     count = max((len(v) for v in found.values()), default=1)
     for name, values in found.items():
         if len(values) not in (1, count):
             raise CalibrationInputError(path, f"has {len(values)} cells, others {count}", None, name)
-    out = []
-    for k in range(count):
-        run = {name: values[k if len(values) > 1 else 0] for name, values in found.items()}
+    runs = [{name: v[k if len(v) > 1 else 0] for name, v in found.items()} for k in range(count)]
+    for run in runs:
         lengths = {name: len(v) for name, v in run.items()}
         if len(set(lengths.values())) > 1:
             raise CalibrationInputError(path, f"the variables have different lengths: {lengths}")
-        out.append(run)
-    return out
+    return runs
 
 
-def _resolve(path: Path, content: dict[str, Any], name: str) -> list[Array]:
-    """The arrays behind one name: a list, because {*} is every cell."""
-    at, values = 0, [content]
-    while at < len(name):
-        token = TOKEN.match(name, at)
-        if token is None:
-            raise CalibrationInputError(
-                path, "is not a name in MATLAB's words, such as q, log.q, x(:,2), Y{2}(1,:)", None, name
-            )
-        at = token.end()
-        field, cell, index = token.groups()
-        if field is not None:
-            values = [_field(path, v, field, name) for v in values]
-        elif cell is not None:
-            values = [x for v in values for x in _cells(path, v, cell, name)]
+def columns_of(path: Path) -> list[str]:
+    """Names of the rows and columns of numbers that a file has most of with one length, in MATLAB's words."""
+    from scipy.io import loadmat
+
+    read_matlab(path, [])  # what is no MATLAB file is told there
+    found: dict[tuple[int, int], list[str]] = {}
+    for name, value in loadmat(path).items():
+        for count, length, words in _vectors(value, name) if not name.startswith("__") else ():
+            found.setdefault((count, length), []).append(words)
+    return max(found.items(), key=lambda item: (len(item[1]), item[0]), default=((0, 0), []))[1]
+
+
+def _vectors(value: Any, name: str, count: int = 1) -> Iterator[tuple[int, int, str]]:
+    """Cells, rows and name of every row or column of numbers in a variable."""
+    array = np.asarray(value)
+    if array.dtype.names and array.size == 1:
+        for field in array.dtype.names:
+            yield from _vectors(array.ravel()[0][field], f"{name}.{field}", count)
+    elif array.dtype == object and array.size:
+        yield from _vectors(array.ravel()[0], f"{name}{{*}}", array.size)
+    elif np.issubdtype(array.dtype, np.number) and array.ndim == 2 and array.size > 1:
+        short, rows = min(array.shape), array.shape[0] <= array.shape[1]
+        for k in range(1, short + 1) if short > 1 else ():
+            yield count, max(array.shape), f"{name}({k},:)" if rows else f"{name}(:,{k})"
+        if short == 1:
+            yield count, array.size, name
+
+
+def _resolve(content: dict[str, Any], name: str) -> list[Any]:
+    """What is behind one name: a list, because {*} is every cell."""
+    if re.fullmatch(f"({TOKEN.pattern})*", name) is None:
+        raise LookupError("is not a name in MATLAB's words, such as q, log.q, x(:,2), Y{2}(1,:)")
+    values: list[Any] = [content]
+    for field, cell, index in TOKEN.findall(name):
+        if field:
+            values = [_field(v, field) for v in values]
+        elif cell:
+            values = [x for v in values for x in _cells(v, cell)]
         else:
-            values = [_index(path, v, index, name) for v in values]
-    return [_numbers(path, v, name) for v in values]
+            values = [_index(v, index) for v in values]
+    return values
 
 
-def _field(path: Path, value: Any, field: str, name: str) -> Any:
+def _field(value: Any, field: str) -> Any:
     if isinstance(value, dict):
         if field not in value:
             have = ", ".join(k for k in value if not k.startswith("__"))
-            raise CalibrationInputError(path, f"no such variable; the file has {have}", None, name)
+            raise LookupError(f"no such variable; the file has {have}")
         return value[field]
     names = getattr(getattr(value, "dtype", None), "names", None)
     if not names or field not in names:
         what = f"a struct with {', '.join(names)}" if names else "no struct"
-        raise CalibrationInputError(path, f"no field '{field}': it is {what}", None, name)
+        raise LookupError(f"no field '{field}': it is {what}")
     if value.size != 1:
-        raise CalibrationInputError(path, f"is an array of {value.size} structs: index it", None, name)
+        raise LookupError(f"is an array of {value.size} structs: index it")
     return value.ravel()[0][field]
 
 
-def _cells(path: Path, value: Any, cell: str, name: str) -> list[Any]:
+def _cells(value: Any, cell: str) -> list[Any]:
     if getattr(value, "dtype", None) != np.dtype(object):
-        raise CalibrationInputError(path, "{} is for cells; this is no cell array", None, name)
+        raise LookupError("{} is for cells; this is no cell array")
     cells = list(value.ravel(order="F"))
     if cell == "*":
         return cells
     if not 1 <= int(cell) <= len(cells):
-        raise CalibrationInputError(path, f"there are {len(cells)} cells, counted from 1", None, name)
+        raise LookupError(f"there are {len(cells)} cells, counted from 1")
     return [cells[int(cell) - 1]]
 
 
-def _index(path: Path, value: Any, index: str, name: str) -> Any:
+def _index(value: Any, index: str) -> Any:
     """A row or column, counted from 1, or one element of a struct array."""
     parts = [p.strip() for p in index.split(",")]
     array = np.asarray(value)
@@ -100,22 +124,19 @@ def _index(path: Path, value: Any, index: str, name: str) -> Any:
             row = parts[0].isdigit()
             return array[int(parts[0]) - 1, :] if row else array[:, int(parts[1]) - 1]
     except IndexError:
-        raise CalibrationInputError(path, f"({index}) is outside of its {array.shape}", None, name) from None
-    raise CalibrationInputError(
-        path, f"({index}): give one row (2,:), one column (:,2) or one element (2)", None, name
-    )
+        raise LookupError(f"({index}) is outside of its {array.shape}") from None
+    raise LookupError(f"({index}): give one row (2,:), one column (:,2) or one element (2)")
 
 
-def _numbers(path: Path, value: Any, name: str) -> Array:
+def _numbers(value: Any) -> Array:
     array = np.asarray(value)
     if array.dtype == object or array.dtype.names:
         kind = f"a struct with {', '.join(array.dtype.names)}" if array.dtype.names else "a cell array"
-        raise CalibrationInputError(path, f"is {kind}: name the part, such as .q or {{1}}", None, name)
+        raise LookupError(f"is {kind}: name the part, such as .q or {{1}}")
     if array.ndim == 2 and min(array.shape) > 1:
-        raise CalibrationInputError(
-            path, f"is a matrix of {array.shape[0]} x {array.shape[1]}: name a row or a column", None, name
-        )
+        size = f"{array.shape[0]} x {array.shape[1]}"
+        raise LookupError(f"is a matrix of {size}: name a row or a column")
     try:
         return np.asarray(array, dtype=float).ravel()
     except (TypeError, ValueError):
-        raise CalibrationInputError(path, "is not numeric", None, name) from None
+        raise LookupError("is not numeric") from None

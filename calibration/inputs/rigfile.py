@@ -1,21 +1,36 @@
 """Rig files: read, held against the schema, and against what a schema cannot say."""
 
-from __future__ import annotations
-
 import difflib
 import json
+import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Column, Controller, Friction, FrictionLaw, Motors, Response, Rig
+from calibration.inputs.declaration import Rig, made
 from calibration.inputs.rigchecks import check
-from calibration.inputs.stages import stages_of
-from calibration.inputs.yamltext import load_yaml
+from calibration.inputs.thresholds import DEFAULT_HOLD_OUT
+from calibration.inputs.train import stages_of
+from plant.yamltext import TextError, check_yaml, read_text
 
 DELIMITERS = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}
+#: rig files that ship with the tool
+RIGS = Path(__file__).parent.parent / "rigs"
 SCHEMA = Path(__file__).with_name("rig.schema.json")
-DEFAULT_HOLD_OUT = 0.4  # of every file: ASSUMPTION, enough blocks on either side
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader with YAML 1.2's floats: people write 2e-7."""
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$"),
+    list("-+0123456789."),
+)
 
 
 def load_rig(path: Path) -> Rig:
@@ -23,27 +38,62 @@ def load_rig(path: Path) -> Rig:
     line."""
     from jsonschema import Draft202012Validator
 
-    data, text = load_yaml(path)
+    data, text = _read(path)
     if not isinstance(data, dict):
-        raise CalibrationInputError(
-            path, "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed"
-        )
+        what = "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed"
+        raise CalibrationInputError(path, what)
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    errors = sorted(
-        Draft202012Validator(schema).iter_errors(data), key=lambda e: list(map(str, e.absolute_path))
-    )
-    if errors:
-        _complain(path, text, errors[0])
+    errors = [_innermost(e) for e in Draft202012Validator(schema).iter_errors(data)]
+    if errors:  # a rule that the schema says in its own words holds for fields that are sound
+        first = min(errors, key=lambda e: (bool(_says(e)), [str(p) for p in e.absolute_path]))
+        _complain(path, data, text, first)
     return _build(path, data)
 
 
-def _complain(path: Path, text: str, error: Any) -> None:
+@cache
+def telescope(axis: str) -> Rig:
+    """The declared drive of the telescope's own axis "ra" or "dec"."""
+    return load_rig(RIGS / f"schmidt_{axis}.yaml")
+
+
+def _read(path: Path) -> tuple[Any, str]:
+    """The file's content and text; raises CalibrationInputError with the line of a mistake."""
+    try:
+        text = read_text(path)
+        check_yaml(text)
+        return yaml.load(text, Loader=_Loader), text  # a SafeLoader: no objects but plain ones
+    except OSError as error:
+        raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+    except TextError as error:
+        raise CalibrationInputError(path, error.what, error.line) from None
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else None
+        raise CalibrationInputError(path, f"is not YAML: {error.problem}", line) from None
+
+
+def _innermost(error: Any) -> Any:
+    """The mistake in the branch of `oneOf` that fits the kind of value that was given."""
+    if error.validator != "oneOf" or not error.context or _says(error):
+        return error
+    branch = 1 if isinstance(error.instance, list) else 0
+    return next((e for e in error.context if e.schema_path[0] == branch), error)
+
+
+def _says(error: Any) -> str:
+    """The schema's own words for a rule, its key `says`."""
+    inner = error.validator_value if error.validator == "not" else {}
+    return str(inner.get("says") or error.schema.get("says") or "")
+
+
+def _complain(path: Path, data: dict[str, Any], text: str, error: Any) -> None:
     """One line for the first mistake: field, what is wrong, the nearest word that would be right."""
-    if error.validator == "oneOf" and error.context:  # the branch that fits the kind of value that was given
-        branch = 1 if isinstance(error.instance, list) else 0
-        inner = [e for e in error.context if e.schema_path[0] == branch]
-        error = inner[0] if inner else error
-    place = ".".join(str(p) for p in error.absolute_path) or "top level"
+    names, keys, at = [], [], data
+    for step in error.absolute_path:
+        at = at[step]
+        name = at.get("name") if isinstance(step, int) and isinstance(at, dict) else None
+        names.append(name if isinstance(name, str) else str(step))
+        keys += [step] if isinstance(step, str) else [name] if isinstance(name, str) else []
+    place = ".".join(names) or "top level"
     word = str(error.instance) if not isinstance(error.instance, dict | list) else ""
     message, choices = str(error.message), []
     if error.validator == "additionalProperties" and isinstance(error.instance, dict):
@@ -55,92 +105,33 @@ def _complain(path: Path, text: str, error: Any) -> None:
         message = f"'{word}' is not one of {', '.join(choices)}"
     near = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
     hint = f"; did you mean '{near[0]}'?" if near else ""
-    key = word or str(error.absolute_path[-1] if error.absolute_path else "")
-    line = next((k for k, row in enumerate(text.splitlines(), 1) if key and key in row), None)
-    raise CalibrationInputError(path, f"{place}: {message}{hint}", line)
+    what = f"{place}: {message}{hint}"
+    if says := _says(error):
+        quoted = [*str(error.message).split("'"), "", "", ""]  # 'a' is a dependency of 'b', 'a' is required
+        what = says.format_map({**data, "place": place, "it": word, "missing": quoted[1], "of": quoted[3]})
+    keys += [word] if choices and (not keys or error.validator == "additionalProperties") else []
+    raise CalibrationInputError(path, what, _line(text, keys))
+
+
+def _line(text: str, keys: list[str]) -> int | None:
+    """The line of a field: that of its key, behind those of the keys it stands under."""
+    rows, at = text.splitlines(), 0
+    for key in keys:
+        at = next((k for k in range(at, len(rows)) if key in rows[k]), at)
+    return at + 1 if keys else None
 
 
 def _build(path: Path, data: dict[str, Any]) -> Rig:
-    columns = {
-        k: Column(
-            v["column"],
-            v["unit"],
-            float(v.get("scale", 1.0)),
-            float(v.get("offset", 0.0)),
-            v.get("wrap"),
-            float(v.get("delay_s", 0.0)),
-            v.get("window_s"),
-        )
-        for k, v in data.get("columns", {}).items()
-    }
-    told = data.get("response", [])
-    given = told if isinstance(told, list) else [told]
-    responses = tuple(
-        Response(r["channel"], r["unit"], float(r.get("gain", 1.0)), r.get("divide_by"), r.get("ratio"))
-        for r in given
-    )
-    check(path, data, columns, responses)
-    return Rig(
+    given = data.get("response", [])
+    rig = made(
+        Rig,
+        {"columns": {}, **data, "responses": given if isinstance(given, list) else [given]},
         name=data["rig"],
         path=path,
-        columns=columns,
-        responses=responses,
-        estimate=tuple(data.get("estimate", ())),
         stages=tuple(stages_of(path, data.get("stages", []))),
         constants={k: float(v["value"]) for k, v in data.get("constants", {}).items()},
-        runs=data.get("runs", {}),
-        wall_time=data.get("wall_time", {}),
-        names=tuple(data.get("names", ())),
         delimiter=DELIMITERS.get(data.get("delimiter", "")),
-        hold_out=float(data.get("hold_out_fraction", DEFAULT_HOLD_OUT)),
-        smooth_s=data.get("smooth_s"),
-        analyse_period_s=data.get("analyse_period_s"),
-        turn=data.get("turn"),
-        sample_period_s=data.get("sample_period_s"),
-        controller=_controller(data.get("controller")),
-        supply_V=data.get("supply_V"),
-        format=data.get("format", "table"),
-        motors=_motors(data.get("motors")),
-        friction=tuple(_friction(f) for f in data.get("friction", ())),
-        friction_law=_friction_law(data.get("friction_law")),
-        encoder_periods=data.get("encoder_periods"),
-        raw=data,
+        hold_out=data.get("hold_out_fraction", DEFAULT_HOLD_OUT),
     )
-
-
-def _motors(given: dict[str, Any] | None) -> Motors | None:
-    if given is None:
-        return None
-    low, high = (float(x) for x in given["rotor_inertia_kgm2"])
-    return Motors(
-        float(given["counter_torque"]),
-        float(given["torque_constant_Nm_per_A"]),
-        float(given["resistance_ohm"]),
-        (low, high),
-        float(given["train_stiffness_Nm_per_rad"]),
-        tuple(float(x) for x in given.get("stiffness_readings", (1.0,))),
-    )
-
-
-def _friction(given: dict[str, Any]) -> Friction:
-    return Friction(
-        given.get("state", ""),
-        float(given["coulomb_Nm"]),
-        float(given["stiction_Nm"]),
-        float(given["stribeck_rate_rad_per_s"]),
-        float(given.get("stribeck_exponent", 2.0)),
-        float(given["viscous_Nms_per_rad"]),
-        float(given["bristle_stiffness_Nm_per_rad"]),
-    )
-
-
-def _friction_law(given: dict[str, Any] | None) -> FrictionLaw | None:
-    if given is None:
-        return None
-    return FrictionLaw(**{k: float(v) for k, v in given.items() if k != "source"})
-
-
-def _controller(given: dict[str, Any] | None) -> Controller | None:
-    if given is None:
-        return None
-    return Controller(given["law"], {k: float(v) for k, v in given["gains"].items()}, given.get("limit"))
+    check(rig, data)
+    return rig

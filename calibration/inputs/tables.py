@@ -1,6 +1,4 @@
-"""Any drive's table, read through its rig file into records."""
-
-from __future__ import annotations
+"""Any drive's table, read through its rig file into runs."""
 
 import itertools
 from datetime import datetime
@@ -9,124 +7,125 @@ from pathlib import Path
 import numpy as np
 
 from calibration.errors import CalibrationInputError
+from calibration.inputs.counters import count_wraps, unwrap
 from calibration.inputs.declaration import Rig
+from calibration.inputs.given import of_file, over_time, signed
 from calibration.inputs.matlab import read_matlab
-from calibration.inputs.record import Record, signal_of
+from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
-from calibration.inputs.stamps import steady_stamps
-from calibration.inputs.text import read_text
-from calibration.readers.run import Array
+from calibration.inputs.rows import steady_stamps
+from calibration.inputs.run import Array, Run, signal_of
+from calibration.inputs.text import load_utf8, read_columns, read_long
+
+#: files that are no text, by the ending of their name
+READERS = {".mat": read_matlab, **RECORDINGS}
 
 
-def read_table(path: Path, rig: Rig) -> list[Record]:
-    """The file's runs: one, or one per cell of a .mat file."""
-    wanted: list[str | int] = [c.column for c in rig.columns.values()]
+def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
+    """The file's runs: one, or one per cell of a .mat file; `text` is its content if it was read."""
+    channels = sorted(rig.columns, key=lambda c: c != "position") if rig.long else list(rig.columns)
+    wanted: list[str | int] = [rig.columns[c].column for c in channels if rig.columns[c].column != ""]
     if "column" in rig.runs:
         wanted.append(rig.runs["column"])
-    if path.suffix.lower() == ".mat":
-        found = read_matlab(path, [str(c) for c in wanted])
+    stamp = rig.columns.get("time")
+    stamps = {str(stamp.column): stamp.format} if stamp is not None and stamp.format else {}
+    if reader := READERS.get(path.suffix.lower()):
+        found = reader(path, [str(c) for c in wanted])
     else:
-        found = [read_text(path, wanted, rig.names, rig.delimiter)]
-    many = len(found) > 1
-    return [
-        _record(path, rig, raw, f"{path.stem}{{{k}}}" if many else path.stem)
-        for k, raw in enumerate(found, 1)
-    ]
+        text = load_utf8(path) if text is None else text
+        if rig.long and stamp is not None:
+            found = [read_long(path, text, wanted, rig.long, str(stamp.column), stamps)]
+        else:
+            found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
+    names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
+    return [_run(path, rig, raw, name) for raw, name in zip(found, names, strict=True)]
 
 
-def _record(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Record:
+def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
     columns: dict[str, Array] = {}
     wraps: dict[str, int] = {}
-    for channel, where in rig.columns.items():
-        values = np.array(raw[str(where.column)], dtype=float)
-        label = str(where.column)
+    rows = len(next(iter(raw.values())))
+    for channel, where in sorted(rig.columns.items(), key=lambda item: item[0] != "time"):  # the time first
+        label = str(where.column) or channel
+        values = np.array(raw[label], dtype=float) if where.column != "" else np.ones(rows)
         if not np.isfinite(values).any():
             raise CalibrationInputError(path, "holds no number in any row", None, label)
         if np.isinf(values).any():
-            row = int(np.argmax(np.isinf(values))) + 1
-            raise CalibrationInputError(path, f"is infinite in data row {row}", None, label)
+            what = f"is infinite in data row {int(np.argmax(np.isinf(values))) + 1}"
+            raise CalibrationInputError(path, what, None, label)
+        if where.sign_bit is not None:
+            values = signed(path, values, where.sign_bit, label)
         if where.wrap:
-            values, wraps[channel] = _unwrapped(values, where.wrap)
-        columns["t" if channel == "time" else channel] = values * where.scale + where.offset
-    if "time" not in rig.columns:
-        columns["t"] = np.asarray(
-            np.arange(len(next(iter(columns.values())))) * (rig.sample_period_s or 1.0), dtype=np.float64
-        )
-    clock = str(rig.columns["time"].column) if "time" in rig.columns else "time"
-    first = _check_clock(path, columns["t"], clock)
-    columns["t"] = columns["t"] - first
+            logged, values = values, unwrap(values, where.wrap)
+            wraps[channel] = count_wraps(logged, values, where.wrap)
+        values = values * of_file(path, where, label) * where.scale + where.offset
+        if where.steps or where.integrated:
+            values = over_time(where, columns.get("t", _even(rig, rows)), values)
+        columns["t" if channel == "time" else channel] = values
+    columns.setdefault("t", _even(rig, rows))
+    t = columns["t"]
+    _check_clock(path, t, str(rig.columns["time"].column) if "time" in rig.columns else "time")
+    columns["t"] = t - t[0]
     for channel, where in rig.columns.items():  # a column that is late by delay_s tells of earlier times
         if where.delay_s and channel != "time":
             columns[channel] = np.interp(columns["t"] + where.delay_s, columns["t"], columns[channel])
     if "column" in rig.runs:
         columns["run"] = raw[str(rig.runs["column"])]
-    record = Record(name, path, name, columns, raw, {"rig": rig.name})
-    record.period_s = float(np.median(np.diff(columns["t"]))) if record.rows > 1 else 1.0
-    record.start_s = _start(path, rig, first)
-    record.signals = {
+    run = Run(name, path, name, columns, raw, {"rig": rig.name}, start_s=_start(path, rig, float(t[0])))
+    run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0
+    run.signals = {
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))
         for c, w in rig.columns.items()
     }
-    repair(record, rig)
+    repair(run, rig)
     if "time" in rig.columns:
-        steady_stamps(record)
-    return record
+        steady_stamps(run)
+    return run
 
 
-def _unwrapped(values: Array, length: float) -> tuple[Array, int]:
-    good = np.isfinite(values)
-    out = values.copy()
-    out[good] = np.unwrap(values[good], period=length)
-    turns = np.round((out[good] - values[good]) / length)
-    return out, int(np.count_nonzero(np.diff(turns)))
+def _even(rig: Rig, rows: int) -> Array:
+    """Time (rows,) of a file without a time column, s."""
+    return np.arange(rows) * np.float64(rig.sample_period_s or 1.0)
 
 
-def _check_clock(path: Path, t: Array, name: str) -> float:
-    """The first time stamp of a clock that goes forward."""
+def _check_clock(path: Path, t: Array, name: str) -> None:
+    """Refuse a clock that does not go forward."""
     if not np.isfinite(t).all():
-        raise CalibrationInputError(
-            path, f"is empty in data row {int(np.argmax(~np.isfinite(t))) + 1}", None, name
-        )
+        what = f"is empty in data row {int(np.argmax(~np.isfinite(t))) + 1}"
+        raise CalibrationInputError(path, what, None, name)
     if len(t) > 1 and not np.median(np.diff(t)) > 0:
         raise CalibrationInputError(path, "does not advance", None, name)
     if (np.diff(t) < 0).any():
         k = int(np.argmax(np.diff(t) < 0))
         raise CalibrationInputError(path, f"time goes backwards from {t[k]:g} to {t[k + 1]:g}", k + 2, name)
-    return float(t[0])
 
 
 def _start(path: Path, rig: Rig, first: float) -> float | None:
     """When the file began, on the clock of all files; None where only their order is known."""
     source = rig.wall_time.get("from")
-    if source == "time":
-        return first
-    if source == "name":
-        form = rig.wall_time["format"]
-        try:
-            return datetime.strptime(path.stem, form).timestamp()
-        except ValueError:
-            raise CalibrationInputError(
-                path, f"its name does not read as wall_time.format '{form}'"
-            ) from None
-    return None
+    if source != "name":
+        return first if source == "time" else None
+    form = rig.wall_time["format"]
+    try:
+        return datetime.strptime(path.stem, form).timestamp()
+    except ValueError:
+        raise CalibrationInputError(path, f"its name does not read as wall_time.format '{form}'") from None
 
 
-def set_starts(records: list[Record], rig: Rig) -> str:
+def set_starts(runs: list[Run], rig: Rig) -> str:
     """Fill every start in: from the clocks, or end to end in the order given; says which."""
-    if not rig.wall_time and len(records) > 1:
-        firsts = [r.raw[str(rig.columns["time"].column)][0] for r in records] if "time" in rig.columns else []
-        scale = rig.columns["time"].scale if firsts else 1.0
-        spans = sorted((f * scale, f * scale + r.duration_s) for f, r in zip(firsts, records, strict=False))
-        if firsts and all(b[0] > a[1] for a, b in itertools.pairwise(spans)):
-            for f, r in zip(firsts, records, strict=True):
-                r.start_s = float(f * scale)
-    if all(r.start_s is not None for r in records):
-        first = min(float(r.start_s or 0.0) for r in records)
-        for r in records:
-            r.start_s = float(r.start_s or 0.0) - first
+    starts = [r.start_s for r in runs if r.start_s is not None]
+    if not rig.wall_time and len(runs) > 1 and "time" in rig.columns:
+        time = rig.columns["time"]
+        firsts = [float(r.raw[str(time.column)][0] * time.scale) for r in runs]
+        spans = sorted((at, at + r.duration_s) for at, r in zip(firsts, runs, strict=True))
+        starts = firsts if all(b[0] > a[1] for a, b in itertools.pairwise(spans)) else []
+    if len(starts) == len(runs):
+        for at, r in zip(starts, runs, strict=True):
+            r.start_s = at - min(starts)
         return "the files' own clock"
     at = 0.0
-    for r in records:
+    for r in runs:
         r.start_s = at
         at += r.duration_s + r.period_s + float(rig.wall_time.get("gap_s", 0.0))
     return "the order of the files, end to end"

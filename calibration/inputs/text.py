@@ -1,96 +1,213 @@
-"""Text tables: comment lines, a header row or none, any of four delimiters."""
+"""Text of any origin, and the numbers of its tables: comment lines, a header row or none, four delimiters."""
 
-from __future__ import annotations
-
+import io
+import re
+from collections.abc import Collection, Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
 
 from calibration.errors import CalibrationInputError
-from calibration.readers.csvtext import read_numbers
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
+from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, with_seconds
+
+# characters that a blank line may hold, but for the delimiter
+BLANK = " \t\r\f\v"
+MOST_COLUMNS = 4096
+"""Ten times the widest table known. ASSUMPTION."""
+COMMAS = ": decimal commas? write points"
+STAMP = ": a stamp? the column time takes 'format: iso'"
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)
+"""What a field may hold: Python's `float` also takes 1_0 and digits of other scripts."""
 
 
-def read_text(
-    path: Path,
-    wanted: list[str | int],
-    names: tuple[str, ...] = (),
-    delimiter: str | None = None,
-) -> dict[str, Array]:
-    """The wanted columns (by name, or place from 0) of a text table, keyed by `str(column)`."""
-    lines = _lines(path)
+def load_text(path: Path) -> tuple[str, int | None]:
+    """The file's text, with or without a byte order mark and with any line ends, and the first line that is
+    not UTF-8: names in a guide log may be in the computer's code page, its numbers are ASCII."""
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
+    try:
+        text, bad = raw.decode("utf-8-sig"), None
+    except UnicodeDecodeError as error:
+        text, bad = raw.decode("latin-1"), error.object[: error.start].count(b"\n") + 1
+    return text.replace("\r\n", "\n").replace("\r", "\n"), bad
+
+
+def load_utf8(path: Path) -> str:
+    """The file's text; raises CalibrationInputError where it is not UTF-8."""
+    text, bad = load_text(path)
+    if bad is not None:
+        raise CalibrationInputError(path, "is not UTF-8 text", bad)
+    return text
+
+
+def plain(field: str) -> float | None:
+    """A field's number, infinite ones too; NaN for an empty one and for nan; None when it is none."""
+    if field in ("", "nan", "NaN"):
+        return float("nan")
+    return float(field) if _NUMBER.fullmatch(field) else None
+
+
+def split(line: str, mark: str) -> list[str]:
+    """Names of a header row, without their quotes."""
+    return [name.strip().strip('"') for name in line.split(mark)]
+
+
+def check_width(path: Path, count: int, line: int) -> None:
+    """Refuse more columns than a log has: the reader would need half a minute for a million names."""
+    if count > MOST_COLUMNS:
+        raise CalibrationInputError(path, f"{count} columns, at most {MOST_COLUMNS}: is it transposed?", line)
+
+
+class Heading(NamedTuple):
+    """Lines of a table, names of its columns, the index of its first row, the delimiter, and the index of the
+    header row; `first` where there is none."""
+
+    lines: list[str]
+    fields: list[str]
+    first: int
+    mark: str
+    at: int
+
+
+def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str | None = None) -> Heading:
+    """Where a table's rows begin, and what its columns are called; JSON as a table."""
+    if is_json(text):
+        text, delimiter = table_of_json(path, text), "\t"
+    lines = text.splitlines()
     skip = 0
     while skip < len(lines) and (lines[skip].startswith(("#", "%")) or not lines[skip].strip()):
         skip += 1
     if skip >= len(lines):
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
-    if lines[skip].lstrip()[:1] in "{[" or path.suffix.lower() in (".json", ".jsonl"):
-        raise CalibrationInputError(path, "is JSON: write it as a table (CSV), one row per sample", skip + 1)
-    mark = delimiter or guess(lines[skip])
-    head = [f.strip().strip('"') for f in lines[skip].split(mark)]
-    if names:
-        fields, first = list(names), skip
-    elif all(is_number(f) for f in head):
-        fields, first = [str(k) for k in range(len(head))], skip
-    else:
-        fields, first = head, skip + 1
+    mark = delimiter or next((mark for mark in "\t;," if mark in lines[skip]), " ")
+    check_width(path, lines[skip].count(mark) + 1, skip + 1)
+    fields, first = split(lines[skip], mark), skip + 1
+    if names or all(f and plain(f) is not None for f in fields):
+        fields, first = list(names) or [str(k) for k in range(len(fields))], skip
     if first >= len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
     rows = len(lines[first].split(mark))
     if len(fields) != rows:
         raise CalibrationInputError(path, f"{rows} fields, {len(fields)} names", first + 1)
-    where = [_place(path, c, fields, first > skip, skip + 1) for c in wanted]
-    keys = [str(k) for k in range(len(fields))]  # read by place: names may stand twice where none is wanted
-    for c, k in zip(wanted, where, strict=True):
-        keys[k] = str(c) if isinstance(c, str) else keys[k]
-    shown = {keys[k] for k in where}
-    got = read_numbers(path, "\n".join(lines[first:]), _unique(keys), first + 1, mark, shown)
-    return {str(c): got[keys[k]] for c, k in zip(wanted, where, strict=True)}
+    return Heading(lines, fields, first, mark, skip)
 
 
-def _lines(path: Path) -> list[str]:
-    try:
-        return path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise CalibrationInputError(path, f"cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError:
-        raise CalibrationInputError(path, "is not UTF-8 text; a MATLAB file must end in .mat") from None
+def read_columns(
+    path: Path,
+    text: str,
+    wanted: list[str | int],
+    names: tuple[str, ...] = (),
+    delimiter: str | None = None,
+    stamps: Mapping[str, str] = MappingProxyType({}),
+) -> dict[str, Array]:
+    """The wanted columns (by name, or place from 0) of a table's `text`, keyed by `str(column)`; `stamps`:
+    the formats of those that are stamps and become s."""
+    lines, fields, first, mark, at = heading(path, text, names, delimiter)
+    places = [_place(path, c, fields, first > at, at + 1) for c in wanted]
+    called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
+    labels = [called.get(k, str(k)) for k in range(len(fields))]
+    rows = lines[first:]
+    for column, k in zip(wanted, places, strict=True):
+        if str(column) in stamps:
+            rows = with_seconds(path, rows, mark, k, stamps[str(column)], first + 1, labels[k])
+    got = read_numbers(path, "\n".join(rows), labels, first + 1, mark, set(places))
+    return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
 
 
-def _unique(keys: list[str]) -> list[str]:
-    """Names as they are, a place that is another column's name made different."""
-    return [k if keys.index(k) == at else f"{k} at {at}" for at, k in enumerate(keys)]
+def read_long(
+    path: Path,
+    text: str,
+    wanted: list[str | int],
+    long: Mapping[str, str],
+    time: str,
+    stamps: Mapping[str, str],
+) -> dict[str, Array]:
+    """The wanted signals of a long table, whose rows hold a name, a stamp and a value (`long`: the columns of
+    name and value), on the stamps of the first signal wanted."""
+    got = read_columns(path, text, [time, long["value"]], (), None, stamps)
+    lines, fields, first, mark, at = heading(path, text)
+    place = _place(path, long["name"], fields, True, at + 1)
+    names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[time])]
+    signals = [str(c) for c in wanted if str(c) != time]
+    found = wide(path, names, got[time], got[long["value"]], signals)
+    return {time: found.pop(""), **found}
 
 
 def _place(path: Path, column: str | int, fields: list[str], header: bool, line: int) -> int:
     if isinstance(column, int):
         if 0 <= column < len(fields):
             return column
-        raise CalibrationInputError(
-            path, f"there are {len(fields)} columns, counted from 0", line, str(column)
-        )
-    count = fields.count(column)
-    if count == 1:
+        what = f"there are {len(fields)} columns, counted from 0"
+    elif (count := fields.count(column)) == 1:
         return fields.index(column)
-    if count > 1:
+    elif count:
         places = ", ".join(str(k) for k, f in enumerate(fields) if f == column)
-        raise CalibrationInputError(
-            path, f"stands more than once (at {places}, from 0): give the place in its stead", line, column
-        )
-    have = ", ".join(fields) if header else f"no header row and {len(fields)} columns, named 0, 1 …"
-    raise CalibrationInputError(path, f"no such column; the file has {have}", line, column)
+        what = f"stands more than once (at {places}, from 0): give the place in its stead"
+    else:
+        have = ", ".join(fields) if header else f"no header row and {len(fields)} columns, named 0, 1 …"
+        what = f"no such column; the file has {have}"
+    raise CalibrationInputError(path, what, line, str(column))
 
 
-def guess(line: str) -> str:
-    """The delimiter of a row."""
-    for mark in ("\t", ";", ","):
-        if mark in line:
-            return mark
-    return " "
+def read_numbers(
+    path: Path, body: str, names: list[str], first_line: int, mark: str = ",", wanted: set[int] | None = None
+) -> dict[int, Array]:
+    """Columns of `body` (no header row) as floats by their place, empty fields as NaN.
 
+    `first_line` is the file's line number of the first row, `names` are those of all columns in messages.
+    Text in a column of `wanted` (places; default: all) raises CalibrationInputError with line and column.
+    """
+    from pyarrow import ArrowInvalid, csv, float64
 
-def is_number(text: str) -> bool:
-    """True for what float() reads."""
+    keep = {k: str(k) for k in (range(len(names)) if wanted is None else sorted(wanted))}
+    if body.startswith("\ufeff"):  # the reader would pass over it; here it is no beginning of a file
+        return _slowly(path, body, names, first_line, mark, keep)
     try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+        table = csv.read_csv(
+            io.BytesIO(body.encode()),
+            read_options=csv.ReadOptions(column_names=[str(k) for k in range(len(names))], use_threads=False),
+            parse_options=csv.ParseOptions(delimiter=mark),
+            convert_options=csv.ConvertOptions(
+                column_types=dict.fromkeys(keep.values(), float64()),
+                include_columns=list(keep.values()),
+                null_values=["", "nan", "NaN"],
+                strings_can_be_null=True,
+            ),
+        )
+    except ArrowInvalid:
+        return _slowly(path, body, names, first_line, mark, keep)
+    return {k: np.asarray(table[name].to_numpy(), dtype=float) for k, name in keep.items()}
+
+
+def _slowly(
+    path: Path, body: str, names: list[str], first_line: int, mark: str, keep: Collection[int]
+) -> dict[int, Array]:
+    """Field by field: finds the line and the column that is wrong."""
+    lines = [row.rstrip("\n") for row in io.StringIO(body, newline=None)]  # no other signs end a line
+    last, rows = first_line + len(lines) - 1, []
+    for line, text in enumerate(lines, first_line):
+        if not text.strip(BLANK.replace(mark, "")):  # a row of empty fields is a row
+            continue
+        fields = text.split(mark)
+        if len(fields) != len(names):
+            if line == last:  # a run that was cut off: its last line may be half written
+                break
+            commas = len(fields) == 2 * len(names) or (len(fields) > len(names) and mark == ",")
+            hint = ": a second header? one file holds one run" if text.startswith("#") else COMMAS * commas
+            what = f"{len(fields)} fields, the header row has {len(names)}{hint}"
+            raise CalibrationInputError(path, what, line)
+        rows.append([_number(path, fields[k].strip(), line, names[k]) for k in keep])
+    return dict(zip(keep, np.array(rows).reshape(-1, len(keep)).T.copy(), strict=True))
+
+
+def _number(path: Path, value: str, line: int, name: str) -> float:
+    number = plain(value)
+    if number is None:
+        hint = COMMAS if value.replace(",", "", 1).isdigit() else STAMP if is_stamp(value) else ""
+        raise CalibrationInputError(path, f"'{value}' is not a number{hint}", line, name)
+    return number

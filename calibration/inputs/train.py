@@ -1,14 +1,18 @@
-"""The gear train of an axis: what turns how often per turn of it."""
-
-from __future__ import annotations
+"""The gear train of a drive: tooth counts to periods, and what turns how often per turn of an axis."""
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
+from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Rig, Stage
+from calibration.inputs.thresholds import HARMONICS
 from calibration.inputs.units import units_per_turn
 
+#: what the lines of a gear's stage are called: of a shaft that runs out of true, of teeth in mesh
+SHAFT, MESH = "gear_eccentricity", "gear_mesh"
 #: what a stage of an axis with two motors may be; a shaft where nothing is said
-KINDS = ("axis", "motor", "roller", "sensor", "gear_mesh", "gear_eccentricity", None)
+KINDS = ("axis", "motor", "roller", "sensor", MESH, SHAFT, None)
 
 
 @dataclass(frozen=True)
@@ -26,17 +30,12 @@ class Train:
     @property
     def shafts(self) -> tuple[str, ...]:
         """Everything that turns between the axis and the motors, and the roller on the axis."""
-        return tuple(n for n, k in self.kinds.items() if k not in ("axis", "sensor", "gear_mesh"))
+        return tuple(n for n, k in self.kinds.items() if k not in ("axis", "sensor", MESH))
 
     @property
     def toothed(self) -> tuple[str, ...]:
         """Shafts that carry a wheel or a pinion."""
         return tuple(n for n in self.shafts if self.kinds[n] != "roller")
-
-    @property
-    def meshes(self) -> tuple[str, ...]:
-        """Teeth in mesh."""
-        return tuple(n for n, k in self.kinds.items() if k == "gear_mesh")
 
     def one(self, kind: str) -> str | None:
         """The stage of a kind of which an axis has one."""
@@ -58,3 +57,23 @@ def train_of(rig: Rig) -> Train:
     turn = rig.turn or units_per_turn(rig.columns["position"].unit if rig.columns else "turn") or 1.0
     stages: list[Stage] = [s for s in rig.stages if s.period]
     return Train({s.name: turn / (s.period or turn) for s in stages}, {s.name: s.kind for s in stages})
+
+
+def stages_of(path: Path, items: list[dict[str, Any]]) -> list[Stage]:
+    """Resolve tooth counts to periods: a stage with `of` turns teeth[0]/teeth[1] as fast as the one named."""
+    known: dict[str, Stage] = {}
+    for item in items:
+        name, period, period_s = item["name"], item.get("period"), item.get("period_s")
+        if name in known:
+            raise CalibrationInputError(path, f"stages: '{name}' is given twice")
+        if "teeth" in item:
+            other = known.get(item["of"])
+            if other is None:
+                raise CalibrationInputError(path, f"stages.{name}: 'of' must name a stage given before it")
+            factor = item["teeth"][1] / item["teeth"][0]
+            period = other.period * factor if other.period else None
+            period_s = other.period_s * factor if other.period_s else None
+        given = item.get("harmonics", HARMONICS)
+        listed = tuple(given) if isinstance(given, list) else ()
+        known[name] = Stage(name, period, period_s, max(listed, default=given), item.get("kind"), listed)
+    return list(known.values())

@@ -1,8 +1,8 @@
 """What a unit's name says: position units per turn."""
 
-from __future__ import annotations
-
 from math import pi
+
+from plant.units import ARCSEC_PER_TURN
 
 PER_TURN: dict[str, float] = {
     "rad": 2 * pi,
@@ -12,7 +12,7 @@ PER_TURN: dict[str, float] = {
     "degree": 360.0,
     "°": 360.0,
     "arcmin": 21600.0,
-    "arcsec": 1296000.0,
+    "arcsec": ARCSEC_PER_TURN,
     "gon": 400.0,
     "turn": 1.0,
     "rev": 1.0,
@@ -24,3 +24,18 @@ def units_per_turn(unit: str) -> float | None:
     """Position units per turn of the part that the position belongs to; None for a length or for counts."""
     word = unit.strip().split()[-1].lower() if unit.strip() else ""
     return PER_TURN.get(word) or PER_TURN.get(word.removesuffix("s"))
+
+
+def is_rate(unit: str) -> bool:
+    """Whether a unit is one of a position per time."""
+    word = unit.strip().lower()
+    return word == "rpm" or word.removesuffix(".").endswith(("/s", "/min", " per s", " per min"))
+
+
+def rad_per_unit(unit: str, per_s: bool) -> float | None:
+    """rad (or rad/s) per unit; None for a unit that is none of an angle (or of an angle per s)."""
+    word, slash, per = unit.partition("/")
+    if per_s and not (slash and per.strip() == "s"):
+        return None
+    turn = units_per_turn(word if per_s else unit)
+    return 2 * pi / turn if turn else None

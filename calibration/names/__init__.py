@@ -1,47 +1,24 @@
-"""Names that a drive's log may earn: one file per name, saying where it can be seen, its columns, bounds and
-signs, its twins, and the experiment that separates them."""
+"""Names that a log may earn, in the order of the plant's effects: one file per name.
+
+A file says where its name can be seen, its columns, bounds and signs, and the experiment that separates it.
+It also says what the name is in a plant file.
+"""
 
 from importlib import import_module
 from pkgutil import iter_modules
 
-from calibration.decide.experiments import TABLE
+from calibration.balances.candidate import Candidate
 from calibration.names.name import Name
+from calibration.names.scene import Scene
+from plant.effects import REGISTRY
 
-#: looked for in a balance of forces and in the difference of two sensors of any drive
-ORDER: tuple[str, ...] = (
-    "bearing_pass",
-    "brake_drag",
-    "channel_delay",
-    "command_disturbance",
-    "coulomb_change",
-    "encoder_eccentricity",
-    "encoder_subdivision",
-    "encoder_thermal_drift",
-    "friction_asymmetry",
-    "friction_warmup",
-    "gear_eccentricity",
-    "gear_mesh",
-    "gravity_imbalance",
-    "load_friction",
-    "motor_cogging",
-    "play",
-    "position_friction",
-    "preload_change",
-    "presliding",
-    "roller_slip",
-    "shaft_compliance",
-    "stribeck_change",
-    "structural_mode",
-    "supply_sag",
-    "torque_ripple",
-    "viscous_change",
-)
+_FILES = {m.name for m in iter_modules(__path__)}
+_FOUND = (import_module(f"{__name__}.{n}") for n in REGISTRY if n in _FILES)
 
-#: what names are made of, and no name itself
-SHARED = ("columns", "lateness", "name", "onsets", "own", "scene", "sines", "unknown")
-#: then every other file of this folder
-FILES = (*ORDER, *sorted({m.name for m in iter_modules(__path__)} - {*ORDER, *SHARED}))
+NAMES: dict[str, Name] = {m.NAME.name: m.NAME for m in _FOUND if hasattr(m, "NAME")}
 
-NAMES: dict[str, Name] = {n: import_module(f"{__name__}.{n}").NAME for n in FILES}
-# `decide` is below this room: it is told what separates the names it has no line for
-TABLE.update({n.name: n.experiment for n in NAMES.values() if n.own is not None})
+
+def offered(scene: Scene) -> list[Candidate]:
+    """All names' candidates in a balance; a pair's other values of declared numbers are read off the fit."""
+    names = (n for n in NAMES.values() if scene.channel in n.channels)
+    return [c for n in names if scene.pair is None or n.changed is None for c in n.columns(scene)]

@@ -1,22 +1,42 @@
 """A line over position at a period of no stage."""
 
-from __future__ import annotations
+from math import pi
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, SENSORS, Name
-from calibration.names.scene import Scene
-from calibration.names.sines import free_lines
+from calibration.inputs.train import MESH, SHAFT
+from calibration.names.freelines import free_lines
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.motor_cogging import NAME as COGGING
+from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Candidate, Finding, Name, Scene
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Lines that stand out of the residual's spectrum over position."""
-    return free_lines(s)
+    """Lines that stand out of the residual's spectrum over position; of a pair of its torque."""
+    return free_lines(s) if s.pair is None or s.force else []
+
+
+def of_no_stage(f: Finding, s: Scene) -> Finding:
+    """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
+    if f.name == NAME.name and f.order:
+        f.note = f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}"
+        if not s.view.rig.stages:
+            f.name, f.stage = SHAFT, None
+            f.equivalent = list(dict.fromkeys([*f.equivalent, MESH, COGGING.name, NAME.name]))
+            f.note += "; no gear table was given, so its stage cannot be named"
+    return f
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The motors give A cos(x + phase); the axis has minus that."""
+    values = {"amplitude": value(f, "amplitude"), "phase": value(f, "phase") - pi / 2}
+    return Made().add(f.name, facts, values | {"order": f.order or 0.0})
 
 
 NAME = Name(
-    "bearing_pass",
-    (FORCE, SENSORS),
-    columns,
-    ("gear_eccentricity", "gear_mesh", "motor_cogging"),
-    "twice the travel: the order stands clear of every gear; or declare the gears",
+    name="bearing_pass",
+    searched=True,
+    channels=(FORCE, SENSORS, SPEED),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="twice the travel: the order stands clear of every gear, or declare the gears",
+    worth=SEARCHED_WORTH,
 )

@@ -1,22 +1,40 @@
 """A brake that rubs from some time on."""
 
-from __future__ import annotations
+from dataclasses import replace
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.onsets import steps
-from calibration.names.scene import Scene
+from calibration.finding import Parameter
+from calibration.names.inplant import Facts, Made, as_found, value
+from calibration.names.name import FORCE, Beside, Candidate, Finding, Name, Scene
+from calibration.names.onsets import Begins, steps
+
+# s: longer than any log
+FOREVER_S = 1e6
 
 
 def columns(s: Scene) -> list[Candidate]:
     """A constant force against the motion, from an onset on."""
-    return steps(s, "brake_drag", s.view.direction, ("drag", s.unit), 0)
+    return steps(s, Begins(name=NAME.name, size=("torque", s.unit), weigh=s.answer))
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """A drag that goes away is one that was there from the start, of friction that was less."""
+    torque, name = value(f, "torque"), next(k for k in f.parameters if k.startswith("start"))
+    begins, lasts = value(f, name), FOREVER_S
+    if torque < 0.0:
+        begins, lasts = -FOREVER_S, FOREVER_S + begins
+    values = {"torque": (abs(torque), "N m"), name: (begins, "s"), "duration": (lasts, "s")}
+    made = as_found(replace(f, parameters={k: Parameter(*x) for k, x in values.items()}), facts)
+    if torque < 0.0:
+        made.numbers = {"friction.coulomb": torque, "friction.stiction": torque}
+        made.remarks.append("brake_drag: it lets go, so Tc and Ts of the plant are those without it")
+    return made
 
 
 NAME = Name(
-    "brake_drag",
-    (FORCE,),
-    columns,
-    ("preload_change", "friction_warmup"),
-    "repeat at two speeds: a brake adds the same force at both, a preload scales all friction",
+    name="brake_drag",
+    channels=(FORCE,),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="repeat at two speeds: a brake adds the same force at both, a preload scales all friction",
+    beside=Beside(consequences={"T": ("friction_warmup",)}),
 )

@@ -1,62 +1,69 @@
 """A cable bundle about an axis: a spring over its angle with a loop of its own."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.friction import stop_operator
-from calibration.names.gravity_imbalance import LEAST_TURN
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
-from calibration.readers.run import Array
+from calibration.balances.recursions import stop_operator
+from calibration.names.candidates import Size, tried
+from calibration.names.gravity_imbalance import NAME as WEIGHT
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, both_ways
 
 TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)  # of a turn, in which the loop closes, as on the telescope's axis
+# of a turn, the narrowest loop. ASSUMPTION
+NARROWEST = 1e-4
+# of a loop whose travel is not known. ASSUMPTION
+NARROW_RAD = 0.01
 
 
 def columns(s: Scene) -> list[Candidate]:
     """Stiffness over the angle, and a loop that closes within some travel."""
-    if lacks(s):
+    if s.pair is None and lacks(s):
         return []
-    v, turn = s.view, s.view.turn or 1.0
+    v, turn = s.view, s.turn
     spring = v.x - float(np.mean(v.x[v.ok]))
 
     def full(p: Array) -> Array:
-        travel = max(float(p[0]), 1e-4 * turn)
-        return np.column_stack([spring, stop_operator(v.x, v.file, travel) / travel])
+        travel = max(float(p[0]), NARROWEST * turn)
+        parts = [spring, stop_operator(v.x, v.file, travel) / travel]
+        return np.column_stack(parts if s.pair is None else [*parts, np.ones(len(v.x))])
 
-    shape = s.shaped(full)
+    sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
+    sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
+    travels = [part * turn for part in TRAVELS if v.resolved < part * turn < s.span]
     return [
-        Candidate(
-            "cable_wrap",
-            "axis_angle",
-            shape(np.array([part * turn])),
-            (("stiffness", f"{s.unit}/{s.angle_unit}"), ("loop", s.unit)),
-            fixed={"loop_travel": (part * turn, s.angle_unit)},
-            shape=shape,
-            steps=(0.1 * part * turn,),
+        tried(
+            NAME.name,
+            s.shaped(full),
+            *sizes,
+            at={"width": (travel, s.angle_unit)},
             positive=(0, 1),
-            searched=1,
+            twins=() if s.pair is not None or s.span >= turn else (WEIGHT.name,),  # it comes round again
         )
-        for part in TRAVELS
-        if v.resolved < part * turn < s.span
+        for travel in travels
     ]
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The loop's travel is the Dahl width with the same area."""
+    stiffness = value(f, "stiffness")
+    centre = facts.middle - value(f, "neutral_torque") / stiffness if stiffness else facts.middle
+    width = float(np.degrees(value(f, "width", NARROW_RAD)))
+    sizes = {"stiffness": stiffness, "hysteresis": value(f, "hysteresis")}
+    return Made().add(f.name, facts, {**sizes, "centre": centre, "width": width})
 
 
 def lacks(s: Scene) -> str:
     """An angle, enough of it, and both ways."""
-    if not s.view.turn:
-        return "an angle: give position in rad, deg or turns, or 'turn' (position units per turn)"
-    if s.span < LEAST_TURN * s.view.turn:
-        return f"a motion over at least {LEAST_TURN:.2g} turns"
-    return "" if s.both else "motion in both directions over the same place"
+    return WEIGHT.lacks(s) or both_ways(s)
 
 
 NAME = Name(
-    "cable_wrap",
-    (FORCE,),
-    columns,
-    ("gravity_imbalance",),
-    "a full turn both ways: a cable pulls back more the further it is wound, a weight comes round again",
-    lacks,
+    name="cable_wrap",
+    channels=(FORCE,),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="a full turn both ways: a cable pulls back more the further it is wound, a weight comes "
+    "round again",
+    lacks=lacks,
+    beside=Beside(consequences={"T": ("preload_change", "friction_warmup")}, single=True),
 )

@@ -1,33 +1,26 @@
 """What was repaired in columns, as findings: sensors and clocks come before any physics."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.finding import Finding, Parameter
-from calibration.inputs.record import Record
+from calibration.finding import Finding, Parameter, deviation, of_columns
+from calibration.inputs.run import Run
+from calibration.names import NAMES
 
 #: kind of repair -> name of the catalogue
-CALLED = {
-    "wrap": "log_wrap",
-    "signed": "log_wrap",
-    "spike": "sample_loss",
-    "repeat": "sample_loss",
-    "lost": "sample_loss",
-    "saturation": "log_wrap",
-    "jitter": "clock_jitter",
-}
+CALLED = {kind: n.name for n in NAMES.values() for kind in n.repairs}
 FORCES = ("effort", "current", "force", "acceleration")
 SAID = {"saturation", "leap", "rounded"}  # told, but no fault of the log
 FEWEST = {"repeat": 10}  # rows before a few chance repeats are a finding
-FEWEST_OF_FORCE = 3  # spikes in a force: noise with heavy tails makes one or two; a position's has none
-CERTAIN = 12.0  # -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise
+# rows of spikes in a force: noise with heavy tails makes one or two; a position's has none. ASSUMPTION
+FEWEST_OF_FORCE = 3
+# -log10 p: a jump of a counter's whole length, or a row twelve deviations off, is no noise. ASSUMPTION
+CERTAIN = 12.0
 
 
-def repairs_found(records: list[Record], own: tuple[str, ...] = ()) -> list[Finding]:
+def repairs_found(records: list[Run], own: tuple[str, ...] = ()) -> list[Finding]:
     """One finding per kind and column, over all files. `own`: channels whose spikes may be the drive's: a
     command whose law is another than the declared one jumps where that law does."""
-    groups: dict[tuple[str, str], list[tuple[Record, int, float, str]]] = {}
+    groups: dict[tuple[str, str], list[tuple[Run, int, float, str]]] = {}
     for r in records:
         for fix in r.repairs:
             if fix.kind not in SAID and not (fix.kind == "spike" and fix.channel in own):
@@ -40,24 +33,13 @@ def repairs_found(records: list[Record], own: tuple[str, ...] = ()) -> list[Find
             continue
         where = f"{channel} column" if channel != "all" else "all columns"
         files = f" in {len(found)} of {len(records)} files" if len(records) > 1 else ""
-        count = Parameter(float(rows), "rows", float(rows), float(rows))
-        parameters = {"count": count}
+        parameters = {"count": Parameter(float(rows), "rows", float(rows), float(rows))}
         if kind == "jitter":
             shake = float(np.sqrt(np.mean([size**2 for _, _, size, _ in found])))
-            half = 1.96 * shake / np.sqrt(2 * rows)
-            parameters = {"sigma": Parameter(shake, "s", shake - half, shake + half)}
+            parameters = {"deviation": deviation(shake, rows, "s")}
         if kind in ("wrap", "signed"):
             size = found[0][2]
             parameters["length"] = Parameter(size, "rig units", size, size)
-        out.append(
-            Finding(
-                CALLED[kind],
-                "S",
-                "clock",
-                evidence=CERTAIN,
-                share=0.0,
-                note=f"{where}{files}: {found[0][3]}",
-                parameters=parameters,
-            )
-        )
+        note = f"{where}{files}: {found[0][3]}"
+        out.append(of_columns(CALLED[kind], parameters, evidence=CERTAIN, share=0.0, note=note))
     return out

@@ -1,22 +1,38 @@
 """Something that is added to the command behind the logged effort: a line of its own frequency."""
 
-from __future__ import annotations
+from collections.abc import Callable
+from itertools import product
+from typing import Any
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate, sine_columns
-from calibration.channels.repeats import repeat_frequency
-from calibration.channels.view import View
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
-from calibration.names.sines import peaks
-from calibration.readers.run import Array
+from calibration.balances.candidate import sine_columns
+from calibration.balances.repeats import repeat_frequency
+from calibration.inputs.train import SHAFT
+from calibration.names.candidates import tried
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.lines import STEP_OF_CELL, on_clock, spectral_lines
+from calibration.names.name import FORCE, SEARCHED_WORTH, SPEED, VOLTS, Array, Candidate, Finding, Name, Scene
+from calibration.names.structural_mode import NAME as MODE
+from calibration.statistics.orders import Wanted, standing_out
+from calibration.statistics.regression import solve
 
+PASSED = "bearing_pass"  # at an order of no stage
 TURNS = 6.0  # cycles within a file before a frequency is a frequency
 ODD = (1, 3, 5, 7, 9)  # of a square wave
 # repeats of the motion in a file, below which no frequency lies between two of its multiples; then only those
 # that a repeated motion makes large are left out. ASSUMPTION: friction's corners fall off with the multiple
 FEWEST_REPEATS, STRONG = 2.5, 50
+# Hz, from which on volts are searched. ASSUMPTION
+SLOWEST_HZ = 0.05
+# rows, half a minute, that volts are searched in. ASSUMPTION
+FEWEST_ROWS = 1000
+# lines of volts that are tried. ASSUMPTION
+LINES = 3
+# share of such a line's resolution cell, for its refinement. ASSUMPTION
+STEP_CELLS = 0.05
+# count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
+PHASES = 17
 FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine
 
 
@@ -26,49 +42,125 @@ def columns(s: Scene) -> list[Candidate]:
     Multiples of the frequency at which the motion repeats itself are left out, where the declared force has
     more of them than what it leaves: whatever follows the motion has them.
     """
-    p = s.problem
-    beta = np.linalg.lstsq(p.base[p.train], p.y[p.train], rcond=1e-8)[0]
-    return lines(s, p.base @ beta, large_first=False)
+    if s.windings is not None:
+        return _of_volts(s)
+    if s.pair is not None:  # its volts say more
+        return []
+    return lines(s, s.declared_part, large_first=False)
 
 
 def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]:
-    """`columns` without multiples of the motion's frequency that `follows` (n_fitted,), what follows the
-    motion, has more of."""
+    """`columns` without multiples of the motion's frequency that `follows` (n_fitted,) has more of."""
     v = s.view
     files = s.problem.session
     t = v.t[v.rows]
     length = min(float(t[files == k].max()) for k in np.unique(files))
     if length <= 0:
         return []
-    top = 0.5 / (v.period_s * max(v.step, 1))
-    multiples = multiples_of_the_motion(v, length, top)
+    top, repeats = 0.5 / (v.period_s * max(v.step, 1)), repeat_frequency(v)
+    most = int(top / repeats) if repeats else 0
+    if repeats * length < FEWEST_REPEATS:
+        most = min(most, STRONG)
+    multiples: Array = np.arange(1, most + 1) * np.float64(repeats)
     avoid = multiples[[_power(s, follows, f) > _power(s, s.residual, f) for f in multiples]]
-    out = []
-    few = len(np.unique(files)) <= FEW
-    for f in peaks(s, t, length, TURNS / length, 5, avoid, large_first):
+    want = Wanted(span=length, least=TURNS / length, most=5, avoid=avoid, large_first=large_first)
+    out, count = [], len(np.unique(files))
+    few, more = count <= FEW, {"kind": "line", "per_run": count > 1}
+    for f in spectral_lines(s, t, want):
+        places = over_the_place(s, f)
+        if places is None:
+            continue
         for overtones in ((1,), ODD) if few and 3 * f < top else ((1,),):
 
             def shape(p: Array, overtones: tuple[int, ...] = overtones) -> Array:
-                at = [k for k in overtones if k * p[0] < top]
-                return np.hstack([sine_columns(t * k * p[0], files) * passed(v, k * p[0]) for k in at])
+                hertz = [k * p[0] for k in overtones if k * p[0] < top]
+                return np.hstack([sine_columns(t * f, files) * v.filter.gain(f * v.period_s) for f in hertz])
 
-            out.append(
-                Candidate(
-                    "command_disturbance",
-                    "time",
-                    shape(np.array([f])),
-                    (("amplitude", s.unit),),
-                    kind="line",
-                    frequency=f,
-                    fixed={"frequency": (f, "Hz")},
-                    shape=shape,
-                    steps=(0.1 / length,),
-                    searched=1,
-                    per_run=len(np.unique(files)) > 1,
-                    twins=() if len(overtones) > 1 else ("structural_mode",),
-                )
-            )
+            more["twins"] = places if len(overtones) > 1 else (MODE.name, *places)
+            at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / length, ("amplitude", s.unit)
+            out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))
     return out
+
+
+def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
+    """Names that a line on the clock may have instead, where the log's one speed does not tell it from a line
+    over the place; None where a declared stage has that line."""
+    speed = abs(s.one_speed[0])
+    rate = hertz / speed if speed else np.inf
+    if not on_clock(s, rate):
+        return ()
+    for g in s.view.rig.stages:
+        harmonic = round(rate * (g.period or 0.0))
+        if g.period and harmonic in g.orders and abs(rate - harmonic / g.period) * s.span < 1.0:
+            return None
+    return (SHAFT, PASSED)
+
+
+def _of_volts(s: Scene) -> list[Candidate]:
+    """Between the logged effort of two motors and the amplifier: sines and squares that stand out of what is
+    added to the effort. The amplitude is a share of full effort."""
+    w, p = s.windings, s.problem
+    if w is None or w.counter is None:
+        return []
+    n = len(p.y) // 2
+    # the motor that leads pulls the way of its effort, A in +
+    side = np.where(np.repeat([True, False], n) == (w.counter.lagging > 0), 1.0, -1.0)
+    volts = side * w.at(w.counter.share * w.supply)
+    weight = np.where(p.valid, volts, 0.0)
+    power = w.together(weight**2)[:n]
+    seen, run = power > 0, p.run[:n]
+    rows = seen & ~p.held[:n]
+    if rows.sum() < FEWEST_ROWS:
+        return []
+    added = np.where(seen, w.together(weight * s.residual)[:n], 0.0) / np.where(seen, power, 1)
+    since = p.t[:n] - p.t[:n][np.searchsorted(run, run)]
+    want = Wanted(span=float(since.max()), least=SLOWEST_HZ, most=LINES)
+    out = []
+    for f0, square in product(standing_out(added[rows], since[rows], run[rows], want), (False, True)):
+        at = {"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")}
+        more: dict[str, Any] = {"frequency": f0, "sign": 1, "searched": 1 + len(np.unique(run))}
+        wave = _wave(s, added, volts, square)
+        out.append(tried(NAME.name, wave, "amplitude", at=at, steps=(STEP_CELLS / want.span,), **more))
+    return out
+
+
+def _wave(s: Scene, added: Array, volts: Array, square: bool) -> Callable[[Array], Array]:
+    """Volts (2 n_analysis, 1) per effort count of a wave at p[0] Hz, its phase as each run's rows show."""
+    v = s.view
+    n = len(added)
+    run, t = s.problem.run[:n], s.problem.t[:n]
+
+    def shape(p: Array) -> Array:
+        x = 2 * np.pi * float(p[0]) * t
+        phase = np.zeros(len(v.t))
+        for k in np.unique(run):
+            rows = (run == k) & (added != 0)
+            if rows.any():
+                phase[v.run == k] = _phase(x[rows], added[rows], square)
+        wave = np.sin(2 * np.pi * float(p[0]) * v.t + phase)
+        return np.asarray(volts * s.at(np.sign(wave) if square else wave))[:, None]
+
+    return shape
+
+
+def _phase(x: Array, y: Array, square: bool) -> float:
+    """Phase of sin(x + phase), or of its sign, that explains most of y beside a constant on uneven rows."""
+    fit = solve(np.column_stack([np.ones(len(x)), np.cos(x), np.sin(x)]), y)
+    best = float(np.arctan2(fit[1], fit[2]))
+    if not square:
+        return best
+    y = y - np.mean(y)
+
+    def explained(phase: float) -> float:
+        wave = np.sign(np.sin(x + phase))
+        wave = wave - np.mean(wave)
+        return float(wave @ y) * abs(float(wave @ y)) / max(float(wave @ wave), 1e-300)
+
+    reach = np.pi / 2
+    for _ in range(3):  # the fundamental of uneven rows can be off by a good part of a quarter
+        best = max(best + reach * np.linspace(-1, 1, PHASES), key=explained)
+        reach *= 2.0 / PHASES
+    return best
 
 
 def _power(s: Scene, y: Array, hertz: float) -> float:
@@ -79,30 +171,33 @@ def _power(s: Scene, y: Array, hertz: float) -> float:
     return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
 
 
-def multiples_of_the_motion(v: View, length_s: float, top_hz: float) -> Array:
-    """Frequencies, Hz, that whatever follows the motion has."""
-    f0 = repeat_frequency(v)
-    multiples = int(top_hz / f0) if f0 else 0
-    if f0 * length_s < FEWEST_REPEATS:
-        multiples = min(multiples, STRONG)
-    return np.asarray(np.arange(1, multiples + 1) * f0, dtype=np.float64)
-
-
-def passed(v: View, frequency: float) -> float:
-    """What the balance's filter leaves of a sine of this frequency, Hz: its columns go through it, too."""
-    return float(np.exp(-2 * (np.pi * frequency * v.sigma * v.period_s) ** 2))
-
-
 def lacks(s: Scene) -> str:
     """An effort."""
-    return "" if s.view.response.channel in ("effort", "current", "force") else "a column of the effort"
+    some = s.view.response.channel in ("effort", "current", "force", "voltage")
+    return "" if some else "a column of the effort"
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """Its phase is the first run's, every run has one of its own."""
+    made, unit = Made(), f.parameters["amplitude"].unit
+    steps = float(unit.removeprefix("1/")) if unit.startswith("1/") else 1.0  # of the logged effort
+    values = {"amplitude": value(f, "amplitude") / steps, "phase": value(f, "phase") + np.pi / 2}
+    values |= {"frequency": value(f, "frequency", f.frequency or 0.0), "shape": value(f, "shape")}
+    made.add(f.name, facts, values)
+    made.remarks.append(f"{f.name}: every run has a phase of its own, the plant has the first run's")
+    return made
 
 
 NAME = Name(
-    "command_disturbance",
-    (FORCE,),
-    columns,
-    ("structural_mode",),
-    "the same motion at another speed: a disturbance keeps its frequency and size; at rest it stays",
-    lacks,
+    name="command_disturbance",
+    searched=True,
+    scaled=True,
+    random=True,
+    channels=(FORCE, VOLTS, SPEED),
+    columns=columns,
+    experiment="the same motion at another speed: a disturbance keeps its frequency and size, at rest "
+    "it stays",
+    lacks=lacks,
+    to_plant=to_plant,
+    worth=SEARCHED_WORTH,
 )

@@ -1,57 +1,105 @@
 """A short pulse once per turn of one part: a damaged tooth."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.tooth import folded, pulse
 from calibration.inputs.declaration import Stage
-from calibration.names.name import FORCE, Name
+from calibration.inputs.train import MESH, SHAFT
+from calibration.names.candidates import tried
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, SPEED, Array, Beside, Candidate, Finding, Name
 from calibration.names.scene import Scene
-from calibration.readers.run import Array
 
-ENOUGH = 0.9  # turns of the part, as on an axis
-SWEPT = 0.12  # of a turn per fitted row: quicker, a tooth is not seen
+# turns of the part. ASSUMPTION
+ENOUGH = 0.9
+# of a turn per fitted row: quicker, a tooth is not seen. ASSUMPTION
+SWEPT = 0.12
+# pulses of a part that are tried. ASSUMPTION
 KEEP = 3
-LEAST = 20.0  # -log10 p: a place and a width are searched for on every part
-MOTORS = ("motor", "motor_cogging", "torque_ripple")
+# -log10 p: a place and a width are searched for on every part. ASSUMPTION
+LEAST = 14.0
+# parts of a turn, full width of a raised cosine. ASSUMPTION
+WIDTHS = (0.006, 0.0085, 0.012, 0.018, 0.027, 0.04, 0.06, 0.085)
+# bins of a turn, in which the residual is folded. ASSUMPTION
+BINS = 240
+# of a turn, step of a pulse's place in its refinement. ASSUMPTION
+STEP_TURN = 0.003
+# part of its width, likewise. ASSUMPTION
+STEP_WIDTH = 0.1
+# rows, as a pulse weighs them: fewer are a spike. ASSUMPTION
+LEAST_WEIGHT = 3
+# that are slow enough: fewer have no tooth's shape. ASSUMPTION
+FEWEST_ROWS = 50
 
 
 def columns(s: Scene) -> list[Candidate]:
     """The best few pulses on every declared part that turns about once in the log."""
-    return [c for g in s.view.rig.stages if g.period for c in _on(s, g, 1.0 / g.period)]
+    stages = [g for g in s.view.rig.stages if g.period]
+    if s.pair is not None:
+        stages = [g for g in stages if g.name in s.pair.train.toothed]
+    return [c for g in stages for c in _on(s, g, 1.0 / (g.period or 1.0))]
 
 
 def _on(s: Scene, stage: Stage, rate: float) -> list[Candidate]:
     """On one part, of `rate` turns per position unit."""
     v, p = s.view, s.problem
+    of_motor = stage.of_motor if s.pair is None else stage.name == s.pair.train.motor
     if s.span * rate < ENOUGH:
         return []
     phase = v.x * rate
     row = np.abs(v.speed) * rate * v.period_s  # turns that a full-rate row sweeps
     ok = p.train & (row[v.rows] * max(v.step, v.sigma) < SWEPT)
+    if ok.sum() < FEWEST_ROWS:
+        return []
 
     def full(q: Array) -> Array:  # what the response has beside it is minus what acts on the axis
         return -pulse(phase, float(q[0]), max(float(q[1]), 0.002), row)
 
-    shape = s.shaped(full)
     return [
-        Candidate(
-            "damaged_tooth",
-            "motor_angle" if stage.kind in MOTORS else "axis_angle",
-            shape(np.array([centre, width])),
-            (("amplitude", s.unit),),
+        tried(
+            NAME.name,
+            s.shaped(full),
+            ("amplitude", s.unit),
+            at={"phase": (centre, "turn"), "width": (width, "turn")},
+            steps=(STEP_TURN, STEP_WIDTH * width),
+            domain="motor_angle" if of_motor else None,
             stage=stage.name,
-            order=rate * (v.turn or 1.0),
-            fixed={"phase": (centre, "turn"), "width": (width, "turn")},
-            shape=shape,
-            steps=(0.003, 0.1 * width),
+            order=rate * s.turn,
             least=LEAST,
-            searched=2,
         )
         for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP)
     ]
+
+
+def pulse(phase_turns: Array, centre: float, width: float, reach: Array) -> Array:
+    """Raised cosine of full width `width` turns at `centre`, widened to what one row sweeps (`reach`)."""
+    away = np.abs((phase_turns - centre + 0.5) % 1.0 - 0.5)
+    wide = np.maximum(width, reach)
+    return np.asarray(
+        np.where(away < wide / 2, 0.5 * (1 + np.cos(2 * np.pi * away / wide)), 0.0) * width / wide
+    )
+
+
+def folded(phase: Array, e: Array, keep: int) -> list[tuple[float, float]]:
+    """Centre and width, turns, of the `keep` pulses that take most off the residual e(phase), both (n,)."""
+    from scipy.ndimage import correlate1d
+
+    ranked = []
+    place = (phase % 1.0 * BINS).astype(np.int64) % BINS
+    total, count = np.bincount(place, e, BINS), np.bincount(place, minlength=BINS).astype(float)
+    for width in WIDTHS:
+        kernel = pulse((np.arange(BINS) + 0.5) / BINS, 0.5, width, np.full(BINS, 1.5 / BINS))
+        hit, weight = (correlate1d(x, k, mode="wrap") for x, k in ((total, kernel), (count, kernel**2)))
+        score = np.where(weight > LEAST_WEIGHT, hit**2 / np.maximum(weight, LEAST_WEIGHT), 0.0)
+        k = int(np.argmax(score))
+        ranked.append((float(score[k]), k / BINS, width))
+    return [(centre, width) for _, centre, width in sorted(ranked, reverse=True)[:keep]]
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """A raised cosine of full width w turns is a Gaussian of the same height and area."""
+    values = {"amplitude": value(f, "amplitude"), "phase": 2 * np.pi * value(f, "phase")}
+    values["width"] = 2 * np.pi * value(f, "width") / (2 * np.sqrt(2 * np.pi))
+    return Made().add(f.name, facts, values, f.stage, 1)
 
 
 def lacks(s: Scene) -> str:
@@ -61,10 +109,11 @@ def lacks(s: Scene) -> str:
 
 
 NAME = Name(
-    "damaged_tooth",
-    (FORCE,),
-    columns,
-    ("gear_eccentricity",),
-    "turn the part slowly, both ways: a tooth is a pulse at one place, an eccentric part a sine",
-    lacks,
+    name="damaged_tooth",
+    channels=(FORCE, SPEED),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="turn the part slowly, both ways: a tooth is a pulse at one place, an eccentric part a sine",
+    lacks=lacks,
+    beside=Beside(single=True, shadows={"K": (SHAFT, MESH)}),
 )

@@ -1,44 +1,52 @@
 """A sensor's disc that runs out of true."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import SENSORS, Name
-from calibration.names.scene import Scene
-from calibration.names.sines import over_place, stage_lines
+from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
+from calibration.names.lines import line, over_place, stage_lines
+from calibration.names.name import RATES, SENSORS, Beside, Candidate, Finding, Name, Scene, candidate
+
+# of a turn of the position, before a line of its own turn is looked for. ASSUMPTION
+LEAST_TURN = 0.4
+# orders that are one. arithmetic
+SAME = 1e-6
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Sines at the stages without another kind; without a stage of that length, at one turn of the
-    position."""
+    """Sines at the stages of this kind and at one turn of the position, where no stage is as long; of an
+    axis' absolute encoder, which all the others are compared with, both harmonics as one."""
     out = stage_lines(s, "encoder_eccentricity", default=True)
-    turn = s.view.turn
-    have = [c.order for c in out]
-    if turn and s.span > 0.4 * turn:
+    if s.pair is not None:
+        out = [replace(c, labels=(("amplitude", "arcsec"),)) for c in out]
+        waves = np.column_stack([g(h * s.view.x) for h in (1, 2) for g in (np.cos, np.sin)])
+        own = candidate("encoder_eccentricity", s.at(waves), "amplitude", "second", kind="line")
+        return [*out, replace(own, stage="axis", harmonic=1, order=1.0)]
+    turn, have = s.view.turn, [c.order for c in out if c.order is not None]
+    if turn and s.span > LEAST_TURN * turn:
         for h in (1, 2):
-            if not any(o is not None and abs(o - h) < 1e-6 for o in have):
-                one = Candidate(
-                    "encoder_eccentricity",
-                    "axis_angle",
-                    np.zeros((len(s.view.rows), 0)),
-                    (("amplitude", s.unit),),
-                    kind="line",
-                    stage="axis",
-                    harmonic=h,
-                    order=float(h),
-                )
+            if not any(abs(order - h) < SAME for order in have):
+                one = line(s, "encoder_eccentricity", h / turn, stage="axis", harmonic=h)
                 out += over_place(s, one, h / turn)
     return [replace(c, twins=("gear_eccentricity",)) for c in out]
 
 
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """Of the roller's encoder, or of the absolute one."""
+    made, stage = Made(), f.stage or "axis"
+    turned = OF_ABSOLUTE if stage != "roller" else -OF_ABSOLUTE
+    values = {name: value(f, name) for name in ("amplitude", "second")}
+    values |= {name: value(f, name) + turned for name in ("phase", "second_phase")}
+    made.add(f.name, facts, values, stage, f.harmonic or 1 if stage != "axis" else 1)
+    return made
+
+
 NAME = Name(
-    "encoder_eccentricity",
-    (SENSORS,),
-    columns,
-    ("gear_eccentricity",),
-    "turn one sensor's disc against its shaft: the error turns with it, a gear's does not",
+    name="encoder_eccentricity",
+    channels=(SENSORS, RATES),
+    columns=columns,
+    experiment="turn one sensor's disc against its shaft: the error turns with it, a gear's does not",
+    to_plant=to_plant,
+    beside=Beside(consequences={"K": ("roller_ratio",)}, single=True),
 )

@@ -1,38 +1,57 @@
 """A sensor that moves with the temperature."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import SENSORS, Name
-from calibration.names.scene import Scene
+from calibration.names.name import SENSORS, Candidate, Facts, Finding, Made, Name, Scene, candidate
+from calibration.names.scene import LEAST_K
 
-LEAST_K = 0.5  # of change before a coefficient means anything
+# of change, before a coefficient means anything of an axis' log, whose fit is finer. ASSUMPTION
+AXIS_LEAST_K = 0.3
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The temperature less its mean."""
-    if lacks(s):
-        return []
-    t = s.view.columns["temperature"]
-    label = ("drift", f"{s.unit}/K")
-    return [Candidate("encoder_thermal_drift", "temperature", s.at(t - t.mean())[:, None], (label,))]
+    """The temperature less its mean; of an axis' absolute encoder, which is subtracted, minus that, and the
+    time, in which a log without a temperature may have warmed."""
+    out, sense = [], 1.0 if s.pair is None else -1.0
+    if not lacks(s):
+        t = s.view.columns["temperature"]
+        drift = s.at(sense * (t - t.mean()))
+        out.append(candidate("encoder_thermal_drift", drift, ("drift", f"{s.unit}/K")))
+    if s.pair is not None:
+        t = s.problem.t
+        steady = (t - t.mean()) / (np.ptp(t) or 1.0)
+        out.append(candidate("encoder_thermal_drift", steady, ("drift", s.unit), domain="time"))
+    return out
 
 
 def lacks(s: Scene) -> str:
     """A temperature that changes."""
-    t = s.view.columns.get("temperature")
+    t, least = s.view.columns.get("temperature"), LEAST_K if s.pair is None else AXIS_LEAST_K
     if t is None:
         return "a temperature column"
-    return "" if float(np.ptp(t)) > LEAST_K else f"a temperature that changes by more than {LEAST_K} K"
+    return "" if float(np.ptp(t)) > least else f"a temperature that changes by more than {least} K"
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """Per kelvin, or arcsec over the log through the plant's own warming."""
+    made = Made()
+    found = f.parameters["drift"]
+    if found.unit == "arcsec/K":
+        made.add(f.name, facts, {"drift": found.value, "encoder": 1.0})
+    elif facts.warming:
+        per_kelvin = -found.value / (facts.duration_s * facts.warming)
+        made.add(f.name, facts, {"drift": per_kelvin, "encoder": 1.0})
+        made.remarks.append(f"{f.name}: the log has no temperature, the plant's own warming is used")
+    else:
+        made.remarks.append(f"{f.name}: left out, the plant's temperature does not change")
+    return made
 
 
 NAME = Name(
-    "encoder_thermal_drift",
-    (SENSORS,),
-    columns,
-    ("roller_slip",),
-    "the same motion warm and cold",
-    lacks,
+    name="encoder_thermal_drift",
+    channels=(SENSORS,),
+    columns=columns,
+    experiment="the same motion warm and cold",
+    lacks=lacks,
+    to_plant=to_plant,
 )

@@ -1,49 +1,47 @@
 """More friction one way than the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
+from calibration.names.name import FORCE, Beside, Candidate, Name, Scene, both_ways, candidate
 
-VARIES = 0.1  # of the mean speed: below, a part that grows with the speed is the constant one
+# standard deviation of |direction|: below, nothing stands still
+STANDS = 0.02
+COULOMB, VISCOUS = "coulomb_asymmetry", "viscous_asymmetry"
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """|direction|, and with it |speed|: even in direction, gone at rest."""
+    """Even in direction, and gone at rest: a constant, with the speed, or both. Of an axis with two motors in
+    parts of the declared friction, as in the plant file. More than the friction itself would push one way."""
+    if s.pair is not None:
+        one, speed = s.answer(s.view.direction * s.sliding.steady), np.abs(s.at(s.sliding.drag))
+        both = np.column_stack([one, speed])
+        return [
+            candidate(NAME.name, both, COULOMB, VISCOUS, most=(1.0, 1.0)),
+            candidate(NAME.name, one, COULOMB, most=1.0),
+        ]
     if not s.both:
         return []
-    one, speed = np.abs(s.view.direction), np.abs(s.view.speed)
-    per = f"{s.unit} s/{s.angle_unit}"
-    # beyond the declared friction itself, it would push one way
+    sizes = ((COULOMB, s.unit), (VISCOUS, f"{s.unit} s/{s.angle_unit}"))
     most = tuple(max(s.declared.get(n, np.inf), 0.0) or np.inf for n in ("coulomb", "viscous"))
-    label = (("coulomb_asymmetry", s.unit), ("viscous_asymmetry", per))
+    one, speed = s.at(np.abs(s.view.direction)), s.at(np.abs(s.view.speed))
     out = []
     # where nothing stands still, a constant is the offset of the base
-    if np.std(s.at(one)) > 0.02:
-        c = s.at(one)[:, None]
-        out.append(Candidate("friction_asymmetry", "velocity", c, label[:1], most=most[0]))
-    if np.std(speed) > VARIES * np.mean(speed):
-        grows = s.at(speed)[:, None]
-        out.append(Candidate("friction_asymmetry", "velocity", grows, label[1:], most=most[1]))
-        if len(out) > 1:
-            both = s.at(np.column_stack([one, speed]))
-            out.append(Candidate("friction_asymmetry", "velocity", both, label, most=most))
+    stands, varies = np.std(one) > STANDS, s.speeds
+    if stands:
+        out.append(candidate(NAME.name, one, sizes[0], most=most[0]))
+    if varies:
+        out.append(candidate(NAME.name, speed, sizes[1], most=most[1]))
+    if stands and varies:
+        out.append(candidate(NAME.name, np.column_stack([one, speed]), *sizes, most=most))
     return out
 
 
-def lacks(s: Scene) -> str:
-    """Both directions."""
-    return "" if s.both else "motion in both directions"
-
-
 NAME = Name(
-    "friction_asymmetry",
-    (FORCE,),
-    columns,
-    ("adc_offset",),
-    "run both directions at two speeds, and read the effort at rest",
-    lacks,
+    name="friction_asymmetry",
+    channels=(FORCE,),
+    columns=columns,
+    relative={COULOMB: ("coulomb", 1), VISCOUS: ("viscous", 1)},
+    experiment="run both directions at two speeds, and read the effort at rest",
+    lacks=both_ways,
+    beside=Beside(single=True),
 )

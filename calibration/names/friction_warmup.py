@@ -1,68 +1,74 @@
 """Friction that falls as the drive warms up."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
-from calibration.readers.run import Array
+from calibration.names.inplant import Facts, Made, as_found
+from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, candidate, tried
+from calibration.names.scene import since_first
 
 PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)  # time constants, of the time from the first row to the last
-LEAST_K = 0.5  # of temperature before its coefficient means anything
+LONGEST = 1.0  # of that time, for a time constant: a slower one is a slope
+OF_COULOMB = "of_coulomb"
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Friction, or what of it knows no speed, times exp(-time / tau), on the clock that all files share or
-    from the start of every file, or times the temperature."""
-    v = s.view
-    weight = v.direction * s.friction
-    weights = {"relative_rise": weight}
-    if s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0:
-        weights["relative_rise_of_coulomb"] = v.direction * s.declared["coulomb"]
-    out = []
-    for label, w in weights.items():
-        out += _cooling(s, w, v.clock - float(v.clock.min()), label, "tau")
-        if len(np.unique(v.file)) > 1:
-            out += _cooling(s, w, v.t, label, "tau_in_run")
-    t = v.columns.get("temperature")
-    if t is not None and np.ptp(t) > LEAST_K:
-        column = s.at(weight * (t - t.mean()))[:, None]
-        per_degree = (("relative_per_degree", "1/K"),)
-        out.append(Candidate("friction_warmup", "temperature", column, per_degree, sign=-1))
+    """Friction, or what of it knows no speed, times exp(-time / tau) or times the temperature.
+
+    The time is on the clock that all files share, or from the start of every file. Friction falls as the
+    depth is negative.
+    """
+    known = s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0
+    # all files of a rig are one session
+    session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.frame.session
+    clocks = [("time_constant", since_first(s.view.clock, session))]
+    clocks += [("time_constant_in_run", x) for start, x in s.clocks.items() if start != "start"]
+    out = [
+        one
+        for of_coulomb in ((False, True) if known else (False,))
+        for name, since in clocks
+        for one in _cooling(s, name, since, of_coulomb)
+    ]
+    t = s.temperature
+    if t is not None and s.pair is None:
+        size = ("relative_per_degree", "1/K")
+        out.append(candidate(NAME.name, _friction(s, t - t.mean()), size, domain="temperature", sign=-1))
     return out
 
 
-def _cooling(s: Scene, weight: Array, since: Array, label: str, name: str) -> list[Candidate]:
-    """`weight` (full rate) times exp(-since / tau) for the time constants that are tried; `label` is the
-    size's name, `name` the time constant's."""
+def _friction(s: Scene, change: Array, of_coulomb: bool = False) -> Array:
+    """The declared friction times `change` (n,), or what of it knows no speed."""
+    level = s.answer(s.sliding.steady * change)
+    return level if of_coulomb else level + s.at(s.sliding.drag * change)
+
+
+def _cooling(s: Scene, name: str, since: Array, of_coulomb: bool) -> list[Candidate]:
+    """Friction times exp(-since / tau) for the time constants that are tried."""
     span = float(since.max()) or 1.0
 
-    def full(p: Array) -> Array:
-        return np.asarray(weight * np.exp(-since / float(np.clip(p[0], 1e-3 * span, span))))
+    def shape(p: Array) -> Array:
+        tau = float(np.clip(p[0], 1e-3 * span, LONGEST * span))
+        return -_friction(s, np.exp(-since / tau), of_coulomb)[:, None]
 
-    shape = s.shaped(full)
+    which = {OF_COULOMB: (1.0, "0 all friction, 1 what knows no speed")} if of_coulomb else {}
     return [
-        Candidate(
-            "friction_warmup",
-            "time",
-            shape(np.array([part * span])),
-            ((label, "1"),),
-            fixed={name: (part * span, "s")},
-            sign=1,
-            shape=shape,
-            steps=(0.1 * part * span,),
-            searched=1,
-        )
-        for part in PARTS
+        tried(NAME.name, shape, "depth", at={name: (part * span, "s"), **which}, sign=-1) for part in PARTS
     ]
 
 
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """As it is found, but for what the plant cannot say."""
+    made = as_found(f, facts)
+    if OF_COULOMB in f.parameters:
+        made.remarks.append("friction_warmup: the plant scales Tc, Ts and sigma2 alike, by the rise of Tc")
+    return made
+
+
 NAME = Name(
-    "friction_warmup",
-    (FORCE,),
-    columns,
-    ("preload_change", "brake_drag"),
-    "repeat the same run after a rest of half an hour: a warm-up comes back",
+    name="friction_warmup",
+    channels=(FORCE,),
+    columns=columns,
+    relative={"depth": ("coulomb", 1), "relative_per_degree": ("coulomb", 1)},
+    to_plant=to_plant,
+    experiment="repeat the same run after a rest of half an hour: a warm-up comes back",
+    beside=Beside(single=True),
 )

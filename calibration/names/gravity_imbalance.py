@@ -1,50 +1,42 @@
 """A weight that hangs off the axis."""
 
-from __future__ import annotations
-
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
+from calibration.inputs.train import SHAFT
+from calibration.names.lines import SAME, line
+from calibration.names.name import FORCE, Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
 from plant.effects.signals import ANGLE
+from plant.evaluate import evaluate, signals
 
 LEAST_TURN = 1 / 12  # of travel: on less, a sine is a slope and an offset
 
 
-def gravity(s: Scene) -> np.ndarray:
-    """cos and sin of the angle (n_full, 2): the effect's own formula at phases 0 and 90 degrees."""
-    angle = s.view.x / (s.view.turn or 1.0) * 2 * pi
-    one = {"amplitude": 1.0, "phase": 0.0}
-    parts = [s.formula("gravity_imbalance", {ANGLE: angle}, {**one, "phase": p}) for p in (0.0, pi / 2)]
-    return np.column_stack(parts)
+def gravity(s: Scene) -> Array:
+    """cos and sin of the angle (n_full, 2): the effect's own formula at phases 0 and 90 degrees; of a load
+    that is declared, per unit of it."""
+    rows = signals(len(s.view.t), {ANGLE: s.view.x / s.turn * 2 * pi})
+    carried = s.view.columns.get("load", 1.0)
+    return np.column_stack(
+        [carried * evaluate(NAME.name, rows, {"amplitude": 1.0, "phase": p}) for p in (0.0, pi / 2)]
+    )
 
 
 def columns(s: Scene) -> list[Candidate]:
     """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
-    if lacks(s) or "gravity_cos" in s.declared:
+    if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
-    return [
-        Candidate(
-            "gravity_imbalance",
-            "axis_angle",
-            s.at(gravity(s)),
-            (("amplitude", s.unit),),
-            kind="line",
-            stage="axis",
-            harmonic=1,
-            order=1.0,
-            twins=("gear_eccentricity",) if any(_once_per_turn(s)) else (),
-        )
-    ]
+    turns_along = any(g.period and abs(g.period / s.turn - 1) < SAME for g in s.view.rig.stages)
+    twins = (SHAFT,) if turns_along else ()
+    one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
+    return [replace(one, columns=s.at(gravity(s)))]
 
 
-def _once_per_turn(s: Scene) -> list[bool]:
-    """For every declared stage, whether it turns with the weight."""
-    turn = s.view.turn or 1.0
-    return [bool(g.period) and abs(float(g.period or 0.0) / turn - 1) < 1e-6 for g in s.view.rig.stages]
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The motors give A cos(angle + phase); the axis has minus that, A cos(angle - phase)."""
+    return Made().add(f.name, facts, {"amplitude": value(f, "amplitude"), "phase": pi - value(f, "phase")})
 
 
 def lacks(s: Scene) -> str:
@@ -57,10 +49,13 @@ def lacks(s: Scene) -> str:
 
 
 NAME = Name(
-    "gravity_imbalance",
-    (FORCE,),
-    columns,
-    ("cable_wrap", "gear_eccentricity"),
-    "move through at least 60 degrees slowly, there and back; another weight changes it, a spring stays",
-    lacks,
+    name="gravity_imbalance",
+    scaled=True,
+    channels=(FORCE,),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="move through at least 60 degrees slowly, there and back, another weight changes it, a "
+    "spring stays",
+    lacks=lacks,
+    beside=Beside(single=True),
 )

@@ -1,37 +1,50 @@
-"""A late effort: looked for before friction, beside a fit that is flexible enough not to mistake one for the
-other."""
-
-from __future__ import annotations
+"""A late effort: looked for before friction, beside a fit that mistakes neither for the other."""
 
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from calibration.finding import Finding, Parameter
+from calibration.finding import NORMAL, Finding
+from calibration.inputs.run import Array
 from calibration.names import stribeck_change
+from calibration.names.channel_delay import NAME as DELAY
+from calibration.names.channel_delay import against_position, late_column
 from calibration.names.scene import Scene
 from calibration.names.unknown import any_friction_curve, plain
-from calibration.readers.run import Array
 from calibration.statistics.regression import block_covariance
+from calibration.statistics.tails import rms
 
-SIGNIFICANT = 5.0  # standard errors
-MATTERS = 0.02  # of the mean square on held-out rows, beside the flexible fit
-# of the same, from where on a delay is told of: 16 logs without one had 0.3 % at most (development seeds 1031
+# standard errors. ASSUMPTION
+SIGNIFICANT = 5.0
+# of the mean square on held-out rows, beside the flexible fit. ASSUMPTION
+MATTERS = 0.02
+# of the same, from where on a delay is noted: 16 logs without one had 0.3 % at most (development seeds 1031
 # to 1038, 1062, 1063)
 TOLD = 0.005
-SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output
-# sample periods, and s, that are looked at: a clock is late by rows, a transport by its own time whatever the
-# row (serial and USB adapters 1 to 50 ms; ASSUMPTION: twice that)
-LONGEST, LONGEST_S = 25.0, 0.1
+# sample periods: a shorter one is within the hold of the output. ASSUMPTION
+SMALLEST = 0.2
+# sample periods that are looked at: a clock is late by rows. ASSUMPTION
+LONGEST = 25.0
+# likewise: a transport is late by its own time (serial and USB adapters 1 to 50 ms; ASSUMPTION: twice that)
+LONGEST_S = 0.1
+# rounds of the refinement at most. ASSUMPTION
 ROUNDS = 5
-STARTS = 41  # delays tried before it is refined; zero is one of them
-# periods, standard errors: half a period, and what friction's memory adds to it (0.56 at an error of 0.001 in
-# the opened seed 20261210); EMPS' delay is 0.72 periods
-HOLD, SLACK = 0.6, 3.0
-QUICK = 0.2  # of the usual top speed: slower rows say nothing of a clock
-PARTS = 5  # of the log, in each of which the delay must be seen
-ALIKE = 0.35  # of the delay: standard deviation over those parts
+# of a sample period: steps of the refinement that end it. ASSUMPTION
+SMALL_STEP = 0.01
+# values of the delay that are tried before it is refined; zero is one of them. ASSUMPTION
+STARTS = 41
+# periods: half a period, and what friction's memory adds to it (0.56 at an error of 0.001 in the opened seed
+# 20261210); EMPS' delay is 0.72 periods
+HOLD = 0.6
+# standard errors beyond it. ASSUMPTION
+SLACK = 3.0
+# of the usual top speed, share: slower rows say nothing of a clock. ASSUMPTION
+QUICK = 0.2
+# pieces of the log, in each of which the delay must be seen. ASSUMPTION
+PARTS = 5
+# of the delay: standard deviation over those pieces. ASSUMPTION
+ALIKE = 0.35
 
 
 def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
@@ -42,7 +55,10 @@ def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
     size is then taken beside a friction curve of any smooth shape, where that can be told from it.
     """
     v = s.view
-    s = _quick(s)
+    # without the rows near rest: there friction turns, which looks late or early by itself
+    usual = float(np.quantile(np.abs(v.speed[v.ok]), 0.95)) if v.ok.any() else 0.0
+    quick = s.problem.valid & (np.abs(v.speed[v.rows]) > QUICK * usual)
+    s = replace(s, problem=replace(s.problem, valid=quick))
     p, r = s.problem, v.response
     if p.train.sum() < 20 * p.base.shape[1] or r.divide_by:
         return None, ""
@@ -53,7 +69,9 @@ def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
         return s.at(v.delayed(full, delay)) + known
 
     # beside the friction over the speed that explains most: along one kind of ramp it looks like a delay
-    rival = min((np.hstack([lines, r]) for r in _rivals(s)), key=lambda r: _left(s, p.y, r))
+    known_too = np.hstack([plain(s), lines])
+    rivals = [*(c.columns for c in stribeck_change.columns(s)), s.at(v.speed * np.abs(v.speed))[:, None]]
+    rival = min((np.hstack([known_too, r]) for r in rivals), key=lambda r: _left(s, p.y, r))
     delay, error = _converge(s, late, rival)
     reach = max(LONGEST * v.period_s, LONGEST_S)
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
@@ -64,85 +82,57 @@ def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
         return None, ""
     if share < MATTERS:
         sound = share < TOLD or abs(delay) < HOLD * v.period_s + SLACK * error
-        return None, "" if sound else _too_small(r.channel, delay, error, share)
-    curve = np.hstack([lines, any_friction_curve(s)])
+        what = f"{DELAY.name} of {r.channel}, {1e3 * delay:.2g} +- {1e3 * error:.1g} ms, was close"
+        took = f"it takes {100 * max(share, 0.0):.1f} % of the held-out mean square"
+        return None, "" if sound else f"{what} ({took}): quicker turns and a quieter effort"
+    curve = np.hstack([known_too, any_friction_curve(s)])
     finer, spread = _converge(s, late, curve)
     if spread < abs(finer) / SIGNIFICANT and finer * delay > 0:
         error = float(np.hypot(spread, (finer - delay) / 2))  # half of what the friction curve moves it by
         delay = finer
-    half = 1.96 * error
-    word = "late" if delay > 0 else "early"
-    return Finding(
-        "channel_delay",
-        "S",
-        "clock",
-        evidence=(delay / error) ** 2 / 4.6,
-        share=share,
-        note=f"the {r.channel} column is {word} against the position",
-        parameters={"delay": Parameter(delay, "s", delay - half, delay + half)},
-    ), ""
-
-
-def _too_small(channel: str, delay: float, error: float, share: float) -> str:
-    """A delay that is there by its own error, and below what the log's other errors let anyone tell."""
-    return (
-        f"channel_delay of {channel}, {1e3 * delay:.2g} +- {1e3 * error:.1g} ms, was close (it takes"
-        f" {100 * max(share, 0.0):.1f} % of the held-out mean square): quicker turns and a quieter effort"
-    )
-
-
-def _quick(s: Scene) -> Scene:
-    """The scene without the rows near rest: there friction turns, which looks late or early by itself."""
-    v = s.view
-    usual = float(np.quantile(np.abs(v.speed[v.ok]), 0.95)) if v.ok.any() else 0.0
-    quick = np.abs(v.speed[v.rows]) > QUICK * usual
-    return replace(s, problem=replace(s.problem, valid=s.problem.valid & quick))
+    return late_column(against_position(r.channel, delay), delay, error, share), ""
 
 
 def is_hold(f: Finding, period_s: float) -> bool:
-    """Whether a delay is what a sound sampled loop shows: an effort that is held for a period acts half a
-    period after the position it was made from, and half a period before the next one; which of the two its
-    row holds is the log writer's choice."""
+    """Whether a delay is what a sound sampled loop shows.
+
+    An effort that is held for a period acts half a period after the position it was made from. That is half a
+    period before the next position. Which of the two its row holds is the log writer's choice.
+    """
     p = f.parameters["delay"]
     if p.low is None or p.high is None:
         return False
-    error = (p.high - p.low) / 2 / 1.96
+    error = (p.high - p.low) / 2 / NORMAL
     return bool(abs(p.value) < HOLD * period_s + SLACK * error)
 
 
-def _converge(s: Scene, late: Callable[[float], Array], more: Array | None = None) -> tuple[float, float]:
-    """The delay at which nothing of it is left, and its standard error."""
-    reach = max(LONGEST * s.view.period_s, LONGEST_S)
-    delay, error = _start(s, late, more, reach), np.inf
+def _converge(s: Scene, late: Callable[[float], Array], more: Array) -> tuple[float, float]:
+    """The delay at which nothing of it is left, beside the declared terms and `more`; its standard error.
+
+    It begins at the one of STARTS that fits best: a step is a tangent, which from far off leads elsewhere.
+    """
+    reach, rows = max(LONGEST * s.view.period_s, LONGEST_S), s.problem.train
+    q, _ = np.linalg.qr(s.fitted(more)[0][rows])
+
+    def left(delay: float) -> float:
+        y = late(delay)[rows]
+        return float(y @ y - np.sum((q.T @ y) ** 2))
+
+    delay, error = float(min(np.linspace(-reach, reach, STARTS), key=left)), np.inf
     for _ in range(ROUNDS):
         step, error = _step(s, late(delay), more)
         delay = float(np.clip(delay + step, -reach, reach))
-        if abs(step) < 0.01 * s.view.period_s:
+        if abs(step) < SMALL_STEP * s.view.period_s:
             break
     return delay, error
-
-
-def _start(s: Scene, late: Callable[[float], Array], more: Array | None, reach: float) -> float:
-    """The delay that fits best of STARTS: a step is a tangent, which from far off leads elsewhere."""
-    q, _ = np.linalg.qr(_columns(s, more)[s.problem.train])
-
-    def left(delay: float) -> float:
-        y = late(delay)[s.problem.train]
-        return float(y @ y - np.sum((q.T @ y) ** 2))
-
-    return float(min(np.linspace(-reach, reach, STARTS), key=left))
 
 
 def _everywhere(s: Scene, y: Array, delay: float, more: Array) -> bool:
     """A clock is late by the same time in every part of the log; `y` is put right by `delay`."""
     p = s.problem
-    x = _columns(s, more)
-    rows = p.train
-    beta = np.linalg.lstsq(x[rows], y[rows], rcond=1e-8)[0]
-    rate = _rate(s, x @ beta)
+    x, fitted, rows = *s.fitted(more, y=y), p.train
     q, _ = np.linalg.qr(x[rows])
-    e = y[rows] - x[rows] @ beta
-    d = -rate[rows]
+    e, d = (y - fitted)[rows], -_rate(s, fitted)[rows]
     d = d - q @ (q.T @ d)
     parts = np.array_split(np.arange(len(e)), PARTS)
     weight = np.array([float(d[k] @ d[k]) for k in parts])
@@ -151,42 +141,24 @@ def _everywhere(s: Scene, y: Array, delay: float, more: Array) -> bool:
     return bool(np.std(found[telling]) < ALIKE * abs(delay) and (found[telling] * delay > 0).all())
 
 
-def _columns(s: Scene, more: Array | None = None) -> Array:
-    x = np.hstack([s.problem.base, plain(s), *([] if more is None else [more])])
-    size = np.linalg.norm(x[s.problem.train], axis=0)
-    return np.asarray(x[:, size > 0] / size[size > 0])
-
-
 def _rate(s: Scene, model: Array) -> Array:
     rate = np.gradient(model) / s.problem.period_s
     rate[1:][np.diff(s.problem.session) != 0] = 0.0
     return np.asarray(rate)
 
 
-def _step(s: Scene, y: Array, more: Array | None = None) -> tuple[float, float]:
+def _step(s: Scene, y: Array, more: Array) -> tuple[float, float]:
     """Delay that is left in y, and its standard error: the coefficient of the fitted force's rate."""
-    p = s.problem
-    x = _columns(s, more)
-    rows = p.train
-    beta = np.linalg.lstsq(x[rows], y[rows], rcond=1e-8)[0]
-    full = np.column_stack([x, -_rate(s, x @ beta)])
+    p, rows = s.problem, s.problem.train
+    x, fitted = s.fitted(more, y=y)
+    full = np.column_stack([x, -_rate(s, fitted)])
     found = np.linalg.lstsq(full[rows], y[rows], rcond=1e-8)[0]
     e = y[rows] - full[rows] @ found
     cov = block_covariance(full[rows], e, p.block)
     return float(found[-1]), float(np.sqrt(max(cov[-1, -1], 0.0)))
 
 
-def _rivals(s: Scene) -> list[Array]:
-    """Friction over the speed, which along one kind of ramp looks like a delay."""
-    v = s.view
-    out = [c.columns for c in stribeck_change.columns(s)]
-    return [*out, s.at(v.speed * np.abs(v.speed))[:, None]]
-
-
-def _left(s: Scene, y: Array, more: Array | None = None) -> float:
-    """rms on held-out rows of a fit with loops, asymmetry and weight, and `more`."""
+def _left(s: Scene, y: Array, more: Array) -> float:
+    """rms of it on held-out rows."""
     p = s.problem
-    x = _columns(s, more)
-    beta = np.linalg.lstsq(x[p.train], y[p.train], rcond=1e-8)[0]
-    rows = p.test if p.test.sum() > 20 else p.train
-    return float(np.sqrt(np.mean((y - x @ beta)[rows] ** 2)))
+    return rms((y - s.fitted(more, y=y)[1])[p.test if p.test.sum() > 20 else p.train])

@@ -1,38 +1,24 @@
 """Friction that grows with the load that the drive carries."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
+from calibration.balances.filters import smooth
+from calibration.names.gravity_imbalance import gravity
+from calibration.names.name import FORCE, Candidate, Name, Scene, candidate
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """|what accelerations and gravity need| against the motion: from the motion, not from the response, whose
-    noise it would share."""
-    v = s.view
-    if lacks(s) or not s.both:
+    """The load against the motion: from the motion, not from the response, whose noise it would share."""
+    if s.pair is None and (lacks(s) or not s.both):
         return []
-    load = s.declared["inertia"] * v.second(v.x) if "inertia" in s.declared else np.zeros(len(v.t))
-    if "gravity_cos" in s.declared:
-        from calibration.names.gravity_imbalance import gravity
-
-        load = load + gravity(s) @ np.array([s.declared["gravity_cos"], s.declared["gravity_sin"]])
-    from calibration.channels.view import smooth
-
-    load = smooth(load, v.segment, max(v.sigma, 1.0))
-    return [
-        Candidate(
-            "load_friction",
-            "current",
-            s.at(v.direction * np.abs(load))[:, None],
-            (("coefficient", "1"),),
-            sign=1,
-            most=1.0,
-        )
-    ]
+    if s.pair is None:  # what accelerations and gravity need
+        v, load = s.view, s.declared.get("inertia", 0.0) * s.view.second(s.view.x)
+        if "gravity_cos" in s.declared:
+            load = load + gravity(s) @ np.array([s.declared["gravity_cos"], s.declared["gravity_sin"]])
+        load = np.abs(smooth(load, v.segment, max(v.wide, 1.0)))
+    else:
+        load = s.pair.transmitted
+    return [candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=1.0)]
 
 
 def lacks(s: Scene) -> str:
@@ -42,10 +28,9 @@ def lacks(s: Scene) -> str:
 
 
 NAME = Name(
-    "load_friction",
-    (FORCE,),
-    columns,
-    ("viscous_change", "position_friction"),
-    "the same motion with two loads",
-    lacks,
+    name="load_friction",
+    channels=(FORCE,),
+    columns=columns,
+    experiment="the same motion with two loads",
+    lacks=lacks,
 )

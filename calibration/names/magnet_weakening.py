@@ -1,58 +1,67 @@
 """A torque constant that falls at some time, steeply or slowly: seen in the volts of a motor that turns."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate, ramp
-from calibration.names.name import VOLTS, Name
-from calibration.names.scene import Scene
-from calibration.readers.run import Array
+from calibration.balances.candidate import ramp
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, Scene, candidate
+from calibration.names.onsets import Begins, steps
 
-TRIALS, EDGE = 16, 0.05  # onsets that are tried, and what of the time is left out at either end
-LENGTHS = (0.0, 0.4)  # of the time, that the fall may take at first
+LENGTHS = (0.02, 0.2, 0.5, 1.0)  # of the time, that the fall may take at first
+# likewise, where volts show it: from a shorter one the search ends at a step. ASSUMPTION
+VOLTS_LENGTHS = (0.05, 0.4)
+STEP = 0.02  # of the time: volts show an onset and a length no better
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Back-EMF lost from an onset over a ramp, by the clock that all files share or anew in every file."""
-    v = s.view
-    emf = -s.declared["torque_constant"] * v.rate(v.x)
-    clocks = {"onset": v.clock - float(v.clock.min())}
-    if len(np.unique(v.file)) > 1:
-        clocks["onset_in_run"] = v.t
-    out = []
-    for where, clock in clocks.items():
-        span = float(clock.max())
+    """Back-EMF that one of two motors lacks all along, or that all lack from an onset over a ramp; of an
+    axis' torque a share of all that currents promise and the magnets do not give."""
+    w, pair = s.windings, s.pair
+    if w is not None:
+        lost = -w.constant * w.rate
+    elif pair is not None:
+        lost = pair.load
+    else:
+        return []
+    of_one = s.motors if w is not None and pair is not None else []
+    falls = Begins(
+        name=NAME.name,
+        size=("loss", "1"),
+        weigh=lambda x: lost * s.at(x),
+        lengths=LENGTHS if w is None else VOLTS_LENGTHS,
+        sign=1,
+        most=1.0,
+        in_every_run=pair is None,
+        step=STEP if w is not None else 0.0,
+    )
+    out = [candidate(NAME.name, lost * rows, "loss", sign=1, fixed=motor) for rows, motor in of_one]
+    return [*out, *steps(s, falls)]
 
-        def full(p: Array, clock: Array = clock) -> Array:
-            return np.asarray(emf * ramp(clock, float(p[0]), float(p[1])))
 
-        shape = s.shaped(full)
-        for length in LENGTHS:
-            for at in np.linspace(EDGE, 1 - EDGE, TRIALS) * span:
-                if at + length * span > (1 - EDGE) * span:
-                    continue
-                out.append(
-                    Candidate(
-                        "magnet_weakening",
-                        "time",
-                        shape(np.array([at, length * span])),
-                        (("fraction", "1"),),
-                        sign=1,
-                        most=1.0,
-                        fixed={where: (float(at), "s"), "ramp": (length * span, "s")},
-                        shape=shape,
-                        steps=(0.02 * span, 0.02 * span),
-                        searched=2,
-                    )
-                )
-    return out
+def torque_kept(c: Candidate, size: float, clock: Array, quotient: float) -> Array:
+    """What the magnets have left."""
+    at = c.fixed
+    shape = ramp(clock, at["start"][0], at["duration"][0]) if "start" in at else np.ones(len(clock))
+    return np.asarray(1.0 - quotient * size * shape)
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """Of one motor, or of both from some time on."""
+    made = Made().add(f.name, facts, {"loss": value(f, "loss"), "motor": value(f, "motor")})
+    if "start" in f.parameters:
+        since = f"the loss found from {value(f, 'start'):.0f} s on is there from the start"
+        made.remarks.append(f"magnet_weakening: the plant's magnets do not know the time, {since}")
+    return made
 
 
 NAME = Name(
-    "magnet_weakening",
-    (VOLTS,),
-    columns,
-    ("winding_heating",),
-    "turn the motor by hand or by another one at a known speed and read the volts of its open leads",
+    name="magnet_weakening",
+    channels=(FORCE, VOLTS),
+    columns=columns,
+    experiment="turn the motor by hand or by another one at a known speed and read the volts of its "
+    "open leads",
+    torque_kept=torque_kept,
+    relative={"loss": ("torque_constant", 1)},  # of the constant before it fell
+    to_plant=to_plant,
+    beside=Beside(consequences={"E": ("adc_gain",)}),
 )

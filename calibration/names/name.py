@@ -1,46 +1,137 @@
-"""What a name is to the finder."""
-
-from __future__ import annotations
+"""What a name is to the finder, and what its file is written with."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.scene import Scene
+from calibration.balances.candidate import Candidate
+from calibration.balances.frame import Frame
+from calibration.finding import UNKNOWN, Finding
+from calibration.inputs.run import Array
+from calibration.names.candidates import candidate, tried
+from calibration.names.inplant import Facts, Made, as_found, value
+from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene
 
-FORCE, SENSORS, VOLTS = "force", "sensors", "volts"
+__all__ = ["FORCE", "FULL_RATES", "MOTOR", "OF_CLOCKS", "RATES", "SENSORS", "SPEED", "VOLTS", "Array"]
+__all__ += ["Beside", "Candidate", "Changed", "Facts", "Finding", "Made", "Name", "Scene", "as_found"]
+__all__ += ["beside_stated", "both_ways", "candidate", "tried", "value"]
+
+# share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
+WORTH = 0.01
+# the same share of one whose frequency or order was looked for among hundreds. ASSUMPTION
+SEARCHED_WORTH = 0.04
+
+# factor either way: clear of 20 % and of the scatter of an estimate
+TOLERANCE = 1.29
+#: what rows at a wrong time look like: steps and spikes
+OF_CLOCKS = ("roller_slip", "damaged_tooth", UNKNOWN)
 
 
-def _nothing_lacks(_: Scene) -> str:
-    return ""
+def both_ways(s: Scene) -> str:
+    """What a log lacks that goes one way only."""
+    return "" if s.both else "motion in both directions over the same place"
 
 
-@dataclass(frozen=True)
-class OwnFormula:
-    """A torque that is `size` (a parameter of the effect) times the effect's own formula (plant/effects).
+def beside_stated(s: Scene, number: str, along: Array, unit: str) -> list[Candidate]:
+    """A change of a friction number `along` full-rate rows, where the rig file does not estimate it."""
+    name = f"{number}_change"
+    return [candidate(name, s.at(along), (name, unit))] if number in s.view.rig.constants else []
 
-    `tried` are first values of the formula's other parameters, each in its unit; the best is refined. What is
-    not tried keeps its default.
+
+@dataclass(frozen=True, kw_only=True)
+class Changed:
+    """A name that is declared numbers being other ones.
+
+    numbers: number of the drive (an attribute of `Declared`) -> parameter of the finding, the first one being
+    its evidence; a parameter of the effect is the quotient with the declared number, another one the number.
+    written: where the plant file holds them. factor: either way, within which a number is as declared. seen:
+    what the speeds must show (`decide.tolerance.seen_speeds`). precise: largest relative standard error.
     """
 
-    size: str
-    tried: Mapping[str, tuple[float, ...]]
+    numbers: Mapping[str, str]
+    written: str
+    factor: float = TOLERANCE
+    seen: str = "moved"
+    precise: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """How a name's findings stand to others'.
+
+    consequences: by the channel it is found in, names whose small findings are its traces. shadows: by the
+    others' channel, names that are its traces whatever their size. single: a drive has one, whatever its
+    place. leftover: it has no columns and is never more than what is left. settled_by: names of the
+    electrical channel that settle it, as it does itself there; without them they are equivalent to it in the
+    torque. twisted: what it is where the encoders show its order, too. imitated: torques of the motors at its
+    order are only the rest of its shape where torque and encoders show it. plausible: a finding that is one.
+    """
+
+    consequences: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    shadows: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    single: bool = False
+    leftover: bool = False
+    settled_by: tuple[str, ...] = ()
+    twisted: str = ""
+    imitated: bool = False
+    plausible: Callable[[Finding], bool] = lambda _: True
+
+
+@dataclass(frozen=True, kw_only=True)
 class Name:
     """One name of the catalogue.
 
-    channels: kinds of balance it can be seen in ("force", "sensors", "volts"). columns: its candidates along
-    a motion; lacks: what a log would need to show it, empty when it has all. twins: names that look alike;
-    experiment: what tells them apart. own: its columns are the effect's formula; the telescope's axis and the
-    plant file need nothing else.
+    experiment: the cheapest one that tells it from what looks like it. channels: kinds of balance it can be
+    seen in ("force", "sensors", "volts"). columns: its candidates along a motion; lacks: what a log would
+    need to show it, empty when it has all. to_plant: what a finding is in a plant file.
+
+    Of what moves the torque that a current promises: torque_kept gives the part (n,) that its motors keep. It
+    takes a candidate, its size, the session time (n,) and the torque constant's quotient (before the effect
+    was known, over now). torque_doubt is the relative standard error of all torques, of its size.
+    relative: parameters whose columns were made with a coefficient of the base: that one's name, and the
+    power of its quotient (before the effect was known, over now). told: what a finding
+    is whose sizes do not go together. nuisances: parameters of the search that the plant lacks, and what is
+    noted of a finding that has one; none is reported.
+    stamps: what the rows and stamps of an axis' log show of it; repairs: kinds of repair in any log's columns
+    that are its trace.
+    searched: its lines are looked for in what is left by what was found, and again under that. scaled: they
+    are no plain sine of an order of their own over the position. waves_of_friction: they are friction's over
+    the place. random: its course is another one in every run. worth: share of the final held-out mean square
+    that leaving it out must add. loop: parameters that are the width of a loop after every reversal. changed:
+    the declared numbers that it is a change of, where it is no more. beside: how it stands to
+    others.
     """
 
     name: str
-    channels: tuple[str, ...]
-    columns: Callable[[Scene], list[Candidate]]
-    twins: tuple[str, ...]
     experiment: str
-    lacks: Callable[[Scene], str] = _nothing_lacks
-    own: OwnFormula | None = None
+    channels: tuple[str, ...] = ()
+    columns: Callable[[Scene], list[Candidate]] = lambda _: []
+    lacks: Callable[[Scene], str] = lambda _: ""
+    torque_kept: Callable[[Candidate, float, Array, float], Array] | None = None
+    torque_doubt: float = 0.0
+    relative: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    told: Callable[[Finding], Finding] = lambda f: f
+    nuisances: Mapping[str, str] = field(default_factory=dict)
+    to_plant: Callable[[Finding, Facts], Made] = as_found
+    stamps: Callable[[Frame], Finding | None] | None = None
+    repairs: tuple[str, ...] = ()
+    searched: bool = False
+    scaled: bool = False
+    waves_of_friction: bool = False
+    random: bool = False
+    worth: float = WORTH
+    loop: tuple[str, ...] = ()
+    changed: Changed | None = None
+    beside: Beside = field(default_factory=Beside)
+
+    def retold(self, f: Finding, quotients: Mapping[str, float]) -> Finding:
+        """`f` of the coefficients as they are now; `quotients` (before over now) by their names."""
+        told = dict(f.parameters)
+        for name, (of, power) in self.relative.items():
+            if name in told and of in quotients:
+                told[name] = told[name].times(quotients[of] ** power)
+        found = self.told(replace(f, parameters=told))
+        if found.name != self.name:
+            return found
+        notes = [found.note, *(self.nuisances[k] for k in self.nuisances if k in told)]
+        kept = {k: p for k, p in found.parameters.items() if k not in self.nuisances}
+        return replace(found, parameters=kept, note="; ".join(n for n in notes if n))

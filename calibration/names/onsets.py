@@ -1,44 +1,76 @@
-"""Friction that steps at one time: shared by the names that do."""
+"""Friction that changes from one time on: shared by the names that do."""
 
-from __future__ import annotations
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
+from calibration.balances.candidate import Candidate, ramp
+from calibration.inputs.run import Array
+from calibration.names.candidates import tried
 from calibration.names.scene import Scene
-from calibration.readers.run import Array
 
-EDGE = 0.04  # of the time, at either end: a step there is how a run begins or ends
-TRIALS = 24  # onsets that are tried
+# of the time, at either end: a step there is how a run begins or ends
+EDGE = 0.04
+# onsets that are tried, and between what parts of the time
+TRIALS, PLACES = 24, (0.06, 0.94)
+# of the time before it, from where a slow change may have begun
+BEFORE = 0.4
+# of the time, that a slow change's length moves by at first
+LENGTH_STEP = 0.008
 
 
-def steps(s: Scene, name: str, weight: Array, label: tuple[str, str], sign: int) -> list[Candidate]:
-    """A step of `weight` (full rate) at one time of the clock that all files share; and at the same time of
-    every file."""
-    v = s.view
+@dataclass(frozen=True, kw_only=True)
+class Begins:
+    """An effect that begins at some time.
+
+    size: its size's label. weigh: its columns (n_fitted,) from a step (n,) at full rate. lengths (of the
+    time): those that are tried where it takes its time. step (of the time): how far onset and length surely
+    lie off, where that is more than the grid's own.
+    """
+
+    name: str
+    size: tuple[str, str]
+    weigh: Callable[[Array], Array]
+    lengths: tuple[float, ...] = ()
+    sign: int = 0
+    most: float = np.inf
+    in_every_run: bool = True  # or by the clock that all files share only
+    step: float = 0.0
+
+
+def steps(s: Scene, what: Begins) -> list[Candidate]:
+    """Candidates at one time of the clock that all files share, and at the same time of every file.
+
+    In the latter a change's length is not told from a short one.
+    """
     out = []
-    for clock, where in ((v.clock - v.clock.min(), "onset"), (v.t, "onset_in_run")):
-        if where == "onset_in_run" and len(np.unique(v.file)) < 2:
-            continue
-        span = float(clock.max())
-
-        def full(p: Array, clock: Array = clock, span: float = span) -> Array:
-            at = float(np.clip(p[0], EDGE * span, (1 - EDGE) * span))
-            return np.asarray(weight * np.clip((clock - at) / (2 * v.period_s * max(v.step, 1)), 0.0, 1.0))
-
-        shape = s.shaped(full)
-        for at in np.linspace(0.06, 0.94, TRIALS) * span:
-            out.append(
-                Candidate(
-                    name,
-                    "time",
-                    shape(np.array([at])),
-                    (label,),
-                    sign=sign,
-                    fixed={where: (float(at), "s")},
-                    shape=shape,
-                    steps=(span / TRIALS / 3,),
-                    searched=1,
-                )
-            )
+    for clock in s.clocks if what.in_every_run else ("start",):
+        first = clock == "start"
+        if not what.lengths:
+            out += _begun(s, what, clock, PLACES)
+        for part in what.lengths if first else what.lengths[:1]:
+            out += _begun(s, what, clock, (-BEFORE if first else EDGE, 1 - EDGE), part)
     return out
+
+
+def _begun(
+    s: Scene, what: Begins, clock: str, places: tuple[float, float], part: float = 0.0
+) -> list[Candidate]:
+    """Between two `places` of the time: a step, or a ramp over `part` of it."""
+    since, sudden = s.clocks[clock], 2 * s.view.period_s * max(s.view.step, 1)
+    span = float(since.max())
+
+    def shape(p: Array) -> Array:
+        if part:
+            return what.weigh(ramp(since, float(p[0]), float(p[1])))[:, None]
+        at = float(np.clip(p[0], EDGE * span, (1 - EDGE) * span))
+        return what.weigh(np.clip((since - at) / sudden, 0.0, 1.0))[:, None]
+
+    length = {"duration": (part * span, "s")} if part else {}
+    small = (span / TRIALS / 3, LENGTH_STEP * max(10 * part, 1.0) * span)[: 1 + len(length)]
+    more: dict[str, Any] = {"domain": "time", "sign": what.sign, "most": what.most}
+    more["steps"] = tuple(max(x, what.step * span) for x in small)
+    tries = ({clock: (float(at), "s"), **length} for at in np.linspace(*places, TRIALS) * span)
+    return [tried(what.name, shape, what.size, at=fixed, **more) for fixed in tries]

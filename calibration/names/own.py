@@ -1,44 +1,45 @@
-"""Names whose columns are the effect's own formula: a torque at the axis, linear in one size."""
+"""Names whose columns are the effect's own formula: a torque at the axis, or its friction."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import product
 from math import pi
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name, OwnFormula
+from calibration.balances.candidate import Candidate
+from calibration.inputs.declaration import Stage
+from calibration.inputs.run import Array
+from calibration.names.candidates import STEP
+from calibration.names.candidates import tried as first_value
+from calibration.names.name import FORCE, Name
 from calibration.names.scene import Scene
-from calibration.readers.run import Array
 from plant.effects import REGISTRY
-from plant.effects.evaluate import evaluate, signals
-from plant.effects.signals import ANGLE, RATE, TIME, Hook
+from plant.effects import signals as column
+from plant.effects.base import MESHES, STAGES, Effect
+from plant.effects.signals import Hook
+from plant.evaluate import evaluate, signals
 from plant.units import to_si
 
-STEP = 0.1  # of a tried value, for its refinement
 
+def from_formula(name: str, *, size: str, tried: Mapping[str, tuple[float, ...]], experiment: str) -> Name:
+    """The name of an effect that needs nothing but its formula, which is linear in the parameter `size`.
 
-def from_formula(
-    name: str, size: str, tried: Mapping[str, tuple[float, ...]], twins: tuple[str, ...], experiment: str
-) -> Name:
-    """The name of an effect that needs nothing but its formula; see OwnFormula. ValueError for another hook
-    than the axis' torque."""
-    if [term.hook for term in REGISTRY[name].terms] != [Hook.AXIS_TORQUE] or REGISTRY[name].staged:
-        raise ValueError(
-            f"{name}: only a torque at the axis, of no gear stage, is found by its formula alone"
-        )
-    own = OwnFormula(size, tried)
+    `tried` are first values of other parameters, each in its unit; the best is refined. What is not tried
+    keeps its default. ValueError for another hook than the axis' torque or its friction.
+    """
+    effect = REGISTRY[name]
+    if [term.hook for term in effect.terms] not in ([Hook.AXIS_TORQUE], [Hook.FRICTION]):
+        raise ValueError(f"{name}: only a torque at the axis, or its friction, is found by its formula alone")
 
     def columns(s: Scene) -> list[Candidate]:
         if lacks(s):
             return []
-        scale = 2 * pi / (s.view.turn or 1.0)
-        along = {TIME: s.view.t, ANGLE: s.view.x * scale, RATE: s.view.speed * scale}
-        return own_candidates(name, own, along, s.at, s.unit)
+        places: list[Stage | None] = [None]
+        if effect.staged:
+            places = [g for g in s.view.rig.stages if g.period and fits(effect, g)]
+        return [c for g in places for c in own_candidates(effect, size, tried, s, g)]
 
-    return Name(name, (FORCE,), columns, twins, experiment, lacks, own)
+    return Name(name=name, channels=(FORCE,), columns=columns, experiment=experiment, lacks=lacks)
 
 
 def lacks(s: Scene) -> str:
@@ -46,35 +47,63 @@ def lacks(s: Scene) -> str:
     return "" if s.view.turn else "an angle: position in rad, deg or turns, or 'turn'"
 
 
+def fits(effect: Effect, stage: Stage) -> bool:
+    """Whether the effect may sit on a stage: by the telescope's names, or a mesh on a mesh."""
+    if stage.name in STAGES:
+        return stage.name in effect.stages
+    return (stage.kind == "gear_mesh") == (effect.stages == MESHES)
+
+
 def own_candidates(
-    name: str, own: OwnFormula, along: Mapping[int, Array], at: Callable[[Array], Array], unit: str = ""
+    effect: Effect, size: str, tried: Mapping[str, tuple[float, ...]], s: Scene, stage: Stage | None = None
 ) -> list[Candidate]:
-    """One candidate per set of tried values. `along` are full-rate signals (n,) in SI units, `at` takes a
-    torque (n,) to the rows of the balance; what accelerates is torque that the motors need not give."""
-    effect = REGISTRY[name]
-    size = effect.parameter(own.size)
-    specs = [effect.parameter(k) for k in own.tried]
-    rows = signals(len(along[TIME]), dict(along))
-    fixed = {p.name: to_si(p.default, p.unit) for p in effect.parameters} | {size.name: to_si(1.0, size.unit)}
+    """One candidate per set of tried values: what accelerates is torque that the motors need not give."""
+    scale = 2 * pi / (s.view.turn or 1.0)
+    clock = s.view.t if s.pair is None else s.view.clock
+    along = {column.TIME: clock, column.ANGLE: s.view.x * scale, column.RATE: s.view.speed * scale}
+    rows = signals(len(clock), along | _friction(s, scale))
+    order = (s.view.turn or 1.0) / stage.period if stage is not None and stage.period else None
+    specs = [effect.parameter(k) for k in tried]
+    one = effect.parameter(size)
+    fixed = {p.name: to_si(p.default, p.unit) for p in effect.parameters}
+    fixed |= {one.name: to_si(1.0, one.unit), "order": order or 0.0}
+    of_friction = effect.terms[0].hook == Hook.FRICTION
 
     def shape(values: Array) -> Array:
-        given = {
-            p.name: to_si(float(np.clip(v, p.low, p.high)), p.unit)
-            for p, v in zip(specs, values, strict=False)
-        }
-        return np.asarray(-at(np.asarray(evaluate(name, rows, {**fixed, **given}))))[:, None]
+        tried_now = ((p, float(np.clip(v, p.low, p.high))) for p, v in zip(specs, values, strict=False))
+        given = fixed | {p.name: to_si(v, p.unit) for p, v in tried_now}
+        torque = -np.asarray(evaluate(effect.name, rows, given))
+        return (s.answer(torque * np.sign(rows[:, column.RATE])) if of_friction else s.at(torque))[:, None]
 
     return [
-        Candidate(
-            name,
-            effect.domain,
-            shape(np.array(values)),
-            ((size.name, unit or size.unit),),
-            sign=1 if size.low >= 0 else 0,
-            fixed={p.name: (v, p.unit) for p, v in zip(specs, values, strict=True)},
-            shape=shape if specs else None,
-            steps=tuple(STEP * abs(v) for v in values),
-            searched=len(specs),
+        first_value(
+            effect.name,
+            shape,
+            (size, s.unit if one.unit == "N m" else one.unit),
+            at={p.name: (v, p.unit) for p, v in zip(specs, values, strict=True)},
+            # of the way to the next tried value, or of the value itself where one is tried
+            steps=tuple(
+                STEP * min((abs(x - v) for x in row if x != v), default=abs(v))
+                for v, row in zip(values, tried.values(), strict=True)
+            ),
+            sign=1 if one.low >= 0 else 0,
+            stage=stage.name if stage is not None else None,
+            harmonic=1 if stage is not None else None,
+            order=order,
         )
-        for values in product(*own.tried.values())
+        for values in product(*tried.values())
     ]
+
+
+def _friction(s: Scene, scale: float) -> dict[int, Array]:
+    """The declared friction, one value per row, for the formulas that change it; `scale` rad per position."""
+    law, coulomb = s.sliding.law, max(s.declared.get("coulomb", 0.0), 0.0)
+    numbers = {
+        column.SIGMA0: 1.0,
+        column.SIGMA2: s.declared.get("viscous", 0.0) / scale,
+        column.COULOMB: coulomb,
+        column.STICTION: coulomb * law.stiction_ratio,
+        column.STRIBECK_RATE: law.stribeck_speed * scale,
+        column.STRIBECK_EXPONENT: law.stribeck_exponent,
+    }
+    return {place: np.full(len(s.view.t), value) for place, value in numbers.items()}

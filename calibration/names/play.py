@@ -1,136 +1,159 @@
 """A gap that a reversal must cross before the other side follows."""
 
-from __future__ import annotations
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from calibration.candidates.candidate import Candidate
-from calibration.channels.view import acceleration
-from calibration.names.name import FORCE, SENSORS, Name
-from calibration.names.scene import Scene
-from calibration.readers.run import Array
-from plant.effects.signals import RATE, TIME
+from calibration.balances.recursions import stop_operator
+from calibration.balances.view import acceleration
+from calibration.names.candidates import candidate, tried
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, SENSORS, Array, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.presliding import NAME as BRISTLES
+from calibration.names.scene import FEWEST
+from calibration.names.shaft_compliance import NAME as WIND_UP
+from plant.units import ARCSEC
 
-PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)  # gaps that are tried, of the travel
-# -log10 p between two sensors: a dozen gaps are tried, not a thousand orders (decide/accept.py);
-# set on the geared servo's output encoder
+# of the usual stroke: gaps that are tried in a balance of forces. ASSUMPTION
+PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)
+# -log10 p between two sensors of a rig: a dozen gaps are tried, not a thousand orders (decide/accept.py);
+# set on the geared servo's output encoder. ASSUMPTION beyond it
 LEAST = 6.0
-SIDES = 0.1  # of the usual acceleration: below, the driven side is between the flanks. ASSUMPTION
-GROWS = 1.5  # from one gap to the next, between two sensors
-
-
-def gap_angle(s: Scene, gap: float) -> Array:
-    """Where the driven side is in the gap, -1 .. 1 at full rate: the effect's own formula, whose gap is in
-    arcsec at the axis."""
-    v = s.view
-    unit = np.pi / 648000.0  # rad per arcsec
-    step = np.asarray(np.diff(v.x, prepend=v.x[0]), dtype=np.float64)
-    step[np.concatenate([[True], np.diff(v.file) != 0])] = 0.0
-    rate = step / v.period_s / gap * unit  # in gaps of one arcsec per s
-    time = np.asarray(np.arange(len(v.t)) * v.period_s, dtype=np.float64)
-    e = s.formula("play", {TIME: time, RATE: rate}, {"gap": unit, "encoder": 2.0})
-    return np.asarray(e / (0.5 * unit))
+# share of the usual acceleration: below, the driven side is between the flanks. ASSUMPTION
+SIDES = 0.1
+# times, from one gap that is tried between two sensors to the next. ASSUMPTION
+GROWS = 1.5
+# of the travel, that a gap between them is below. ASSUMPTION
+WIDEST = 0.2
+# gaps that are tried of an axis' encoder. ASSUMPTION
+GAPS_ARCSEC = (0.6, 1.2, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0)
+# the smallest of them. ASSUMPTION
+SMALLEST_ARCSEC = 0.1
+# of the travel, that an axis' gap is below. ASSUMPTION
+REACH = 0.5
+# of a gap, for its refinement. ASSUMPTION
+STEP = 0.15
+TRAVEL = "travel"  # how far one side moves before the other follows: the gap once more, by its place
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Between two sensors: the place in the gap. In a balance of forces: friction that is missing while the
-    gap is crossed."""
+    """Between two sensors the place in the gap; of forces, friction that a gap, being crossed, lacks."""
     if not s.both:
         return []
-    if not s.force:
-        return _between_sensors(s)
+    if s.pair is not None:
+        return [] if s.force else _of_the_coupling(s)
+    return _missing_force(s) if s.force else [*_between_sensors(s), *_thrown(s)]
+
+
+def _missing_force(s: Scene) -> list[Candidate]:
     v = s.view
     if v.response.channel == "acceleration":
         return []  # nothing drives through a gap
-    stroke = float(np.quantile(np.abs(v.since[v.ok]), 0.95)) or 1.0
-    least = v.resolved
-    out = []
-    for part in PARTS:
-        gap = part * stroke
-        if gap < least or np.mean(np.abs(v.since) < gap) < 0.005:
-            continue
+    least, gaps = v.resolved, [part * s.stroke for part in PARTS]
 
-        def full(p: Array) -> Array:
-            return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), least)))
+    def full(p: Array) -> Array:
+        return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), least)))
 
-        shape = s.shaped(full)
-        out.append(
-            Candidate(
-                "play",
-                "reversal",
-                shape(np.array([gap])),
-                (("missing_force", s.unit),),
-                sign=1,
-                fixed={"gap": (gap, s.angle_unit)},
-                shape=shape,
-                steps=(0.15 * gap,),
-                searched=4,  # a gap in the force's way is the rarer one of the two
-                twins=("presliding",),
-            )
+    return [
+        tried(
+            NAME.name,
+            s.shaped(full),
+            ("missing_force", s.unit),
+            at={"gap": (gap, s.angle_unit)},
+            steps=(STEP * gap,),
+            sign=1,
+            searched=4,  # a gap in the force's way is the rarer one of the two
+            twins=(BRISTLES.name,),
         )
-    return out
+        for gap in gaps
+        if gap >= least and np.mean(np.abs(v.since) < gap) >= FEWEST
+    ]
 
 
 def _between_sensors(s: Scene) -> list[Candidate]:
-    reach = 0.2 * s.span
-    gap = max(float(np.median(np.abs(s.residual))) / 8, 1e-6 * s.span, 1e-12)
-    out = []
-    while gap < reach:
+    """The second sensor lags; of a difference of unknown order (ratio 0) either one may be it."""
+    v, span = s.view, s.span
+    first = max(float(np.median(np.abs(s.residual))) / 8, 1e-6 * span, 1e-12)
+    count = max(int(np.ceil(np.log(max(WIDEST * span / first, 1.0)) / np.log(GROWS))), 0)
 
-        def full(p: Array) -> Array:
-            return gap_angle(s, max(float(p[0]), 1e-9 * s.span)) / 2
+    step = np.diff(v.x, prepend=v.x[0])
+    step[np.diff(v.file, prepend=v.file[0]) != 0] = 0.0
+    moved = np.cumsum(step)  # a file begins where in the gap the last one has ended, for want of better
 
-        shape = s.shaped(full)
-        out.append(
-            Candidate(
-                "play",
-                "reversal",
-                shape(np.array([gap])),
-                (("gap", s.unit),),
-                # the second sensor lags; of a difference of unknown order (ratio 0) either one may be it
-                sign=0 if s.view.response.ratio == 0 else 1,
-                least=LEAST,
-                fixed={"closing_travel": (gap, s.angle_unit)},
-                shape=shape,
-                steps=(0.15 * gap,),
-                searched=1,
-            )
+    def full(p: Array) -> Array:
+        gap = max(float(p[0]), 1e-9 * span)
+        return lag_in_gap(moved, np.zeros_like(v.file), gap) / gap
+
+    return [
+        tried(
+            NAME.name,
+            s.shaped(full),
+            ("gap", s.unit),
+            at={TRAVEL: (gap, s.angle_unit)},
+            steps=(STEP * gap,),
+            **_sided(s),
         )
-        gap *= GROWS
-    return [*out, *_thrown(s)]
+        for gap in first * GROWS ** np.arange(count)
+    ]
 
 
 def _thrown(s: Scene) -> list[Candidate]:
-    """A driven side with little friction of its own is thrown from flank to flank by the accelerations: it
-    leads while the drive brakes."""
+    """A driven side with little friction is thrown from flank to flank: it leads while the drive brakes."""
     a = acceleration(s.view)
     usual = float(np.sqrt(np.mean(a[s.view.ok] ** 2))) if s.view.ok.any() else 0.0
     if usual == 0:
         return []
+    side = s.at(-np.tanh(a / (SIDES * usual)) / 2)
+    return [candidate(NAME.name, side, ("gap", s.unit), searched=1, twins=(WIND_UP.name,), **_sided(s))]
+
+
+def _sided(s: Scene) -> dict[str, Any]:
+    return {"sign": 0 if s.view.response.ratio == 0 else 1, "least": LEAST}
+
+
+def _of_the_coupling(s: Scene) -> list[Candidate]:
+    """A gap in the coupling of an axis' absolute encoder: its reading stands while the axis crosses it."""
+    assert s.pair is not None
+    p, rows = s.problem, s.pair.motion.pick
+    # arcsec, where the axis is by both motors, less the wind-up that the base takes up
+    apart = p.y - p.base[:, p.place("compliance")] * s.declared["compliance"]
+    moved = s.view.x[rows] / ARCSEC + apart.reshape(2, -1).mean(axis=0)
+
+    def shape(p: Array) -> Array:
+        gap = max(float(p[0]), SMALLEST_ARCSEC)
+        one = lag_in_gap(moved, s.view.run[rows], gap) / gap
+        return np.concatenate([-one, -one])[:, None]
+
     return [
-        Candidate(
-            "play",
-            "reversal",
-            s.at(-np.tanh(a / (SIDES * usual)) / 2)[:, None],
-            (("gap", s.unit),),
-            sign=0 if s.view.response.ratio == 0 else 1,
-            least=LEAST,
-            searched=1,
-            twins=("shaft_compliance",),
-        )
+        tried(NAME.name, shape, "gap", at={TRAVEL: (gap, "arcsec")}, searched=0, sign=1, stage="axis")
+        for gap in GAPS_ARCSEC
+        if gap < REACH * float(np.ptp(moved))
     ]
 
 
-def lacks(s: Scene) -> str:
-    """Reversals."""
-    return "" if s.both else "reversals of the motion"
+def lag_in_gap(moved: Array, run: NDArray[np.int64], gap: float) -> Array:
+    """Reading less place, unit of `gap`, of a sensor behind one; a run starts in the middle of the gap."""
+    return -stop_operator(moved, run, 0.5 * gap)
+
+
+def travel_of(c: Candidate) -> float | None:
+    """Of a gap between two sensors: how far one moves until the other follows, position units."""
+    return abs(c.fixed[TRAVEL][0]) if c.name == NAME.name and TRAVEL in c.fixed else None
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The motors are compared with the absolute encoder, so its coupling has the gap."""
+    return Made().add(f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)})
 
 
 NAME = Name(
-    "play",
-    (SENSORS, FORCE),
-    columns,
-    ("shaft_compliance", "presliding"),
-    "a slow reversal under load; lock the output and step the torque: play is a step, compliance a line",
-    lacks,
+    name="play",
+    channels=(SENSORS, FORCE),
+    columns=columns,
+    experiment="a slow reversal under load, or lock the output and step the torque: play is a step, "
+    "compliance a line",
+    lacks=both_ways,
+    to_plant=to_plant,
+    loop=("gap",),
 )

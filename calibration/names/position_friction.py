@@ -1,91 +1,89 @@
 """Friction that changes over the position."""
 
-from __future__ import annotations
-
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
-from calibration.names.sines import as_one, over_place
-from calibration.readers.run import Array
+from calibration.names.candidates import tried
+from calibration.names.freelines import strongest
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.lines import STEP_OF_CELL, as_one, line, of_stage
+from calibration.names.name import FORCE, Array, Candidate, Finding, Name, Scene, both_ways
+from plant.gears import ORDERS
 
-HARMONICS = 3  # of the travelled range, and up to 12 of every stage
+# harmonics of the travelled range. ASSUMPTION
+HARMONICS = 3
+# harmonics of every stage. ASSUMPTION
+OF_STAGE = 12
+# turns of a stage, before friction over it differs from friction over the range. ASSUMPTION
+ENOUGH = 1.5
 WAVES = np.arange(0.75, 12.1, 0.5)  # over the travelled range, of a friction that follows no stage
-BESIDE = 2.0  # of the friction that is fitted without the effect: what it may be beside it. ASSUMPTION
-STEP = 0.1  # of a wave over the range: a small one
+# part of the friction that is fitted without the effect: what it may be beside it. ASSUMPTION
+BESIDE = 2.0
+# rad by which a line of the nearest possible order may walk off within half the travel. ASSUMPTION
+MISPLACED = 0.1
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Sines over the range, over every slow stage, and of any length, odd in direction."""
-    if not s.both or s.span <= 0:
+    """Sines odd in direction: over the range, over every slow stage, and of any length; where positions are
+    absolute the strongest orders, whatever their stage."""
+    if s.span <= 0 or not (s.both or s.pair):
         return []
-    v = s.view
-    period = min(s.span, v.turn or s.span)
+    if s.pair is not None:
+        return [_line(s, rate) for rate in strongest(s, s.answer(np.ones(len(s.view.x))))]
     # friction that changes its sign would feed energy; how much there is is known beside the effect
-    most = BESIDE * s.declared.get("coulomb", 0.0) or np.inf
-    blank = Candidate(
-        "position_friction",
-        "axis_angle",
-        np.zeros((len(v.rows), 0)),
-        (("amplitude", s.unit),),
-        kind="line",
-        stage="axis",
-        most=most,
-    )
-    out = []
-    for h in range(1, HARMONICS + 1):
-        rate = h / period
-        out.append(replace(blank, columns=_waves(s, rate), harmonic=h, order=rate * (v.turn or 1.0)))
-    for g in v.rig.stages:
-        mine: list[Candidate] = []
-        for h in range(1, min(g.harmonics, 12) + 1) if g.period else ():
-            rate = h / float(g.period or 1.0)
-            one = replace(blank, stage=g.name, harmonic=h, order=rate * (v.turn or 1.0))
-            if s.span * rate > 1.5:
-                mine += over_place(s, one, rate, v.direction)
+    form: dict[str, Any] = {"stage": "axis", "most": BESIDE * s.declared.get("coulomb", 0.0) or np.inf}
+    period = min(s.span, s.view.turn or s.span)
+    out = [_line(s, h / period, harmonic=h, **form) for h in range(1, HARMONICS + 1)]
+    for stage in s.view.rig.stages:
+        short = replace(stage, harmonics=min(stage.harmonics, OF_STAGE))
+        mine = of_stage(s, short, line(s, NAME.name, 0.0, **form), s.view.direction, ENOUGH)
         out += [*mine, *as_one(mine)]
-    return out + _of_any_length(s, blank)
+    # waves over the range whose length is fitted
+    one, shape, size = s.turn / s.span, partial(_waves, s), ("amplitude", s.unit)
+    form |= {"steps": (STEP_OF_CELL * one,), "kind": "line"}
+    return out + [tried(NAME.name, shape, size, at={"order": (w * one, "1")}, **form) for w in WAVES]
 
 
-def _waves(s: Scene, rate: float) -> Array:
-    phase = 2 * np.pi * s.view.x * rate
-    d = s.view.direction
-    return s.at(np.column_stack([d * np.cos(phase), d * np.sin(phase)]))
+def _line(s: Scene, rate: float, **more: Any) -> Candidate:
+    return replace(line(s, NAME.name, rate, **more), columns=_waves(s, np.array([rate * s.turn])))
 
 
-def _of_any_length(s: Scene, blank: Candidate) -> list[Candidate]:
-    """Waves over the range whose length is fitted."""
-    unit = s.view.turn or 1.0
-
-    def shape(p: Array) -> Array:
-        return _waves(s, float(p[0]) / unit)
-
-    return [
-        replace(
-            blank,
-            columns=shape(np.array([w / s.span * unit])),
-            fixed={"order": (w / s.span * unit, "1")},
-            shape=shape,
-            steps=(STEP / s.span * unit,),
-            searched=1,
-        )
-        for w in WAVES
-    ]
+def _waves(s: Scene, order: Array) -> Array:
+    phase = 2 * np.pi * s.view.x * (float(order[0]) / s.turn)
+    return np.column_stack([s.answer(np.cos(phase)), s.answer(np.sin(phase))])
 
 
-def lacks(s: Scene) -> str:
-    """Both directions."""
-    return "" if s.both else "motion in both directions over the same place"
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The stage and harmonic whose order is nearest, its phase right at mid travel; a cosine there, too."""
+    order = f.order or ORDERS[f.stage or "axis"] * (f.harmonic or 1)
+    stage, harmonic = nearest_place(order)
+    written = ORDERS[stage] * harmonic
+    phase = -value(f, "phase") + (written - order) * facts.middle
+    made = Made().add(f.name, facts, {"amplitude": value(f, "amplitude"), "phase": phase}, stage, harmonic)
+    off = abs(written - order) * facts.span / 2
+    if off > MISPLACED:
+        place = f"{stage}, harmonic {harmonic} ({written:.5g}): {off:.2f} rad off at the ends of the travel"
+        made.remarks.append(f"position_friction: order {order:.5g} is written as {place}")
+    return made
+
+
+def nearest_place(order: float) -> tuple[str, int]:
+    """Stage and harmonic (1 to 1000) whose order is nearest; of equals, the lowest harmonic."""
+    harmonics = {stage: int(np.clip(round(order / one), 1, 1000)) for stage, one in ORDERS.items()}
+    _, harmonic, stage = min((abs(ORDERS[k] * h - order), h, k) for k, h in harmonics.items())
+    return stage, harmonic
 
 
 NAME = Name(
-    "position_friction",
-    (FORCE,),
-    columns,
-    ("gear_eccentricity", "motor_cogging"),
-    "go there and back over the same place: friction changes its sign, a gear or cogging does not",
-    lacks,
+    name="position_friction",
+    scaled=True,
+    channels=(FORCE,),
+    columns=columns,
+    to_plant=to_plant,
+    experiment="go there and back over the same place: friction changes its sign, a gear or cogging does not",
+    lacks=both_ways,
+    waves_of_friction=True,
 )

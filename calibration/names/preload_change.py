@@ -1,23 +1,32 @@
 """All friction scaled by another preload."""
 
-from __future__ import annotations
+from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.onsets import steps
-from calibration.names.scene import Scene
+from calibration.finding import Parameter
+from calibration.names.name import FORCE, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
+from calibration.names.onsets import Begins, steps
+
+# s, of a change that is sudden
+SHORTEST_S = 0.01
+# of the session, that the change takes; a run is too short to tell it from a step
+LENGTHS = (0.02, 0.2, 0.5, 1.0)
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Friction times a step in time."""
-    if not s.declared.get("viscous", 0.0) > 0 or not s.declared.get("coulomb", 0.0) > 0:
+    """Stiction and viscous friction times a step in time; of a pair, logged for minutes, times a ramp."""
+    f = s.sliding
+    if s.pair is None and (lacks(s) or not s.declared.get("coulomb", 0.0) > 0 or not s.speeds):
         return []
-    weight = s.view.direction * s.friction
-    if np.std(np.abs(s.view.speed)) < 0.1 * np.mean(np.abs(s.view.speed)):
-        return []
-    return steps(s, "preload_change", weight, ("relative_change", "1"), 0)
+    change = Begins(
+        name=NAME.name,
+        size=("change", "1"),
+        weigh=lambda x: s.at(f.answer(f.stiction * x) + f.drag * x),
+        lengths=LENGTHS if s.pair is not None else (),
+        most=1.0 if s.pair is not None else np.inf,
+    )
+    return steps(s, change)
 
 
 def lacks(s: Scene) -> str:
@@ -27,11 +36,18 @@ def lacks(s: Scene) -> str:
     return ""
 
 
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """A step is a ramp of the shortest duration; time runs from the log's first row."""
+    return as_found(replace(f, parameters={"duration": Parameter(SHORTEST_S, "s")} | f.parameters), facts)
+
+
 NAME = Name(
-    "preload_change",
-    (FORCE,),
-    columns,
-    ("brake_drag", "friction_warmup"),
-    "repeat the same run after a rest: a preload that has changed stays",
-    lacks,
+    name="preload_change",
+    channels=(FORCE,),
+    columns=columns,
+    relative={"change": ("viscous", 1)},
+    to_plant=to_plant,
+    experiment="repeat the same run after a rest: a preload that has changed stays",
+    lacks=lacks,
+    beside=Beside(single=True),
 )

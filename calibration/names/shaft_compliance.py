@@ -1,11 +1,9 @@
 """A shaft that winds up with the torque it carries."""
 
-from __future__ import annotations
+from calibration.names.name import SENSORS, Candidate, Changed, Name, Scene, candidate
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import SENSORS, Name
-from calibration.names.scene import Scene
-
+# standard error of a stiffness, of itself. ASSUMPTION
+PRECISE = 0.05
 WINDS = ("force", "effort", "current")  # columns of what winds it up, the first there is
 
 
@@ -14,23 +12,22 @@ def columns(s: Scene) -> list[Candidate]:
     for channel in WINDS:
         if channel in s.view.columns:
             label = ("compliance", f"{s.unit}/{s.view.rig.columns[channel].unit}")
-            return [
-                Candidate("shaft_compliance", "current", s.at(s.view.columns[channel])[:, None], (label,))
-            ]
+            return [candidate("shaft_compliance", s.at(s.view.columns[channel]), label)]
     return []
 
 
 def lacks(s: Scene) -> str:
     """A column of the force."""
-    have = set(WINDS) & set(s.view.columns)
-    return "" if have else "a column of the effort, the current or the force"
+    return "" if {*WINDS} & {*s.view.columns} else "a column of the effort, the current or the force"
 
 
 NAME = Name(
-    "shaft_compliance",
-    (SENSORS,),
-    columns,
-    ("play",),
-    "lock the output and step the torque: play is a step, compliance a line",
-    lacks,
+    name="shaft_compliance",
+    channels=(SENSORS,),
+    columns=columns,
+    experiment="lock the output and step the torque: play is a step, compliance a line",
+    lacks=lacks,
+    changed=Changed(
+        numbers={"stiffness": "stiffness"}, written="gear.stiffness", precise={"stiffness": PRECISE}
+    ),
 )

@@ -1,43 +1,35 @@
 """An effort in parts of a supply that is not steady."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, VOLTS, Name
-from calibration.names.scene import Scene
+from calibration.names.name import FORCE, VOLTS, Array, Candidate, Name, Scene, candidate
 
 LEAST = 0.01  # of the mean supply: standard deviation below which it is steady
+MOST = 3.0  # of the supply's deviation, that an effort may follow it by
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The declared force times the supply's deviation: a duty must rise where the supply falls."""
-    if s.volts:
-        return _of_a_duty(s)
-    if lacks(s):
+    """Volts that the supply's resistance takes; of a force its declared part times the supply's deviation."""
+    if lacks(s) or ("supply" in s.view.columns and s.windings is not None):
         return []
+    if (w := s.windings) is not None:
+        # bridges draw duty times current, or the sum of two currents, and give the duty of what is left
+        drawn: list[tuple[Array, dict[str, tuple[float, str]]]] = [(w.duty * w.current, {})]
+        if w.counter is not None:
+            said = "0 currents drawn from the supply, 1 currents of the motors"
+            drawn.append((w.current, {"of_the_sum": (1.0, said)}))
+        volts = [(w.at(w.duty * w.together(x)), fixed) for x, fixed in drawn]
+        return [candidate(NAME.name, one, "resistance", sign=1, fixed=fixed) for one, fixed in volts]
     supply = s.view.columns["supply"]
-    mean = float(supply.mean())
-    model = s.problem.y - s.residual
-    column = -model * s.at(supply / mean - 1.0)
-    return [Candidate("supply_sag", "current", column[:, None], (("share", "1"),), sign=1, most=3.0)]
-
-
-def _of_a_duty(s: Scene) -> list[Candidate]:
-    """Volts that the supply's own resistance takes: the bridge draws duty times current, and gives the duty
-    of what is left."""
-    duty = s.view.columns.get("duty")
-    if duty is None or "supply" in s.view.columns:
-        return []
-    column = s.at(duty**2 * s.view.columns["current"])
-    return [Candidate("supply_sag", "current", column[:, None], (("resistance", "ohm"),), sign=1)]
+    column = (s.residual - s.problem.y) * s.at(supply / float(supply.mean()) - 1.0)
+    return [candidate(NAME.name, column, ("share", "1"), sign=1, most=MOST)]
 
 
 def lacks(s: Scene) -> str:
     """A supply column that changes; of a balance of volts a duty of a supply that is not logged."""
-    if s.volts:
-        return "" if "duty" in s.view.columns else "a column of the duty: measured volts have sagged already"
+    if s.windings is not None:
+        measured = s.windings.measured
+        return "a column of the duty: measured volts have sagged already" if measured else ""
     if s.view.response.channel != "effort" or s.view.response.divide_by == "supply":
         return "an effort that is not over the supply already"
     supply = s.view.columns.get("supply")
@@ -48,10 +40,10 @@ def lacks(s: Scene) -> str:
 
 
 NAME = Name(
-    "supply_sag",
-    (FORCE, VOLTS),
-    columns,
-    ("viscous_change",),
-    "record the supply voltage and divide by it, or feed the drive from a steady supply",
-    lacks,
+    name="supply_sag",
+    channels=(FORCE, VOLTS),
+    columns=columns,
+    experiment="record the supply voltage and divide by it, or feed the drive from a steady supply",
+    lacks=lacks,
+    nuisances={"of_the_sum": "found with the motors' currents, the plant draws duty times current"},
 )

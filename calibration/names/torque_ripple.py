@@ -1,46 +1,39 @@
 """A torque constant that changes over the motor's angle."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, VOLTS, Name
-from calibration.names.scene import Scene
-from calibration.names.sines import over_place, stage_lines
-from calibration.readers.run import Array
+from calibration.names.lines import beside_stage, line, motor_lines, of_stage, over_motor
+from calibration.names.name import FORCE, VOLTS, Candidate, Name, Scene
 
-MOST = 0.5  # of the force: motors' data sheets have 0.01 to 0.1; ASSUMPTION: more is something else
+# part of the force: motors' data sheets have 0.01 to 0.1; ASSUMPTION: more is something else
+MOST = 0.5
+# harmonics of a motor's stage. ASSUMPTION
+HARMONICS = 12
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Sines of a motor stage times the force that the motor makes."""
+    """Sines of a motor times the force that it makes; of volts times its back-EMF."""
+    if s.pair is not None:
+        return [] if s.windings is not None else motor_lines(s, NAME.name, "ripple", s.pair.torque)
     if lacks(s):
         return []
-    # the declared part: the response itself would bring its noise along. Of volts it is the back-EMF
-    load = _emf(s) if s.volts else np.interp(np.arange(len(s.view.t)), s.view.rows, s.problem.y - s.residual)
-    stages = {g.name: g for g in s.view.rig.stages}
-    out = []
-    for c in [*stage_lines(s, "torque_ripple"), *stage_lines(s, "motor_cogging")]:
-        stage = stages[str(c.stage)]
-        if not stage.period or c.harmonic is None or c.harmonic > 12:
-            continue
-        if c.per_run:
-            continue  # over_place makes both
-        blank = replace(c, name="torque_ripple", labels=(("ripple", "1"),), most=MOST)
-        out += over_place(s, blank, c.harmonic / stage.period, load)
+    # the declared part: the response itself would bring its noise along
+    load = np.interp(np.arange(len(s.view.t)), s.view.rows, s.problem.y - s.residual)
+    if s.windings is not None:
+        load = s.declared["torque_constant"] * s.view.rate(s.view.x)
+    blank, out = line(s, NAME.name, 0.0, "ripple", most=MOST), []
+    for stage in s.view.rig.stages:
+        if stage.of_motor:
+            few = replace(stage, harmonics=min(stage.harmonics, HARMONICS))
+            out += of_stage(s, few, replace(blank, neighbours=beside_stage(s, stage)), load)
     return out
-
-
-def _emf(s: Scene) -> Array:
-    return s.declared["torque_constant"] * s.view.rate(s.view.x)
 
 
 def lacks(s: Scene) -> str:
     """A force that is more than friction; volts have their back-EMF."""
-    if s.volts:
+    if s.windings is not None:
         return ""
     more = {"inertia", "gravity_cos", "stiffness"} & set(s.declared)
     if more and s.view.response.channel != "acceleration":
@@ -49,10 +42,12 @@ def lacks(s: Scene) -> str:
 
 
 NAME = Name(
-    "torque_ripple",
-    (FORCE, VOLTS),
-    columns,
-    ("motor_cogging",),
-    "hold the speed and vary the torque: ripple grows, cogging stays",
-    lacks,
+    name="torque_ripple",
+    scaled=True,
+    channels=(FORCE, VOLTS),
+    columns=columns,
+    # the motors give r cos(x + phase) more; the plant's torque constant has a cosine that is missing
+    to_plant=lambda f, facts: over_motor(f, facts, "ripple", np.pi),
+    experiment="hold the speed and vary the torque: ripple grows, cogging stays",
+    lacks=lacks,
 )

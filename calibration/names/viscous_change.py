@@ -1,20 +1,11 @@
 """Friction that grows with the speed, more or less than was declared."""
 
-from __future__ import annotations
-
-from calibration.candidates.candidate import Candidate
-from calibration.names.name import FORCE, Name
-from calibration.names.scene import Scene
-
-
-def columns(s: Scene) -> list[Candidate]:
-    """Only where the rig file states the number: what is estimated anyway cannot differ."""
-    if "viscous" not in s.view.rig.constants:
-        return []
-    label = ("viscous_change", f"{s.unit} s/{s.angle_unit}")
-    return [Candidate("viscous_change", "velocity", s.at(s.view.speed)[:, None], (label,))]
-
+from calibration.names.name import FORCE, Changed, Name, beside_stated
 
 NAME = Name(
-    "viscous_change", (FORCE,), columns, ("load_friction",), "two speeds that differ by a factor of ten"
+    name="viscous_change",
+    channels=(FORCE,),
+    columns=lambda s: beside_stated(s, "viscous", s.view.speed, f"{s.unit} s/{s.angle_unit}"),
+    experiment="two speeds that differ by a factor of ten",
+    changed=Changed(numbers={"viscous": "factor"}, written="friction.viscous", seen="spread"),
 )

@@ -1,60 +1,59 @@
 """A winding that its own loss heats: copper's resistance rises by 0.39 % per kelvin."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.electrical import COPPER
-from calibration.channels.recursions import lowpass
-from calibration.names.name import VOLTS, Name
-from calibration.names.scene import Scene
-from calibration.readers.run import Array
+from calibration.balances.recursions import lowpass
+from calibration.balances.volts import Windings
+from calibration.names.name import VOLTS, Array, Candidate, Facts, Finding, Made, Name, Scene, tried, value
+from plant.effects.winding_heating import COPPER
 
-TAUS_S = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)  # small motors' windings; data sheets have 5 to 400 s
-COOLED_S = 1e5  # between two files that each begin cold
+# s: small motors' windings have 5 to 400 s by their data sheets, the telescope's are heavier
+TAUS_S = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
+# of a time constant, for its refinement
+STEP = 0.05
+# s, between two files that each begin cold
+COOLED_S = 1e5
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """R alpha R i (i^2 low-passed): cold at the first row of the first file, or of every file."""
-    clock = s.problem.t - s.problem.t.min()
-    out = _heated(s, clock, "tau")
-    if len(np.unique(s.problem.session)) > 1:
-        out += _heated(s, clock + COOLED_S * s.problem.session, "tau_in_run")
+    """R alpha R i (i^2 low-passed): cold at the first row of the first file, or of every file of a rig."""
+    w = s.windings
+    if w is None:
+        return []
+    out = _heated(w, w.clock, "time_constant")
+    if w.since_run is not None:
+        out += _heated(w, w.clock + COOLED_S * s.problem.session, "time_constant_in_run")
     return out
 
 
-def _heated(s: Scene, clock: Array, name: str) -> list[Candidate]:
-    """By this clock, in whose pauses the winding cools; `name` is the time constant's."""
-    i, clock = s.view.columns["current"], np.ascontiguousarray(clock)
-    power = np.ascontiguousarray(s.at(i**2))
-    volts = COPPER * s.declared["resistance"] ** 2 * s.at(i)
+def _heated(w: Windings, clock: Array, name: str) -> list[Candidate]:
+    """By this clock, in whose pauses the windings cool; `name` is the time constant's."""
+    volts = COPPER * w.resistance**2 * w.at(w.current)
+    motors = list(zip(np.split(w.at(w.current**2), w.count), np.split(clock, w.count), strict=True))
 
     def shape(p: Array) -> Array:
-        return np.asarray(volts * lowpass(power, clock, max(float(p[0]), 1.0)))[:, None]
+        heat = [lowpass(power, t, max(float(p[0]), 1.0)) for power, t in motors]
+        return np.asarray(volts * np.concatenate(heat))[:, None]
 
-    span = float(s.problem.t.max() - s.problem.t.min())
-    return [
-        Candidate(
-            "winding_heating",
-            "time",
-            shape(np.array([tau])),
-            (("thermal_resistance", "K/W"),),
-            sign=1,
-            fixed={name: (tau, "s")},
-            shape=shape,
-            steps=(0.05 * tau,),
-            searched=1,
-        )
-        for tau in TAUS_S
-        if tau < 2 * span
-    ]
+    at = [{name: (tau, "s")} for tau in TAUS_S if tau < 2 * float(w.clock.max())]
+    size = "thermal_resistance"
+    return [tried(NAME.name, shape, size, at=x, steps=(STEP * x[name][0],), sign=1) for x in at]
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """Fitted with the whole loop's resistance, of which the winding warms."""
+    share = facts.resistance / facts.winding
+    warms = value(f, "thermal_resistance") * share**2
+    values = {"thermal_resistance": warms, "time_constant": value(f, "time_constant")}
+    return Made().add(f.name, facts, values)
 
 
 NAME = Name(
-    "winding_heating",
-    (VOLTS,),
-    columns,
-    ("magnet_weakening",),
-    "hold the rotor at a steady current for some minutes: R i rises with the winding, K v is not there",
+    name="winding_heating",
+    channels=(VOLTS,),
+    columns=columns,
+    experiment="hold the rotor at a steady current for some minutes: R i rises with the winding, K v is "
+    "not there",
+    relative={"thermal_resistance": ("resistance", 2)},  # of the cold one
+    to_plant=to_plant,
 )

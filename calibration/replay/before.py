@@ -1,24 +1,19 @@
 """The declared model re-calibrated without the effects: what "before" means for a closed loop."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 
-from calibration.corrected.making import wrapped
-from calibration.decide.tolerance import SIGMA_TOLERANCE, TOLERANCE
-from calibration.declaredplant import PERIODIC
+from calibration.decide.tolerance import CHANGES, fitted_numbers
 from calibration.finding import Finding, Parameter
+from calibration.inputs.declaredplant import stage_of_wave
+from calibration.look.axis_result import AxisResult
+from calibration.names import NAMES
+from calibration.names.inplant import Facts
+from calibration.replay.thresholds import LARGEST_STEP
 from calibration.statistics.regression import Fit
-from calibration.twomotors.result import AxisResult
 from plant.effects import REGISTRY
 from plant.model import PlantModel, with_effects
-from plant.parts import Number
-
-LARGEST_STEP = (
-    0.3  # log of a ratio: linear corrections of the bristle's shape hold no further (channels/declared.py)
-)
 
 
 def before_numbers(
@@ -28,43 +23,26 @@ def before_numbers(
 
     A declared number that is an effect itself may only move within the tolerance of the declared one.
     """
-    out = dict(calibrated)
-    t = result.selections.get("T")
+    found: dict[str, float] = {}
+    t, e, k = (result.selections.get(channel) for channel in "TEK")
     if t is not None and t.chosen and result.torque is not None:
-        f, beta = result.torque.friction, t.before.beta
-        ratio, speed = np.clip(beta[3:5], -LARGEST_STEP, LARGEST_STEP)
-        coulomb = float(beta[2])
-        _put(out, "inertia", float(beta[0]))
-        _put(out, "viscous", float(beta[1]))
-        _put(out, "coulomb", coulomb)
-        _put(out, "stiction", coulomb * f.ratio * float(np.exp(ratio)))
-        _put(out, "stribeck_speed", f.stribeck_speed * float(np.exp(speed)))
-        _put(out, "sigma_0", coulomb * f.stiffness)
-    e = result.selections.get("E")
+        numbers = fitted_numbers(result.torque, t.before, LARGEST_STEP)
+        found |= {name: one.value for name, one in numbers.items()}
+        # its correction moves too far
+        found["sigma_0"] = found["coulomb"] * result.torque.friction.start["sigma_0"]
     if e is not None and e.chosen:
-        for k, (name, _) in enumerate(e.problem.base_labels[:2]):
-            _put(out, name, float(e.before.beta[k]))
-    k_channel = result.selections.get("K")
-    if k_channel is not None and k_channel.chosen and k_channel.before.beta[0] > 0:
-        _put(out, "stiffness", 1.0 / float(k_channel.before.beta[0]))
-    changed = {f.name for f in effects}
-    d = result.declared
-    for name, number, declared, factor in (
-        ("coulomb_change", "coulomb", d.coulomb, TOLERANCE),
-        ("viscous_change", "viscous", d.viscous, TOLERANCE),
-        ("stribeck_change", "stiction", d.stiction, TOLERANCE),
-        ("stribeck_change", "stribeck_speed", d.stribeck_speed, TOLERANCE),
-        ("presliding", "sigma_0", d.sigma_0, SIGMA_TOLERANCE),
-        ("shaft_compliance", "stiffness", d.stiffness, TOLERANCE),
-    ):
-        if name in changed and number in out:
-            _put(out, number, float(np.clip(out[number].value, declared / factor, declared * factor)))
+        loop = e.problem.named(e.before)
+        found |= {name: loop[name].value for name in ("resistance", "torque_constant")}
+    if k is not None and k.chosen and (compliance := k.problem.named(k.before)["compliance"].value) > 0:
+        found["stiffness"] = 1.0 / compliance
+    found = {name: x for name, x in found.items() if name in calibrated and np.isfinite(x)}
+    out = calibrated | {name: replace(calibrated[name], value=x) for name, x in found.items()}
+    for changed in (CHANGES[f.name] for f in effects if f.name in CHANGES):
+        for number in set(changed.numbers) & set(out):
+            declared = result.declared.number(number)
+            value = float(np.clip(out[number].value, declared / changed.factor, declared * changed.factor))
+            out[number] = replace(out[number], value=value)
     return out
-
-
-def _put(out: dict[str, Parameter], name: str, value: float) -> None:
-    if name in out and np.isfinite(value):
-        out[name] = replace(out[name], value=value)
 
 
 def with_declared_lines(model: PlantModel, axis: str, result: AxisResult, fit: Fit | None) -> PlantModel:
@@ -75,27 +53,19 @@ def with_declared_lines(model: PlantModel, axis: str, result: AxisResult, fit: F
     labels = [name for name, _ in t.problem.base_labels]
     effects = []
     for effect in getattr(model.axes, axis).effects:
-        stage = effect.stage or PERIODIC.get(effect.name)
-        label = f"declared {stage} {effect.harmonic}"
-        if (
-            effect.enabled
-            and (effect.name, stage, effect.harmonic) in result.declared.lines
-            and label in labels
-        ):
+        stage = stage_of_wave(effect)
+        line, label = (effect.name, stage, effect.harmonic), f"declared {stage} {effect.harmonic}"
+        if effect.enabled and line in result.declared.lines and label in labels:
             at = slice(labels.index(label), labels.index(label) + 2)
-            c, s = fit.beta[at]
-            most = next(p.high for p in REGISTRY[effect.name].parameters if p.name == "amplitude")
-            if np.hypot(c, s) > most or np.trace(fit.covariance[at, at]) > np.hypot(c, s) ** 2:
-                effects.append(effect)  # this motion does not tell it: it stays as declared
-                continue
-            # the motors' counter-torque c cos + s sin as a sine on the axis; imbalance: cos(angle - phase)
-            shift = float(np.arctan2(-s, c))
-            phase = np.pi - shift if effect.name == "gravity_imbalance" else shift - np.pi / 2
-            sizes = {"amplitude": float(np.hypot(c, s)), "phase": wrapped(phase)}
-            numbers = {
-                name: Number(value, "N m" if name == "amplitude" else "rad", "re-calibrated")
-                for name, value in sizes.items()
-            }
-            effect = replace(effect, parameters={**effect.parameters, **numbers})
+            c, s = fit.beta[at]  # the motors' counter-torque c cos + s sin
+            size, variance = float(np.hypot(c, s)), np.trace(fit.covariance[at, at])
+            # a line that this motion does not show stays as declared
+            if size <= REGISTRY[effect.name].parameter("amplitude").high and variance <= size**2:
+                sizes = {"amplitude": size, "phase": float(np.arctan2(-s, c))}
+                found = {name: Parameter(value, "") for name, value in sizes.items()}
+                wave = Finding(effect.name, "T", "axis_angle", stage, effect.harmonic, parameters=found)
+                (made,) = NAMES[effect.name].to_plant(wave, Facts("")).effects
+                numbers = {name: replace(made.parameters[name], source="re-calibrated") for name in sizes}
+                effect = replace(effect, parameters={**effect.parameters, **numbers})
         effects.append(effect)
     return with_effects(model, axis, effects)

@@ -1,36 +1,15 @@
 """How far a replayed run is from the measured one: rms per channel on the rows that may be compared."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-
 import numpy as np
 
-from calibration.channels.frame import Frame
-from calibration.readers.drive import ARCSEC
-from calibration.readers.run import Array
+from calibration.balances.frame import Frame
+from calibration.inputs.run import Array
+from calibration.replay import thresholds as limits
 from calibration.replay.trace import Trace
 from calibration.statistics.whitening import Mask
+from plant.units import ARCSEC
 
-SETTLE_S = (
-    1.0  # after a start, a gap or a jump of the command: the loop settles, 5 ms of its onset are unknown
-)
-SETPOINT_STEP = 10.0 * ARCSEC  # rad/s within one row: a new rate, and no ramp
-BREAKAWAY_S = (
-    1.0  # either side of a passage through the Stribeck speed: when it breaks away hangs on Ts to 0.1 %
-)
-SPEED_S = 0.1  # over which the speed of that passage is taken
-EFFORT_STEP = 0.02  # of full effort within one row, open loop
 UNITS = {"torque": "N m", "velocity": "arcsec/s", "position": "arcsec"}
-DIFFERENCE = (1.0, -4.0, 6.0, -4.0, 1.0)  # fourth difference: what changes from row to row is noise
-
-
-@dataclass(frozen=True)
-class Errors:
-    """rms of replay less log per channel (units: UNITS), and what noise and quantisation of both leave."""
-
-    rms: dict[str, float]
-    floor: dict[str, float]
 
 
 def comparable(frame: Frame, rows: Mask) -> Mask:
@@ -40,12 +19,12 @@ def comparable(frame: Frame, rows: Mask) -> Mask:
     wanted = frame.columns["setpoint"][rows]
     jump = np.zeros(len(t), dtype=bool)
     jump[0] = True
-    jump[1:] |= np.abs(np.diff(np.nan_to_num(wanted))) > SETPOINT_STEP
+    jump[1:] |= np.abs(np.diff(np.nan_to_num(wanted))) > limits.SETPOINT_STEP
     jump[1:] |= there[1:] & ~there[:-1]
     if not np.isfinite(wanted).any():
-        jump[1:] |= np.abs(np.diff(np.nan_to_num(frame.columns["effort"][rows]))) > EFFORT_STEP
+        jump[1:] |= np.abs(np.diff(np.nan_to_num(frame.columns["effort"][rows]))) > limits.EFFORT_STEP
     last = np.maximum.accumulate(np.where(jump, t, 0))
-    settled = t - last > round(SETTLE_S / frame.period_s)
+    settled = t - last > round(limits.SETTLE_S / frame.period_s)
     settled[:-2] &= ~(jump[1:-1] | jump[2:])
     return np.asarray(settled & there)
 
@@ -54,12 +33,12 @@ def breaking(position: Array, period_s: float, stribeck: float) -> Mask:
     """Rows within BREAKAWAY_S of a passage of the measured speed (position: arcsec) through `stribeck`."""
     good = np.isfinite(position)
     x = np.interp(np.arange(len(position)), np.flatnonzero(good), position[good]) * ARCSEC
-    half = max(round(SPEED_S / period_s / 2), 1)
+    half = max(round(limits.SPEED_S / period_s / 2), 1)
     padded = np.pad(x, half, mode="edge")
     speed = np.abs(padded[2 * half :] - padded[: -2 * half]) / (2 * half * period_s)
     passage = np.zeros(len(x))
     passage[1:] = (speed[1:] > stribeck) != (speed[:-1] > stribeck)
-    reach = round(BREAKAWAY_S / period_s)
+    reach = round(limits.BREAKAWAY_S / period_s)
     return np.asarray(np.convolve(passage, np.ones(2 * reach + 1), "same")[: len(x)] > 0)
 
 
@@ -77,20 +56,23 @@ def residual(channel: str, log: Trace, model: Trace, use: Mask) -> Array:
 
 def noise(x: Array, use: Mask) -> float:
     """rms of what changes from row to row, from fourth differences."""
-    d = np.convolve(np.where(use, x, np.nan), DIFFERENCE, "valid")
+    d = np.convolve(np.where(use, x, np.nan), limits.DIFFERENCE, "valid")
     d = d[np.isfinite(d)]
-    return float(np.sqrt(np.mean(d**2) / np.sum(np.square(DIFFERENCE)))) if len(d) > 20 else float("nan")
+    if len(d) <= limits.FEWEST_DIFFERENCES:
+        return float("nan")
+    return float(np.sqrt(np.mean(d**2) / np.sum(np.square(limits.DIFFERENCE))))
 
 
-def errors(pairs: list[tuple[Trace, Trace, Mask]]) -> Errors:
-    """Errors over the runs, each (log, replay, rows)."""
-    rms, floor = {}, {}
+def errors(pairs: list[tuple[Trace, Trace, Mask]]) -> dict[str, tuple[float, float]]:
+    """Per channel (units: UNITS) the rms of replay less log over the runs, each (log, replay, rows), and what
+    noise and quantisation of both leave."""
+    out = {}
     for channel in UNITS:
         e = np.concatenate([residual(channel, log, model, use) for log, model, use in pairs])
-        if len(e) < 50:
+        if len(e) < limits.FEWEST_COMPARED:
             continue
-        rms[channel] = float(np.sqrt(np.mean(e**2)))
         both = [(noise(getattr(x, channel), use), int(use.sum())) for a, b, use in pairs for x in (a, b)]
         weight = sum(n for _, n in both) / 2
-        floor[channel] = float(np.sqrt(sum(s * s * n for s, n in both if np.isfinite(s)) / max(weight, 1)))
-    return Errors(rms, floor)
+        floor = float(np.sqrt(sum(s * s * n for s, n in both if np.isfinite(s)) / max(weight, 1)))
+        out[channel] = float(np.sqrt(np.mean(e**2))), floor
+    return out

@@ -1,34 +1,30 @@
 """The held-out runs again, with the re-calibrated declared model and with the corrected plant, compared."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from calibration.candidates.axis_torque import start_clock
-from calibration.channels.frame import Frame
-from calibration.readers.run import Array
+from calibration.balances.frame import Frame
+from calibration.inputs.run import Array
 from calibration.replay.compare import UNITS, breaking, comparable, errors, residual
 from calibration.replay.gains import Gains, identify
-from calibration.replay.trace import Trace, drive_again, measured, model_for_run
+from calibration.replay.stretches import drive
+from calibration.replay.thresholds import CHAOS_SHARE, LEAST_ROWS, NEAR, WORSE
+from calibration.replay.trace import Loop, Trace, repeats
 from calibration.statistics.whitening import Mask
 from plant.model import PlantModel
 
-LEAST_ROWS = 100  # comparable rows, 1 s
-WORSE = 1.25  # of the error before: the loop's own noise is another draw in every replay
-NEAR = 1.2  # of the floor: a channel this near to it has nothing to gain
-SHARE = 0.02  # of the rows near a break-away, from which on it is worth a line
-
-Rows = dict[str, dict[str, Any]]
+Compared = tuple[Trace, Trace, Mask]  # log, replay, rows of the run
+AGAIN = "closed loop run again"
+IDENTIFIED = "identified from set point, velocity and effort"
 
 
 @dataclass
 class Replay:
     """`rows` as in report.json's closed_loop; `reasons` in words; traces of the first run for the plot."""
 
-    rows: Rows = field(default_factory=dict)
+    rows: dict[str, dict[str, Any]] = field(default_factory=dict)
     reasons: list[str] = field(default_factory=list)
     run: str = ""
     time: Array = field(default_factory=lambda: np.zeros(0))
@@ -41,7 +37,6 @@ class Replay:
 def replay(
     frame: Frame,
     held: Mask,
-    axis: str,
     declared: PlantModel,
     corrected: PlantModel,
     per_ampere: float,
@@ -51,50 +46,48 @@ def replay(
 
     `mean_currents`: the log's currents are mean ones already; else training rows tell how they were sampled.
     """
+    axis = frame.runs[0].header["axis"]
     gains = identify(frame, ~held) or identify(frame, held)
-    clock = start_clock([r.header.get("start_utc", "") for r in frame.runs], frame.t, frame.run)
+    loop = Loop(frame=frame, axis=axis, per_ampere=per_ampere, gains=gains)
     out = Replay()
-    pairs: dict[str, list[tuple[Trace, Trace, Mask]]] = {"before": [], "after": []}
+    pairs: dict[str, list[Compared]] = {"before": [], "after": []}
+    offsets: dict[str, list[float]] = {"before": [], "after": []}
     chaos: list[Mask] = []
-    left_out: set[str] = set()
-    same = declared == corrected
-    sampled = not mean_currents and sampled_at_the_edge(frame, held, axis, corrected, gains, per_ampere)
-    for k, run in enumerate(frame.runs):
-        whole = frame.run == k
-        if not (held & whole).any():
-            continue
-        whole &= np.arange(len(whole)) <= np.flatnonzero(held & whole)[-1]
-        use = comparable(frame, whole) & held[whole]
-        if use.sum() < LEAST_ROWS:
-            continue
-        start = float(clock[whole][0])
-        log = measured(frame, whole, per_ampere)
-        traces: dict[str, Trace] = {}
-        for key, model in (("before", declared), ("after", corrected)):
-            if key == "after" and same:
-                traces[key] = traces["before"]
+    models = {"after": corrected} | ({"before": declared} if declared != corrected else {})
+    effects = (each for model in models.values() for each in getattr(model.axes, axis).effects)
+    left_out = {each.name for each in effects if not repeats(each)}
+    stribeck = getattr(corrected.axes, axis).friction.stribeck_rate.si
+    try:
+        sampled = not mean_currents and sampled_at_the_edge(loop, held, corrected)
+        for k, run in enumerate(frame.runs):
+            whole = frame.run == k
+            if not (held & whole).any():
                 continue
-            try:
-                prepared, left = model_for_run(
-                    model, axis, run.scales, gains, start, frame.columns["temperature"][whole]
-                )
-                traces[key] = drive_again(prepared, axis, frame, whole, per_ampere, start)
-                if sampled:
-                    traces[key] = as_sampled(traces[key])
-            except ValueError as error:
-                return Replay(reasons=[f"closed loop not run again: {error}"])
-            left_out |= set(left)
-        for key, trace in traces.items():
-            pairs[key].append((log, trace, use))
-        chaos.append(breaking(log.position, frame.period_s, _stribeck(corrected, axis)))
-        if out.log is None:
-            out.run, out.time = run.name, frame.t[whole] - frame.t[whole][0]
-            out.log, out.before, out.after = log, traces["before"], traces["after"]
-            out.use = use & ~chaos[-1]
+            whole &= np.arange(len(whole)) <= np.flatnonzero(held & whole)[-1]
+            use = comparable(frame, whole) & held[whole]
+            if use.sum() < LEAST_ROWS:
+                continue
+            log = loop.measured(whole)
+            traces: dict[str, Trace] = {}
+            for key, model in models.items():
+                trace, moved = drive(loop, model, whole, use)
+                traces[key] = as_sampled(trace) if sampled else trace
+                offsets[key] += moved.tolist()
+            traces.setdefault("before", traces["after"])
+            for key, trace in traces.items():
+                pairs[key].append((log, trace, use))
+            chaos.append(breaking(log.position, frame.period_s, stribeck))
+            if out.log is None:
+                out.run, out.time = run.name, frame.t[whole] - frame.t[whole][0]
+                out.log, out.before, out.after = log, traces["before"], traces["after"]
+                out.use = use & ~chaos[-1]
+    except ValueError as error:
+        return Replay(reasons=[f"closed loop not run again: {error}"])
     if out.log is None:
         return Replay(reasons=["closed loop not run again: the held-out rows hold no settled motion"])
     _judge(out, pairs, chaos)
-    _say(out, gains, left_out, frame)
+    out.reasons += _beside(offsets)
+    out.reasons += _conditions(gains, left_out, frame)
     return out
 
 
@@ -103,27 +96,20 @@ def as_sampled(trace: Trace) -> Trace:
     return replace(trace, torque=trace.torque + trace.ripple) if trace.ripple is not None else trace
 
 
-def sampled_at_the_edge(
-    frame: Frame, held: Mask, axis: str, model: PlantModel, gains: Gains | None, per_ampere: float
-) -> bool:
+def sampled_at_the_edge(loop: Loop, held: Mask, model: PlantModel) -> bool:
     """Whether a run's training rows are nearer to currents sampled at the PWM's edge than to mean ones."""
-    for k, run in enumerate(frame.runs):
-        whole = frame.run == k
-        use = comparable(frame, whole) & ~held[whole]
+    for k in range(len(loop.frame.runs)):
+        whole = loop.frame.run == k
+        use = comparable(loop.frame, whole) & ~held[whole]
         if use.sum() < LEAST_ROWS:
             continue
-        try:
-            prepared, _ = model_for_run(model, axis, run.scales, gains, 0.0)
-            trace = drive_again(prepared, axis, frame, whole, per_ampere)
-        except ValueError:
-            return False
-        log = measured(frame, whole, per_ampere)
+        log, trace = loop.measured(whole), drive(loop, model, whole, use)[0]
         mean, edge = (np.mean(residual("torque", log, x, use) ** 2) for x in (trace, as_sampled(trace)))
         return bool(edge < mean)
     return False
 
 
-def _judge(out: Replay, pairs: dict[str, list[tuple[Trace, Trace, Mask]]], chaos: list[Mask]) -> None:
+def _judge(out: Replay, pairs: dict[str, list[Compared]], chaos: list[Mask]) -> None:
     """Fill the rows and say what is worse, and what the rows near a break-away would add."""
     settled = {
         key: [(a, b, use & ~c) for (a, b, use), c in zip(runs, chaos, strict=True)]
@@ -132,49 +118,45 @@ def _judge(out: Replay, pairs: dict[str, list[tuple[Trace, Trace, Mask]]], chaos
     all_rows, rows = (sum(int(use.sum()) for _, _, use in x["after"]) for x in (pairs, settled))
     if rows < LEAST_ROWS:
         settled, rows = pairs, all_rows
-        out.reasons.append("closed loop run again: the whole of the held-out rows is sticking and slipping")
-    before, after = errors(settled["before"]), errors(settled["after"])
-    for channel in before.rms:
-        out.rows[channel] = {
-            "unit": UNITS[channel],
-            "before": before.rms[channel],
-            "after": after.rms[channel],
-            "floor": after.floor[channel],
-        }
-    for channel, r in out.rows.items():
-        if r["after"] > WORSE * r["before"] and r["after"] > NEAR * r["floor"]:
+        out.reasons.append(f"{AGAIN}: the whole of the held-out rows is sticking and slipping")
+    declared = errors(settled["before"])
+    for channel, (after, floor) in errors(settled["after"]).items():
+        before, unit = declared[channel][0], UNITS[channel]
+        out.rows[channel] = {"unit": unit, "before": before, "after": after, "floor": floor}
+        if after > WORSE * before and after > NEAR * floor:
             out.reasons.append(
-                f"closed loop run again: the corrected plant is WORSE than the declared one in {channel}: "
-                f"{r['before']:.3g} before, {r['after']:.3g} {r['unit']} after"
+                f"{AGAIN}: the corrected plant is WORSE than the declared one in {channel}: "
+                f"{before:.3g} before, {after:.3g} {unit} after"
             )
-    if all_rows - rows > SHARE * all_rows:
-        first, last = errors(pairs["before"]).rms, errors(pairs["after"]).rms
-        told = ", ".join(f"{c} {first[c]:.3g} before, {last[c]:.3g} {UNITS[c]} after" for c in last)
+    if all_rows - rows > CHAOS_SHARE * all_rows:
+        first, last = errors(pairs["before"]), errors(pairs["after"])
+        told = ", ".join(f"{c} {first[c][0]:.3g} before, {last[c][0]:.3g} {UNITS[c]} after" for c in last)
         out.reasons.append(
-            f"closed loop run again: {100 * (1 - rows / all_rows):.0f} % of the settled rows are within a "
+            f"{AGAIN}: {100 * (1 - rows / all_rows):.0f} % of the settled rows are within a "
             f"second of a passage through the Stribeck speed and left out: the moment of breaking away "
             f"cannot be repeated; with them {told}"
         )
 
 
-def _say(out: Replay, gains: Gains | None, left_out: set[str], frame: Frame) -> None:
-    if gains is None:
-        if not np.isfinite(frame.columns["setpoint"]).any():
-            out.reasons.append("closed loop run again: the log is open loop, its effort was replayed")
-        else:
-            out.reasons.append(
-                "closed loop run again: the log does not tell the gains, the plant file's were used"
-            )
+def _beside(offsets: dict[str, list[float]]) -> list[str]:
+    """How far from the log the axis comes to stand behind the transients of its command."""
+    rms = {key: float(np.sqrt(np.mean(np.square(x)))) for key, x in offsets.items() if x}
+    if not rms:
+        return []
+    said = ", ".join(f"{x:.3g} arcsec {key}" for key, x in rms.items())
+    return [
+        f"{AGAIN}: each of {len(offsets['after'])} transients moves it against the log by {said} (rms);"
+        " the set point of a transient takes that out"
+    ]
+
+
+def _conditions(gains: Gains | None, left_out: set[str], frame: Frame) -> list[str]:
+    """With which gains it was run, and without which effects."""
+    if gains is not None:
+        how = f" with gains {IDENTIFIED}: Kp {gains.kp:.4g}, Ki {gains.ki:.4g}"
+    elif np.isfinite(frame.columns["setpoint"]).any():
+        how = ": the log does not tell the gains, the plant file's were used"
     else:
-        out.reasons.append(
-            f"closed loop run again with gains {gains.source}: Kp {gains.kp:.4g}, Ki {gains.ki:.4g}"
-        )
-    for name in sorted(left_out):
-        out.reasons.append(
-            f"closed loop run again without {name}: its trace or phase is a new one in every run"
-        )
-
-
-def _stribeck(model: PlantModel, axis: str) -> float:
-    rate: float = getattr(model.axes, axis).friction.stribeck_rate.si
-    return rate
+        how = ": the log is open loop, its effort was replayed"
+    without = (f" without {name}: its trace or phase is a new one in every run" for name in sorted(left_out))
+    return [AGAIN + words for words in (how, *without)]

@@ -1,36 +1,27 @@
 """The closed loop run again: measured, declared and corrected on the held-out run."""
 
-from __future__ import annotations
-
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from calibration.replay.compare import residual
 from calibration.replay.held import Replay
-from calibration.report.plots import BLUE, GREY, RED, png
-
-WINDOW_S = 2.0  # what a page can show of a trace at 10 ms
+from calibration.report.plots import BLUE, GREY, RED, figure, png
+from calibration.report.thresholds import WHOLE, WINDOW_S
 
 
 def replay_picture(again: Replay) -> dict[str, str]:
     """Torque where the declared model is furthest off, and the velocity errors of all of the run."""
     assert again.log is not None and again.before is not None and again.after is not None
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     t, use = again.time, again.use
-    fig, (top, low) = plt.subplots(2, 1, figsize=(9.0, 5.6), constrained_layout=True)
+    fig, (top, low) = figure(9.0, 5.6, rows=2)
     torque = np.isfinite(again.log.torque).any()
     channel, unit = ("torque", "N m") if torque else ("velocity", "arcsec/s")
     measured, before, after = (getattr(x, channel) for x in (again.log, again.before, again.after))
     off = np.where(use, np.nan_to_num(before - measured), 0.0)
     step = max(float(np.median(np.diff(t))), 1e-3)
     size = max(min(round(WINDOW_S / step), len(t)), 1)
-    box = np.ones(size)
-    spread = size * np.convolve(off**2, box, "valid") - np.convolve(off, box, "valid") ** 2
-    whole = np.convolve(use, box, "valid") > 0.99 * size
-    first = int(np.argmax(np.where(whole, spread, 0.0)))
+    spread, whole = sliding_window_view(off, size).var(axis=1), sliding_window_view(use, size).mean(axis=1)
+    first = int(np.argmax(np.where(whole > WHOLE, spread, 0.0)))
     part = slice(first, first + size)
     top.plot(t[part], measured[part], color=GREY, lw=2.6, alpha=0.7, label="measured")
     top.plot(t[part], before[part], color=RED, lw=0.8, label="declared model, closed loop run again")

@@ -1,20 +1,18 @@
-"""Generalised least squares with autoregressive noise, and the covariance that coloured, uneven noise
-needs."""
-
-from __future__ import annotations
+"""Generalised least squares with autoregressive noise, and a covariance for coloured, uneven noise."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
+from calibration.statistics.thresholds import SINGULAR
 from calibration.statistics.whitening import Mask, Whitener, fit_ar
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Coefficients (p,), their covariance (p, p), the residual (n,) in the channel's unit, and the noise
-    model."""
+    """Coefficients (p,), their covariance (p, p), residual (n,) in the channel's unit, noise model."""
 
     beta: Array
     covariance: Array
@@ -27,48 +25,66 @@ class Fit:
 
 def solve(x: Array, y: Array) -> Array:
     """Least squares through scaled normal equations; columns without weight get a zero coefficient."""
-    inv, scale = _inverse_gram(x)
-    return np.asarray(inv @ ((x / scale).T @ y) / scale)
+    z, scale = _scaled(x)
+    return np.asarray(_inverse(z.T @ z) @ (z.T @ y) / scale)
+
+
+def solve_without(x: Array, y: Array, label: NDArray[np.int64]) -> list[Array]:
+    """`solve` on all rows but those of one label, for every label in turn."""
+    z, scale = _scaled(x)
+    parts = [(z[m].T @ z[m], z[m].T @ y[m]) for m in (label == k for k in np.unique(label))]
+    gram, along = sum(g for g, _ in parts), sum(a for _, a in parts)
+    return [np.asarray(_inverse(gram - g) @ (along - a) / scale) for g, a in parts]
+
+
+def told(x: Array, at: Array) -> NDArray[np.bool_]:
+    """(m,): whether a fit on rows x (n, p) tells rows `at` (m, p): in its span, no noisier than noise."""
+    z, scale = _scaled(x)
+    w, v = np.linalg.eigh(z.T @ z)
+    there = at / scale
+    outside = there @ v[:, w <= SINGULAR * max(w.max(initial=0.0), 1e-300)]
+    within = np.sum(outside**2, axis=1) <= np.sqrt(SINGULAR) * np.sum(there**2, axis=1)
+    return np.asarray(within & (leverage(x, at) <= 1.0))
 
 
 def leverage(x: Array, at: Array) -> Array:
     """(m,): variance of what a fit on rows x (n, p) predicts at rows `at` (m, p), of the noise's."""
-    inv, scale = _inverse_gram(x)
-    z = at / scale
-    return np.asarray(np.einsum("ij,ij->i", z @ inv, z))
+    z, scale = _scaled(x)
+    return np.asarray(np.einsum("ij,ij->i", at / scale @ _inverse(z.T @ z), at / scale))
 
 
-def _inverse_gram(x: Array) -> tuple[Array, Array]:
+def _scaled(x: Array) -> tuple[Array, Array]:
+    """Columns of norm 1, and what they were divided by: 1 for a column of zeros."""
     scale = np.sqrt(np.einsum("ij,ij->j", x, x))
     scale[scale == 0] = 1.0
-    gram = (x / scale).T @ (x / scale)
+    return x / scale, scale
+
+
+def _inverse(gram: Array) -> Array:
     w, v = np.linalg.eigh(gram)
-    keep = w > 1e-11 * max(w.max(), 1e-300) if len(w) else w > 0
-    return np.asarray((v[:, keep] / w[keep]) @ v[:, keep].T), scale
+    keep = w > SINGULAR * max(w.max(initial=0.0), 1e-300)
+    return np.asarray((v[:, keep] / w[keep]) @ v[:, keep].T)
 
 
 def gls(y: Array, x: Array, valid: Mask, order: int, block: int = 200, rounds: int = 2) -> Fit:
     """Fit y = x beta + AR(order) noise on the valid rows.
 
-    The covariance is block-robust: scores summed over blocks of `block` rows, so that neither colour left
-    by the
-    short AR nor bursts of noise shrink the intervals.
+    The covariance is block-robust, by scores of `block` rows: colour left and bursts do not shrink it.
     """
     yz, xz = np.where(valid, y, 0.0), np.where(valid[:, None], x, 0.0)
-    beta = solve(xz[valid], yz[valid]) if x.shape[1] else np.zeros(0)
+    beta = solve(xz[valid], yz[valid])
     whitener = Whitener(np.zeros(0))
-    for _ in range(rounds):
+    yw, xw, use = yz, xz, valid
+    for _ in range(rounds if order else 0):
         whitener = fit_ar(yz - xz @ beta, valid, order)
         use = whitener.usable(valid)
         yw, xw = whitener.apply(yz), whitener.apply(xz)
-        if x.shape[1]:
-            beta = solve(xw[use], yw[use])
+        beta = solve(xw[use], yw[use])
     e = np.where(use, yw - xw @ beta, 0.0)
     n = max(int(use.sum()), 1)
     sigma = float(np.sqrt(np.sum(e**2) / n))
-    cov = block_covariance(xw * use[:, None], e, block) if x.shape[1] else np.zeros((0, 0))
-    loglik = -n * np.log(max(sigma, 1e-300))
-    return Fit(beta, cov, y - x @ beta, whitener, sigma, float(loglik), n)
+    cov = block_covariance(xw * use[:, None], e, block)
+    return Fit(beta, cov, y - x @ beta, whitener, sigma, _loglik(e, n), n)
 
 
 def under(y: Array, x: Array, valid: Mask, whitener: Whitener) -> float:
@@ -76,23 +92,20 @@ def under(y: Array, x: Array, valid: Mask, whitener: Whitener) -> float:
 
     Two models are compared through one filter: each one's own filter also takes out what the other explains.
     """
-    use = whitener.usable(valid)
-    yw = whitener.apply(np.where(valid, y, 0.0))[use]
-    e = yw
-    if x.shape[1]:
-        xw = whitener.apply(np.where(valid[:, None], x, 0.0))[use]
-        e = yw - xw @ solve(xw, yw)
-    n = max(len(e), 1)
-    return float(-n * np.log(max(float(np.sqrt(np.sum(e**2) / n)), 1e-300)))
+    e, w = whitener.whiten(y, valid), whitener.whiten(x, valid)
+    return _loglik(e - w @ solve(w, e), max(len(e), 1))
+
+
+def _loglik(e: Array, rows: int) -> float:
+    """Log likelihood of white noise of the size of e."""
+    return float(-rows * np.log(max(float(np.sqrt(np.sum(e**2) / rows)), 1e-300)))
 
 
 def block_covariance(x: Array, e: Array, block: int) -> Array:
     """Sandwich covariance with scores summed over blocks of rows, small-sample corrected."""
     n, p = x.shape
-    size = np.sqrt(np.einsum("ij,ij->j", x, x))
-    size[size == 0] = 1.0
-    x = x / size
-    bread = np.linalg.pinv(x.T @ x, rcond=1e-11, hermitian=True)
+    x, size = _scaled(x)
+    bread = np.linalg.pinv(x.T @ x, rcond=SINGULAR, hermitian=True)
     edges = np.arange(0, n, block)
     scores = np.add.reduceat(x * e[:, None], edges, axis=0)
     count = len(edges)

@@ -1,22 +1,22 @@
 """Tails of distributions far out, in log10, from special functions (scipy.stats is slow to import)."""
 
-from __future__ import annotations
-
 import numpy as np
-from scipy.special import gammaincc, gammaln, stdtrit
+from scipy.special import betainc, betaln, rel_entr, stdtrit
 
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
+from calibration.statistics.thresholds import SMALLEST_TAIL
 
 
-def chi2_log10(gain: Array | float, dof: Array | float) -> Array:
-    """-log10 of the upper chi2 tail; the leading asymptotic term where the tail underflows."""
-    x, a = np.maximum(np.asarray(gain, dtype=float), 0.0) / 2, np.asarray(dof, dtype=float) / 2
-    x, a = np.broadcast_arrays(x, a)
-    tail = gammaincc(a, x)
-    far = tail < 1e-250
-    safe = np.where(far, np.maximum(x, 1.0), 1.0)
-    asymptotic = (a - 1) * np.log(safe) - safe - gammaln(a)
-    return np.asarray(-np.where(far, asymptotic, np.log(np.where(far, 1.0, tail))) / np.log(10.0))
+def wald_log10(wald: Array | float, width: Array | float, blocks: float) -> Array:
+    """-log10 p of a Wald statistic of `width` coefficients with covariance from independent `blocks`, so wald
+    / width is F(width, blocks - 1); the leading term where the tail underflows."""
+    x, b = np.broadcast_arrays(np.maximum(np.asarray(wald, dtype=float), 0.0), np.asarray(width) / 2)
+    a = max(blocks - 1.0, 1.0) / 2
+    part = 2 * a / (2 * a + x)
+    tail = betainc(a, b, part)
+    far = tail < SMALLEST_TAIL
+    leading = a * np.log(part) - np.log(a) - betaln(a, b)
+    return np.asarray(-np.where(far, leading, np.log(np.where(far, 1.0, tail))) / np.log(10.0))
 
 
 def variance_log10(ratio: float, count: float) -> float:
@@ -27,17 +27,20 @@ def variance_log10(ratio: float, count: float) -> float:
 def share_log10(hits: float, total: float, chance: float) -> float:
     """-log10 p (Chernoff's bound) of at least `hits` of `total` when each has the probability `chance`."""
     share = hits / max(total, 1.0)
-    if share <= chance:
-        return 0.0
-    rest = (1 - share) * np.log((1 - share) / (1 - chance)) if share < 1 else 0.0
-    return float(total * (share * np.log(share / chance) + rest) / np.log(10.0))
+    distance = rel_entr(share, chance) + rel_entr(1 - share, 1 - chance)
+    return float(total * distance / np.log(10.0)) if share > chance else 0.0
+
+
+def rms(x: Array) -> float:
+    """Of x (n,); not a number where there is none."""
+    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
 
 
 def rms_interval(e: Array, block: int) -> tuple[float, float, float]:
     """rms of e (n,) with a 95 % interval from the scatter of its blocks' mean squares."""
     edges = np.arange(0, len(e), block)
     squares = np.add.reduceat(e**2, edges) / np.diff([*edges, len(e)])
-    size = float(np.sqrt(np.mean(e**2)))
+    size = rms(e)
     count = len(squares)
     error = float(np.std(squares, ddof=1)) / np.sqrt(count) / max(2 * size, 1e-300) if count > 1 else size
     reach = student_reach(max(count - 1, 1)) * error
@@ -45,8 +48,7 @@ def rms_interval(e: Array, block: int) -> tuple[float, float, float]:
 
 
 def median_reach(x: Array) -> float:
-    """95 % half-width of the median of x (n,), n of at least 2, from its scatter (a normal median's error is
-    1.25 times the mean's)."""
+    """95 % half-width of the median of x (n,), n of at least 2: its error is 1.25 times the mean's."""
     return student_reach(len(x) - 1) * 1.25 * float(np.std(x, ddof=1)) / float(np.sqrt(len(x)))
 
 

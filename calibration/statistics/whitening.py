@@ -1,7 +1,4 @@
-"""Autoregressive whitening of gappy series: coloured residuals make naive statistics lie (effects.md,
-lesson 3)."""
-
-from __future__ import annotations
+"""Autoregressive whitening of gappy series: coloured residuals mislead (effects.md, lesson 3)."""
 
 from dataclasses import dataclass
 
@@ -9,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 
-from calibration.readers.run import Array
+from calibration.inputs.run import Array
+from calibration.statistics.thresholds import LOADING, MEDIAN, ROWS_PER_ORDER, SECOND
 
 Mask = NDArray[np.bool_]
 
@@ -29,6 +27,10 @@ class Whitener:
             out[j:] -= a * x[:-j]
         return out
 
+    def whiten(self, x: Array, valid: Mask) -> Array:
+        """Column(s) (n,) or (n, k), filtered, of the usable rows of `valid`."""
+        return self.apply(np.where(valid if x.ndim == 1 else valid[:, None], x, 0.0))[self.usable(valid)]
+
     def usable(self, valid: Mask) -> Mask:
         """Rows that have themselves and all predecessors valid."""
         out = valid.copy()
@@ -47,18 +49,12 @@ def autocovariance(e: Array, valid: Mask, lags: int) -> Array:
     return np.asarray(np.fft.irfft(spectrum, size)[: lags + 1] / n)
 
 
-# of the variance, as white noise: keeps the filter from living on bands where only the smoothing acts
-LOADING = 0.3
-
-
 def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:
     """Yule-Walker fit of an AR(order) to the residual `e` (mean removed); order 0 gives the identity.
 
-    The loading bounds how far any band can be lifted over another, so that a fit stays near least squares
-    when the
-    model is wrong in a band that carries little power.
+    The loading bounds how far a band can be lifted: a fit stays near least squares in weak bands.
     """
-    if order == 0 or valid.sum() < 5 * order:
+    if order == 0 or valid.sum() < ROWS_PER_ORDER * order:
         return Whitener(np.zeros(0))
     x = e - float(np.mean(e[valid]))
     r = autocovariance(x, valid, order)
@@ -66,3 +62,10 @@ def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:
     if r[0] <= 0:
         return Whitener(np.zeros(0))
     return Whitener(np.asarray(solve_toeplitz(r[:order], r[1 : order + 1])))
+
+
+def white_noise(e: Array, valid: Mask, bursts: bool = True) -> float:
+    """rms of sample-to-sample noise of `e` (n,), means over two boxcars; by medians without `bursts`."""
+    second = np.diff(np.where(valid, e, np.nan), 2)
+    size = np.sqrt(np.nanmean(second**2)) if bursts else MEDIAN * np.nanmedian(np.abs(second))
+    return float(size / np.sqrt(SECOND))

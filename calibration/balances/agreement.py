@@ -1,0 +1,111 @@
+"""Two columns that say the same: how late one is against the other, and how well they agree."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.balances.filters import smooth
+from calibration.balances.thresholds import FEWEST_FILES, FEWEST_FOR_A_SCATTER, FEWEST_ROWS, LEAST_SCALE
+from calibration.balances.view import View
+from calibration.inputs.run import Array
+from calibration.statistics.regression import gls
+from calibration.statistics.tails import rms
+from calibration.statistics.thresholds import SURE_Z
+from calibration.statistics.whitening import Mask
+
+# of the scale: less is how either rate was smoothed. ASSUMPTION
+SCALED = 0.01
+# of the mean square of what the columns disagree by. ASSUMPTION
+MATTERS = 0.2
+# sample periods: a shorter delay is within a reading's own window. ASSUMPTION
+SMALLEST = 0.1
+# sample periods that are looked at. ASSUMPTION
+LONGEST = 20
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """`channel` is late against the position by `delay_s` +- `error_s` (one standard error); rms of the
+    difference on held-out rows with and without it; the sensors' noise; `scale` of its rate, with error."""
+
+    channel: str
+    unit: str
+    delay_s: float
+    error_s: float
+    before: float
+    after: float
+    floor: float
+    late: bool
+    scale: float = 1.0
+    scale_error: float = 0.0
+
+    @property
+    def scaled(self) -> str:
+        """In words, when the channel is another multiple of the position's rate than one."""
+        if abs(self.scale - 1.0) < max(SURE_Z * self.scale_error, SCALED):
+            return ""
+        return f"{self.channel} reads {self.scale:.4g} times the position's rate: its unit, scale or sign"
+
+    @property
+    def left(self) -> float:
+        """Floors that remain between the two columns; 0 where there is none."""
+        rest = self.after if self.late else self.before
+        return rest / self.floor if np.isfinite(rest) and np.isfinite(self.floor) and self.floor > 0 else 0.0
+
+
+def velocity_against_position(view: View, held: Mask) -> Agreement | None:
+    """A measured velocity against the position's rate: scale and offset are free, then the delay."""
+    if "velocity" not in view.columns or view.ok.sum() < FEWEST_ROWS:
+        return None
+    v, w = view.rate(view.x), view.columns["velocity"]
+    sigma = max(view.wide, 2.0)
+    v, w = smooth(v, view.segment, sigma), smooth(w, view.segment, sigma)
+    a = view.rate(v)
+    apart = slice(None, None, max(round(sigma / view.step), 1))  # rows that the smoothing leaves independent
+    rows, held = view.rows[apart], held[apart]
+    ok = view.ok[rows]
+    train = ok & ~held
+    test = ok & held if (ok & held).sum() > FEWEST_ROWS else train
+    if train.sum() < FEWEST_ROWS or np.std(w[rows][train]) == 0:
+        return None
+    block = max(int(len(rows) / 60), 20)
+    free = np.column_stack([v[rows], np.ones(len(rows)), -a[rows]])
+    before = gls(w[rows], free[:, :2], train, 0, block)
+    delay = 0.0
+    for _ in range(4):  # the slope is exact at the right delay only
+        fit = gls(view.delayed(w, delay)[rows], free, train, 0, block)
+        scale = float(fit.beta[0]) or 1.0
+        step = float(fit.beta[2]) / scale
+        delay = float(np.clip(delay + step, -LONGEST * view.period_s, LONGEST * view.period_s))
+    error = float(np.sqrt(max(fit.covariance[2, 2], 0.0))) / abs(scale)
+    moved = view.delayed(w, delay)[rows]
+    error = max(error, _scatter(view.file[rows], free, moved, train))
+    last = gls(moved, free[:, :2], train, 0, block)
+    b, c = rms(before.residual[test]), rms(last.residual[test])
+    floor = _noise(last.residual, test)
+    late = (
+        abs(delay) > SURE_Z * error
+        and SMALLEST * view.period_s < abs(delay) < LONGEST * view.period_s  # at an end it is none
+        and 1 - (c / b) ** 2 > MATTERS
+        and abs(scale) > LEAST_SCALE
+    )
+    unit = view.rig.columns["velocity"].unit
+    spread = float(np.sqrt(max(last.covariance[0, 0], 0.0)))
+    return Agreement("velocity", unit, delay, error, b, c, floor, late, float(last.beta[0]), spread)
+
+
+def _scatter(files: NDArray[np.int64], x: Array, y: Array, train: Mask) -> float:
+    """Standard error of the delay from what single files say; 0 for fewer than three."""
+    each = [train & (files == k) for k in np.unique(files)]
+    fits = [np.linalg.lstsq(x[m], y[m], rcond=None)[0] for m in each if m.sum() > FEWEST_ROWS]
+    found = [float(beta[2]) for beta in fits]
+    return float(np.std(found, ddof=1) / np.sqrt(len(found))) if len(found) >= FEWEST_FILES else 0.0
+
+
+def _noise(e: Array, rows: Mask) -> float:
+    """rms of what changes from row to row: fourth differences of white noise have 70 times its variance."""
+    x = np.where(rows, e, np.nan)
+    fourth = x[4:] - 4 * x[3:-1] + 6 * x[2:-2] - 4 * x[1:-3] + x[:-4]
+    fourth = fourth[np.isfinite(fourth)]
+    return float(np.sqrt(np.mean(fourth**2) / 70.0)) if len(fourth) > FEWEST_FOR_A_SCATTER else float("nan")

@@ -1,0 +1,166 @@
+"""The regression of a drive's response: a balance of forces, or one sensor against another."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
+
+from calibration.balances.friction import sliding_of
+from calibration.balances.problem import Problem, Term, labels_of
+from calibration.balances.slowoffset import with_slow_offset
+from calibration.balances.thresholds import FEWEST_FILES
+from calibration.balances.view import View
+from calibration.inputs.run import Array, Run
+from calibration.statistics.whitening import Mask
+
+# of the median divisor: below, the ratio says nothing. ASSUMPTION
+LOADED = 0.5
+# of a row's filter, that may lie where the drive stands. ASSUMPTION
+STANDS = 0.2
+# of the logged time, for the block-robust covariance. ASSUMPTION
+BLOCKS = 60
+# of its own quantile range that a held-out file may exceed the others. ASSUMPTION
+COVER = 0.02
+
+
+def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: float = 0.0) -> Problem:
+    """The response and its declared terms on the fitted rows; the response's column is late by `delay_s`."""
+    rig, response, at = view.rig, view.response, view.rows
+    y, ok = response_of(view, delay_s)
+    terms = _terms(view)
+    for name, value in rig.constants.items():
+        y = y - value * _term(view, name)[0][2]
+    valid = (view.ok & ok)[at]
+    if view.dynamic and response.channel != "acceleration":
+        valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
+    if not view.dynamic and response.is_force:
+        valid &= np.abs(view.direction[at]) > 0
+    held = _held(view, records, hold_out)
+    period, session = view.period_s * view.step, view.file[at]
+    problem = Problem(
+        channel="T" if response.is_force else "K",
+        unit=response.unit,
+        y=view.at(y),
+        base=view.at(np.column_stack([x for _, _, x in terms])),
+        base_labels=labels_of(terms),
+        t=view.clock[at],
+        run=view.run[at],
+        session=session,
+        valid=valid & _apart(held, view),
+        held=held,
+        period_s=period,
+        ar_order=0,
+        block_s=max(20 * period, float(np.sum(valid)) * period / BLOCKS),
+    )
+    if not response.is_force:  # an incremental sensor starts anywhere: every file has its own offset
+        problem.fresh = np.column_stack([(session == k).astype(float) for k in np.unique(session)])
+    problem = with_slow_offset(problem, view, view.slow_offset)
+    return problem if hold_out or len(records) < FEWEST_FILES else problem.in_turn()
+
+
+def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:
+    """The response (n,) at full rate, its column late by `delay_s`, and the rows where it says anything."""
+    r, ok = view.response, np.ones(len(view.t), dtype=bool)
+    if r.channel == "acceleration":
+        x = view.columns.get("acceleration")
+        y = view.second(view.x) if x is None else x
+    else:
+        y = view.delayed(view.columns[r.channel], delay_s)
+    y = y * r.gain
+    if r.ratio:
+        y = y - r.ratio * view.x
+    if r.divide_by:
+        below = view.columns[r.divide_by]
+        if r.divide_by == "supply":
+            y = y * (float(np.mean(below)) / np.where(below != 0, below, np.inf))
+        else:
+            ok = np.abs(below) > LOADED * np.median(np.abs(below))
+            y = y / np.where(ok, below, np.inf)
+    return y, ok
+
+
+def default_terms(view: View) -> tuple[str, ...]:
+    """The declared model's terms: those of the rig file, and what every response of its kind needs."""
+    if view.response.is_speed:
+        return ("offset",)
+    if view.response.is_force:
+        return view.rig.estimate or ("viscous", "coulomb", "offset")
+    drift = ("drift",) if "drift" in view.rig.estimate else ()
+    scale = ("scale",) if view.response.channel == "position2" and view.response.ratio is None else ()
+    return ("offset", *scale, *drift)
+
+
+def _terms(view: View) -> list[Term]:
+    """The declared model at full rate: of two sensors with an offset per file."""
+    files = np.unique(view.file)
+    per_file = not view.response.is_force and len(files) > 1
+    offsets = [(f"offset_{int(k) + 1}", view.unit, (view.file == k).astype(float)) for k in files]
+    named = (offsets if name == "offset" and per_file else _term(view, name) for name in default_terms(view))
+    return [term for terms in named for term in terms]
+
+
+def _term(view: View, name: str) -> list[Term]:
+    """A term of the declared model at full rate."""
+    unit, x = view.unit, view.angle_unit
+    if name == "gravity":
+        carried, joint = view.columns.get("load", 1.0), view.columns.get("joint")
+        angles = {"": view.x} if joint is None else {"": view.x, "_joint": view.x + joint}
+        return [
+            (f"gravity_{side}{which}", unit, carried * of(angle / (view.turn or 1.0) * 2 * np.pi))
+            for which, angle in angles.items()
+            for side, of in (("cos", np.cos), ("sin", np.sin))
+        ]
+    brakes = -1.0 if view.response.channel == "acceleration" else 1.0
+    known: dict[str, tuple[str, Callable[[], Array]]] = {
+        "inertia": (
+            f"{unit} s2/{x}",
+            lambda: view.columns.get("acceleration", view.smoothed(view.second(view.x))),
+        ),
+        "viscous": (f"{unit} s/{x}", lambda: view.smoothed(view.rate(view.x)) * brakes),
+        "coulomb": (unit, lambda: sliding_of(view).shape * brakes),
+        "offset": (unit, lambda: np.ones(len(view.t))),
+        "drift": (f"{unit}/s", lambda: view.clock - view.clock.mean()),
+        "stiffness": (f"{unit}/{x}", lambda: view.x - view.x.mean()),
+        "scale": (f"{unit}/{x}", lambda: view.x - view.x.mean()),
+    }
+    own, column = known[name]
+    return [(name, own, np.asarray(column()))]
+
+
+def _held(view: View, records: list[Run], names: list[str]) -> Mask:
+    """Named files; of three and more one that the others cover; else the end of every run."""
+    session, run = view.file[view.rows], view.run[view.rows]
+    if names:
+        return np.isin(session, [k for k, r in enumerate(records) if r.among(names)])
+    if len(records) >= FEWEST_FILES:
+        return np.asarray(session == _covered(view, session, len(records)))
+    held = np.zeros(len(run), dtype=bool)
+    for label in np.unique(run):
+        rows = np.flatnonzero((run == label) & view.ok[view.rows])  # a rest between two runs has none to hold
+        last = rows[int(len(rows) * (1 - view.rig.hold_out)) :]
+        if len(last):
+            held[last[0] : last[-1] + 1] = run[last[0] : last[-1] + 1] == label
+    return held
+
+
+def _covered(view: View, session: NDArray[np.int64], count: int) -> int:
+    """The file that leaves the ranges of the others least; of those the middle one in time."""
+    x, v = view.x[view.rows], np.abs(view.speed[view.rows])
+    excess = np.zeros(count)
+    for k in range(count):
+        mine = session == k
+        for z in (x, v):
+            low, high = np.quantile(z[~mine], [0.01, 0.99])
+            a, b = np.quantile(z[mine], [0.02, 0.98])
+            excess[k] += (max(low - a, 0.0) + max(b - high, 0.0)) / max(high - low, 1e-300)
+    good = np.flatnonzero(excess <= excess.min() + COVER)
+    clock = np.array([view.clock[view.rows][session == k].mean() for k in good])
+    return int(good[np.argsort(clock)[len(good) // 2]])
+
+
+def _apart(held: Mask, view: View) -> Mask:
+    """False where the filter reaches over a border between fitted and held-out rows."""
+    reach = int(np.ceil(3 * view.sigma / max(view.step, 1)))
+    border = np.append(held[1:] != held[:-1], False) & (reach > 0)
+    return np.asarray(~maximum_filter1d(border, 2 * (reach // 2) + 1))

@@ -1,0 +1,160 @@
+"""The drive error of a guided mount as a regression: star offsets, a slow drift per section, the rest."""
+
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+
+from calibration.balances.problem import Problem
+from calibration.balances.thresholds import FEWEST_FOR_A_DRIFT
+from calibration.errors import CalibrationInputError
+from calibration.inputs.run import Array, Run
+from calibration.statistics.whitening import Mask
+
+# of the longest section: shorter ones only add an offset and a drift each. ASSUMPTION
+LEAST_PART = 0.25
+# in a section. ASSUMPTION
+LEAST_FRAMES = 30
+# cells in a turn of the quickest part: its eighth harmonic is still seen. ASSUMPTION
+PER_TURN = 20.0
+# quick frames are averaged over this: the eighth harmonic of the quickest worm lasts 19 s. ASSUMPTION
+CELL_S = 3.0
+# of the slowest period: what has not come round twice is not known to be periodic. ASSUMPTION
+DRIFT_TURNS = 2.0
+# of the drift: refraction and polar alignment change its rate. ASSUMPTION
+LEAST_DEGREE = 2
+# s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
+SLOWEST_S = 663.0
+# of every section, at its end, unless runs are named. ASSUMPTION
+HELD_PART = 0.4
+
+
+def usable(runs: list[Run], hold_out: list[str]) -> tuple[list[Run], list[str]]:
+    """The sections long enough to say something beside the longest, and a note on those left out."""
+    longest = max(r.duration_s for r in runs)
+    keep = [
+        r
+        for r in runs
+        if r.rows >= (FEWEST_FOR_A_DRIFT if r.among(hold_out) else LEAST_FRAMES)
+        and (r.among(hold_out) or r.duration_s >= LEAST_PART * longest)
+    ]
+    note = (
+        f"{len(runs) - len(keep)} of {len(runs)} sections left out: shorter than {LEAST_FRAMES} frames or"
+        f" than a quarter of the longest ({longest:.0f} s)"
+    )
+    return keep, [note] if len(keep) < len(runs) else []
+
+
+def guide_problem(
+    runs: list[Run], hold_out: list[str], slowest_s: float = SLOWEST_S, quickest_s: float = SLOWEST_S
+) -> tuple[Problem, list[str]]:
+    """Problem and the names of what is held out: the end of every section, or the sections that are named.
+
+    `slowest_s`: longest period looked for; what takes twice as long is drift, a nuisance of fitted and of
+    held-out rows on their own. `quickest_s`: shortest declared period. `session`: where a period keeps its
+    phase, as a slew turns the worm: a section; the clock where whole sections are held out.
+    """
+    units = {r.header.get("unit", "arcsec") for r in runs}
+    if len(units) > 1:
+        raise CalibrationInputError(
+            runs[0].path, "logs with and without a pixel scale cannot be put together"
+        )
+    unit = next(iter(units))
+    frame = float(np.median(np.concatenate([np.diff(r.columns["t"]) for r in runs])))
+    cell = min(CELL_S, quickest_s / PER_TURN)
+    period = frame if 2 * frame > cell else cell
+    sections, names = _sections(runs, hold_out, period)
+    rows = {name: np.concatenate([r[name] for r in sections]) for name in sections[0]}
+    y, run, dither = rows["y"], rows["run"], rows["dither"]
+    valid = np.isfinite(y)
+    base, offsets, drifts = _nuisances(rows, valid & ~rows["held"], slowest_s)
+    labels = [("offset", unit)] * offsets + [("drift", unit)] * drifts
+    fresh, *_ = _nuisances(rows, valid & rows["held"], slowest_s)
+    if np.ptp(dither) > 0:
+        base = np.column_stack([base, dither - dither.mean()])
+        labels.append(("guide_gain_error", "1"))
+    whole = bool(hold_out) and all(r.start_s is not None for r in runs)
+    problem = Problem(
+        channel="K",
+        unit=unit,
+        y=np.where(valid, y, 0.0),
+        base=base,
+        base_labels=labels,
+        t=rows["t"],
+        run=run,
+        session=np.zeros_like(run) if whole else run,
+        valid=valid,
+        held=rows["held"],
+        period_s=period,
+        ar_order=3,
+        block_s=max(12 * period, 40.0),
+        fresh=fresh,
+        domains={"clock": rows["clock"]} if whole else {},
+    )
+    bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
+    bent = bent[np.isfinite(bent)]
+    if len(bent):
+        problem.floor = float(np.median(np.abs(bent - np.median(bent))) * 1.4826 / np.sqrt(6))
+    return problem, names
+
+
+def _sections(runs: list[Run], hold_out: list[str], period: float) -> tuple[list[dict[str, Any]], list[str]]:
+    """Columns of every section on its grid, one after another in time, and the names of what is held out."""
+    parts: list[dict[str, Any]] = []
+    names: list[str] = []
+    count, offset = 0, 0.0
+    for k, r in enumerate(runs):
+        grid = np.arange(r.columns["t"][0], r.columns["t"][-1] + 1e-9, period)
+        t = grid - grid[0] + offset
+        near = np.clip(np.searchsorted(r.columns["t"], grid), 1, r.rows - 1)
+        segment = r.columns["segment"][near].astype(np.int64) + count
+        held = np.full(len(grid), r.among(hold_out))
+        if not hold_out:
+            held[int((1 - HELD_PART) * len(grid)) :] = True
+            names.append(f"{r.name} from {(1 - HELD_PART) * (grid[-1] - grid[0]):.0f} s")
+        elif held.all():
+            names.append(r.name)
+        parts.append(
+            {
+                "y": _on_grid(r, grid, period),
+                "t": t,
+                "clock": t if r.start_s is None else grid + r.start_s,
+                "dither": r.columns["dither"][near] if "dither" in r.columns else np.zeros(len(grid)),
+                "run": np.full(len(grid), k, dtype=np.int64),
+                "segment": segment,
+                "held": held,
+            }
+        )
+        count, offset = int(segment.max()) + 1, t[-1] + 20 * period
+    return parts, names
+
+
+def _nuisances(columns: dict[str, Array], rows: Mask, slowest_s: float) -> tuple[Array, int, int]:
+    """Offsets per segment and drift per section of `rows`, (n, k), and how many there are of each."""
+    segment, run = columns["segment"], columns["run"]
+    offsets = [((segment == s) & rows).astype(float) for s in np.unique(segment[rows])]
+    drifts = [x for k in np.unique(run[rows]) for x in _drift(columns["t"], (run == k) & rows, slowest_s).T]
+    both = [*offsets, *drifts]
+    return np.column_stack(both) if both else np.zeros((len(rows), 0)), len(offsets), len(drifts)
+
+
+def _drift(t: Array, here: Mask, slowest_s: float) -> Array:
+    """Legendre polynomials over the rows `here`: refraction, polar axis and flexure; degree d has d / 2
+    waves."""
+    span = float(np.ptp(t[here]))
+    degree = max(round(span / (DRIFT_TURNS * slowest_s / 2)), LEAST_DEGREE)
+    x = np.where(here, 2 * (t - t[here].min()) / max(span, 1e-9) - 1, 0.0)
+    return np.where(here[:, None], legvander(x, degree)[:, 1:], 0.0)
+
+
+def _on_grid(run: Run, grid: Array, period: float) -> Array:
+    """Drive error on a regular grid; NaN where no frame is near."""
+    at = run.columns["t"]
+    near = np.clip(np.searchsorted(at, grid), 1, run.rows - 1)
+    apart = np.minimum(np.abs(at[near] - grid), np.abs(at[near - 1] - grid))
+    if period > 1.5 * float(np.median(np.diff(at))):
+        cell = np.minimum(np.round((at - grid[0]) / period).astype(np.int64), len(grid) - 1)
+        count = np.bincount(cell, minlength=len(grid))
+        mean = np.bincount(cell, run.columns["ra"], len(grid)) / np.maximum(count, 1)
+        return np.where(count > 0, mean, np.nan)
+    return np.where(apart < 1.5 * period, np.interp(grid, at, run.columns["ra"]), np.nan)

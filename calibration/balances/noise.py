@@ -1,0 +1,81 @@
+"""White noise of a column, from its differences from row to row, which the motion is too smooth to make.
+
+It never comes from the residual of a fit, and is at least what rounding to whole counts leaves.
+"""
+
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.balances.frame import Frame
+from calibration.inputs.run import Array, quantum
+from calibration.statistics.regression import solve
+from plant.units import ARCSEC
+
+# rms of a rounding error, of a quantum
+ROUNDING = 1.0 / np.sqrt(12.0)
+# rows: the median over blocks of a second leaves out transients and lost packets. ASSUMPTION
+BLOCK = 100
+# blocks, before their median is told. ASSUMPTION
+LEAST_BLOCKS = 3
+# mean square of the smaller four fifths of normal values, of all: (0.8 - 2 q f(q)) / 0.8; arithmetic, a share
+QUIET_PART = 0.4377
+# counts: a smaller current is cut off at zero. ASSUMPTION
+CONDUCTING = 2.0
+
+
+def rough(x: Array, order: int) -> float:
+    """rms of white noise in x (n,) from its `order`-th differences, by blocks; NaN when too short."""
+    d = np.diff(x, order) ** 2
+    blocks = [float(np.mean(b)) for b in np.split(d, range(BLOCK, len(d), BLOCK)) if np.isfinite(b).all()]
+    gain = comb(2 * order, order)  # sum of the squared binomials
+    return float(np.sqrt(np.median(blocks) / gain)) if len(blocks) >= LEAST_BLOCKS else float("nan")
+
+
+def position_noise(x: Array, file: NDArray[np.int64]) -> float:
+    """rms of the position's white noise, from its fourth differences, and of its rounding."""
+    fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
+    noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(comb(8, 4))
+    step = quantum(x)
+    if step is None:
+        steps = np.abs(np.diff(x))
+        steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently
+        step = float(np.quantile(steps, 0.02)) if len(steps) else 0.0
+    return float(max(noise, step * ROUNDING))
+
+
+def column_noise(frame: Frame) -> dict[str, float]:
+    """rms per row of the columns that an axis' log has, in SI units, from the column alone (currents: beside
+    the logged effort). Of the effort, what changes from row to row, of the full one."""
+    scale, columns = frame.scale, frame.columns
+    place, count = (scale[f"{k}_arcsec_per_count"] * ARCSEC for k in ("position", "velocity"))
+    ampere = scale["adc_A_per_count"]
+    found = {
+        "position": (rough(columns["position"], 4), place),
+        "velocity": (rough(columns["velocity"], 2), count / scale["velocity_window_s"]),
+        "current_a": (_current_noise(frame, "current_a"), ampere),
+        "current_b": (_current_noise(frame, "current_b"), ampere),
+        "effort": (rough(columns["effort"], 2), 0.0),
+    }
+    # a column that is too short to tell is as good as its counts
+    return {k: float(np.fmax(x, n * ROUNDING)) for k, (x, n) in found.items() if frame.get(k) is not None}
+
+
+def _current_noise(frame: Frame, name: str) -> float:
+    """A current's second differences beside the effort's, whose rounding moves the current for real."""
+    i, effort = frame.columns[name], frame.columns["effort"]
+    d, u = np.full(len(i), np.nan), np.full(len(i), np.nan)
+    d[2:], u[2:] = np.diff(i, 2), np.diff(np.abs(effort), 2)
+    x = np.column_stack([np.roll(u, k) for k in range(3)])
+    ok = np.isfinite(d) & np.isfinite(x).all(axis=1) & (i > CONDUCTING * frame.scale["adc_A_per_count"])
+    ok[:4] = False
+    for side in (effort > 0, effort <= 0):  # a motor's share of the effort hangs on its sign
+        rows = ok & side
+        if rows.sum() > BLOCK:
+            d[rows] -= x[rows] @ solve(x[rows], d[rows])
+    parts = [b[np.isfinite(b)] for b in np.split(np.where(ok, d, np.nan), range(BLOCK, len(d), BLOCK))]
+    # normal values by their smaller four fifths: what disturbs some rows does not count
+    quiet = [np.sort(b**2)[: round(0.8 * len(b))] for b in parts if len(b) > BLOCK // 2]
+    squares = [float(np.mean(b)) / QUIET_PART for b in quiet]
+    return float(np.sqrt(np.median(squares) / 6.0)) if len(squares) >= LEAST_BLOCKS else float("nan")

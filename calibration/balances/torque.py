@@ -1,0 +1,117 @@
+"""The torque residual: motor torque less inertia and declared friction, on the analysis grid."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.balances.declared import Friction, fit_friction
+from calibration.balances.frame import Frame
+from calibration.balances.motion import Motion, motion_of
+from calibration.balances.problem import Problem, Term
+from calibration.inputs.declaredplant import Declared
+from calibration.inputs.run import Array
+from calibration.statistics.whitening import Mask
+
+# rows per analysis sample, 30 ms: wide enough for the encoder, enough for mesh 2 at 1.5 deg/s. ASSUMPTION
+WIDTH = 3
+# of a converter's count: rounding leaves 0.29, a steady current keeps its rounding for minutes. ASSUMPTION
+STEP = 0.35
+# of Ts / sigma_0, the bristles' longest travel: what they held before is down to a twentieth. ASSUMPTION
+SLID = 3.0
+
+
+#: what the declared friction's columns are sized by, and its unit
+FRICTION = {
+    "inertia": "kg m2",
+    "viscous": "N m s/rad",
+    "coulomb": "N m",
+    "log_stiction": "1",
+    "log_stribeck_speed": "1",
+    "log_sigma_0": "1",
+    "sigma_1": "N m s/rad",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transmission:
+    """From currents to the axis: what electrical and encoder channels say of it.
+
+    `per_ampere` N m at the axis; `left` (n,) per motor of its torque constant; `softness_s2`: a rotor's
+    inertia over its train's stiffness, which takes that times the torque's second derivative.
+    """
+
+    per_ampere: float
+    left: dict[str, Array]
+    softness_s2: float
+    stiffness: float  # N m/rad of one train
+
+
+@dataclass(kw_only=True)
+class Torque:
+    """The torque problem with what it was made of."""
+
+    problem: Problem
+    friction: Friction
+    drive: Transmission
+
+
+def slid(m: Motion, unseen: Array, travel: float) -> Mask:
+    """Rows (n,) that lie `travel` rad of path behind the last unseen one: the bristles hold nothing of it."""
+    path = np.cumsum(np.abs(np.diff(m.theta, prepend=m.theta[0])))
+    return np.asarray(path - np.maximum.accumulate(np.where(unseen > 0, path, -np.inf)) > travel)
+
+
+def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], unit: str = "N m") -> list[Term]:
+    """cos and sin (n_analysis, 2) of every declared periodic torque, dimmed by the two boxcars."""
+    turns, per_row = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / (2 * np.pi) * m.frame.period_s
+    out: list[Term] = []
+    for _, stage, harmonic in lines:
+        order = m.frame.train.orders[stage] * harmonic
+        dim = m.filter.gain(per_row * order)
+        x = 2 * np.pi * order * turns
+        pair = np.column_stack([dim * np.cos(x), dim * np.sin(x)])
+        out.append((f"declared {stage} {harmonic}", unit, pair))
+    return out
+
+
+def torque_problem(
+    frame: Frame,
+    drive: Transmission,
+    held: Mask,
+    declared: Declared,
+    beside: Array | None = None,
+) -> Torque | None:
+    """The T channel; None without currents. `beside` (n_analysis, k): torques fitted beside friction."""
+    if frame.get("current_a") is None and frame.get("current_b") is None:
+        return None
+    (fa, ta), (fb, tb) = frame.filled("current_a"), frame.filled("current_b")
+    m = motion_of(frame, WIDTH)
+    pick = m.pick
+    left_out = [frame.transients(), frame.saturated(fa), frame.saturated(fb)]
+    unseen = frame.get("unseen")
+    if unseen is not None:
+        left_out.append(~slid(m, unseen, SLID * declared.stiction / declared.bristle_stiffness))
+    rows = (m.trusted & ta & tb)[pick] & m.clear(*left_out)
+    full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
+    y = m.at(full) - drive.softness_s2 * m.curvature(full)[pick]
+    lines = declared_lines(m, declared.lines)
+    none = np.zeros((len(y), 0))
+    torques = np.hstack([none, *[x for _, _, x in lines], none if beside is None else beside])
+    friction, columns = fit_friction(m, y, rows & ~held[pick], declared.law, torques)
+    problem = m.problem(
+        held,
+        [
+            *((name, unit, x) for (name, unit), x in zip(FRICTION.items(), columns.T, strict=True)),
+            # the currents may be late by a fraction of a row against the encoder: a nuisance, an effect only
+            # when it is large
+            ("current_delay", "s", m.at(np.gradient(full, frame.period_s))),
+            *lines,
+        ],
+        channel="T",
+        unit="N m",
+        y=y,
+        valid=rows,
+        step=STEP * frame.scale["adc_A_per_count"] * drive.per_ampere,
+    )
+    return Torque(problem=problem, friction=friction, drive=drive)

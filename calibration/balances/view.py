@@ -1,0 +1,320 @@
+"""A drive's records at full rate, and the way from there to the rows that are fitted.
+
+Every column of a balance goes through the same filter, so that the balance holds between filtered columns
+without bias: rates are plain differences of the position, smoothed afterwards like everything else.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+from calibration.balances.context import direction_of, since_reversal, turning_points
+from calibration.balances.filters import Filter, by_piece, pieces, smooth
+from calibration.balances.frame import SHORT
+from calibration.balances.noise import position_noise
+from calibration.inputs.declaration import Response, Rig
+from calibration.inputs.run import Array, Run, quantum
+from calibration.inputs.thresholds import GAP
+from calibration.inputs.units import units_per_turn
+from calibration.statistics.thresholds import SURE_Z
+from calibration.statistics.whitening import Mask
+
+# of the usual top speed: slower, friction may have any size up to break-away. ASSUMPTION
+SLOWEST = 0.01
+# standard deviations of the filter: nearer to an edge or a bad row is not used. ASSUMPTION
+REACH = 3.0
+# of the usual top speed: slower is standing. How sharply friction turns is fitted, from these. ASSUMPTION
+STANDSTILLS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02)
+# rows that are fitted: more are averaged together. ASSUMPTION
+MOST_ROWS = 24_000
+# harmonics of all stages, from where on fewer rows are fitted: time grows with their square. ASSUMPTION
+MOST_WAVES = 24
+# rows per period of the quickest of them. ASSUMPTION: Nyquist's two, twice
+ROWS_PER_WAVE = 4.0
+# rows of one sensor against another, which has no accelerations to follow. ASSUMPTION
+SENSOR_ROWS = 4_000
+# standard deviations of the filter in `smooth_s`. definition
+WINDOW = 5.0
+# of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
+NOISE = 0.01
+# rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
+LEAST = 2.0
+# rows likewise at most. ASSUMPTION
+MOST = 40.0
+# steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
+RESOLVED = 6.0
+
+
+@dataclass(kw_only=True)
+class View:
+    """Full-rate columns (n,) of all records, one after the other, each on a regular grid of `period_s`.
+
+    `t`: a file's time, `clock`: of all. `ok`: sound neighbourhood; `rows`: fitted, behind `filter`.
+    """
+
+    rig: Rig
+    response: Response
+    period_s: float
+    filter: Filter
+    t: Array
+    clock: Array
+    file: NDArray[np.int64]
+    segment: NDArray[np.int64]
+    run: NDArray[np.int64]
+    columns: dict[str, Array]
+    ok: Mask
+    rows: NDArray[np.int64]
+    dynamic: bool  # the balance holds accelerations
+    turn: float | None  # position units per turn
+    rates: float = 0.0  # standard deviation, rows, by which rates and accelerations are smoothed
+    quanta: dict[str, float] = field(default_factory=dict)  # steps of the columns, as they were logged
+    slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
+    slow_offset: int = 0  # cosines per file by which the response's offset wanders
+    standstill: float = 0.0  # speed, position units per s, below which the direction fades
+    speed: Array = field(default_factory=lambda: np.zeros(0))  # smoothed, for what is not linear in it
+    direction: Array = field(default_factory=lambda: np.zeros(0))
+    since: Array = field(default_factory=lambda: np.zeros(0))  # travel since the last reversal
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the filter, rows."""
+        return self.filter.sigma
+
+    @property
+    def wide(self) -> float:
+        """Likewise, of the position's rates and accelerations."""
+        return max(self.sigma, self.rates)
+
+    @property
+    def x(self) -> Array:
+        """Position."""
+        return self.columns["position"]
+
+    @property
+    def unit(self) -> str:
+        """Of the response."""
+        return self.response.unit
+
+    @property
+    def angle_unit(self) -> str:
+        """Of the position."""
+        return self.rig.columns["position"].unit
+
+    @property
+    def resolved(self) -> float:
+        """Travel, position units, below which what happens after a reversal is the sensor's."""
+        return RESOLVED * float(np.sqrt(12.0)) * position_noise(self.x, self.file)
+
+    @property
+    def top(self) -> float:
+        """Usual top speed, position units per s."""
+        return float(np.quantile(np.abs(self.speed[self.ok]), 0.95)) if self.ok.any() else 0.0
+
+    @property
+    def step(self) -> int:
+        """Full-rate rows per fitted row."""
+        return int(self.rows[1] - self.rows[0]) if len(self.rows) > 1 else 1
+
+    def at(self, full: Array) -> Array:
+        """A full-rate column (n,) or columns (n, k) through the filter, on the fitted rows."""
+        return np.asarray(self.filter(full, self.segment)[self.rows])
+
+    def rate(self, full: Array) -> Array:
+        """Central difference per second within segments."""
+        return by_piece(full, self.segment, lambda x: np.gradient(x, self.period_s), 3)
+
+    def smoothed(self, full: Array) -> Array:
+        """A rate or acceleration (n,) of the position before the filter.
+
+        It is smoothed where the filter lets declared waves pass that are quicker than the position resolves
+        in a rate.
+        """
+        return smooth(full, self.segment, self.rates) if self.rates > self.sigma else full
+
+    def second(self, full: Array) -> Array:
+        """Second difference per second squared within segments; 0 at their ends."""
+        return by_piece(full, self.segment, lambda x: np.pad(np.diff(x, 2), 1) / self.period_s**2, 3)
+
+    def delayed(self, full: Array, delay_s: float) -> Array:
+        """What the column would have shown, had it not been late by `delay_s`."""
+        if delay_s == 0.0:
+            return full
+        late, row = delay_s / self.period_s, np.arange(len(full))
+        return by_piece(full, self.segment, lambda x: np.interp(row[: len(x)] + late, row[: len(x)], x), 3)
+
+
+def view_of(records: list[Run], rig: Rig, response: Response) -> View:
+    """All records on one grid; the filter from the rig file or from the position's noise."""
+    period = float(np.median([r.period_s for r in records]))
+    parts = [_regular(r, period) for r in records]
+    file = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
+    columns = {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
+    t, ok, gap = columns.pop("t"), columns.pop("ok") > 0, columns.pop("gap") > 0
+    label = columns.pop("run", np.zeros(len(t)))
+    starts = np.array([r.start_s or 0.0 for r in records])
+    heavy = "inertia" in (*rig.estimate, *rig.constants)
+    dynamic = response.is_force and (heavy or response.channel == "acceleration")
+    apart = gap if dynamic else gap & ~_stood_over(columns["position"], gap, rig)
+    fresh = np.concatenate([[True], (np.diff(file) != 0) | (apart[1:] != apart[:-1])])
+    sigma = _sigma(columns["position"], file, period, rig, dynamic)
+    view = View(
+        rig=rig,
+        response=response,
+        period_s=period,
+        filter=Filter(min(sigma, _passing(columns["position"], file, rig, sigma)) if dynamic else 0.0),
+        t=t,
+        clock=t + starts[file],
+        file=file,
+        segment=np.cumsum(fresh),
+        run=file,
+        columns=columns,
+        ok=ok & ~gap,
+        rows=np.zeros(0, dtype=np.int64),
+        dynamic=dynamic,
+        rates=sigma if dynamic else 0.0,
+        turn=rig.turn or units_per_turn(rig.columns["position"].unit),
+        quanta={k: step for k in columns if (step := _step(records, k)) is not None},
+    )
+    _motion(view, sigma)
+    view.run = _runs(view, label)
+    _choose_rows(view)
+    return view
+
+
+def _step(records: list[Run], channel: str) -> float | None:
+    """The quantum of a column as it was logged: on a grid of its own it has none."""
+    logged = [r.columns[channel] for r in records if channel in r.columns]
+    return quantum(np.concatenate([x[np.isfinite(x)] for x in logged])) if logged else None
+
+
+def _regular(record: Run, period: float) -> dict[str, Array]:
+    """One record on a regular grid; rows in a gap, and near longer stretches without numbers, are not ok."""
+    t = record.columns["t"]
+    grid: Array = np.arange(int(np.floor((t[-1] - t[0]) / period)) + 1) * np.float64(period)
+    out = {"t": grid}
+    right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
+    wide = t[right] - t[right - 1] > GAP * max(period, record.period_s)
+    inside = np.minimum(np.abs(t[right] - grid), np.abs(t[right - 1] - grid)) > 0.51 * period
+    nearest = np.clip(np.rint(np.interp(grid, t, np.arange(len(t)))).astype(int), 0, len(t) - 1)
+    ok = np.ones(len(grid), dtype=bool)
+    for name, x in record.columns.items():
+        good = np.isfinite(x)
+        if name == "run":
+            out[name] = x[nearest]
+        elif name != "t":
+            out[name] = np.interp(grid, t[good], x[good])
+            for a, b in pieces(good.astype(np.int64)):
+                if not good[a] and b - a > SHORT:
+                    ok &= (grid < t[a]) | (grid > t[b - 1])
+    return out | {"gap": (wide & inside).astype(float), "ok": ok.astype(float)}
+
+
+def _stood_over(x: Array, gap: Mask, rig: Rig) -> Mask:
+    """Rows of gaps over which the position (n,) goes no further than a limit.
+
+    The limit is the larger of two: the usual travel within as short a time as makes no gap, and a part of the
+    shortest declared wave. A log of events has few rows while nothing moves, and a balance without
+    accelerations needs no rate.
+    """
+    rows = round(GAP)
+    steps = np.abs(x[rows:] - x[:-rows])[~gap[rows:]]
+    waves = [g.period / g.harmonics / ROWS_PER_WAVE for g in rig.stages if g.period]
+    usual = max(float(np.quantile(steps, 0.95)) if len(steps) else 0.0, min(waves, default=0.0))
+    out = np.zeros(len(x), dtype=bool)
+    for a, b in pieces(gap.astype(np.int64)):
+        out[a:b] = gap[a] and abs(x[min(b, len(x) - 1)] - x[max(a - 1, 0)]) <= usual
+    return out
+
+
+def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: bool) -> float:
+    """Rows: wide enough for the position's noise to be a small part of the acceleration."""
+    if rig.smooth_s is not None:
+        return rig.smooth_s / WINDOW / period
+    noise = position_noise(x, file)
+    sigma = LEAST
+    while sigma < MOST:
+        a = np.concatenate([np.diff(gaussian_filter1d(x[i:j], sigma), 2) for i, j in pieces(file)])
+        size = float(np.sqrt(np.mean(np.clip(a, *np.quantile(a, [0.005, 0.995])) ** 2)))
+        if noise * np.sqrt(3 / (8 * np.sqrt(np.pi)) / sigma**5) < NOISE * size:
+            break
+        sigma *= 1.25
+    return sigma if dynamic else max(sigma, 4.0)
+
+
+def _passing(x: Array, file: NDArray[np.int64], rig: Rig, sigma: float) -> float:
+    """Rows: the filter that leaves the quickest declared wave 0.6 of its amplitude at the usual top speed;
+    LEAST at least, as quicker accelerations than the position tells are in the response, too."""
+    soft = np.concatenate(
+        [np.gradient(gaussian_filter1d(x[i:j], sigma)) for i, j in pieces(file) if j > i + 1]
+    )
+    waves = max((g.harmonics / g.period for g in rig.stages if g.period), default=0.0)
+    cycles = min(float(np.quantile(np.abs(soft), 0.95)) * waves, 0.5)  # per row, at most Nyquist's
+    return max(1 / (2 * np.pi * cycles), LEAST) if cycles > 0 else np.inf
+
+
+def acceleration(view: View) -> Array:
+    """Full-rate acceleration (n,), smoothed until the position's noise is a small part of it."""
+    width = _sigma(view.x, view.file, view.period_s, view.rig, True)
+    return smooth(view.second(view.x), view.segment, width)
+
+
+def least_travel(x: Array) -> float:
+    """Travel that counts as motion: above the position's noise, and a ten-thousandth of the range."""
+    reach = float(np.quantile(x, 0.99) - np.quantile(x, 0.01))
+    return max(1e-4 * reach, 12 * float(np.median(np.abs(np.diff(x, 2)))))
+
+
+def _motion(view: View, sigma: float) -> None:
+    """Speed, direction and travel since the last reversal."""
+    soft = smooth(view.x, view.segment, max(sigma / 2, 1.0))
+    view.speed = view.rate(soft)
+    view.direction = direction_of(soft, view.file, least_travel(soft))
+    view.since = since_reversal(soft, view.direction, view.file)
+    if view.dynamic:  # a driven axis also stands still: there its friction has no direction
+        fade(view, STANDSTILLS[3])
+        width = max(sigma / 2, 1.0)
+        noise = position_noise(view.x, view.file) / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
+        view.slow = max(SURE_Z * noise, SLOWEST * view.top)
+
+
+def fade(view: View, part: float) -> None:
+    """Let the direction fade below `part` of the usual top speed."""
+    view.standstill = part * view.top
+    view.direction = np.tanh(view.speed / (view.standstill or 1.0))
+
+
+def _runs(view: View, label: Array) -> NDArray[np.int64]:
+    by = view.rig.runs.get("by")
+    if by == "turning_points":
+        change = turning_points(view.x, view.file, float(view.rig.runs.get("minimum_travel", 0.0)))
+    elif by == "column":
+        change = np.concatenate([[False], (np.diff(label) != 0) | (np.diff(view.file) != 0)])
+    else:
+        return view.file
+    return np.asarray(np.cumsum(change), dtype=np.int64)
+
+
+def _choose_rows(view: View) -> None:
+    """Rows that are fitted: one per filter width, and no more than can be fitted in time."""
+    period = view.rig.analyse_period_s
+    step = round(period / view.period_s) if period else round(view.sigma)
+    most = MOST_ROWS if view.response.is_force else SENSOR_ROWS
+    most = most * MOST_WAVES // max(sum(len(g.orders) for g in view.rig.stages), MOST_WAVES)
+    # but enough for the quickest of the declared lines at the usual top speed
+    rate = max((g.harmonics / g.period for g in view.rig.stages if g.period), default=0.0)
+    most = max(most, int(len(view.t) * view.period_s * view.top * rate * ROWS_PER_WAVE))
+    step = max(step, 1, int(np.ceil(len(view.t) / most)) if not period else 1)
+    if view.sigma == 0 and step > 1 and not period:
+        view.filter = Filter(step / 2)
+    view.rows = np.concatenate([np.arange(a, b, step) for a, b in pieces(view.file)])
+    margin = int(np.ceil(REACH * view.wide)) + (1 if view.dynamic else 0)
+    edge = np.zeros(len(view.t), dtype=bool)
+    for a, b in pieces(view.segment):
+        edge[a : a + margin] = True
+        edge[max(b - margin, a) : b] = True
+    # the filter carries what stands in for bad rows over to their neighbours
+    if view.dynamic and not view.ok.all():
+        edge |= maximum_filter1d(~view.ok, 2 * margin + 1)
+    view.ok &= ~edge

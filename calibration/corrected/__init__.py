@@ -1,1 +1,0 @@
-"""From findings to the effects of a plant file."""

@@ -1,0 +1,306 @@
+"""Rules by which a chosen effect is left out again, and the one loop that applies them.
+
+A rule gives the place of an effect that must go, and why; None when all may stay. The selection is fitted
+anew, the rule asked again.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.balances.candidate import Candidate
+from calibration.balances.slowoffset import slowness, with_slow_offset
+from calibration.balances.view import View
+from calibration.decide import thresholds as limits
+from calibration.decide.accept import refuse, scores
+from calibration.decide.parameters import parameters_of
+from calibration.decide.scan import Contender, fit_with
+from calibration.decide.selection import Selection
+from calibration.finding import UNKNOWN
+from calibration.names import NAMES
+from calibration.names.name import WORTH
+from calibration.names.structural_mode import MOST_DAMPED
+from calibration.statistics.regression import under
+from calibration.statistics.thresholds import SURE_Z
+from calibration.statistics.whitening import Mask
+
+Rule = Callable[[Selection], tuple[int, str] | None]
+
+#: declared terms that are positive in every drive: a fit with a negative one feeds energy
+POSITIVE = ("inertia", "viscous", "coulomb", "resistance", "torque_constant")
+
+
+def leave_out(s: Selection, *rules: Rule) -> Selection:
+    """The selection without what the rules, one after another, speak against."""
+    for rule in rules:
+        while s.chosen and (found := rule(s)) is not None:
+            s = s.without(*found)
+    return s
+
+
+def each(why: Callable[[Selection, int], str]) -> Rule:
+    """The rule that asks, last effect first, why it must go; an empty text lets it stay."""
+
+    def rule(s: Selection) -> tuple[int, str] | None:
+        asked = ((k, why(s, k)) for k in reversed(range(len(s.chosen))))
+        return next(((k, text) for k, text in asked if text), None)
+
+    return rule
+
+
+# --- of every selection (decide/select.py)
+
+
+def superfluous(s: Selection) -> tuple[int, str] | None:
+    """The first pick that later ones made superfluous."""
+    for k, c in enumerate(s.candidates[:-1]):
+        others = s.problem.design([x for j, x in enumerate(s.candidates) if j != k])
+        again = fit_with(s.problem, others, c)
+        if again is None or again.bayes <= 0:
+            return k, "superfluous once the others are in"
+    return None
+
+
+def needless(margin: float) -> Rule:
+    """An unnamed function that would not be accepted beside the others: it stood for what has a name now."""
+
+    def why(s: Selection, k: int) -> str:
+        if s.candidates[k].name != UNKNOWN or len(s.chosen) < 2:
+            return ""
+        others = s.without(k)
+        again = fit_with(s.problem, others.columns, s.candidates[k])
+        text = "cannot be told" if again is None else refuse(again, *scores(others, again), margin)
+        return f"beside the others: {text}" if text else ""
+
+    return each(why)
+
+
+def lesser_of_one_order(s: Selection) -> tuple[int, str] | None:
+    """An effect that gains less than MORE of what another one of its order gains.
+
+    A line's columns know angle, speed and current only so well. What that leaves has its order, and another
+    name of that order takes it: ripple beside cogging, a motor's harmonic beside a tooth.
+    """
+    p, have = s.problem, s.candidates
+
+    def gain(*gone: int) -> float:
+        """Log likelihood without some, through the filter of the fit of all."""
+        kept = [c for k, c in enumerate(have) if k not in gone]
+        return under(p.y, p.design(kept), p.train, s.after.whitener)
+
+    for pair in [(i, j) for i in range(len(have)) for j in range(i) if _same_order(have[i], have[j])]:
+        lesser, greater = sorted(pair, key=gain, reverse=True)
+        kept = gain(lesser)
+        if gain() - kept < limits.MORE * (kept - gain(*pair)):
+            return lesser, f"its order is that of {have[greater].say()}, whose shape leaves as much"
+    return None
+
+
+def _same_order(one: Candidate, other: Candidate) -> bool:
+    if one.order is None or other.order is None or one.name == other.name:
+        return False
+    return abs(one.order - other.order) < limits.SAME_ORDER_SHARE * abs(one.order)
+
+
+@each
+def below_surrogates(s: Selection, k: int) -> str:
+    """An effect with less evidence than the surrogates of the residual have."""
+    evidence, least = s.chosen[k].evidence, s.scores.threshold
+    return f"below the surrogate threshold ({evidence:.1f} < {least:.1f})" if evidence < least else ""
+
+
+# --- of a balance of a single drive (look/search.py). Without held-out rows nothing is compared: NaN
+
+
+def within_bounds(resolved: float) -> Rule:
+    """Shapes that mean nothing: a loop within the sensor's steps (`resolved`, of position), no resonance."""
+    loops = [parameter for name in NAMES.values() for parameter in name.loop]
+
+    def why(s: Selection, k: int) -> str:
+        at = {n: value for n, (value, _) in s.candidates[k].fixed.items()}
+        if larger_than_the_response(s, k):
+            return "larger than the response's own range: it cancels against something else"
+        if any(at[n] <= resolved for n in loops if n in at):
+            return "narrower than the sensor's steps show"
+        told = parameters_of(s, k)
+        if "width" in told and (told["width"].low or 0.0) < 0.0:
+            return "as wide as nothing, by its interval"
+        if "damping" in told and (told["damping"].high or 0.0) >= MOST_DAMPED:
+            return "damped too much for a resonance, by its interval"
+        return "damped too much for a resonance" if at.get("damping", 0.0) >= MOST_DAMPED else ""
+
+    return each(why)
+
+
+def larger_than_the_response(s: Selection, k: int) -> bool:
+    """Whether a harmonic of a line goes further than the response does: it cancels against another."""
+    c, rows = s.candidates[k], s.problem.valid
+    if c.kind != "line":
+        return False
+    waves = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2).sum(axis=2)
+    return bool(np.ptp(waves, axis=0).max(initial=0.0) > np.ptp(s.problem.y[rows]))
+
+
+def worth_little(s: Selection) -> tuple[int, str] | None:
+    """The effect whose absence the held-out rows notice least, where that is hardly at all."""
+    least = [NAMES[c.name].worth if c.name in NAMES else WORTH for c in s.candidates]
+    cost = [(_left(x) / _left(s) - 1.0) / w for x, w in zip(_each_left_out(s), least, strict=True)]
+    k = int(np.argmin(cost))
+    return (k, "adds too little to what is left when it is left out") if cost[k] < 1.0 else None
+
+
+def remainder(s: Selection) -> tuple[int, str] | None:
+    """An effect worth a few per cent of all: an imperfect model of the strongest one leaves as much."""
+    strongest = dominant(s)
+    if not strongest:
+        return None
+    taken = s.held.before**2 - _left(s)
+    each_worth = [_left(x) - _left(s) for x in _each_left_out(s)]
+    worth = np.where([c.name == strongest for c in s.candidates], np.inf, each_worth)
+    k = int(np.argmin(worth))
+    part = f"{100 * max(worth[k], 0.0) / taken:.1f} %"
+    why = f"worth {part} of what is found: a remainder of {strongest} as well"
+    return (k, why) if worth[k] < limits.REMAINDER * taken else None
+
+
+def dominant(s: Selection) -> str:
+    """The name whose effects alone take off nearly all that all of them do, or empty."""
+    names = {c.name for c in s.candidates}
+    alone = {n: _left(s.keep([x for x in s.chosen if x.candidate.name == n])) for n in names}
+    name = min(alone, key=lambda n: alone[n], default="")
+    taken = s.held.before**2 - _left(s)
+    return name if name and s.held.before**2 - alone[name] >= limits.DOMINANT * taken > 0 else ""
+
+
+def displaced(smooth: Contender) -> Rule:
+    """A name that is worth little beside a smooth function of its domain, and leaves much more than it."""
+    domain = smooth.candidate.domain
+
+    def why(s: Selection, k: int) -> str:
+        c = s.candidates[k]
+        # knots follow weights and lines; friction of one harmonic is a guess at what knots show
+        if c.domain != domain or (domain == "axis_angle" and not _waves_of_friction(c)):
+            return ""
+        alone, both = _left(s.put(k, smooth)), _left(s.keep([*s.chosen, smooth]))
+        little = alone - both < limits.REMAINDER * (s.held.before**2 - both)
+        of_all = little and _left(s) > limits.STILL_MISSING**2 * alone
+        return f"a smooth function of {domain} leaves a fraction of what it leaves" if of_all else ""
+
+    return each(why)
+
+
+def feeds_energy(s: Selection) -> tuple[int, str] | None:
+    """A name beside which a mass or friction that was positive turns negative: the one without which none
+    does and the held-out error is least. None goes where all of them and a term of zero leave less."""
+    bad = _turned(s)
+    if not bad:
+        return None
+    trials = _each_left_out(s)
+    good = [k for k, x in enumerate(trials) if not _turned(x)] or range(len(trials))
+    k = min(good, key=lambda k: _left(trials[k]))
+    base, labels = s.problem.base, [label for label, _ in s.problem.base_labels]
+    if bad in labels:
+        none = replace(s.problem, base=base * (np.arange(base.shape[1]) != labels.index(bad)))
+        if _left(Selection.of(none, s.chosen)) < _left(trials[k]):
+            return None
+    return k, f"beside it {bad} comes out negative, which feeds energy"
+
+
+def harmful(s: Selection) -> tuple[int, str] | None:
+    """The name without which the held-out error is least, where it grows with all of them."""
+    if not s.held.after > s.held.before:
+        return None
+    best = int(np.argmin([_left(x) for x in _each_left_out(s)]))
+    return best, "the held-out error grows with what was found"
+
+
+def no_more_than_an_offset(view: View) -> Rule:
+    """What a wandering offset predicts as well: along a few moves a walk follows the direction."""
+
+    def why(s: Selection, k: int) -> str:
+        if not view.dynamic:
+            return ""
+        wandering = with_slow_offset(s.problem, view, 2 * view.slow_offset or slowness(view))
+        others = Selection.of(wandering, [x for j, x in enumerate(s.chosen) if j != k])
+        return "an offset that wanders slowly leaves as little" if _left(others) <= _left(s) else ""
+
+    return each(why)
+
+
+def below_floor(s: Selection) -> tuple[int, str] | None:
+    """Names are for what is above the floor. Unless most goes with them: then the floor is what a coarse
+    sensor may hide, and did not."""
+    if s.held.before > s.problem.floor or clear(s) or _clear_of_steps(s):
+        return None
+    return 0, "the declared model is at the floor without it"
+
+
+def clear(s: Selection) -> bool:
+    """Whether most of the held-out error goes with what was found, and not by luck."""
+    return s.held.share > limits.CLEAR_SHARE and s.held.z > limits.CLEAR_Z
+
+
+def _clear_of_steps(s: Selection) -> bool:
+    """Whether names explain the rows that coarse steps do not spoil: reversals alone raised the floor."""
+    if s.problem.resolved is None:
+        return False
+    rows, floor = s.problem.resolved
+    held = s.held_on(replace(s.problem, valid=rows))
+    return held.before > floor and held.z > SURE_Z and held.share > limits.CLEAR_SHARE
+
+
+def _each_left_out(s: Selection) -> list[Selection]:
+    return [s.without(k) for k in range(len(s.chosen))]
+
+
+def _left(s: Selection) -> float:
+    """Mean square on the held-out rows; NaN where they are too few."""
+    return s.held.after**2
+
+
+def signed(s: Selection) -> Selection:
+    """Every size keeps its sign in the joint fit: parts that do not go, and effects without another part."""
+    for _ in range(sum(c.width for c in s.candidates)):
+        bad = next((k for k, (c, beta) in enumerate(s.fitted) if not c.allowed(beta)), None)
+        if bad is None:
+            break
+        c, good = s.candidates[bad], s.sizes(bad) * s.candidates[bad].sign > 0
+        if good.any() and len(c.labels) == c.width:
+            s = s.put(bad, replace(s.chosen[bad], candidate=_part(c, good)))
+        else:
+            s = s.without(bad, "beside the others its size comes out with a sign that physics excludes")
+    return s
+
+
+def _part(c: Candidate, good: Mask) -> Candidate:
+    """The candidate with some of its columns."""
+    whole = c.shape
+    labels = tuple(x for x, g in zip(c.labels, good, strict=True) if g)
+    shape = None if whole is None else lambda p: whole(p)[:, good]
+    return replace(c, columns=c.columns[:, good], labels=labels, shape=shape)
+
+
+def negative(s: Selection, standard_errors: float = 0.0) -> str:
+    """The first term that only a fit has negative, by more than some standard errors; or empty."""
+    for name, x in s.problem.named(s.after).items():
+        if name in POSITIVE and x.value < -standard_errors * x.error:
+            return name
+    return ""
+
+
+def _turned(s: Selection) -> str:
+    """Mass or friction that was positive without names and is negative now, or at some places; or empty."""
+    was, now = s.problem.named(s.before), s.problem.named(s.after)
+    for name, x in now.items():
+        if name in POSITIVE and was[name].value > 0 > x.value:
+            return name
+        if name == "coulomb" and x.value > 0:
+            waves = [float(np.hypot(*b)) for c, b in s.fitted if _waves_of_friction(c) and c.width == 2]
+            if max(waves, default=0.0) > x.value + SURE_Z * x.error:
+                return "friction at some places"
+    return ""
+
+
+def _waves_of_friction(c: Candidate) -> bool:
+    return c.name in NAMES and NAMES[c.name].waves_of_friction

@@ -1,0 +1,62 @@
+"""Two names for one trace: which of them held-out rows have, and which comes first where they do not say."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.balances.candidate import Candidate, sine_columns
+from calibration.decide.heldout import compare
+from calibration.decide.scan import fit_with
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import LUCK_Z, ROUNDING
+from calibration.names import gravity_imbalance
+from calibration.names.lines import CLOCKED
+from calibration.names.scene import Scene
+
+# frequencies within a resolution cell, by which the clock's is found. ASSUMPTION: a tenth of a cell apart
+TRIED = 21
+
+
+def told_by_the_clock(s: Selection, scene: Scene) -> Selection:
+    """Lines over the place that the clock does not explain as well on held-out rows have no twin there."""
+    for k, c in enumerate(s.candidates):
+        if CLOCKED not in c.twins or c.order is None or not np.isfinite(s.held.after):
+            continue
+        other = min((s.put(k, replace(s.chosen[k], candidate=x)) for x in _clocked(c, scene)), key=_left)
+        held = compare(s.problem, other.model, s.model, s.after.whitener)
+        if held.z > LUCK_Z and held.share > ROUNDING:
+            alone = replace(c, twins=tuple(t for t in c.twins if t != CLOCKED))
+            s = s.put(k, replace(s.chosen[k], candidate=alone))
+    return s
+
+
+def weight_first(s: Selection, scene: Scene) -> Selection:
+    """A spring over less than a turn is a weight first, unless held-out rows refuse that beside its loop."""
+    for k, c in enumerate(s.candidates):
+        for weight in gravity_imbalance.columns(scene) if gravity_imbalance.NAME.name in c.twins else ():
+            others = s.without(k)
+            found = fit_with(s.problem, others.columns, replace(weight, twins=(c.name, *weight.twins)))
+            if found is None:
+                continue
+            looped = replace(c, columns=np.hstack([weight.columns, c.columns[:, 1:]]))
+            both = s.put(k, replace(s.chosen[k], candidate=looped))
+            if compare(s.problem, both.model, s.model, s.after.whitener).z < LUCK_Z:
+                held = compare(s.problem, others.model, s.put(k, found).model, s.after.whitener)
+                s = s.put(k, replace(found, held=held))
+    return s
+
+
+def _left(s: Selection) -> float:
+    """Mean square of the fitted rows."""
+    return float(np.mean(s.after.residual[s.problem.train] ** 2))
+
+
+def _clocked(c: Candidate, scene: Scene) -> list[Candidate]:
+    """The candidate's harmonics as multiples of one frequency, at several of its resolution cell."""
+    v = scene.view
+    t, files = v.t[v.rows], scene.problem.session
+    orders = [c.order or 0.0] if c.harmonic else [(c.order or 0.0) * h for h in range(1, c.width // 2 + 1)]
+    hertz = [abs(order / scene.turn * scene.one_speed[0]) for order in orders]
+    shifts = np.linspace(-1.0, 1.0, TRIED) / (float(np.ptp(t)) * hertz[0])
+    moved = (np.hstack([sine_columns(t * f * (1 + d), files) for f in hertz]) for d in shifts)
+    return [replace(c, columns=waves) for waves in moved]

@@ -1,0 +1,103 @@
+"""Every column of a file that no rig file describes, and what a rig file must say of the file."""
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from calibration.errors import CalibrationInputError
+from calibration.inputs.axislog import is_axis_log
+from calibration.inputs.guidelog import is_guide_log
+from calibration.inputs.matlab import columns_of, read_matlab
+from calibration.inputs.recordings import RECORDINGS
+from calibration.inputs.run import Array
+from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
+from calibration.inputs.text import Heading, heading, load_utf8, plain, read_columns, read_long, split
+
+# rows that are enough to say what a column holds. ASSUMPTION
+LOOKED_AT = 200
+# words that name the signals of a long table. ASSUMPTION
+SIGNALS = 64
+# of the rows, from which on a word that is another one than in the row before is a signal's name. ASSUMPTION
+TURNS = 0.3
+
+
+@dataclass
+class Loose:
+    """A table whose file needs a rig file.
+
+    columns: (n,) each, by what a rig file calls them. stamp: the one of them that holds stamps in words.
+    fields: the rig file's fields that the file needs. words: columns that hold words.
+    """
+
+    columns: dict[str | int, Array]
+    stamp: str | int | None = None
+    fields: dict[str, Any] = field(default_factory=dict)
+    words: list[str] = field(default_factory=list)
+
+
+def read_loose(path: Path) -> Loose:
+    """Raises CalibrationInputError for a file that is no table, or that needs no rig file."""
+    if path.suffix.lower() == ".mat":
+        names = columns_of(path)
+        return Loose(dict(read_matlab(path, names)[0].items()) if names else {})
+    if path.suffix.lower() in RECORDINGS:
+        raise CalibrationInputError(
+            path, "is a recording: give its channels in a rig file, nothing is drafted of it"
+        )
+    text = load_utf8(path)
+    if is_axis_log(text) or is_guide_log(text):
+        raise CalibrationInputError(
+            path, f"says itself what it holds: schmidt calibrate {path.name} --out DIR"
+        )
+    text = table_of_json(path, text) if is_json(text) else text
+    h = heading(path, text)
+    if h.first == h.at or all(plain(f) is not None or _is_stamp(f) for f in h.fields):
+        names = [f"column{k + 1}" for k in range(len(h.fields))]
+        return _of_text(path, text, h._replace(fields=names, first=h.at), {"names": names})
+    return _of_text(path, text, h, {})
+
+
+def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose:
+    some = [split(row, h.mark) for row in h.lines[h.first : h.first + LOOKED_AT] if row.strip()]
+    found = Loose({}, fields=fields)
+    signals, refused = "", None
+    for k, name in enumerate(h.fields):
+        held = [row[k] for row in some if len(row) > k and row[k]]
+        clear = name.isprintable() and plain(name) is None  # a name that is a number would be read as one
+        column = name if clear and h.fields.count(name) == 1 else k
+        form = {str(column): ISO} if held and all(_is_stamp(x) for x in held) else {}
+        try:
+            got = read_columns(path, text, [column], tuple(fields.get("names", ())), None, form)
+        except CalibrationInputError as error:
+            refused = refused or error
+            found.words.append(name)
+            changes = np.mean([a != b for a, b in pairwise(held)]) if held[1:] else 0.0
+            signals = name if 2 <= len(set(held)) <= SIGNALS and changes > TURNS else signals
+            continue
+        found.columns[column] = got[str(column)]
+        found.stamp = column if form else found.stamp
+    if refused is not None and found.columns.keys() <= {found.stamp}:
+        raise refused
+    if signals and not fields and len(found.columns) == 2:
+        return _of_long(path, text, found, signals, sorted({row[h.fields.index(signals)] for row in some}))
+    return found
+
+
+def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str]) -> Loose:
+    """Of a table with a row per reading, on the stamps of the signal that has most."""
+    first, second = found.columns
+    time, value = (second, first) if found.stamp == second else (first, second)
+    long = {"name": name, "value": str(value)}
+    stamps = {str(time): ISO} if found.stamp == time else {}
+    got = [read_long(path, text, [s, time], long, str(time), stamps) for s in signals]
+    most = max(got, key=lambda one: len(one[str(time)]))
+    wanted = sorted(signals, key=lambda s: s not in most)
+    columns = read_long(path, text, [*wanted, time], long, str(time), stamps)
+    return Loose(dict(columns.items()), found.stamp, {"long": long})
+
+
+def _is_stamp(word: str) -> bool:
+    return plain(word) is None and is_stamp(word)

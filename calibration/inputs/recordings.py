@@ -1,0 +1,109 @@
+"""Columns out of recordings of other tools: MF4 (asammdf) and MCAP with JSON messages (mcap.dev).
+
+Columns of one rate are taken row by row. A column of another rate shows the last value at or before the row's
+time; rows are those of the first column, `time` aside.
+"""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from struct import error as StructError
+from typing import Any, Final
+
+import numpy as np
+
+from calibration.errors import CalibrationInputError
+from calibration.inputs.run import Array
+
+TIME: Final = "time"
+"""The column that every recording has: seconds since its first row."""
+Columns = dict[str, tuple[Array, Array]]
+"""Name -> times, s, and values."""
+
+
+def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
+    """The wanted channels of an MDF file by their names: one run."""
+    from asammdf import MDF
+    from asammdf.blocks.utils import MdfException
+
+    try:
+        with MDF(path) as file:
+            have = sorted(name for name in file.channels_db if name not in ("t", TIME))
+            got = {name: file.get(name, *_first(file, name)) for name in wanted if name in file.channels_db}
+    except (MdfException, OSError, ValueError) as error:
+        text = " ".join(str(error).split())
+        raise CalibrationInputError(path, f"is no MDF file that can be read ({text})") from None
+    columns = {name: (signal.timestamps, signal.samples) for name, signal in got.items() if name != TIME}
+    return [_joined(path, wanted, columns, have)]
+
+
+def _first(file: Any, name: str) -> tuple[int, int]:
+    """Group and place of a channel; of several of that name the first."""
+    group, place = file.channels_db[name][0]
+    return int(group), int(place)
+
+
+def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
+    """The wanted fields, each as `/topic.field` (deeper: `/topic.field.inner`): one run."""
+    from mcap.exceptions import McapError
+    from mcap.reader import make_reader
+
+    begin_ns: int | None = None  # seconds since 1970 leave a double no more than a quarter of a microsecond
+    rows: dict[str, list[tuple[float, float]]] = {name: [] for name in wanted if name != TIME}
+    have: set[str] = set()
+    try:
+        with path.open("rb") as stream:
+            reader = make_reader(stream)
+            topics = {name for name in rows if name.startswith("/")}
+            for _, channel, message in reader.iter_messages():
+                names = [name for name in topics if name.startswith(f"{channel.topic}.")]
+                if channel.message_encoding != "json" or (not names and channel.topic in have):
+                    continue
+                have.add(channel.topic)
+                begin_ns = message.log_time if begin_ns is None else begin_ns
+                content = json.loads(message.data) if names else {}
+                for name in names:
+                    value = _inside(content, name[len(channel.topic) + 1 :].split("."))
+                    if value is not None:
+                        rows[name].append(((message.log_time - begin_ns) * 1e-9, value))
+    except (McapError, StructError, ValueError, OSError) as error:
+        raise CalibrationInputError(path, f"is no MCAP file that can be read ({error})") from None
+    arrays = {name: np.array(found, dtype=float) for name, found in rows.items() if found}
+    columns = {name: (both[:, 0], both[:, 1]) for name, both in arrays.items()}
+    return [_joined(path, wanted, columns, sorted(have))]
+
+
+def _inside(content: Any, words: list[str]) -> float | None:
+    for word in words:
+        content = content.get(word) if isinstance(content, dict) else None
+    return float(content) if isinstance(content, int | float) else None
+
+
+def _joined(path: Path, wanted: list[str], columns: Columns, have: list[str]) -> dict[str, Array]:
+    """One row per sample of the first column; raises CalibrationInputError for a column that is not there."""
+    for name in wanted:
+        if name != TIME and name not in columns:
+            raise CalibrationInputError(
+                path, f"is not in the file, which has {', '.join(have[:20])}", None, name
+            )
+    if not columns:
+        raise CalibrationInputError(path, "needs a column beside time")
+    t = np.asarray(columns[next(name for name in wanted if name != TIME)][0], dtype=float)
+    found = {TIME: t - t[0]}
+    for name, (times, values) in columns.items():
+        try:
+            numbers = np.asarray(values, dtype=float)
+        except (TypeError, ValueError):
+            raise CalibrationInputError(path, "holds no numbers", None, name) from None
+        if np.array_equal(times, t):
+            found[name] = numbers
+        else:
+            at = np.searchsorted(times, t, side="right") - 1
+            found[name] = np.where(at >= 0, numbers[np.maximum(at, 0)], np.nan)
+    return {name: found[name] for name in wanted}
+
+
+RECORDINGS: Final[dict[str, Callable[[Path, list[str]], list[dict[str, Array]]]]] = {
+    ".mf4": read_mf4, ".mcap": read_mcap
+}  # fmt: skip
+"""By the ending of a file's name."""

@@ -1,0 +1,117 @@
+"""One run as the rest of the tool sees it: columns on the log's own clock, and what is known of each."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.inputs import thresholds as limits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What was wrong with a column, at how many rows, how large (rig units), and what was done."""
+
+    kind: str  # wrap, spike, repeat, saturation, signed, lost, leap, jitter, rounded
+    channel: str
+    rows: int
+    size: float
+    note: str
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A column as it was read, after scale and declared wrap: rig units."""
+
+    channel: str
+    column: str
+    unit: str
+    low: float
+    high: float
+    quantum: float | None  # smallest step; None when the column does not step
+    missing: int  # rows without a number
+    wraps: int  # of a declared counter
+
+
+@dataclass
+class Run:
+    """One log file, or one section of it.
+
+    `columns` of an axis hold SI units. Motion: `t` s, `position`/`aux` rad (unwrapped), `velocity` rad/s at
+    the axis, `motor_a/b` rad/s at the motor, `setpoint` rad/s. Electrical: `effort` as a signed fraction of
+    the supply, `current_a/b` A, `supply` V. Also `temperature` degree C. `columns` of a table hold the rig's
+    units. `raw` keeps the columns as logged. `start_s` is where `t` is 0 on the clock that all files share,
+    of any epoch; None: not known.
+    """
+
+    name: str
+    path: Path
+    session: str
+    columns: dict[str, Array]
+    raw: dict[str, Array] = field(default_factory=dict)
+    header: dict[str, str] = field(default_factory=dict)
+    scales: dict[str, float] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    signals: dict[str, Signal] = field(default_factory=dict)
+    period_s: float = 0.0
+    start_s: float | None = None
+    repairs: list[Repair] = field(default_factory=list)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(self.columns["t"])
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the first to the last row in s."""
+        t = self.columns["t"]
+        return float(t[-1] - t[0]) if len(t) > 1 else 0.0
+
+    def among(self, names: Collection[str]) -> bool:
+        """Whether `names` have this run, or its file."""
+        return not {self.name, str(self.path), self.path.name, self.path.stem}.isdisjoint(names)
+
+    def gaps(self) -> list[tuple[float, float]]:
+        """Begin and end in s of every stretch without rows."""
+        t = self.columns["t"]
+        at = np.flatnonzero(np.diff(t) > limits.GAP * self.period_s)
+        return [(float(t[k]), float(t[k + 1])) for k in at]
+
+
+def signal_of(channel: str, column: str, unit: str, x: Array, wraps: int) -> Signal:
+    """Range and quantum of a column."""
+    good = x[np.isfinite(x)]
+    low, high = (float(good.min()), float(good.max())) if len(good) else (np.nan, np.nan)
+    return Signal(channel, column, unit, low, high, quantum(good), len(x) - len(good), wraps)
+
+
+def quantum(x: Array) -> float | None:
+    """Smallest step of a column of which all others are multiples; None when there is none.
+
+    Decimal rounding in a text file is a quantum too: the column cannot say less.
+    """
+    values = np.unique(x)
+    if len(values) < limits.FEWEST_VALUES:
+        return None
+    steps = np.diff(values)
+    steps = steps[steps > limits.SAME_VALUE * max(float(np.abs(values).max()), 1e-300)]
+    if len(steps) == 0:
+        return None
+    # a wide, sparse column has few steps of one count
+    least = float(np.quantile(steps, limits.SMALL_STEPS)), float(steps.min())
+    return _as_multiples(steps, least[0]) or _as_multiples(steps, least[1])
+
+
+def _as_multiples(steps: Array, least: float) -> float | None:
+    """About `least`, when the steps are multiples of it."""
+    near = steps[(steps > 0.5 * least) & (steps < 1.5 * least)]
+    q = float(np.median(near)) if len(near) else least
+    multiple = steps / q
+    small = multiple < limits.MOST_MULTIPLE  # beyond, q's own error adds up
+    fits = np.abs(multiple - np.round(multiple)) < limits.WHOLE_STEPS
+    return q if small.sum() >= 2 and np.mean(fits[small]) >= limits.STEPS_SHARE else None

@@ -1,0 +1,116 @@
+"""Files that are no table of numbers as such a table: JSON, long tables of (name, stamp, value), stamps in
+words."""
+
+import json
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from calibration.errors import CalibrationInputError
+from calibration.inputs import thresholds as limits
+from calibration.inputs.run import Array
+
+#: `format` of a time column whose stamps are ISO 8601; another one is strptime's
+ISO = "iso"
+
+
+def is_json(text: str) -> bool:
+    """Whether a text is JSON: lines, a list, or an object of lists."""
+    return text.lstrip()[:1] in ("{", "[")
+
+
+def table_of_json(path: Path, text: str) -> str:
+    """The same as a table between tabs, a column for every key; `a.b` for one inside another. The last line
+    of a log that was cut off is left out."""
+    rows = [dict(_flat(row)) for row in _records(path, text)]
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    if not keys:
+        raise CalibrationInputError(path, "has no data rows: JSON with an object per row is needed", 1)
+    return "\n".join(["\t".join(keys), *("\t".join(row.get(key, "") for key in keys) for row in rows)])
+
+
+def _records(path: Path, text: str) -> list[Any]:
+    try:
+        whole = json.loads(text)
+    except json.JSONDecodeError:
+        return list(_lines(path, text.splitlines()))
+    if isinstance(whole, dict) and whole and all(isinstance(v, list) for v in whole.values()):
+        if len({len(v) for v in whole.values()}) > 1:
+            raise CalibrationInputError(path, "is JSON whose lists have different lengths", 1)
+        return [dict(zip(whole, row, strict=True)) for row in zip(*whole.values(), strict=True)]
+    return whole if isinstance(whole, list) else [whole]
+
+
+def _lines(path: Path, lines: list[str]) -> Iterator[Any]:
+    for line, text in enumerate(lines, 1):
+        try:
+            if text.strip():
+                yield json.loads(text)
+        except json.JSONDecodeError as error:
+            if line < len(lines):
+                raise CalibrationInputError(path, f"is not JSON: {error.msg}", line) from None
+
+
+def _flat(row: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Keys and fields of one row; lists by place."""
+    if isinstance(row, dict | list):
+        for k, value in row.items() if isinstance(row, dict) else enumerate(row):
+            yield from _flat(value, f"{key}.{k}" if key else str(k))
+    elif row is not None:
+        yield " ".join(key.split()), " ".join(str(int(row) if isinstance(row, bool) else row).split())
+
+
+def seconds(word: str, form: str) -> float:
+    """s of a stamp, since 1970 where it has a date, in UTC where it says no zone. Raises ValueError."""
+    at = datetime.fromisoformat(word) if form == ISO else datetime.strptime(word, form)
+    return (at if at.tzinfo else at.replace(tzinfo=UTC)).timestamp()
+
+
+def is_stamp(word: str) -> bool:
+    """Whether a word is an ISO 8601 stamp; a plain number such as 20240501 is one, too."""
+    try:
+        return bool(np.isfinite(seconds(word, ISO)))
+    except ValueError:
+        return False
+
+
+def with_seconds(
+    path: Path, rows: list[str], mark: str, place: int, form: str, line: int, name: str
+) -> list[str]:
+    """Rows of a table whose stamps at `place` are seconds then; `line`, `name` are for messages."""
+    out, width = [], rows[0].count(mark)
+    for k, row in enumerate(rows, line):
+        fields = row.split(mark)
+        if len(fields) == width + 1 and (word := fields[place].strip().strip('"')):
+            try:
+                fields[place] = repr(seconds(word, form))
+            except ValueError:
+                what = f"'{word}' is no stamp of format '{form}'"
+                raise CalibrationInputError(path, what, k, name) from None
+        out.append(mark.join(fields))
+    return out
+
+
+def wide(path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str]) -> dict[str, Array]:
+    """Columns of a long table on the stamps of the first of `wanted`, which is no interpolated one; key "" is
+    these stamps. NaN beyond a signal's own stamps and in its gaps."""
+    which = np.array(names)
+    out: dict[str, Array] = {}
+    for name in wanted:
+        mine = np.flatnonzero((which == name) & np.isfinite(stamps) & np.isfinite(values))
+        if len(mine) < limits.FEWEST_VALUES:
+            have = ", ".join(dict.fromkeys(names))
+            raise CalibrationInputError(path, f"has {len(mine)} rows; the table has {have}", None, name)
+        mine = mine[np.argsort(stamps[mine], kind="stable")]
+        t, x = stamps[mine], values[mine]
+        base = out.setdefault("", t)
+        found = np.interp(base, t, x, left=np.nan, right=np.nan)
+        step = np.diff(t)
+        after = np.clip(np.searchsorted(t, base, side="right"), 1, len(t) - 1) - 1
+        inside = (base != t[after]) & (base != t[after + 1])
+        found[inside & (step[after] > limits.GAP * np.median(step))] = np.nan
+        out[name] = found
+    return out

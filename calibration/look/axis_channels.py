@@ -1,0 +1,104 @@
+"""An axis with two motors, channel by channel; a fault of a column is undone and all looked at again."""
+
+from copy import deepcopy
+
+import numpy as np
+
+from calibration.balances.floors import floors_of_pair
+from calibration.balances.frame import build_frame
+from calibration.balances.motion import motion_of
+from calibration.balances.thresholds import LEAST_COMPLIANCE
+from calibration.balances.torque import WIDTH, Transmission
+from calibration.decide.broadband import unexplained_volts
+from calibration.decide.delays import delay_findings
+from calibration.decide.heldout import choose_held_out
+from calibration.decide.merge import merge
+from calibration.inputs.declaration import Rig
+from calibration.inputs.declaredplant import declared_numbers
+from calibration.inputs.run import Array, Run
+from calibration.look import applied
+from calibration.look.axis_result import AxisResult
+from calibration.look.controllerlaw import command_channel
+from calibration.look.encoders import encoder_channels, full_rate
+from calibration.look.options import Options
+from calibration.look.torque import torque_channel
+from calibration.look.volts import electrical_channel
+from calibration.names import NAMES
+from calibration.names.log_wrap import repair_wraps
+from calibration.names.play import NAME as GAP
+from calibration.names.unknown_bits import repair_stuck_bit
+from plant.units import ARCSEC
+
+
+def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
+    """Run every channel the logs have; a fault of a column that is found is undone, and all is run again."""
+    wraps = [w for r in runs for w in (repair_stuck_bit(r), repair_wraps(r)) if w is not None]
+    result = _look(runs, rig, options)
+    result.findings = [*wraps[:1], *result.findings]
+    named = merge(deepcopy(result.findings), result.frame.train)
+    fault = next((f for f in named if f.name in applied.UNDONE), None)
+    if fault is None:
+        return result
+    refusal = applied.too_little(result, fault)
+    if refusal is not None:
+        return applied.without(result, fault, refusal)
+    options.tell(f"once more without the {fault.name.replace('_', ' ')}")
+    again = _look(applied.corrected_runs(result, fault), rig, options)
+    before = applied.before_of(result, again, fault)
+    refusal = applied.judged(before, again, fault)
+    if refusal is not None:
+        return applied.without(result, fault, refusal)
+    again.before = before
+    if fault.name == GAP.name:  # the motors see the crossings that the corrected encoder leaves out
+        again.selections["K"] = result.selections["K"]
+        before["K"] = result.selections["K"].held.before
+    applied.keep_untouched(result, again)
+    fault.share = max(1 - (again.selections[k].held.after / b) ** 2 for k, b in before.items() if b > 0)
+    stamps = [f for f in result.findings if f.domain == "clock" and f.name != fault.name]
+    rest = [f for f in again.findings if f.name != fault.name and f.domain != "clock"]
+    again.findings = [fault, *stamps, *rest]
+    return again
+
+
+def _look(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
+    """Every channel of repaired logs."""
+    frame, tell = build_frame(runs, rig), options.tell
+    held, held_names = choose_held_out(frame, options.hold_out)
+    stamps = [f for n in NAMES.values() if n.stamps is not None and (f := n.stamps(frame)) is not None]
+    m = motion_of(frame, WIDTH)
+    numbers = declared_numbers(runs, options.plant, rig)
+    result = AxisResult(numbers, frame, m, held, findings=stamps, held_out=held_names)
+    tell("electrical channel")
+    per_ampere, left = electrical_channel(result)
+    tell("encoder channels")
+    encoder_channels(result, per_ampere)
+    full_rate(result)
+    command_channel(result)
+    tell("torque channel")
+    drive = transmission(result, per_ampere, left)
+    torque_channel(result, drive)
+    inertia = result.calibrated["inertia"].value if "inertia" in result.calibrated else 0.0
+    resistance = result.electrical.windings.resistance if result.electrical is not None else 0.0
+    result.floors = floors_of_pair(m, drive, result.held, inertia, resistance)
+    result.findings += delay_findings(result.selections, numbers)
+    if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
+        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
+        left_over = result.selections["E"]
+        strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
+        result.findings += [strange] if strange is not None else []
+    return result
+
+
+def transmission(result: AxisResult, per_ampere: float, left: dict[str, Array]) -> Transmission:
+    """From currents to the axis, with the trains' stiffness and the rotors' lag where encoders show them."""
+    frame = result.frame
+    assert frame.rig.motors is not None
+    low, high = (k * frame.scale["gear_ratio"] ** 2 for k in frame.rig.motors.rotor_inertia)  # at the axis
+    stiffness, softness = result.declared.stiffness, low / result.declared.stiffness
+    if "K" in result.selections:
+        s = result.selections["K"]
+        compliance, lag = (float(s.after.beta[s.problem.place(k)]) for k in ("compliance", "rotor_lag"))
+        if compliance > LEAST_COMPLIANCE:
+            stiffness = 1.0 / compliance
+        softness = float(np.clip(-lag * ARCSEC, low / stiffness, high / stiffness))
+    return Transmission(per_ampere=per_ampere, left=left, softness_s2=softness, stiffness=stiffness)

@@ -1,0 +1,80 @@
+"""When the effort acts: a late column, and the hold of a sampled loop. Both are settled before any name."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.balances.problem import Problem
+from calibration.balances.view import View
+from calibration.decide.rules import dominant
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import CLEAR_SHARE, REMAINDER
+from calibration.finding import Finding
+from calibration.look.search import lines_over_place, scene_of
+from calibration.names.lateness import effort_delay, is_hold
+from calibration.names.scene import Scene
+from calibration.names.unknown import plain
+
+Found = tuple[Selection, Scene, list[str]]
+Find = Callable[[Problem], Found]
+Make = Callable[[float], Problem]
+# A floor that coarse steps made is what they may hide: below it a delay must take CLEAR_SHARE of the held-out
+# mean square, by itself. No log without an effect of development seeds 1031 to 1038, 1062 and 1063 had one
+# that came so far: theirs took less than MATTERS (names/lateness.py)
+# of the held-out mean square, that a delay must take off beside the names found without it
+EARNS = 0.05
+
+
+@dataclass
+class Timed:
+    """Effort where it belongs: `delay` if an effect, `before` its held-out error without; a hold's `note`."""
+
+    problem: Problem
+    found: Found
+    delay: Finding | None = None
+    before: float | None = None
+    note: str = ""
+    close: str = ""  # a delay that the log can neither name nor leave out, and what would tell
+
+
+def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) -> Timed:
+    """A delay, only where names without it do not explain as much; `made`: the balance by its delay, s."""
+    scene = scene_of(view, problem.once)
+    delay, close = effort_delay(scene, lines_over_place(scene))
+    if delay is not None and is_hold(delay, view.period_s):
+        value = delay.parameters["delay"].value
+        held = made(value)
+        note = f"{channel}: acts {-value:.2g} s after its row: the hold of a sampled loop"
+        return Timed(held, find(held), note=note)
+    # no log tells which row an effort that is held for a period was written to: whichever fits best
+    half = view.period_s / 2
+    plain_loop = min((problem, made(-half), made(half)), key=lambda p: left_by_the_declared(view, p))
+    found = find(plain_loop)
+    if delay is None:
+        return Timed(plain_loop, found, close=close)
+    moved = made(delay.parameters["delay"].value)
+    late = find(moved)
+    now, was = late[0].held.after, found[0].held.after
+    simpler = len(late[0].chosen) < len(found[0].chosen)
+    before = Selection.of(problem).held.before
+    # beside a name that explains nearly everything a delay may be what its formula leaves
+    least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
+    alone = late[0].held.before
+    if before <= plain_loop.floor and alone**2 > (1 - CLEAR_SHARE) * before**2:
+        p = delay.parameters["delay"]
+        what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
+        why = "the declared model is at the floor without it"
+        return Timed(plain_loop, found, close=f"{what} ({why}): quicker turns and a quieter effort")
+    telling = was**2 - now**2 > max(EARNS * was**2, least)
+    if telling or (simpler and now < was):
+        if before > 0:  # of what the declared model leaves, as every other effect's
+            delay.share = max(1 - (alone / before) ** 2, 0.0)
+        return Timed(moved, late, delay, before)
+    return Timed(plain_loop, found)
+
+
+def left_by_the_declared(view: View, p: Problem) -> float:
+    """Mean square on fitted rows beside the declared terms, loops, asymmetry and weight."""
+    scene = scene_of(view, p)
+    return float(np.mean((p.y - scene.fitted(plain(scene))[1])[p.train] ** 2))

@@ -1,0 +1,106 @@
+"""A position at constant rate, the drive error of a guided mount: its worm and what that does not explain."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from calibration.balances.candidate import Candidate
+from calibration.balances.guide import guide_problem, usable
+from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount, parts
+from calibration.balances.problem import Problem
+from calibration.decide.controls import Wrong, controls
+from calibration.decide.merge import merge
+from calibration.decide.residual import Place
+from calibration.decide.withdraw import failed_controls, withdraw
+from calibration.inputs.declaration import Rig
+from calibration.inputs.run import Run
+from calibration.look.looked import Balance, Looked, Spectrum, calibrated, missing_over, unnamed_where_missing
+from calibration.look.options import Options
+from calibration.look.worm import LEAST_TURNS, Mount, findings_of_worms, harmonics, longest_span, worms
+
+# frames to fit. ASSUMPTION
+LEAST_ROWS = 100
+# of a turn, over the whole log, by which a worm with a tooth more runs away from this one (ASSUMPTION)
+TOOTH_APART = 0.3
+# of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
+WRONG_PERIODS = (0.9, 1.1)
+# parts of a mount, whose turns are looked at for what is left. ASSUMPTION
+FEW = 4
+NEED = "guide one section for at least three turns of the worm (half an hour for most mounts), without a slew"
+ON_THE_CLOCK = (
+    "whole sections are held out: the worm's phase is carried there by the clock, which a slew breaks;"
+    " without --hold-out the end of every section is held out"
+)
+
+
+def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
+    """Look at a position at constant rate, and put together what the answer is made of."""
+    title = f"Guide log, {runs[0].header.get('mount', 'unnamed mount')}"
+    sections, notes = usable(runs, options.hold_out)
+    if all(r.among(options.hold_out) for r in sections):
+        return Looked.nothing(title, "no section is long enough to say anything", NEED)
+    mount = Mount(parts=parts(sections, rig), named=rig is not None or bool(known_mount(sections)))
+
+    made = partial(guide_problem, sections, options.hold_out, quickest_s=mount.periods_s[0])
+    problem, held_out = made(mount.periods_s[-1])
+    frames = int(problem.train.sum())
+    if frames < LEAST_ROWS:
+        few = f"{frames} frames to fit are too few to say anything (at least {LEAST_ROWS})"
+        return Looked.nothing(title, few, NEED)
+    s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
+    p, span = s.problem, longest_span(problem)
+    few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
+    slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
+    tried = controls(s, partial(wrong_worm, p), reversed_time=False)
+    effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
+    clock, stages = p.domains.get("clock", p.t), {part.name: part.rate for part in mount.parts}
+    b = Balance(
+        key="position",
+        row="position",
+        selection=s,
+        floor=p.floor,
+        numbers=calibrated(s, ("offset",)),
+        controls=tried,
+        not_identifiable=slow,
+        over=lambda c: (
+            clock * (c.frequency or 1.0) % 1.0,
+            f"phase of the period of {1 / (c.frequency or 1.0):.2f} s, turns",
+        ),
+        spectrum=Spectrum(turns=p.t, stages=stages, label="period, s", periods=True),
+    )
+    near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
+    turns = [Place(f"the turn of {name}", None, (clock * rate) % 1.0) for name, rate in near.items()]
+    missing = missing_over(b, [Place("time", None, p.t), *turns])
+    if missing is not None:  # no plant has an effect for what a night's air leaves
+        b = replace(b, missing=replace(missing, effect=False))
+    needs = [f"{what} was close, but {why}" for _, what, why in refused]
+    if slow:
+        needs = [f"a longer section without a slew: two turns in its first 60 %, for {'; '.join(slow)}"]
+    effects, needs = unnamed_where_missing(effects, needs, [b])
+    return Looked(
+        title=title,
+        balances=[b],
+        effects=effects,
+        needs=needs,
+        held_out=held_out,
+        refused=refused,
+        notes=[*(n for r in runs for n in r.notes), *notes, *([ON_THE_CLOCK] if problem.domains else [])],
+    )
+
+
+def wrong_worm(p: Problem, _: int, c: Candidate) -> list[Wrong]:
+    """A part of a mount with one tooth more and less, and with another period."""
+    if not c.stage or not c.frequency:
+        return []
+    out, count = [], max(c.width // 2, 1)
+    for step, word in ((1, "more"), (-1, "less")):
+        rate = c.frequency + step / SIDEREAL_DAY_S
+        what = f"one tooth {word}: {1 / rate:.2f} s"
+        if float(np.ptp(p.t)) < TOOTH_APART * SIDEREAL_DAY_S:
+            out.append(Wrong(what=what, note="this log is too short to tell one tooth from the next"))
+        else:
+            out.append(Wrong(what=what, columns=harmonics(p, rate, count)))
+    for rate in (c.frequency * factor for factor in WRONG_PERIODS):
+        out.append(Wrong(what=f"wrong period: {1 / rate:.1f} s", columns=harmonics(p, rate, count)))
+    return out

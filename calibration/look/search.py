@@ -1,0 +1,111 @@
+"""The search of a balance: names round by round, lines under what was found, signs of the base."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.balances.view import View
+from calibration.decide import rules
+from calibration.decide.select import select
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import NOISE_SHARE
+from calibration.inputs.run import Array
+from calibration.names import NAMES
+from calibration.names.freelines import free_lines
+from calibration.names.scene import Scene
+from calibration.names.unknown import flexible
+
+# effects: a cogging motor shows several orders. ASSUMPTION
+MOST = 14
+# of search: lines come out when larger things are gone. ASSUMPTION
+ROUNDS = 3
+
+
+def find(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[Selection, Scene, list[str]]:
+    """What is selected, in what scene, and the declared terms left out because they came out negative."""
+    s, scene = _search(view, problem, tell)
+    bounds = _bound(s)
+    if bounds:
+        s, scene = _search(view, problem, tell)
+    return s, scene, bounds
+
+
+def _bound(s: Selection) -> list[str]:
+    """Masses and friction that the final fit wants negative are taken out of the balance, and said."""
+    problem, out = s.problem, []
+    for k, (name, _) in enumerate(problem.base_labels):
+        value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
+        if name in ("inertia", "viscous", "coulomb") and value < 0 and problem.base[:, k].any():
+            why = "" if value < -2 * error else ", within its error"
+            out.append(f"{name}: the fit gives {value:.4g}{why}; a negative one feeds energy: kept at zero")
+            problem.base = problem.base.copy()
+            problem.base[:, k] = 0.0
+    return out
+
+
+def scene_of(view: View, problem: Problem) -> Scene:
+    """The declared terms' coefficients, and what a flexible fit leaves."""
+    declared, residual = problem.plain_fit(problem.train)
+    declared |= view.rig.constants
+    scene = Scene(view, problem, declared, residual, np.zeros((len(problem.y), 0)))
+    scene.wander = flexible(scene)
+    return scene
+
+
+def lines_over_place(scene: Scene) -> np.ndarray:
+    """Columns (n_fitted, k) of lines over the position: along one motion teeth look late or early."""
+    scene.residual = scene.problem.y - scene.fitted(scene.wander)[1]
+    return np.hstack([np.zeros((len(scene.problem.y), 0)), *[c.columns for c in free_lines(scene)]])
+
+
+def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[Selection, Scene]:
+    """Select; look again for lines under what was found; select again from all."""
+    rng = np.random.default_rng(0)
+    scene = scene_of(view, problem)
+    kind = scene.channel
+    searched = sorted(n.name for n in NAMES.values() if n.searched and kind in n.channels)
+    named = [c for n in NAMES.values() if kind in n.channels and not n.searched for c in n.columns(scene)]
+    found: list[Candidate] = []
+    s: Selection | None = None
+    extra: list[Array] = []
+    for k in range(ROUNDS):
+        tell(f"{view.response.channel}: names, round {k + 1}")
+        scene.residual = problem.y - scene.fitted(*extra, scene.wander)[1]
+        lines = (c for name in searched for c in NAMES[name].columns(scene))
+        fresh = [c for c in lines if not _known(c, found, scene)]
+        if s is not None and not fresh:
+            break
+        found += fresh
+        s = _select(problem, named, found, rng)
+        extra = [c.columns for c in s.candidates]
+        if not any(c.name in searched for c in s.candidates) and k > 0:
+            break
+    assert s is not None
+    s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved)))
+    # again: what was left out moves the sizes of the others
+    s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
+    last = (rules.feeds_energy, rules.harmful, rules.no_more_than_an_offset(view), rules.below_floor)
+    return rules.leave_out(s, *last), scene
+
+
+def _select(
+    problem: Problem, named: list[Candidate], found: list[Candidate], rng: np.random.Generator
+) -> Selection:
+    """A mode rings along with any fixed frequency: it is offered where no disturbance of one is taken."""
+    if any(c.frequency for c in found):
+        without = [c for c in named if not c.frequency]
+        s = select(problem, [*without, *found], rng, most=MOST, margin=NOISE_SHARE)
+        if any(c.frequency for c in s.candidates):
+            return s
+    return select(problem, [*named, *found], rng, most=MOST, margin=NOISE_SHARE)
+
+
+def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:
+    """A line that is on the list already."""
+    alike = [f for f in found if f.columns.shape == c.columns.shape]
+    orders, hertz = [(c.order, f.order) for f in alike], [(c.frequency, f.frequency) for f in alike]
+    pairs = ((scene.span, orders), (float(scene.view.t.max()), hertz))
+    near = ((a, b, 1.0 / max(reach, 1e-12)) for reach, both in pairs for a, b in both)
+    return any(a is not None and b is not None and abs(a - b) < cell for a, b, cell in near)

@@ -1,0 +1,183 @@
+"""The periodic parts of a guided mount in its drive error: worms, transfer gears, periods of no part."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from calibration.balances.candidate import Candidate
+from calibration.balances.guide import SLOWEST_S
+from calibration.balances.mounts import SIDEREAL_DAY_S, Part
+from calibration.balances.problem import Problem
+from calibration.balances.thresholds import APART_TURNS, AS_QUICK
+from calibration.decide.heldout import cross_validate
+from calibration.decide.parameters import finding_of
+from calibration.decide.select import select
+from calibration.decide.selection import Refusal, Selection
+from calibration.finding import UNKNOWN, Finding
+from calibration.inputs.run import Array
+from calibration.inputs.train import SHAFT
+from calibration.names.candidates import candidate
+
+ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
+# turns in a section's training part for its own phase to mean anything. ASSUMPTION
+LEAST_IN_SESSION = 1.2
+# of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
+# wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
+# tests/calibration/guidelogs.py) three of these took 9 to 27 %, the worms of the measured logs 81 to 98 %
+PART_GAIN = 0.15
+# share likewise, of one of eleven usual wheels or any free period, on the same seeds
+FREE_GAIN = 0.35
+# of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
+NEXT = 0.9
+# worm turns in the training span below which a worm cannot be separated from drift. ASSUMPTION
+LEAST_TURNS = 2.0
+# harmonics of a worm that are looked at. ASSUMPTION
+HARMONICS = 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mount:
+    """Periodic parts that a mount may have; `named`: the log or a rig file says which they are."""
+
+    parts: list[Part]
+    named: bool
+
+    @property
+    def periods_s(self) -> list[float]:
+        """Of the parts, the shortest first."""
+        return sorted(1.0 / part.rate for part in self.parts) or [SLOWEST_S]
+
+
+def harmonics(problem: Problem, rate: float, count: int) -> Array:
+    """cos, sin of the first `count` harmonics per session: the worm's phase is a nuisance of the session.
+
+    A session with less than LEAST_IN_SESSION turns to fit has none: offset and drift would imitate them.
+    """
+    at, parts = problem.domains.get("clock", problem.t), []
+    for k in np.unique(problem.session):
+        m = problem.session == k
+        seen = at[m & problem.train]
+        if len(seen) and np.ptp(seen) * rate >= LEAST_IN_SESSION:
+            phases = [2 * np.pi * h * rate * at for h in range(1, count + 1)]
+            parts += [np.where(m, g(x), 0.0) for x in phases for g in (np.cos, np.sin)]
+    return np.column_stack(parts) if parts else np.zeros((len(problem.t), 0))
+
+
+def longest_span(problem: Problem) -> float:
+    """Seconds of the longest section's training part: a period must be seen again within one section."""
+    t, run = problem.t[problem.train], problem.run[problem.train]
+    return max((float(np.ptp(t[run == k])) for k in np.unique(run)), default=0.0)
+
+
+def part_candidates(problem: Problem, part: Part, counts: tuple[int, ...]) -> list[Candidate]:
+    """One part with different numbers of harmonics."""
+    place: dict[str, Any] = {"stage": part.name, "harmonic": 1, "order": part.rate * SIDEREAL_DAY_S}
+    seen = [count for count in counts if part.rate * count < 0.4 / problem.period_s]
+    return [c for count in seen for c in _periodic(problem, SHAFT, part.rate, count, **place)]
+
+
+def _periodic(problem: Problem, name: str, rate: float, count: int, **more: Any) -> list[Candidate]:
+    """A period of `rate` 1/s with its harmonics, where a session shows it; `more`: `Candidate`'s fields."""
+    columns, size = harmonics(problem, rate, count), ("amplitude", problem.unit)
+    line = candidate(name, columns, size, kind="line", frequency=rate, **more)
+    return [line] if line.width else []
+
+
+def best_count(problem: Problem, selection: Selection, part: Part) -> int:
+    """Harmonics of an accepted part that predict best the training pieces they were not fitted to.
+
+    A worm's error is a periodic function, not a sine: its first harmonics establish the period, how many of
+    them to keep is a question of prediction.
+    """
+    left: dict[int, tuple[float, int]] = {}
+    for c in part_candidates(problem, part, tuple(range(1, HARMONICS + 1))):
+        x = np.hstack([problem.base, c.columns])
+        score = cross_validate(problem, problem.base, x, selection.after.whitener)
+        left[c.width] = (score.after, len(left) + 1)
+    return min(left.values())[1] if left else 1
+
+
+def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> Selection:
+    """The parts that are found; `drifting` gives the problem in which all that takes longer than two of a
+    period, s, is drift: twice the slowest that was found."""
+    slowest, span = mount.periods_s[-1], longest_span(problem)
+    seen = [part for part in mount.parts if span * part.rate >= LEAST_TURNS]
+    s = _search(problem, mount, seen, span)
+    while s.chosen:
+        found = max(1.0 / (c.candidate.frequency or 1.0) for c in s.chosen)
+        if found >= NEXT * slowest:
+            break
+        quicker = [part for part in seen if part.rate * found > AS_QUICK]
+        again = _search(drifting(found), mount, quicker, span)
+        if not again.chosen:
+            break
+        again.refused = s.refused + again.refused
+        s, slowest = again, found
+    return s
+
+
+def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Selection:
+    """Select parts with a few numbers of harmonics and free periods, then give each part its best number."""
+    candidates = [c for part in seen for c in part_candidates(problem, part, (1, 2, 5, HARMONICS))]
+    candidates += free_periods(problem, mount.parts, span)
+    s = settle(problem, candidates, mount.named)
+    by_name = {part.name: part for part in seen}
+    for chosen in list(s.chosen):
+        stage = chosen.candidate.stage
+        if stage in by_name:
+            count = best_count(problem, s, by_name[stage])
+            kept = {x.candidate.key for x in s.chosen if x is not chosen}
+            candidates = [x for x in candidates if x.key in kept]
+            candidates += part_candidates(problem, by_name[stage], (count,))
+            s = settle(problem, candidates, mount.named)
+    return s
+
+
+def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
+    """Every part and period that was found, with its neighbours within the resolution and a wheel that is
+    assumed in its note; `span` s as in `longest_span`."""
+    out = []
+    for k in range(len(s.chosen)):
+        f = finding_of(s, k)
+        others = [
+            part.name
+            for part in mount.parts
+            if f.frequency and part.name != f.stage and abs(part.rate - f.frequency) * span < 0.5
+        ]
+        remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
+        if f.stage and not mount.named:
+            remarks.insert(0, ASSUMED)
+        out.append(replace(f, note="; ".join(remarks)))
+    return out
+
+
+def free_periods(problem: Problem, known: list[Part], span: float) -> list[Candidate]:
+    """Periods that no known part has, between two turns in a section and five frames a turn."""
+    if span <= 0:
+        return []
+    taken = [h * part.rate for part in known for h in range(1, (HARMONICS if part.worm else 2) + 1)]
+    rates = np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span)
+    free = [float(rate) for rate in rates if all(abs(rate - k) * span > APART_TURNS for k in taken)]
+    return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, 2, domain="time")]
+
+
+def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Selection:
+    """Select; what takes too little off the held-out frames is left out and the selection made again."""
+    refused: list[Refusal] = []
+    while True:
+        s = select(problem, candidates, most=2)
+        idle = set()
+        for x in s.chosen:
+            own = named and x.candidate.stage
+            part, free = (PART_GAIN, "a part of this mount"), (FREE_GAIN, "a period that was tried")
+            least, what = part if own else free
+            if not x.held.share > least:
+                took = f"takes {100 * max(x.held.share, 0.0):.0f} % off the held-out mean square"
+                refused.append(Refusal(x.candidate.say(), f"{took}; {what} must take {100 * least:.0f} %"))
+                idle.add(x.candidate.key)
+        if not idle:
+            s.refused = refused + s.refused
+            return s
+        candidates = [c for c in candidates if c.key not in idle]

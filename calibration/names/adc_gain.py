@@ -1,0 +1,45 @@
+"""A current that reads too much or too little."""
+
+import numpy as np
+
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, candidate
+from calibration.names.scene import MOTOR, Scene
+
+# of a gain: one motor's torque is most of the torque, and would explain itself
+LARGEST = 0.5
+
+
+def columns(s: Scene) -> list[Candidate]:
+    """Of two motors, volts like one's current, or its torque; of a single one that is the resistance."""
+    w, pair = s.windings, s.pair
+    if pair is None:
+        return []
+    if w is not None:
+        volts = -w.resistance * w.at(w.current)
+        return [candidate(NAME.name, volts * rows, "gain", fixed=motor) for rows, motor in s.motors]
+    torques = ((one, {"motor": (float(k), MOTOR)}) for k, one in enumerate(pair.torque, 1))
+    return [candidate(NAME.name, one, "gain", most=LARGEST, fixed=motor) for one, motor in torques]
+
+
+def torque_kept(_: Candidate, size: float, clock: Array, __: float) -> Array:
+    """A motor draws no more than its current really is."""
+    return np.full(len(clock), 1.0 - size)
+
+
+def to_plant(f: Finding, facts: Facts) -> Made:
+    """The residual g i is what the reading has too much."""
+    return Made().add(f.name, facts, {"gain": 1.0 / (1.0 - value(f, "gain")), "motor": value(f, "motor")})
+
+
+NAME = Name(
+    name="adc_gain",
+    channels=(FORCE, VOLTS),
+    columns=columns,
+    experiment="lock the rotor and step the duty of each motor: a reading that is too large shows "
+    "there, a weak magnet does not",
+    torque_kept=torque_kept,
+    torque_doubt=0.5,  # volts show that two readings differ, and hardly which of them is right
+    to_plant=to_plant,
+    beside=Beside(settled_by=("magnet_weakening",)),
+)

@@ -1,0 +1,43 @@
+"""What an axis with two motors adds to the scene of its balances."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from calibration.balances.frame import Frame
+from calibration.balances.friction import Sliding
+from calibration.balances.motion import Motion
+from calibration.inputs.run import Array
+from calibration.inputs.train import Train
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """The log on one grid, what moved, and of stacked rows the motor (n_fitted,), 0 for A and 1 for B.
+
+    In the balance of torques also the friction along the motion, and either motor, A first: torques
+    in N m at the axis, signed, and angles in turns, on the fitted rows. `lagging` is the torque of
+    the one that holds the counter torque, `load` what the declared model needs: the measured one would
+    explain itself. `softness_s2`: a rotor's inertia over its train's stiffness.
+    """
+
+    frame: Frame
+    motion: Motion
+    motor: Array | None = None
+    sliding: Sliding | None = None
+    torque: tuple[Array, ...] = ()
+    turns: tuple[Array, ...] = ()
+    lagging: Array = field(default_factory=lambda: np.zeros(0))
+    load: Array = field(default_factory=lambda: np.zeros(0))
+    softness_s2: float = 0.0
+
+    @property
+    def train(self) -> Train:
+        """The declared gear train."""
+        return self.frame.train
+
+    @property
+    def transmitted(self) -> Array:
+        """Torque through both trains at full rate, N m: they pull against each other."""
+        both = np.abs(self.load) + 2 * np.abs(self.lagging)
+        return np.asarray(np.interp(np.arange(len(self.motion.theta)), self.motion.pick, both))

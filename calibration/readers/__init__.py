@@ -1,1 +1,0 @@
-"""Readers: axis logs, PHD2 guide logs, and any drive's table with a rig file."""

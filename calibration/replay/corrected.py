@@ -1,0 +1,103 @@
+"""The corrected plant file of an axis, and the closed loop run again with it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.decide.parameters import parameters_of
+from calibration.finding import UNKNOWN, Finding, Parameter
+from calibration.inputs.declaredplant import declared_model
+from calibration.inputs.train import MESH, SHAFT
+from calibration.look.axis_result import AxisResult
+from calibration.look.looked import Looked
+from calibration.look.options import Options
+from calibration.names.inplant import Facts
+from calibration.replay.before import before_numbers, with_declared_lines
+from calibration.replay.curves import curve_of
+from calibration.replay.held import Replay, replay
+from calibration.replay.plantfile import calibrate_model, write_plant
+from plant import compensation
+from plant.gears import RATIO
+from plant.model import PlantModel, load, with_effects
+
+
+def correct_and_replay(found: Looked, options: Options) -> Replay:
+    """Write the corrected plant and the compensation, run the held-out loop again; its reasons say what the
+    file lacks. Nothing is written or run for a drive that the emulator does not run."""
+    if found.header is None:
+        return Replay()
+    axis, out = found.header["axis"], options.out / "plant.yaml"
+    model, keep = declared_model(found.header, options.plant)
+    if not keep:
+        model = with_effects(model, axis, ())
+    if found.axis is None:  # the logs say nothing
+        write_plant(out, model, {}, [], Facts("cannot tell", axis), [])
+        return Replay()
+    result, unsure, effects = found.axis, found.unsure, list(found.effects)
+    name = result.frame.runs[0].name
+    calibrated, t = found.calibrated, result.selections.get("T")
+    add_curves(result, effects)
+    facts = facts_of(result, calibrated, model, name)
+    bare = with_declared_lines(model, axis, result, t.after if t else None)
+    corrected, remarks = write_plant(out, bare, calibrated, effects, facts, unsure)
+    compensation.write(options.out / "compensation.yaml", load(out), axis)
+    again = Replay()
+    if options.replay:
+        options.tell("running the closed loop again")
+        numbers = before_numbers(result, calibrated, effects)
+        bare = with_declared_lines(model, axis, result, t.before if t else None)
+        declared, _ = calibrate_model(bare, axis, numbers, name, unsure)
+        per_ampere = result.torque.drive.per_ampere if result.torque is not None else 0.0
+        e = result.selections.get("E")
+        mean = result.declared.ripple is not None
+        mean |= e is not None and "current_ripple" in [label for label, _ in e.problem.base_labels]
+        again = replay(result.frame, result.held, declared, corrected, per_ampere, mean)
+    return replace(again, reasons=[*again.reasons, *remarks])
+
+
+def add_curves(result: AxisResult, effects: list[Finding]) -> None:
+    """Give every `unknown` of the torque channel that is a function of its domain its curve, in place."""
+    t, scene = result.selections.get("T"), result.scene
+    if t is None or scene is None:
+        return
+    places = {(c.candidate.name, c.candidate.domain): k for k, c in reversed(list(enumerate(t.chosen)))}
+    for f in effects:
+        if f.name == UNKNOWN and f.channel == "T" and (f.name, f.domain) in places:
+            f.curve = curve_of(t, places[f.name, f.domain], scene.view)
+
+
+def facts_of(result: AxisResult, calibrated: dict[str, Parameter], model: PlantModel, name: str) -> Facts:
+    """What the plant file's terms need beside the findings."""
+    axis = result.frame.runs[0].header["axis"]
+    part = getattr(model.axes, axis)
+    theta = result.motion.theta[result.motion.pick]
+    loop = calibrated.get("resistance")
+    resistance = loop.value if loop is not None else part.motor.loop
+    return Facts(
+        name,
+        axis,
+        middle=float(theta.mean()),
+        span=float(np.ptp(theta)),
+        duration_s=float(np.ptp(result.frame.t[result.motion.pick])) or 1.0,
+        half_play=0.5 * part.gear.backlash.si * RATIO,
+        resistance=resistance,
+        winding=max(resistance - part.motor.loop + part.motor.resistance.si, 0.1),
+        per_ampere=result.torque.drive.per_ampere if result.torque is not None else 140.0,
+        supply=result.frame.scale["supply_V"],
+        warming=model.environment.warming.si,
+        twists=twists(result),
+    )
+
+
+def twists(result: AxisResult) -> dict[tuple[str, int], tuple[float, float]]:
+    """Gear lines of the encoder channel that both trains show: (stage, harmonic) -> (arcsec, phase)."""
+    k_channel = result.selections.get("K")
+    out: dict[tuple[str, int], tuple[float, float]] = {}
+    if k_channel is None:
+        return out
+    for k, c in enumerate(chosen.candidate for chosen in k_channel.chosen):
+        first, second = np.array_split(c.columns, 2)
+        if c.name in (SHAFT, MESH) and c.stage is not None and np.any(first) and np.any(second):
+            p = parameters_of(k_channel, k)
+            out[c.stage, c.harmonic or 1] = (p["amplitude"].value, p["phase"].value)
+    return out

@@ -1,0 +1,67 @@
+"""Pictures of any drive's report: of every balance that shows something, and the closed loop run again."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.balances.candidate import pairs_by_section
+from calibration.decide.selection import Selection
+from calibration.look.looked import Balance, Looked
+from calibration.names.position_friction import NAME as FRICTION
+from calibration.replay.held import Replay
+from calibration.report import plots
+from calibration.report.replayplot import replay_picture
+from calibration.report.thresholds import MOST_PICTURES
+
+Picture = dict[str, str]
+
+
+def pictures(found: Looked, again: Replay) -> list[Picture]:
+    """Image and alternative text of each. Of a drive in which nothing was accepted, the first balance is
+    drawn."""
+    shown = [b for b in found.balances if b.selection.chosen] or list(found.balances[:1])
+    out = [p for b in shown for p in of_balance(b)]
+    return out if again.log is None else [*out, replay_picture(again)]
+
+
+def of_balance(b: Balance) -> list[Picture]:
+    """Its effects over their domains, the spectrum, the held-out residual, the gate."""
+    s, name = b.selection, b.row or f"channel {b.key}"
+    out = [_effect(b, k) for k in _worth_drawing(s)] if b.over is not None else []
+    if b.spectrum is not None:
+        over = "period" if b.spectrum.periods else "order"
+        image = plots.spectrum_plot(s, b.spectrum, f"Amplitude over {over}, {name}")
+        out.append({"image": image, "alt": "Fitted rows; dotted: known parts, short marks: what was found"})
+    trace = plots.trace_plot(s, f"Held-out residual before and after, {name}")
+    out.append({"image": trace, "alt": TRACE})
+    out.append({"image": plots.gate_plot(s, f"Is anything there at all? {name}"), "alt": plots.GATE})
+    return out
+
+
+TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
+
+
+def _effect(b: Balance, k: int) -> Picture:
+    """An effect over the domain that explains it, the other effects taken away. A line whose phase is every
+    section's own is drawn for the first."""
+    s, x = b.selection, b.selection.chosen[k]
+    c, alt = x.candidate, "Fitted rows, the declared model and the other effects taken away"
+    assert b.over is not None
+    values, label = b.over(c)
+    if c.kind == "line" and len(sections := pairs_by_section(c.columns)) > 1:
+        first = np.any(c.columns[:, sections[0]] != 0, axis=1)
+        s = replace(s, problem=replace(s.problem, valid=s.problem.valid & first))
+        alt += "; of the first section: the phase of every further one is its own"
+    alike = [e.candidate.name for e in x.confounded if e.candidate.name != c.name]
+    more = f" (or {', '.join(dict.fromkeys(alike[:2]))})" if alike else ""
+    odd = b.direction if c.name == FRICTION.name else None
+    title = f"{c.say()}{more}, {b.row or f'channel {b.key}'}"
+    return {"image": plots.domain_plot(s, values, label, title, k, odd), "alt": alt}
+
+
+def _worth_drawing(s: Selection) -> list[int]:
+    """One picture per name, the strongest first; an unnamed function is always drawn."""
+    names = [x.candidate.name for x in s.chosen]
+    first = [k for k, name in enumerate(names) if name not in names[:k]]
+    more = [k for k in range(len(names)) if k not in first]
+    return sorted([*first, *more[: max(MOST_PICTURES - len(first), 0)]])
