@@ -77,7 +77,7 @@ class WithLibrary(Distribution):
         from scenarios.native.relocate import entry_point
 
         points = {group: list(lines) for group, lines in self.entry_points.items()}
-        points["pytest11"] = ["schmidt = bus.kit"]
+        points["pytest11"] = ["schmidt = bus.kit", "schmidt-lab = scenarios.lab.fixture"]
         for group, lines in points.items():
             parts = [line.partition("=") for line in lines]
             points[group] = [f"{name.strip()} = {entry_point(at.strip())}" for name, _, at in parts]

@@ -1,44 +1,59 @@
 """The command `schmidt`. Commands import what they need when they are called, so that it starts at once."""
 
-from __future__ import annotations
-
 import signal
 
 import click
 
-from scenarios.commands import calibrating, describing, many, running, serving
+from scenarios.commands import calibrating, describing, exporting, many, running, serving
 from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
+from scenarios.commands.parts import advice
+from scenarios.commands.sections import Section, Sections
 
-COMMANDS = (
-    running.run,
-    serving.serve,
-    serving.host,
-    serving.replay,
-    serving.control,
-    many.campaign,
-    many.paper,
-    many.objective,
-    calibrating.calibrate,
-    calibrating.rig,
-    describing.conformance,
-    describing.eds,
-    describing.protocol,
-    describing.effects,
+SECTIONS: dict[str, Section] = {
+    "Run a night": (
+        (running.run, "schmidt run quick-look"),
+        (many.campaign, "schmidt campaign campaign.yaml --out out/many"),
+        (serving.replay, "schmidt replay out/session"),
+    ),
+    "Attach your host": (
+        (serving.serve, "schmidt serve --lx200 4030 --control 7411"),
+        (serving.control, "schmidt control status"),
+        (serving.host, "schmidt host --usb /dev/hidraw0 --console 8080"),
+    ),
+    "Check a board": (
+        (describing.conformance, "schmidt conformance --can socketcan:can0 --board axis:0x11"),
+        (describing.protocol, "schmidt protocol"),
+        (describing.eds, "schmidt eds out/eds"),
+    ),
+    "Calibrate a drive": (
+        (calibrating.calibrate, "schmidt calibrate docs/example/*.csv --out out/example"),
+        (calibrating.rig, "schmidt rig my-drive.yaml log.csv --plot columns.png"),
+        (describing.effects, "schmidt effects gear_mesh"),
+    ),
+    "Take it elsewhere": (
+        (exporting.fmu, "schmidt fmu --axis ra --out drive.fmu"),
+        (exporting.export, "schmidt export out/quick-look --mcap night.mcap"),
+    ),
+    "Repeat the paper": (
+        (many.paper, "schmidt paper --quick"),
+        (many.objective, "schmidt objective --starts 1"),
+    ),
+}
+HELP = "Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."
+cli = click.version_option(package_name="schmidt", prog_name="schmidt")(
+    Sections(SECTIONS, name="schmidt", help=HELP, context_settings={"help_option_names": ["-h", "--help"]})
 )
-
-
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="schmidt", prog_name="schmidt")
-def cli() -> None:
-    """Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."""
-
-
-for _command in COMMANDS:
-    cli.add_command(_command)
 
 
 def _terminate(_signal: int, _frame: object) -> None:
     raise KeyboardInterrupt
+
+
+def _said(error: OSError) -> str:
+    """The file first, as in all other errors, without the system's number."""
+    if error.filename is None or error.strerror is None:
+        return str(error)
+    return f"{error.filename}: {error.strerror.lower()}"
 
 
 def main() -> None:
@@ -52,10 +67,14 @@ def main() -> None:
         fail(" ".join(error.format_message().split()), UNUSABLE)
     except KeyboardInterrupt:
         fail("interrupted", INTERRUPTED)
-    except (ValueError, OSError) as error:
+    except OSError as error:
+        fail(" ".join(_said(error).split()), UNUSABLE)
+    except ValueError as error:
         fail(" ".join(str(error).split()), UNUSABLE)
     except ImportError as error:
-        fail(f"this command needs a part that is not installed: {error}", UNUSABLE)
+        fail(
+            advice(error.name or "") or f"this command needs a part that is not installed: {error}", UNUSABLE
+        )
     except MemoryError:
         fail("there is not enough memory for this", UNUSABLE)
     except RecursionError:

@@ -1,7 +1,5 @@
 """A calibration as what a campaign runs: its document, its declared plant, and the row it leaves."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json
@@ -14,8 +12,8 @@ FIELD = "calibration"
 
 def declared(document: Document, beside: Path) -> Any:
     """The declared plant with the document's overrides. beside: folder of relative names."""
-    from scenarios.load import DEFAULT_PLANT
-    from scenarios.plants import plant_model
+    from scenarios.language.load import DEFAULT_PLANT
+    from scenarios.language.plants import plant_model
 
     given = document.get("plant", DEFAULT_PLANT)
     return plant_model({"file": given} if isinstance(given, str) else given, beside)
@@ -33,7 +31,7 @@ def row(document: Document, beside: Path, folder: Path) -> Document:
     """Calibrate into `folder`; the verdict, how many effects it names, and the error of every held-out
     channel before and after. Raises ValueError as `schmidt calibrate` does."""
     from calibration.command import calibrate
-    from scenarios.paper.plantfile import write
+    from scenarios.campaign.plantfile import write
 
     given = document[FIELD]
     plant = None

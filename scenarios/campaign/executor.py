@@ -7,11 +7,10 @@ A task is a function of a module and its input something that can be pickled; th
 result, so a run that is lost with its worker is simply made again.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -137,20 +136,27 @@ def _local(jobs: int | None) -> tuple[Maker, int, Alive]:
 
 
 def _worker() -> None:
-    """In a new worker: Ctrl-C is the parent's, and one thread of BLAS leaves the cores to the others."""
+    """In a new worker: Ctrl-C is the parent's, and one thread of BLAS leaves the cores to the others.
+
+    It ends with its parent: nobody would take its result, and its queue never says so.
+    """
     from threadpoolctl import threadpool_limits
 
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threadpool_limits(1)
 
 
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)  # at once: the main thread may be in the middle of a run
+
+
 def _cluster(address: str) -> tuple[Maker, int, Alive]:
-    try:
-        from distributed import Client
-    except ImportError:
-        raise ValueError(
-            f"--scheduler {address}: Dask is not installed; pip install 'schmidt[cluster]'"
-        ) from None
+    from distributed import Client
+
     connect: Any = Client  # Dask has no types
     client = connect(address, timeout=20)
     client.wait_for_workers(1)

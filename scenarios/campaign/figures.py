@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from scenarios.campaign.sensitivity import Array, Indices, Influence, share
-from scenarios.report.style import COLOURS, axes, new_figure, title
+from scenarios.run.report.style import COLOURS, axes, new_figure, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,10 +26,7 @@ def numbers(columns: Columns, name: str) -> Array:
 
 
 def distributions(
-    columns: Columns,
-    metrics: list[str],
-    limits: dict[str, tuple[float, bool]],
-    units: dict[str, str],
+    columns: Columns, metrics: list[str], limits: dict[str, tuple[float, bool]], units: dict[str, str]
 ) -> Figure | None:
     """A histogram per metric, its unit below it; a line where its limit lies, red where it is missed."""
     drawn = [name for name in metrics if np.ptp(_finite(numbers(columns, name))) > 0.0][:_PANELS]

@@ -1,14 +1,13 @@
 """What a campaign varies: an input turns a share within 0..1 into a value and puts it into a scenario."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
-from scenarios.document import ScenarioError
-from scenarios.validate import nearest
+from scenarios.language.document import ScenarioError
+from scenarios.language.validate import nearest
 
 Document = dict[str, Any]
 _LEVELS = 5
@@ -54,6 +53,8 @@ def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callabl
 
     def draw(share: float) -> Any:
         value = inverse(share)
+        if not isfinite(value):
+            raise ScenarioError(f"{where}: {kind}: the distribution gives {value}, which is no number")
         return round(value) if whole else value
 
     return draw, [draw((k + 0.5) / levels) for k in range(levels)]
@@ -92,8 +93,8 @@ def _plant(path: Any, where: str, base: Document) -> Put:
     from pathlib import Path
 
     from plant.model import ModelError, get
-    from scenarios.load import DEFAULT_PLANT
-    from scenarios.plants import plant_model
+    from scenarios.language.load import DEFAULT_PLANT
+    from scenarios.language.plants import plant_model
 
     plant = base.get("plant", DEFAULT_PLANT)
     whole = {"file": plant} if isinstance(plant, str) else plant

@@ -1,7 +1,5 @@
 """One run of a campaign, wherever it is made: a scenario in, a row out."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform
@@ -13,11 +11,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from scenarios.language.load import BESIDE
+
 Row = dict[str, Any]
 _EXPECTATIONS = "expectations"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Job:
     """What a worker is sent. beside: folder in which relative names are looked for. kept: where the logs of
     those to `keep` (nothing, failed, all) stay, or None."""
@@ -35,7 +35,7 @@ class Job:
 def run(job: Job) -> Row:
     """Run one case. What the run makes of it is the row's `failure`; only a broken machine raises."""
     from scenarios.native import compiled
-    from scenarios.probe import digest
+    from scenarios.run.probe import digest
 
     start, cpu = time.perf_counter(), time.process_time()
     row: Row = {"key": job.key, "index": job.index, "failure": ""}
@@ -75,12 +75,13 @@ def _calibrated(job: Job, folder: Path) -> Row:
 
 
 def _simulated(job: Job, folder: Path) -> Row:
-    from scenarios import run as runner
-    from scenarios.document import Document
+    from scenarios.lab.prepare import prepare
+    from scenarios.language.document import Document
+    from scenarios.run import run as runner
 
     document = Document(Path(job.beside) / f"{job.key}.yaml", job.document, {})
-    scenario, model = runner.prepare(document)
-    result = runner.run(scenario, model, folder, lambda _step, _t, _factor: None, report=False)
+    scenario, model = prepare(document)
+    result = runner.run(scenario, model, folder, lambda _step, _t, _factor: None, runner.Way(report=False))
     summary = result.summary
     if result.interrupted:
         raise KeyboardInterrupt
@@ -89,6 +90,7 @@ def _simulated(job: Job, folder: Path) -> Row:
         "missed": "; ".join(verdict.name for verdict in result.verdicts if not verdict.passed),
         "digest": summary["trace_digest"],
         "simulated_s": summary["simulated_s"],
+        "silent_faults": summary["silent_faults"],
     }
     return row | _figures(job.metrics, {verdict.name: verdict.value for verdict in result.verdicts}, summary)
 
@@ -114,5 +116,5 @@ def _cell(value: Any) -> Any:
         return value
     if isinstance(value, dict):
         return " ".join(str(_cell(each)) if not isinstance(each, dict) else f"{word} {_cell(each)}"
-                        for word, each in value.items() if word not in ("at", "until"))  # fmt: skip
+                        for word, each in value.items() if word not in BESIDE)  # fmt: skip
     return str(value)

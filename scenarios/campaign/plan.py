@@ -1,7 +1,5 @@
 """A campaign file, checked, and the cases it plans: as many as asked for, none of them in memory."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math
@@ -15,9 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.campaign import calibration, inputs
-from scenarios.document import Document, ScenarioError, read
-from scenarios.load import convert
-from scenarios.units import parse
+from scenarios.lab.prepare import load as load_scenario
+from scenarios.language.document import Document, ScenarioError, read
+from scenarios.language.own import CAMPAIGNS, located
+from scenarios.language.units import parse
 
 SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
 MOST = 1_000_000
@@ -35,7 +34,7 @@ class Case:
     document: dict[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Plan:
     """A campaign as the runner uses it. time_s: no run is begun after so much wall time."""
 
@@ -90,7 +89,11 @@ class Plan:
 
 
 def load(file: Path) -> Plan:
-    """Read and check a campaign file and the scenario it names; ScenarioError says what and where."""
+    """Read and check a campaign file and the scenario it names; ScenarioError says what and where.
+
+    file: its path, or the name of one of schmidt's own.
+    """
+    file = located(file, CAMPAIGNS)
     document = read(file)
     check(document)
     data = document.data
@@ -131,7 +134,7 @@ def load(file: Path) -> Plan:
     if plan.calibrates:
         _check_calibration(document, first)
     else:
-        convert(Document(file, first, {}))  # the first case is a scenario, too
+        load_scenario(Document(file, first, {}))  # the first case is a scenario, too
     return plan
 
 
@@ -140,7 +143,7 @@ def _base(data: dict[str, Any], scenario: Path) -> dict[str, Any]:
     if calibration.FIELD in data:
         return calibration.base(data[calibration.FIELD], scenario.parent)
     base = read(scenario)
-    convert(base)
+    load_scenario(base)
     plain = {**base.data, "_folder": str(scenario.parent.resolve())}
     found: dict[str, Any] = json.loads(json.dumps(plain, default=_text))
     return found
@@ -211,9 +214,10 @@ def schema() -> dict[str, Any]:
 
 def check(document: Document) -> None:
     """Raise ScenarioError for the first thing the language does not allow."""
-    from scenarios import validate
+    from scenarios.language import validate
 
     validate.check(document, schema())
+    validate.check_finite(document)
 
 
 def _text(value: object) -> str:

@@ -5,8 +5,6 @@ Ranks and Wilson's interval are written out: importing scipy.stats takes a secon
 A hundred thousand runs must fit, too: nothing here makes an array of resamples times runs.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,18 +1,20 @@
 """What a campaign has found so far: a line a run as it comes, and one Parquet table at the end."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from host.logs.files import LogError
 from scenarios.campaign.job import Row
-from scenarios.document import ScenarioError
+from scenarios.language.document import ScenarioError
 
 JOURNAL, TABLE = "runs.jsonl", "runs.parquet"
 _CHUNK = 10_000
+_FIELDS = {"key": str, "index": int, "failure": str}
+"""What every row has."""
 
 
 class Journal:
@@ -33,26 +35,32 @@ class Journal:
             self._file.write("\n")  # ends a line that was torn; an empty one is none
 
     def add(self, row: Row) -> None:
-        """Write a finished run."""
-        self._file.write(json.dumps(row, ensure_ascii=False) + "\n")
-        self._file.flush()
+        """Write a finished run; raises LogError."""
+        try:
+            self._file.write(json.dumps(row, ensure_ascii=False) + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise LogError(f"{self.path}: {error.strerror}; --resume goes on with what is there") from None
         if not row.get("lost"):
             self.done.add(row["key"])
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file; what a full disk did not take has been reported."""
+        with suppress(OSError):
+            self._file.close()
 
 
 def rows(path: Path) -> Iterator[Row]:
-    """The runs of a journal; lines that were torn are left out."""
-    with path.open(encoding="utf-8") as file:
+    """The runs of a journal; lines that were torn or are no run are left out."""
+    with path.open(encoding="utf-8", errors="replace") as file:
         for line in file:
             try:
                 found = json.loads(line)
             except ValueError:
                 continue
-            if isinstance(found, dict):
+            if isinstance(found, dict) and all(
+                isinstance(found.get(name), kind) for name, kind in _FIELDS.items()
+            ):
                 yield found
 
 
@@ -70,10 +78,13 @@ def write(folder: Path) -> Path:
     kinds = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
     schema = pa.schema([pa.field(name, kinds[kind]) for name, kind in columns.items()])
     chosen = (row for place, row in enumerate(rows(folder / JOURNAL)) if last[row["key"]] == place)
-    with pq.ParquetWriter(folder / TABLE, schema, compression="zstd") as writer:
-        for part in iter(lambda: list(islice(chosen, _CHUNK)), []):
-            data = {name: [_as(kind, row.get(name)) for row in part] for name, kind in columns.items()}
-            writer.write_table(pa.table(data, schema=schema))
+    try:
+        with pq.ParquetWriter(folder / TABLE, schema, compression="zstd") as writer:
+            for part in iter(lambda: list(islice(chosen, _CHUNK)), []):
+                data = {name: [_as(kind, row.get(name)) for row in part] for name, kind in columns.items()}
+                writer.write_table(pa.table(data, schema=schema))
+    except OSError as error:
+        raise LogError(f"{folder / TABLE}: cannot be written: {error.strerror or error}") from None
     return folder / TABLE
 
 

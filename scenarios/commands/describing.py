@@ -1,25 +1,41 @@
 """Commands that say what is there: conformance, eds, protocol, effects."""
 
-from __future__ import annotations
-
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from scenarios.commands.options import NETWORK, SPEED, Number
+from scenarios.commands.options import PATH, SPEED, Number, filled, network
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions:
+    """Options of `schmidt conformance`. channel: of a bus elsewhere; None: the network in this process."""
+
+    scenario: Path | None
+    network: str | None
+    channel: str | None
+    json_file: Path | None
+    speed: float
+    tolerance: float
+    stamps: float
+    boards: tuple[str, ...]
+    motion: bool
+    flood: bool
+    canopen: bool
 
 
 @click.command(short_help="Check boards, emulated or real, against the protocol.")
-@click.argument("scenario", type=click.Path(path_type=Path), required=False)
-@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.argument("scenario", type=PATH, required=False)
+@network
 @click.option(
     "--can",
     "channel",
     metavar="INTERFACE:CHANNEL",
     help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
 )
-@click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results to this file.")
+@click.option("--json", "json_file", type=PATH, help="Write the results to this file.")
 @click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Speed the boards are served at.")
 @click.option(
     "--tolerance",
@@ -40,34 +56,33 @@ from scenarios.commands.options import NETWORK, SPEED, Number
     "--motion/--no-motion", help="Send commands that move the telescope, too; it is stopped at the end."
 )
 @click.option("--flood", is_flag=True, help="Fill the bus, too: boards will report what they had to drop.")
-def conformance(
-    scenario: Path | None,
-    network: str | None,
-    channel: str | None,
-    json_file: Path | None,
-    speed: float,
-    tolerance: float,
-    stamps: float,
-    boards: tuple[str, ...],
-    motion: bool,
-    flood: bool,
-) -> None:
+@click.option("--canopen", is_flag=True, help="Check what a CANopen master expects, and nothing else.")
+@filled(CheckOptions)
+def conformance(options: CheckOptions) -> None:
     """Check boards, emulated or real, against the protocol; SCENARIO or --network says which boards."""
     from bus.conformance import Settings
-    from scenarios.conformance import command
+    from scenarios.commands.checking import command
 
-    settings = Settings(period_tolerance=tolerance, stamps_s=stamps, speed=speed, motion=motion, flood=flood)
-    sys.exit(command(channel, json_file, boards, settings, scenario, network))
+    settings = Settings(
+        period_tolerance=options.tolerance,
+        stamps_s=options.stamps,
+        speed=options.speed,
+        motion=options.motion,
+        flood=options.flood,
+        canopen=options.canopen,
+    )
+    where = options.scenario, options.network
+    sys.exit(command(options.channel, options.json_file, options.boards, settings, *where))
 
 
 @click.command(short_help="Write CANopen data sheets of the boards.")
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.argument("scenario", type=click.Path(path_type=Path), required=False)
-@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@click.argument("folder", type=PATH)
+@click.argument("scenario", type=PATH, required=False)
+@network
 def eds(folder: Path, scenario: Path | None, network: str | None) -> None:
     """Write a CANopen data sheet (EDS) per type of board into FOLDER; SCENARIO or --network says which
     boards, those of one's own too."""
-    from scenarios.canopen import write_eds
+    from scenarios.commands.datasheets import write_eds
 
     for file in write_eds(folder, scenario, network):
         click.echo(file)
@@ -89,7 +104,7 @@ def effects(name: str | None) -> None:
 
     if name is not None:
         if name not in REGISTRY:
-            from scenarios.validate import nearest
+            from scenarios.language.validate import nearest
 
             raise ValueError(f"no effect is called {name!r}; {nearest(name, REGISTRY)}")
         effect = REGISTRY[name]

@@ -1,7 +1,5 @@
 """How a command ends that does not end well: one line and a status."""
 
-from __future__ import annotations
-
 import sys
 from typing import NoReturn
 

@@ -1,12 +1,15 @@
 """Kinds of options that several commands have."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
+
+from scenarios.doors.table import DoorKind
+
+PATH = click.Path(path_type=Path)
 
 
 class Number(click.FloatRange):
@@ -21,42 +24,76 @@ class Number(click.FloatRange):
 
 
 SPEED = Number(0.01, 1000)
-"""`bus.pacer` has the same bounds; not imported here, so that the command starts at once."""
+"""`bus.outside.pacer` has the same bounds; not imported here, so that the command starts at once."""
 SEED = click.IntRange(0, 2**63 - 1)
 SECONDS = Number(min=0, min_open=True, max=1e7)
 NETWORK = click.Choice(["lab", "serial", "final"])
-"""`scenarios/networks.py` has the same; not imported here, for the same reason."""
+"""`scenarios/lab/networks.py` has the same; not imported here, for the same reason."""
+network = click.option(
+    "--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18."
+)
+jobs = click.option(
+    "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
+)
+runs = click.option(
+    "--runs",
+    type=PATH,
+    default=Path("out/console"),
+    show_default=True,
+    help="Folder of the runs recorded on the console.",
+)
 
 
-def feeding(mute: str | None, feed: Path | None) -> tuple[str, Path] | None:
-    """A board and the log its frames come from; raises UsageError for one without the other."""
-    if (mute is None) != (feed is None):
-        raise click.UsageError("--mute BOARD and --feed LOG go together")
-    return None if mute is None or feed is None else (mute, feed)
+def muting(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Options `--mute` and `--feed`: the command gets board and log as `muted`, or None."""
+
+    @wraps(command)
+    def call(mute: str | None, feed: Path | None, **given: Any) -> Any:
+        if (mute is None) != (feed is None):
+            raise click.UsageError("--mute BOARD and --feed LOG go together")
+        return command(muted=None if mute is None else (mute, feed), **given)
+
+    call = click.option("--feed", type=PATH, metavar="LOG", help="Log to take them from (candump -L).")(call)
+    return click.option(
+        "--mute", metavar="BOARD", help="This board sends nothing; its frames come from --feed."
+    )(call)
 
 
-def host_doors(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Options of the doors that a host opens, beside emulated boards or alone."""
-    for option in reversed(
-        (
-            click.option(
-                "--lx200",
-                multiple=True,
-                metavar="[HOST:]PORT|pty:NAME",
-                help="LX200, for Stellarium and INDI; repeatable.",
-            ),
-            click.option(
-                "--alpaca", metavar="[HOST:]PORT", help="ASCOM Alpaca telescope and focuser, with discovery."
-            ),
-            click.option("--console", metavar="[HOST:]PORT", help="The consoles, for a browser."),
-            click.option(
-                "--runs",
-                type=click.Path(path_type=Path),
-                default=Path("out/console"),
-                show_default=True,
-                help="Folder of the runs recorded on the console.",
-            ),
-        )
-    ):
-        command = option(command)
-    return command
+def doors(*kinds: DoorKind[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """An option for each of these doors; the command gets their values as `asked`, by the doors' names."""
+
+    def with_options(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def call(**given: Any) -> Any:
+            specs = {kind.name: given.pop(kind.name) for kind in kinds}
+            asked = {
+                name: spec if isinstance(spec, tuple) else (spec,)
+                for name, spec in specs.items()
+                if spec is not None
+            }
+            return command(asked=asked, **given)
+
+        for kind in reversed(kinds):
+            option = click.option(
+                f"--{kind.name}", multiple=kind.repeatable, metavar=kind.form, help=kind.help
+            )
+            call = option(call)
+        return call
+
+    return with_options
+
+
+Record = TypeVar("Record")
+
+
+def filled(record: Callable[..., Record]) -> Callable[[Callable[[Record], Any]], Callable[..., Any]]:
+    """The command gets its options and arguments as one record, whose fields have their names."""
+
+    def with_record(command: Callable[[Record], Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def call(**given: Any) -> Any:
+            return command(record(**given))
+
+        return call
+
+    return with_record

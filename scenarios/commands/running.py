@@ -3,133 +3,163 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
-from scenarios.commands.options import NETWORK, SECONDS, SEED, SPEED, Number, feeding
+from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, Number, filled, muting, network
+from scenarios.commands.parts import need
 
 if TYPE_CHECKING:
     from plant.model import PlantModel
-    from scenarios.model import Scenario
-    from scenarios.run import Result
+    from scenarios.language.model import Scenario
+    from scenarios.run.run import Result
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """What the command line says, as click has read it. speed: times real time. log_rate: lines a second."""
+
+    scenario: Path | None
+    out: Path | None
+    seed: int | None
+    plant: str | None
+    speed: float | None
+    log_rate: float | None
+    network: str | None
+    firmware: str | None
+    compensation: Path | None
+    no_report: bool
+    isolated: bool
+    muted: tuple[str, Path] | None
+    snapshot_at: float | None
+    snapshot: Path | None
+    begun: Path | None
+
+    @property
+    def changed(self) -> bool:
+        """Whether anything is said that a snapshot has settled."""
+        words = self.scenario, self.plant, self.network, self.firmware, self.compensation, self.log_rate
+        return any(words) or self.isolated or self.seed is not None
 
 
 @click.command(short_help="Run a scenario and judge it.")
-@click.argument("scenario", type=click.Path(path_type=Path), required=False)
-@click.option("--out", type=click.Path(path_type=Path), help="Output folder (default: out/<scenario>).")
+@click.argument("scenario", type=PATH, required=False)
+@click.option("--out", type=PATH, help="Output folder (default: out/<scenario>).")
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Another plant file, or the name of one that comes with schmidt.")
-@click.option(
-    "--speed",
-    type=SPEED,
-    help="Times real time (default: as fast as it goes).",
-)
+@click.option("--speed", type=SPEED, help="Times real time (default: as fast as it goes).")
 @click.option("--log-rate", type=Number(0.01, 20), help="Lines per second of the status and sensor logs.")
-@click.option("--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18.")
+@network
 @click.option(
     "--firmware",
     type=click.Choice(["paper", "fine"]),
-    help="Firmware of the axis boards: the paper's, or docs/one-arcsecond.md's.",
+    help="Firmware of the axis boards: the paper's, or docs/results/one-arcsecond.md's.",
 )
 @click.option(
     "--compensation",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Load this table of schmidt calibrate; runs three times: without it, with it wrong, with it.",
 )
 @click.option("--no-report", is_flag=True, help="Logs and summary.json only, no figures: ends sooner.")
-@click.option("--mute", metavar="BOARD", help="This board sends nothing; its frames come from --feed.")
-@click.option(
-    "--feed", type=click.Path(path_type=Path), metavar="LOG", help="Log to take them from (candump -L)."
-)
+@click.option("--isolated", is_flag=True, help="Firmware in C runs in processes of its own.")
+@muting
 @click.option(
     "--snapshot-at", type=SECONDS, metavar="SECONDS", help="Take a snapshot at this simulated time."
 )
-@click.option(
-    "--snapshot", type=click.Path(path_type=Path), help="File of the snapshot (default: OUT/snapshot)."
-)
-@click.option(
-    "--from", "begun", type=click.Path(path_type=Path), help="Go on from this snapshot; takes no SCENARIO."
-)
-def run(
-    scenario: Path | None,
-    out: Path | None,
-    seed: int | None,
-    plant: str | None,
-    speed: float | None,
-    log_rate: float | None,
-    network: str | None,
-    firmware: str | None,
-    compensation: Path | None,
-    no_report: bool,
-    mute: str | None,
-    feed: Path | None,
-    snapshot_at: float | None,
-    snapshot: Path | None,
-    begun: Path | None,
-) -> None:
+@click.option("--snapshot", type=PATH, help="File of the snapshot (default: OUT/snapshot).")
+@click.option("--from", "begun", type=PATH, help="Go on from this snapshot; takes no SCENARIO.")
+@filled(RunOptions)
+def run(options: RunOptions) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
-    whole = order = None
-    muted = feeding(mute, feed)
-    if begun is not None or snapshot_at is not None:
+    muted = options.muted
+    need("parquet", *(() if options.no_report else ("plots",)))
+    if options.begun is not None or options.snapshot_at is not None:
         from scenarios.native.finder import plain
 
         plain()  # compiled instances cannot be taken apart; the source gives the same bits
-    if begun is not None:
-        from scenarios.snapshot.run import begun as read
-        from scenarios.snapshot.run import parts
-
-        if scenario or seed is not None or plant or network or firmware or compensation or log_rate:
-            raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
-        whole = read(begun)
-        scenario = parts(whole)[0].file
-    elif scenario is None:
-        raise click.UsageError("Missing argument 'SCENARIO'.")
-    from scenarios import run as runner
-
-    folder = out if out is not None else Path("out") / scenario.stem
-    if snapshot_at is not None:
-        from scenarios.snapshot.run import Order
-
-        order = Order(round(snapshot_at * 1e9), snapshot or folder / "snapshot")
-    if compensation is not None:
-        firmware = firmware or "fine"  # a table in fractions of a step wants a duty in fractions of a step
-    period_s = 1.0 / log_rate if log_rate else None
-    if whole is not None:
-        loaded, model = parts(whole)
-    else:
-        loaded, model = runner.prepare(scenario, seed, plant, speed, period_s, firmware, network)
-    if compensation is not None:
-        if order is not None:
+    scenario, model, whole = _loaded(options)
+    if scenario.can_log == "mf4":
+        need("recordings")
+    folder = options.out if options.out is not None else Path("out") / scenario.file.stem
+    if options.compensation is not None:
+        if options.snapshot_at is not None:
             raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
-        result = _compared(loaded, model, folder, compensation)
+        result = _compared(scenario, model, folder, options.compensation)
     else:
-        with runner.bar(loaded, sys.stderr.isatty()) as progress:
-            result = runner.run(loaded, model, folder, progress, not no_report, order, whole, muted)
-        if order is not None and not order.done:
-            fail(f"the run ended before {snapshot_at:g} s: no snapshot", UNUSABLE)
-    _tell(result, folder, no_report)
+        result = _once(scenario, model, folder, options, whole, muted)
+    _tell(result, folder, options.no_report)
     if muted is not None:
-        from bus.protocol import device_named
-        from scenarios.muted import compare
+        from scenarios.lab.muted import compare
+        from scenarios.lab.networks import config_from, devices_of
 
-        click.echo(compare(muted[1], folder / "can.log", int(device_named(muted[0]))).text())
+        devices = devices_of(config_from(scenario.network, {}, scenario.file.parent))
+        board = next(device for device in devices if device.name == muted[0])
+        click.echo(compare(muted[1], folder / "can.log", board).text())
     if result.interrupted:
         fail(f"interrupted, logs up to t={result.summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
     sys.exit(0 if result.passed else 1)
 
 
-def _compared(loaded: Scenario, model: PlantModel, folder: Path, file: Path) -> Result:
-    from scenarios import compared
-    from scenarios import compensation as tables
-    from scenarios import run as runner
+def _loaded(options: RunOptions) -> tuple[Scenario, PlantModel, dict[str, Any] | None]:
+    """Scenario, plant and the snapshot that a run goes on from (None: it starts)."""
+    from scenarios.lab.prepare import Changes, prepare
+
+    if options.begun is not None:
+        from scenarios.lab.snapshot.run import begun, parts
+
+        if options.changed:
+            raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
+        whole = begun(options.begun)
+        return *parts(whole), whole
+    if options.scenario is None:
+        raise click.UsageError("Missing argument 'SCENARIO'.")
+    # a table in fractions of a step wants a duty in fractions of a step
+    firmware = options.firmware or (None if options.compensation is None else "fine")
+    changes = Changes(
+        seed=options.seed,
+        plant=options.plant,
+        speed=options.speed,
+        status_period_s=1.0 / options.log_rate if options.log_rate else None,
+        firmware=firmware,
+        network=options.network,
+        isolated=options.isolated,
+    )
+    return *prepare(options.scenario, changes), None
+
+
+def _once(
+    scenario: Scenario,
+    model: PlantModel,
+    folder: Path,
+    options: RunOptions,
+    whole: dict[str, Any] | None,
+    muted: tuple[str, Path] | None,
+) -> Result:
+    from scenarios.lab.snapshot.run import Order
+    from scenarios.run import run as runner
+
+    order = None
+    if options.snapshot_at is not None:
+        order = Order(round(options.snapshot_at * 1e9), options.snapshot or folder / "snapshot")
+    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=muted)
+    with runner.bar(scenario) as progress:
+        result = runner.run(scenario, model, folder, progress, way)
+    if order is not None and not order.done:
+        fail(f"the run ended before {options.snapshot_at:g} s: no snapshot", UNUSABLE)
+    return result
+
+
+def _compared(scenario: Scenario, model: PlantModel, folder: Path, file: Path) -> Result:
+    from scenarios.language import compensation as tables
+    from scenarios.run import compared
+    from scenarios.run import run as runner
 
     table = tables.load(file)
-    result, gains = compared.run(
-        loaded, model, folder, table, lambda each: runner.bar(each, sys.stderr.isatty())
-    )
+    result, gains = compared.run(scenario, model, folder, table, runner.bar)
     for text in compared.lines(gains):
         click.echo(text)
     return result

@@ -1,7 +1,5 @@
 """`[HOST:]PORT` as users write it."""
 
-from __future__ import annotations
-
 import socket
 
 LOCAL = "127.0.0.1"

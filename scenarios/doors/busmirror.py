@@ -1,7 +1,5 @@
 """The bus page's view of a wire in another process: the last picture of it, and wishes that go there."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Future
 from itertools import count
@@ -10,7 +8,7 @@ from typing import Any
 
 from host.console.decoded import seen
 from host.console.views import FaultKind, Node, SeenFrame
-from scenarios.doors.hostlink import BusState, Done, Wish
+from scenarios.doors.hostmessages import BusState, Done, Wish
 
 _LOOKED_S = 1.0
 """Pages refresh four times a second; when nobody has asked for so long, nobody looks."""

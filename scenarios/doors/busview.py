@@ -1,19 +1,18 @@
 """The wire of a served network, for the bus page of a host's consoles: this is the emulator's side."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from bus.can.frame import Frame
 from host.console.views import FaultKind, Node
-from scenarios.doors.hostlink import BusState
-from scenarios.doors.served import Served
-from scenarios.faults import FaultError, Kind, Parameter
+from scenarios.doors.hostmessages import BusState
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.lab.faults import FaultError, Kind, Parameter
 
 KEPT = 25
 """Frames that a page shows."""
+_LOAD_NS = 1_000_000_000
 REFUSALS = (ValueError, TypeError)
 """What a wish may be refused by: FaultError, NetworkError, arguments of another kind."""
 
@@ -22,9 +21,11 @@ class EmulatedBus:
     """The wire for a host elsewhere: `look` is what it shows, `wish` what it may ask for; `poll`, between two
     slices, does it."""
 
-    def __init__(self, served: Served) -> None:
+    def __init__(self, served: LiveNetwork) -> None:
         self._served = served
         self._frames: deque[tuple[int, str, int, bytes]] = deque(maxlen=KEPT)
+        self._bits: deque[tuple[int, int]] = deque([(0, 0)])
+        """Time and bits on the wire so far, of the last second."""
         self._wanted: deque[Callable[[], None]] = deque()
         self._acts: dict[str, Callable[..., str]] = {
             "start_fault": self._start_fault,
@@ -39,7 +40,16 @@ class EmulatedBus:
     def look(self) -> BusState:
         """Everything at this moment."""
         wire = self._served.network.wire
-        return BusState(self._nodes(), wire.load, dict(wire.errors), self._running(), list(self._frames))
+        return BusState(self._nodes(), self._load(), dict(wire.errors), self._running(), list(self._frames))
+
+    def _load(self) -> float:
+        """Share of the last second in which the bus was busy."""
+        wire, now_ns = self._served.network.wire, self._served.now_ns
+        self._bits.append((now_ns, wire.bits))
+        while len(self._bits) > 2 and self._bits[1][0] <= now_ns - _LOAD_NS:
+            self._bits.popleft()
+        since_ns, before = self._bits[0]
+        return (wire.bits - before) * wire.bit_ns / (now_ns - since_ns) if now_ns > since_ns else 0.0
 
     def _nodes(self) -> list[Node]:
         boards = self._served.network.boards

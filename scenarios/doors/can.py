@@ -1,7 +1,5 @@
 """`--can INTERFACE:CHANNEL`: a python-can bus of the outside joined to the wire."""
 
-from __future__ import annotations
-
 import os
 import socket
 from contextlib import suppress
@@ -9,10 +7,10 @@ from contextlib import suppress
 import can
 
 from bus.can.frame import Frame
-from bus.door import Door as Fence
-from bus.external import open_bus
+from bus.outside.door import Door as Fence
+from bus.outside.external import open_bus
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.payload import pack_frame, unpack_frame
-from scenarios.doors.served import Served
 
 _BUFFER_BYTES = 1 << 23
 """Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
@@ -21,7 +19,7 @@ _BUFFER_BYTES = 1 << 23
 class CanDoor:
     """One interface. Its node stays on the wire while the interface is away."""
 
-    def __init__(self, spec: str, index: int, served: Served) -> None:
+    def __init__(self, spec: str, index: int, served: LiveNetwork) -> None:
         self.name = f"--can {spec}"
         self._spec = spec
         self._network = served.network

@@ -1,17 +1,21 @@
 """Stream clients of a door: accepted, read, written, dropped, and none of them ever waited for."""
 
-from __future__ import annotations
-
 import contextlib
+import select
 import socket
+
+from host.browser import HEAD_BYTES, is_http
 
 LIMIT = 64
 """Clients of one listener; more are turned away."""
 _CHUNK = 4096
+_PATIENCE_S = 60.0
+"""Wall time. ASSUMPTION."""
 
 
 class Client:
-    """One connection. lost: bytes it was too slow for."""
+    """One connection. lost: bytes it was too slow for. What begins like HTTP comes from a web page and is
+    hung up on before a byte of it is read as a command."""
 
     def __init__(self, connection: socket.socket, peer: str) -> None:
         connection.setblocking(False)
@@ -21,10 +25,16 @@ class Client:
         self.peer = peer
         self.lost = 0
         self.gone = False
+        self.ready = True
+        """Whether there may be something to receive."""
+        self._head = b""
         self._connection = connection
+        self.number = connection.fileno()
 
     def receive(self) -> bytes:
         """What has come, at most 4096 bytes; nothing when nothing has, or it has gone."""
+        if not self.ready:
+            return b""
         try:
             data = self._connection.recv(_CHUNK)
         except BlockingIOError:
@@ -34,6 +44,11 @@ class Client:
             return b""
         if not data:
             self.gone = True
+        if len(self._head) < HEAD_BYTES:
+            self._head = (self._head + data)[:HEAD_BYTES]
+            if is_http(self._head):
+                self.gone = True
+                return b""
         return data
 
     def send(self, data: bytes) -> None:
@@ -47,6 +62,15 @@ class Client:
         except OSError:
             self.gone = True
 
+    def deliver(self, data: bytes) -> None:
+        """Hand all of it over, where nothing else waits; who does not read within a minute is hung up on."""
+        self._connection.settimeout(_PATIENCE_S)
+        try:
+            self._connection.sendall(data)
+        except OSError:
+            self.gone = True
+        self._connection.setblocking(False)
+
     def close(self) -> None:
         """Hang up."""
         self.gone = True
@@ -59,11 +83,16 @@ class Clients:
     def __init__(self, listener: socket.socket) -> None:
         self.all: list[Client] = []
         self._listener = listener
+        self._poll = select.poll()  # one look at all of them: most have said nothing
+        self._poll.register(listener, select.POLLIN)
 
     def accept(self) -> list[Client]:
         """New ones since the last look."""
         found: list[Client] = []
-        while True:
+        ready = [number for number, _ in self._poll.poll(0)]
+        for client in self.all:
+            client.ready = client.number in ready
+        while self._listener.fileno() in ready:
             try:
                 connection, peer = self._listener.accept()
             except BlockingIOError:
@@ -73,11 +102,17 @@ class Clients:
                 continue
             found.append(Client(connection, str(peer[0]) if isinstance(peer, tuple) else ""))
             self.all.append(found[-1])
+            self._poll.register(connection, select.POLLIN)
         return found
+
+    def wait(self, timeout_s: float) -> None:
+        """Until one of them says something, somebody comes, or wall time is over."""
+        self._poll.poll(timeout_s * 1000)
 
     def sweep(self) -> None:
         """Forget those who have gone."""
         for client in [each for each in self.all if each.gone]:
+            self._poll.unregister(client.number)
             client.close()
             self.all.remove(client)
 

@@ -1,28 +1,31 @@
 """`--control [HOST:]PORT`: speed, pause, state and end of a served network, one line of text each.
 
     status | speed X | pause | resume | power BOARD on|off | stop | help
+
     fault list | fault kinds | fault start NAME argument=value ... | fault clear NUMBER
     snapshot [NAME]
 
+With `--clock steps` also the lines of `scenarios.doors.steps`, in the place of speed, pause and resume.
+
 A client of this machine just asks; any other must say `token WORD` first. Answers begin with `ok` or `error`.
 """
-
-from __future__ import annotations
 
 import hmac
 import json
 import os
 import secrets
 from collections.abc import Callable
+from time import sleep
 
-from bus.punctual import Punctuality
+from bus.outside.punctual import Punctuality
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.clients import Client, Clients
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 
 _LINE_LIMIT = 1000
 """Longer lines are nobody's command."""
 _LINES_PER_POLL = 8
+STEPPING, _PACING = ("join", "listen", "send", "step"), ("speed", "pause", "resume")
 TOKEN_VARIABLE = "SCHMIDT_TOKEN"
 
 
@@ -45,7 +48,7 @@ def _ticks(punctual: Punctuality) -> dict[str, float | None]:
 class ControlDoor:
     """The control plane. token: for clients of other machines; made up when none is given."""
 
-    def __init__(self, where: str, token: str | None, served: Served) -> None:
+    def __init__(self, where: str, token: str | None, served: LiveNetwork) -> None:
         self.host, self.port = address(where, "--control")
         self._served = served
         self.token = token or os.environ.get(TOKEN_VARIABLE) or secrets.token_urlsafe(16)
@@ -86,11 +89,27 @@ class ControlDoor:
             client.send(b"error: a command is one short line\n")
             client.gone = True
             return
-        for line in lines[:_LINES_PER_POLL]:
-            client.send((self._answer(client, line) + "\n").encode())
-        self._rest[client] = b"".join(each + b"\n" for each in lines[_LINES_PER_POLL:]) + rest
+        taken = 0
+        while taken < min(len(lines), _LINES_PER_POLL) and not self._waits(client):
+            answer = self._answer(client, lines[taken])
+            taken += 1
+            if answer is not None:
+                client.send((answer + "\n").encode())
+        self._rest[client] = b"".join(each + b"\n" for each in lines[taken:]) + rest
 
-    def _answer(self, client: Client, line: bytes) -> str:
+    def _waits(self, client: Client) -> bool:
+        steps = self._served.steps
+        return steps is not None and steps.waits(client)
+
+    def wait(self, timeout_s: float) -> None:
+        """Until there is something to do, or wall time is over."""
+        more = any(b"\n" in rest and not self._waits(client) for client, rest in self._rest.items())
+        if self._clients is None:
+            sleep(timeout_s)
+        elif not more:
+            self._clients.wait(timeout_s)
+
+    def _answer(self, client: Client, line: bytes) -> str | None:
         words = line.decode("utf-8", "replace").split()
         if not words:
             return "error: nothing said; try help"
@@ -99,10 +118,17 @@ class ControlDoor:
         if client not in self._trusted:
             self.refused += 1
             return "error: this needs a token: token WORD"
+        steps = self._served.steps
         command = self._commands.get(words[0])
-        if command is None:
-            return f"error: no command {words[0][:40]!r}; use one of {', '.join(self._commands)}"
         try:
+            if words[0] in STEPPING or (steps is not None and words[0] in _PACING):
+                if steps is None or words[0] in _PACING:
+                    how = "paced" if steps is None else "stepped"
+                    raise ControlError(f"{words[0]}: time is {how} here (schmidt serve --clock)")
+                return steps.take(client, words)
+            if command is None:
+                known = ", ".join(self._commands)
+                return f"error: no command {words[0][:40]!r}; use one of {known}"
             return "ok " + command(words[1:])
         except ValueError as error:
             return f"error: {' '.join(str(error).split())}"
@@ -190,10 +216,12 @@ class ControlDoor:
         return (
             "status | speed X | pause | resume | power BOARD on|off | late | stop | "
             "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER | "
-            "snapshot [NAME]"
+            "snapshot [NAME]; with --clock steps: join N [NAME] | listen | send ID#DATA | step 5ms"
         )
 
     def _forget(self, client: Client) -> None:
+        if self._served.steps is not None:
+            self._served.steps.leave(client)
         self._rest.pop(client, None)
         self._trusted.discard(client)
 

@@ -1,7 +1,5 @@
 """The fence of a served network: everything that enters passes here, is stamped, and is recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Protocol
 

@@ -1,13 +1,11 @@
 """`--hid uhid`: the gateway as a real /dev/hidrawN, made by Linux' uhid (include/uapi/linux/uhid.h)."""
 
-from __future__ import annotations
-
 import os
 from struct import Struct
 
 from scenarios.doors.door import DoorError
 from scenarios.doors.hid_report import DESCRIPTOR, NAME, PRODUCT, VENDOR, VERSION, out_report
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbFull, UsbPlug
 
 DEVICE = "/dev/uhid"
@@ -32,7 +30,7 @@ _EVENTS = 32
 class UhidDoor:
     """One device. opened: programs that have it open, as the kernel counts."""
 
-    def __init__(self, served: Served, device: str = DEVICE) -> None:
+    def __init__(self, served: LiveNetwork, device: str = DEVICE) -> None:
         self.name = "--hid uhid"
         self._served = served
         self._device = device

@@ -3,8 +3,6 @@
 SOCK_SEQPACKET: one report of 64 bytes a message, both ways (65 with a leading 0 are taken too).
 """
 
-from __future__ import annotations
-
 import os
 import socket
 import stat
@@ -13,7 +11,7 @@ from pathlib import Path
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.door import DoorError
 from scenarios.doors.hid_report import BYTES, out_report
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbPlug
 
 _READS = 16
@@ -23,7 +21,7 @@ _READS = 16
 class UnixDoor:
     """Any number of host programs."""
 
-    def __init__(self, path: str, served: Served) -> None:
+    def __init__(self, path: str, served: LiveNetwork) -> None:
         self.name = f"--hid unix:{path}"
         self._path = Path(path)
         self._served = served

@@ -1,7 +1,5 @@
 """The host program of a served network, in a process beside it: its end of the pipe."""
 
-from __future__ import annotations
-
 import select
 import subprocess
 import sys
@@ -11,11 +9,10 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from time import monotonic
 
-from bus.protocol.names import DECLARED
 from host.client import TICK_NS
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.door import DoorError
-from scenarios.doors.hostlink import (
+from scenarios.doors.hostmessages import (
     BusState,
     Close,
     Done,
@@ -29,11 +26,11 @@ from scenarios.doors.hostlink import (
     program,
 )
 from scenarios.doors.lines import Feed
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import DoorOptions
-from scenarios.doors.served import Served
+from scenarios.doors.pc import dated
 from scenarios.doors.usb import UsbFull, UsbPlug
-from scenarios.hosted import dated
-from scenarios.session import log_headers
+from scenarios.lab.session import log_headers
 
 RECORDED = ("AXIS_RA", "AXIS_DEC")
 """Boards whose RS232 lines a console can record."""
@@ -55,7 +52,7 @@ class HostProcess:
     Its program is started at once, as it has much to import; `open` waits until it has opened its doors.
     """
 
-    def __init__(self, served: Served, options: DoorOptions, say: Callable[[str], None]) -> None:
+    def __init__(self, served: LiveNetwork, options: DoorOptions, say: Callable[[str], None]) -> None:
         self.name = "the host"
         self._served = served
         self._options = options
@@ -96,7 +93,7 @@ class HostProcess:
                 dated(served.scenario),
                 self._options,
                 list(served.network.boards),
-                [(int(device), device.name) for device in DECLARED.values()],
+                served.network.devices,
                 log_headers(served.scenario, served.model),
                 self._bus.fault_kinds(),
             )
@@ -125,7 +122,7 @@ class HostProcess:
         while self._heard.poll(0):
             self._hear()
         if self._waiting and self._served.pacer.speed > 1.0 and now_ns - self._sent_ns > 2 * TICK_NS:
-            self._let_it_catch_up()
+            self._let_it_catch_up(_BUS_S)
         self._bus.poll()
         if self._waiting or not self._ready:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
@@ -133,12 +130,16 @@ class HostProcess:
                     self._process.kill()
                 raise DoorError("it does not answer")
             return
+        if self._served.steps is not None and now_ns - self._sent_ns < TICK_NS:
+            return  # it does nothing between its ticks, and nobody waits for it
         reports = plug.reports(_MOST)
         lines = [(name, data) for name, feed in self._feeds if (data := feed.until(now_ns))]
         bus = self._bus_state()
         if reports or lines or bus is not None or now_ns - self._sent_ns >= TICK_NS:
             self._send(Slice(now_ns, reports, lines, bus))
             self._waiting, self._asked_s, self._sent_ns = True, monotonic(), now_ns
+            if self._served.steps is not None:
+                self._let_it_catch_up(_SILENT_S)
 
     def close(self) -> None:
         """Have it hang up and write its logs; ends it if it does not."""
@@ -167,10 +168,10 @@ class HostProcess:
         """What the telescope does, as it last said."""
         return self.doors[0][1] if self.doors else "not there yet"
 
-    def _let_it_catch_up(self) -> None:
+    def _let_it_catch_up(self, wall_s: float) -> None:
         """Faster than real time, time waits for the host: its time-outs are in simulated time. At real time
-        it does not, as it would not for a PC."""
-        end_s = monotonic() + _BUS_S
+        it does not, as it would not for a PC. Where clients step time it waits until the host is through."""
+        end_s = monotonic() + wall_s
         while self._waiting and self._pipe is not None and self._pipe.poll(max(0.0, end_s - monotonic())):
             self._hear()
 

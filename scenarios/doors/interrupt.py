@@ -1,7 +1,5 @@
 """Ctrl-C and SIGTERM end the serving between two slices: within one the network would be half done."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Callable, Iterator

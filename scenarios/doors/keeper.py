@@ -1,7 +1,5 @@
 """Keeps a door open: polls it, and when it breaks reports it and tries again while the others go on."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from time import monotonic
 

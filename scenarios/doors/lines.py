@@ -1,7 +1,5 @@
 """The five RS232 lines (L3), byte by byte: what has gone over the line until now."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Mapping
 

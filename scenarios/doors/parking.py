@@ -1,24 +1,22 @@
 """The end of serving: the axes go to the park position, or at least to rest, and the motors off."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from time import perf_counter
 
 from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, pack_command, unpack_motion, unpack_target
 from bus.protocol.report import pack_report
 from host.link import HidLink
-from scenarios.doors.served import Served
-from scenarios.session import start_steps
+from host.procedures.manual import AXES
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.lab.wiring import start_steps
 
-AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
 _WALL_S = 0.5
 """Simulated time runs as fast as it can for this long; with all the rest it stays below a second."""
 _STEP_NS = 50_000_000
 _FRESH_NS = 1_000_000_000
 
 
-def park(served: Served) -> str:
+def park(served: LiveNetwork) -> str:
     """Send both axes to the park position, unpaced, and take the power off; says how far that came.
 
     The doors are closed by now. The commands go through the gateway and are recorded like anybody's.

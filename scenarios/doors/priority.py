@@ -1,10 +1,8 @@
 """Real-time scheduling for the ticks and the doors' threads beside them (`serve --realtime`).
 
-A door's thread that holds Python's lock while an ordinary program has its processor would hold up a tick,
-so all threads of the process are lifted. Its children, and threads that come later, are ordinary.
+A door's thread may hold Python's lock while an ordinary program has its processor. That would hold up a tick,
+so all threads of the process are lifted. The process' children, and threads that come later, are ordinary.
 """
-
-from __future__ import annotations
 
 import os
 from collections.abc import Iterator

@@ -1,28 +1,25 @@
 """`--record DIR`: all logs of a served session, and what entered it, so that it can be run again."""
 
-from __future__ import annotations
-
 import json
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from bus.protocol import Device
 from host.logs.files import LineFile, LogError
-from host.serial_link import SerialLink
 from plant.model import PlantModel, dump
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.rest import Rest
-from scenarios.doors.served import Served
-from scenarios.model import Scenario
-from scenarios.recorder import AXES, Recorder
-from scenarios.session import SERIAL, log_headers
+from scenarios.lab.networks import SERIAL
+from scenarios.lab.recorder import Recorder
+from scenarios.lab.session import log_headers
+from scenarios.language.model import Scenario
 
 SESSION, ENTERED, PLANT, SCENARIO = "session.json", "entered.log", "plant.yaml", "scenario.yaml"
 BEGUN = "begun.snapshot"
 
 
 class Recording:
-    """Owns the folder: the files of a run (`scenarios.recorder`), and
+    """Owns the folder: the files of a run (`scenarios.lab.recorder`), and
 
     entered.log: `t_ns kind hex` for every entry; session.json: what the session was made of, its digest, and
     the digest of the rest from each snapshot on. begun: the snapshot that the session goes on from; a copy
@@ -47,7 +44,7 @@ class Recording:
         self._begun = begun is not None
         self._entered = LineFile(folder / ENTERED, buffer_bytes=1 << 13)
 
-    def attach(self, served: Served) -> None:
+    def attach(self, served: LiveNetwork) -> None:
         """Record this session, from its very start; its doors are made (not open) by now."""
         scenario, model = self._scenario, self._model
         self._recorder = recorder = Recorder(
@@ -55,7 +52,7 @@ class Recording:
         )
         served.network.wire.tap(recorder.can.take)
         for device in SERIAL:
-            served.network.uarts[device.name].sink = self._link(device, recorder).receive
+            served.network.uarts[device.name].sink = recorder.link(device).receive
         dump(model, self.folder / PLANT)
         if scenario.file.is_file():
             (self.folder / SCENARIO).write_bytes(scenario.file.read_bytes())
@@ -70,17 +67,11 @@ class Recording:
         }
         self._save()
 
-    def mark(self, name: str, served: Served) -> None:
+    def mark(self, name: str, served: LiveNetwork) -> None:
         """A snapshot has been taken now: what comes after it gets a digest of its own."""
         self._facts["snapshots"][name] = {"t_ns": served.now_ns, "entries": served.entry.count}
         self._rests[name] = Rest(served)
         self._save()
-
-    @staticmethod
-    def _link(device: Device, recorder: Recorder) -> SerialLink:
-        axis = next((name for name, board in AXES.items() if board == device), None)
-        consume = recorder.axis[axis].packet if axis else (lambda _t, _packet: None)
-        return SerialLink(device, recorder.ascii, consume)
 
     def write(self, t_ns: int, kind: str, data: bytes) -> None:
         """One entry."""

@@ -1,7 +1,5 @@
 """`schmidt replay DIR [--from SNAPSHOT]`: a recorded session again, to the same digest."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from itertools import islice
@@ -9,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from plant.model import load as load_plant
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.payload import unpack_frame
 from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording
 from scenarios.doors.rest import Rest
-from scenarios.doors.served import Served
-from scenarios.served import chosen
-from scenarios.snapshot.file import read
-from scenarios.snapshot.served import standing
+from scenarios.doors.standing import standing
+from scenarios.lab.prepare import chosen
+from scenarios.lab.snapshot.file import read
 
 
 class ReplayError(ValueError):
@@ -37,7 +35,7 @@ def replay(folder: Path, out: Path) -> tuple[str, str | None]:
         scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
         model = load_plant(folder / PLANT)
     recording = Recording(out, scenario, model, begun)
-    served = Served(scenario, model, journal=recording, begun=stood)
+    served = LiveNetwork(scenario, model, journal=recording, begun=stood)
     _nodes(served, facts)
     recording.attach(served)
     _enter(served, folder, facts)
@@ -49,7 +47,7 @@ def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
     digest of the rest both ways (None: that one was not taken in this session, or it was never closed)."""
     facts = _facts(folder)
     stood = standing(read(snapshot))
-    served = Served(stood.scenario, stood.model, begun=stood)
+    served = LiveNetwork(stood.scenario, stood.model, begun=stood)
     taken = [
         each.get("rest")
         for each in facts.get("snapshots", {}).values()
@@ -61,13 +59,13 @@ def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
     return rest.digest(), taken[0] if taken else None
 
 
-def _nodes(served: Served, facts: dict[str, Any]) -> None:
+def _nodes(served: LiveNetwork, facts: dict[str, Any]) -> None:
     for kind in facts["kinds"]:
         if kind.startswith("can"):
             _register(served, kind)
 
 
-def _enter(served: Served, folder: Path, facts: dict[str, Any], after: int = 0) -> None:
+def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int = 0) -> None:
     """Everything that entered, from number `after` on, and on to the session's end."""
     t_ns = served.now_ns
     for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
@@ -79,7 +77,7 @@ def _enter(served: Served, folder: Path, facts: dict[str, Any], after: int = 0) 
     served.run_until(max(t_ns, int(facts.get("end_ns", t_ns))))
 
 
-def _register(served: Served, kind: str) -> None:
+def _register(served: LiveNetwork, kind: str) -> None:
     node = served.node(int(kind[3:]))
     served.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
 

@@ -1,14 +1,12 @@
 """What a session does from an instant on, as one digest: a snapshot's replay is held against it."""
 
-from __future__ import annotations
-
 import struct
 from hashlib import sha256
 
 from bus.can.candump import CandumpWriter
 from plant.kernels import layout
 from plant.plant import Plant
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 
 
 def state_of(plant: Plant) -> bytes:
@@ -22,7 +20,7 @@ def state_of(plant: Plant) -> bytes:
 class Rest:
     """From now on: every frame on the bus, and at its end the plant to the last bit."""
 
-    def __init__(self, served: Served) -> None:
+    def __init__(self, served: LiveNetwork) -> None:
         self._served = served
         self._log = CandumpWriter(None)
         served.network.wire.tap(self._log.take)

@@ -1,18 +1,14 @@
 """Axis logs of the RS232 lines, recorded when a console asks for it."""
 
-from __future__ import annotations
-
 import sys
 from collections import deque
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from bus.protocol import Device
 from host.logs.axis import AxisLog
 from host.logs.journal import Journal
+from host.procedures.manual import AXES
 from host.serial_link import SerialLink
-
-AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
 
 
 class RecordedRuns:

@@ -1,18 +1,16 @@
 """`--serial pty:DIR`: the five lines as pseudo-terminals, with stable names in DIR."""
 
-from __future__ import annotations
-
 import os
 import select
 import termios
 import tty
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Protocol
 
 from scenarios.doors.door import DoorError
-from scenarios.doors.lines import Feed
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 
 _CHUNK = 4096
 
@@ -99,29 +97,42 @@ class PtyPort:
 
 
 class PtyDoor:
-    """The five ports."""
+    """A folder of ports: the boards' serial lines, from which they only send."""
 
-    def __init__(self, folder: str, served: Served) -> None:
-        self.name = f"--serial pty:{folder}"
+    option = "--serial pty:"
+
+    def __init__(self, folder: str, live: LiveNetwork) -> None:
+        self.name = self.option + folder
         self._folder = Path(folder)
-        self._served = served
+        self._live = live
         self.ports: list[PtyPort] = []
-        self._feeds: dict[str, Feed] = {}
+        self._close = ExitStack()
 
     def open(self) -> None:
         """Make folder, terminals and names; raises OSError."""
-        if "\0" in str(self._folder):
-            raise DoorError("--serial pty: the folder's name holds a NUL byte")
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            for name in self._served.lines.uarts:
-                self._feeds[name] = feed = self._served.lines.feed(name)
-                self.ports.append(PtyPort(self._folder / name, feed))
-        except OSError as error:
+            for name in self._names():
+                port = PtyPort(self._folder / name, *self._ends(name))
+                self._close.callback(port.close)
+                self.ports.append(port)
+        except (OSError, ValueError) as error:
             self.close()
             if isinstance(error, DoorError):
                 raise
-            raise DoorError(f"--serial pty: {self._folder}: {error.strerror or error}") from None
+            reason = getattr(error, "strerror", None) or error
+            raise DoorError(f"{self.option.rstrip(': ')}: {self._folder}: {reason}") from None
+
+    def _names(self) -> Iterable[str]:
+        """Boards that have a port."""
+        return self._live.lines.uarts
+
+    def _ends(self, board: str) -> tuple[Source, Callable[[bytes], None] | None]:
+        """Where its bytes come from, and where those go that a program sends."""
+        lines = self._live.lines
+        feed = lines.feed(board)
+        self._close.callback(lines.drop, board, feed)
+        return feed, None
 
     def poll(self, now_ns: int) -> None:
         """Every line, byte by byte."""
@@ -130,12 +141,8 @@ class PtyDoor:
 
     def close(self) -> None:
         """Remove all of them."""
-        for port in self.ports:
-            port.close()
-        for name, feed in self._feeds.items():
-            self._served.lines.drop(name, feed)
+        self._close.close()
         self.ports.clear()
-        self._feeds.clear()
 
     def state(self) -> str:
         """Who is open."""

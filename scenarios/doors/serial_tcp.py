@@ -4,14 +4,12 @@ tcp is the bare byte stream (pyserial: `socket://`); rfc2217 speaks Telnet's por
 own implementation (`rfc2217://`), so that a program may set what it likes: the board's side does not follow.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from scenarios.doors.address import address, listen
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.lines import Feed
-from scenarios.doors.served import Served
+from scenarios.doors.livenetwork import LiveNetwork
 
 
 class TcpDoor:
@@ -19,7 +17,7 @@ class TcpDoor:
 
     kind = "tcp"
 
-    def __init__(self, where: str, served: Served) -> None:
+    def __init__(self, where: str, served: LiveNetwork) -> None:
         self.name = f"--serial {self.kind}:{where}"
         self._lines = served.lines
         self.host, self.port = address(where, f"--serial {self.kind}", len(served.lines.uarts))
@@ -118,7 +116,7 @@ class Rfc2217Door(TcpDoor):
 
     kind = "rfc2217"
 
-    def __init__(self, where: str, served: Served) -> None:
+    def __init__(self, where: str, served: LiveNetwork) -> None:
         super().__init__(where, served)
         self._managers: dict[Client, Any] = {}
 

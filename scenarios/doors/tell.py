@@ -1,7 +1,5 @@
 """The other end of the control plane: one command, one answer."""
 
-from __future__ import annotations
-
 import socket
 
 from scenarios.doors.address import address
@@ -21,7 +19,7 @@ def tell(command: str, at: str, token: str | None = None) -> str:
             socket.create_connection((host, port), _PATIENCE_S) as connection,
             connection.makefile("rw", encoding="utf-8", newline="\n") as stream,
         ):
-            connection.settimeout(_ANSWER_S)
+            connection.settimeout(None if command.startswith(("step", "join")) else _ANSWER_S)
             answer = ""
             for line in lines:
                 stream.write(line + "\n")

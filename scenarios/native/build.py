@@ -1,7 +1,5 @@
 """Builds the compiled library; what cannot be compiled stays plain and is said in one line each."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os
@@ -15,8 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from scenarios.native import stamp
+from scenarios.native.compile import TRANSLATED
 from scenarios.native.derived import derived_from
 from scenarios.native.modules import PACKAGE, ROOT, selected
+from scenarios.progress import Stage
 
 _PREFIX = PACKAGE.replace(".", "/")
 _REFUSED = re.compile(rf"^{_PREFIX}(\w+/[\w/]+\.py):\d+: (?:error|[A-Z]\w+Error): (.*)")
@@ -31,8 +31,11 @@ class BuildError(ValueError):
     """The library cannot be built here; the message says why."""
 
 
-def build(library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT) -> bool:
-    """Build the library unless it fits already; returns whether there was anything to do.
+def build(
+    library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT, stage: Stage = lambda _name: None
+) -> bool:
+    """Build the library unless it fits already; returns whether there was anything to do. stage: is told
+    what begins.
 
     Raises BuildError, and leaves a library that was there before alone.
     """
@@ -46,9 +49,10 @@ def build(library: Path = stamp.LIBRARY, say: Say = print, root: Path = ROOT) ->
         raise BuildError("there is no C compiler")
     with tempfile.TemporaryDirectory(prefix="schmidt-native-") as folder:
         before = stamp.make(root)  # a file that changes while it is compiled makes the library stale
-        made = _compile(Path(folder), say, root)
+        made = _compile(Path(folder), say, root, stage)
         text = json.dumps(before | {"modules": _modules(made)}, indent=1)
         (made / stamp.STAMP).write_text(text + "\n", encoding="utf-8")
+        stage("holding it against Python")
         _check(made, root)
         fresh = library.with_name(library.name + ".new")
         shutil.rmtree(fresh, ignore_errors=True)
@@ -64,7 +68,7 @@ def compiler() -> bool:
     return shutil.which(command.split()[0]) is not None
 
 
-def _compile(folder: Path, say: Say, root: Path) -> Path:
+def _compile(folder: Path, say: Say, root: Path, stage: Stage) -> Path:
     """Compile what can be; returns the folder that holds it."""
     files = selected(root)
     refused = derived_from(root, files)
@@ -78,10 +82,17 @@ def _compile(folder: Path, say: Say, root: Path) -> Path:
             str(folder),
             *(_PREFIX + file for file in files),
         ]
-        done = _python(command, root, pure="1")
-        if not done.returncode:
+        stage("translating to C")
+        with _started(command, root, pure="1", stderr=subprocess.STDOUT) as process:
+            assert process.stdout is not None
+            output = ""
+            for line in process.stdout:
+                if line.strip() == TRANSLATED:
+                    stage("compiling")
+                else:
+                    output += line
+        if not process.returncode:
             return folder / "library"
-        output = done.stdout + done.stderr
         found = [match for match in map(_REFUSED.match, output.splitlines()) if match]
         refused = {match[1]: match[2] for match in reversed(found)}  # the first line on a file says why
         refused = {file: why for file, why in refused.items() if file in files}
@@ -91,13 +102,24 @@ def _compile(folder: Path, say: Say, root: Path) -> Path:
     raise BuildError(f"mypyc refused files {_ROUNDS} times over")
 
 
-def _python(arguments: list[str], root: Path, pure: str) -> subprocess.CompletedProcess[str]:
+def _started(
+    arguments: list[str], root: Path, pure: str, stderr: int = subprocess.PIPE
+) -> subprocess.Popen[str]:
     """Another Python on the sources under `root`; an isolated build's own packages stay on its path."""
     above = root.parent if PACKAGE else root
     path = os.pathsep.join([str(above), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = {**os.environ, "SCHMIDT_PURE": pure, "PYTHONPATH": path}
     command = [sys.executable, *arguments]
-    return subprocess.run(command, cwd=above, env=environment, capture_output=True, text=True, check=False)
+    return subprocess.Popen(
+        command, cwd=above, env=environment, stdout=subprocess.PIPE, stderr=stderr, text=True
+    )
+
+
+def _python(arguments: list[str], root: Path, pure: str) -> tuple[int, str, str]:
+    """Status, output and errors of another Python."""
+    with _started(arguments, root, pure) as process:
+        output, errors = process.communicate()
+    return process.returncode, output, errors
 
 
 def _modules(made: Path) -> dict[str, str]:
@@ -111,9 +133,10 @@ def _check(made: Path, root: Path) -> None:
     library."""
     if any(importlib.util.find_spec(need) is None for need in _PROBED):
         return  # an isolated build has nothing but the compilers
-    plain = _python(["-m", f"{PACKAGE}scenarios.probe"], root, pure="1")
-    native = _python(["-m", f"{PACKAGE}scenarios.probe", str(made)], root, pure="")
-    if native.returncode:
-        raise BuildError(f"it cannot be used: {(native.stderr.strip().splitlines() or ['?'])[-1]}")
-    if plain.stdout != native.stdout:
+    plain = _python(["-m", f"{PACKAGE}scenarios.run.probe"], root, pure="1")
+    native = _python(["-m", f"{PACKAGE}scenarios.run.probe", str(made)], root, pure="")
+    status, output, errors = native
+    if status:
+        raise BuildError(f"it cannot be used: {(errors.strip().splitlines() or ['?'])[-1]}")
+    if plain[1] != output:
         raise BuildError("its digest is not that of plain Python; please report it")

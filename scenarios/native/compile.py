@@ -3,14 +3,14 @@
 Kept apart from `build.py` because mypyc ends the process when it refuses a file.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path
 
 GROUP = "schmidt"
 """The one shared library is `schmidt__mypyc`; each module is a small file beside it."""
+TRANSLATED = "schmidt: translated"
+"""Printed when the C sources are there."""
 _INSIDE = ("-fvisibility=hidden", "-fno-semantic-interposition", "-fno-plt")
 """For gcc and clang: calls inside the library go straight there, not through the linker's table."""
 _BOUND = ("-Wl,-z,now",)
@@ -24,12 +24,9 @@ def main(target: Path, files: list[str]) -> None:
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     options = [f"--python-version={version}", "--ignore-missing-imports", f"--cache-dir={target / 'cache'}"]
     extensions = mypycify(
-        [*options, *files],
-        opt_level="2",
-        debug_level="0",
-        target_dir=str(target / "c"),
-        group_name=GROUP,
+        [*options, *files], opt_level="2", debug_level="0", target_dir=str(target / "c"), group_name=GROUP
     )
+    print(TRANSLATED, flush=True)
     if sys.platform == "linux":
         for extension in extensions:
             extension.extra_compile_args = [*extension.extra_compile_args, *_INSIDE]

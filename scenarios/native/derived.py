@@ -1,12 +1,10 @@
 """Compiled modules whose classes plain code derives from: Python forbids that, so they stay plain, too."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable
 from pathlib import Path
 
-from scenarios.native.modules import module_name
+from scenarios.native.modules import ROOMS, module_name
 
 _MARK = "mypyc_attr"
 """A class so marked says itself that it may be derived from."""
@@ -39,7 +37,7 @@ def derived_from(root: Path, compiled: Iterable[str]) -> dict[str, str]:
 
 
 def _rooms(root: Path) -> list[Path]:
-    return [root / name for name in ("bus", "boards", "plant", "host", "scenarios") if (root / name).is_dir()]
+    return [root / name for name in ROOMS if (root / name).is_dir()]
 
 
 def _tree(path: Path) -> ast.Module:

@@ -1,7 +1,5 @@
 """Finds the compiled modules, all of them or none: compiled code relies on its own kind."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Sequence

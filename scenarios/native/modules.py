@@ -1,13 +1,13 @@
 """Which modules are compiled: the one list."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 """Where the rooms lie: the checkout, or site-packages."""
 PACKAGE = __name__.removesuffix("scenarios.native.modules")
 """What stands before the rooms' names: nothing in a checkout, `schmidt.` in a wheel."""
+ROOMS = ("bus", "boards", "plant", "host", "scenarios")
+"""What a run is made of."""
 FOLDERS = ("bus/time", "bus/can", "bus/protocol", "boards")
 """Everything in these, and below."""
 FILES = (
@@ -19,20 +19,25 @@ FILES = (
     "host/serial_link.py",
     "plant/axis.py",
     "plant/focus.py",
+    "plant/grid.py",
     "plant/plant.py",
 )
 """And these: what is called for every tick and frame."""
 PLAIN = (
-    "boards/silicon/ecan/chip.py",
-    "boards/silicon/mcp2515/chip.py",
+    "bus/protocol/command.py",
+    "bus/protocol/nodes/",
+    "boards/chips/",
+    "boards/c/",
+    "boards/avr/",
     "boards/canopen/",
     "boards/auxiliary/firmware.py",
     "boards/dome/firmware.py",
     "boards/power/firmware.py",
     "boards/weather/firmware.py",
 )
-"""What mypyc refuses (an error of its own that is a KeyError), said beforehand: finding out costs a round;
-what it derives from, a register-level chip that no night runs on;
+"""What takes an `Opcode` as an int and asks for its layout: mypyc unboxes it to a bare number.
+Declarations, which are read once: a frozen record of the library cannot be pickled.
+And what no night runs on: the chips at register level (mypyc refuses one of them);
 what derives from classes of a package that is not compiled; and what inherits the constructor of
 `DeclaredBoard`: mypyc calls it twice for such a class (two ports on the wire), plain Python once."""
 _PLACE = "__file__"

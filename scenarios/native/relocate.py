@@ -5,14 +5,14 @@ user may well have a `plant.py` or a `bus/` of their own, which an installed `sc
 give way to.
 """
 
-from __future__ import annotations
-
 import ast
 import shutil
 from pathlib import Path
 
+from scenarios.native import modules
+
 PACKAGE = "schmidt"
-ROOMS = ("boards", "bus", "calibration", "host", "plant", "scenarios")
+ROOMS = (*modules.ROOMS, "calibration")
 
 
 class RelocationError(ValueError):
@@ -20,12 +20,15 @@ class RelocationError(ValueError):
 
 
 def relocate(folder: Path) -> Path:
-    """Move the rooms in `folder` below `folder/schmidt` and rewrite their imports; returns that package."""
+    """Move the rooms in `folder` below `folder/schmidt`, which begins as `schmidt.py`, and rewrite their
+    imports; returns that package."""
     package = folder / PACKAGE
     shutil.rmtree(package, ignore_errors=True)
     package.mkdir()
-    text = '"""The rooms of schmidt; see its README."""\n'
+    front = folder / f"{PACKAGE}.py"
+    text = rewritten(front.read_text(encoding="utf-8"), front.name)
     (package / "__init__.py").write_text(text, encoding="utf-8")
+    front.unlink()
     for room in ROOMS:
         (folder / room).rename(package / room)
         for file in sorted((package / room).rglob("*.py")):

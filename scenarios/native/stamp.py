@@ -1,10 +1,8 @@
 """What a library was made of, so that it is never taken for something else.
 
-The stamp lists every selected file and every file of ours these import names from (a constant may be
-compiled in), with their hashes, and the interpreter it was built for.
+The stamp lists every selected file and every file of ours these import names from, with their hashes. Such
+a name may be a constant that is compiled in. The stamp also names the interpreter the library was built for.
 """
-
-from __future__ import annotations
 
 import ast
 import hashlib
@@ -12,11 +10,11 @@ import json
 import sysconfig
 from pathlib import Path
 
-from scenarios.native.modules import PACKAGE, ROOT, selected
+from scenarios.native.modules import PACKAGE, ROOMS, ROOT, selected
 
 LIBRARY = Path(__file__).with_name("library")
 STAMP = "stamp.json"
-_ROOMS = ("bus", "boards", "plant", "host", "scenarios")
+CHOICE = "scenarios/native/modules.py"
 
 
 def suffix() -> str:
@@ -33,9 +31,9 @@ def digest(path: Path) -> str:
 
 
 def sources(root: Path = ROOT) -> list[str]:
-    """The selected files and what they import, relative to `root`."""
+    """The selected files, what they import and the list that selects them, relative to `root`."""
     chosen = selected(root)
-    found = set(chosen)
+    found = {*chosen, CHOICE}
     for path in chosen:
         found |= _imported(root, path)
     return sorted(found)
@@ -43,10 +41,7 @@ def sources(root: Path = ROOT) -> list[str]:
 
 def make(root: Path = ROOT) -> dict[str, object]:
     """The stamp of a library made of the files under `root`; its `modules` (name to file) come with it."""
-    return {
-        "suffix": suffix(),
-        "sources": {path: digest(root / path) for path in sources(root)},
-    }
+    return {"suffix": suffix(), "sources": {path: digest(root / path) for path in sources(root)}}
 
 
 def read(library: Path = LIBRARY) -> dict[str, object] | None:
@@ -82,7 +77,7 @@ def _imported(root: Path, path: str) -> set[str]:
         elif isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         for name in (each.removeprefix(PACKAGE) for each in names):
-            if name.split(".")[0] in _ROOMS:
+            if name.split(".")[0] in ROOMS:
                 place = name.replace(".", "/")
                 found |= {each for each in (f"{place}.py", f"{place}/__init__.py") if (root / each).is_file()}
     return found

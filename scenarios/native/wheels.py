@@ -1,7 +1,5 @@
 """`python -m scenarios.native.wheels`: both wheels into dist/, the compiled one for other machines too."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,1 +1,0 @@
-"""`make bench`: how fast the emulator is, measured on this machine, beside python-can's own virtual bus."""

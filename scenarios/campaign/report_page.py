@@ -1,0 +1,189 @@
+"""`report.html` of a campaign, its figures beside it, and the scenario of its worst run."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from host.logs.files import write_file
+from scenarios.campaign import figures, table
+from scenarios.campaign.calibration import FIELD
+from scenarios.campaign.figures import Columns, numbers
+from scenarios.campaign.plan import Plan
+from scenarios.campaign.sensitivity import Indices, Influence, influence, share, sobol
+from scenarios.lab.prepare import load
+from scenarios.language.document import Document
+from scenarios.run.report.html import picture, rendered
+
+_QUANTILES = (0.05, 0.5, 0.95)
+WORST = "worst.yaml"
+
+
+def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
+    """Draw and write everything from the table. wall_s, made: of this call, for the figures of speed."""
+    columns = table.read(folder / table.TABLE)
+    limits, units = ({}, {}) if plan.calibrates else (_limits(plan), _units(plan))
+    metrics = [name for name in columns if name.startswith("metric: ")]
+    found = _influences(plan, columns, metrics)
+    groups = _groups(plan, columns)
+    drawn = {
+        "distributions": figures.distributions(columns, metrics, limits, units),
+        "influences": figures.influences(found, [f"input: {each.name}" for each in plan.inputs]),
+        "indices": figures.indices(_indices(plan, columns, metrics), [each.name for each in plan.inputs]),
+        "failures": figures.failures(columns, groups),
+    }
+    pictures = [
+        picture(figure, folder / f"{name}.png") for name, figure in drawn.items() if figure is not None
+    ]
+    worst = _worst(plan, columns, limits)
+    if worst and not plan.calibrates:
+        _write_worst(plan, worst["index"], folder / WORST)
+    passed = sum(map(bool, columns["passed"]))
+    text = rendered(
+        Path(__file__).with_name("page.html.j2"),
+        plan=plan,
+        runs=len(columns["key"]),
+        passed=share(passed, len(columns["key"])),
+        silent=sum(bool(each) for each in columns.get("silent_faults", [])),
+        metrics=[_summary(columns, name, limits, units) for name in metrics],
+        pictures=pictures,
+        worst=worst,
+        repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
+        failures=_failures(columns),
+        speed=_speed(columns, wall_s, made),
+    )
+    write_file(folder / "report.html", text)
+
+
+def _limits(plan: Plan) -> dict[str, tuple[float, bool]]:
+    return {e.name: (e.limit, e.upper) for e in load(_document(plan, plan.base)).expectations}
+
+
+def _units(plan: Plan) -> dict[str, str]:
+    """What each expectation is measured in; nothing for a bare number."""
+    from scenarios.run.evaluate import KINDS
+
+    units = {e.name: KINDS[e.kind].unit for e in load(_document(plan, plan.base)).expectations}
+    return {name: unit for name, unit in units.items() if unit != "1"}
+
+
+def _again(plan: Plan) -> str:
+    """The calibration alone, as it is declared; the run's own numbers stand above it."""
+    given = plan.base[FIELD]
+    return " ".join(
+        ["schmidt calibrate", *(str(plan.file.parent / log) for log in given["logs"]), "--out", "again"]
+    )
+
+
+def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
+    """Sobol indices of the metrics that every run of a `saltelli` sample has."""
+    if not plan.saltelli or len(columns["key"]) < plan.count:
+        return []
+    order = np.argsort(np.array(columns["index"]))
+    found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
+    return [each for each in found if each is not None]
+
+
+def _document(plan: Plan, data: dict[str, Any]) -> Document:
+    data = {word: value for word, value in data.items() if word != "_folder"}
+    return Document(plan.scenario, data, {})
+
+
+def _influences(plan: Plan, columns: Columns, metrics: list[str]) -> list[Influence]:
+    found = []
+    for each in plan.inputs:
+        name = f"input: {each.name}"
+        if each.numeric and name in columns:
+            x = numbers(columns, name)
+            found += [influence(name, x, metric, numbers(columns, metric)) for metric in metrics]
+    return [each for each in found if each is not None]
+
+
+def _groups(plan: Plan, columns: Columns) -> dict[str, list[int]]:
+    """Runs by the value of the first input that is no number; else all in one."""
+    for each in plan.inputs:
+        name = f"input: {each.name}"
+        if not each.numeric and name in columns:
+            values = columns[name]
+            return {str(v): [k for k, w in enumerate(values) if w == v] for v in dict.fromkeys(values)}
+    return {"all runs": list(range(len(columns["key"])))}
+
+
+def _worst(plan: Plan, columns: Columns, limits: dict[str, tuple[float, bool]]) -> dict[str, Any] | None:
+    """The run that misses most expectations; among equals the one furthest over its limits."""
+    count = len(columns["key"])
+    over = np.zeros(count)
+    for name, (limit, upper) in limits.items():
+        if f"metric: {name}" in columns and limit:
+            ratio = numbers(columns, f"metric: {name}") / limit
+            over = np.fmax(over, np.nan_to_num(ratio if upper else 2.0 - ratio, nan=0.0))
+    missed = [len([w for w in str(each or "").split("; ") if w]) for each in columns["missed"]]
+    failed = [bool(each) for each in columns["failure"]]
+    order = [k for k in range(count) if columns["index"][k] >= 0]
+    if not order:
+        return None
+    worst = max(order, key=lambda k: (failed[k], missed[k], over[k]))
+    inputs = {each.name: columns[f"input: {each.name}"][worst] for each in plan.inputs}
+    return {
+        "index": columns["index"][worst],
+        "key": columns["key"][worst],
+        "digest": (columns.get("digest") or [""] * count)[worst],
+        "missed": columns["missed"][worst] or "",
+        "failure": columns["failure"][worst] or "",
+        "inputs": inputs,
+    }
+
+
+def _write_worst(plan: Plan, index: int, path: Path) -> None:
+    """The scenario of one run as a file that runs alone, from anywhere."""
+    import yaml
+
+    case = plan.case(index)
+    document = dict(case.document)
+    plant = document.get("plant")
+    name = plant.get("file") if isinstance(plant, dict) else plant
+    beside = plan.scenario.parent.resolve() / str(name)
+    if name and beside.is_file():
+        document["plant"] = {**plant, "file": str(beside)} if isinstance(plant, dict) else str(beside)
+    head = f"# run {index} of the campaign {plan.name}, {case.key}\n"
+    write_file(path, head + yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
+
+
+def _summary(
+    columns: Columns, name: str, limits: dict[str, tuple[float, bool]], units: dict[str, str]
+) -> dict[str, Any]:
+    values = numbers(columns, name)
+    good = values[np.isfinite(values)]
+    short = name.removeprefix("metric: ")
+    row: dict[str, Any] = {"name": short, "unit": units.get(short, ""), "runs": len(good)}
+    if len(good):
+        row["quantiles"] = [f"{q:.4g}" for q in np.quantile(good, _QUANTILES)]
+        row["largest"] = f"{good.max():.4g}"
+    if short in limits:
+        limit, upper = limits[short]
+        row["limit"] = f"{'≤' if upper else '≥'} {limit:g}"
+        hits = int(np.sum(good > limit if upper else good < limit))
+        row["missed"] = "{:.1%} ({:.1%}–{:.1%})".format(*share(hits, len(good)))
+    return row
+
+
+def _failures(columns: Columns) -> list[tuple[str, int]]:
+    """Runs that ended in an error, by what they said."""
+    said: dict[str, int] = {}
+    for each in columns["failure"]:
+        if each:
+            said[each] = said.get(each, 0) + 1
+    return sorted(said.items(), key=lambda item: -item[1])[:20]
+
+
+def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:
+    cpu = numbers(columns, "cpu_s") if "cpu_s" in columns else np.zeros(1)
+    simulated = numbers(columns, "simulated_s") if "simulated_s" in columns else np.zeros(1)
+    return {
+        "wall_s": wall_s,
+        "made": made,
+        "cpu_s": float(np.nanmedian(cpu)),
+        "simulated_h": float(np.nansum(simulated)) / 3600.0,
+        "machines": sorted({str(each) for each in columns.get("machine", []) if each}),
+        "compiled": sum(bool(each) for each in columns.get("compiled", [])),
+    }

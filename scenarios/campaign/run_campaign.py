@@ -1,0 +1,116 @@
+"""`schmidt campaign`: plan, run, gather, report."""
+
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+from scenarios.campaign import plan, table
+from scenarios.campaign.executor import each
+from scenarios.campaign.job import Job, Row, run
+from scenarios.language.document import ScenarioError
+from scenarios.progress import shown
+
+COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
+
+
+def campaign(
+    file: Path,
+    out: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    task: Callable[[Job], Row] = run,
+) -> int:
+    """Run a campaign into a folder; exit 0 when every planned run is there, 130 when it was interrupted.
+
+    task: what makes a row of a planned run; the bench has one that does nothing.
+    """
+    from scenarios.campaign.report_page import write
+    from scenarios.run.probe import digest
+
+    planned = plan.load(file)
+    journal = table.Journal(out, resume)
+    ours = digest()  # also fills the cache of compiled kernels before the workers ask for it
+    begun = time.perf_counter()
+    late = False
+    before = len(journal.done)
+
+    def waiting() -> Iterator[tuple[str, Job]]:
+        nonlocal late
+        for case in planned.cases():
+            if case.key in journal.done:
+                continue
+            if planned.time_s is not None and time.perf_counter() - begun > planned.time_s:
+                late = True
+                return
+            yield case.key, _job(planned, case, out)
+
+    status = COMPLETE
+    with _interruptible(), shown("runs", planned.count, before) as advance:
+        try:
+            for done in each(task, waiting(), jobs=jobs, scheduler=scheduler):
+                if done.value is None:
+                    journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
+                    status = INCOMPLETE
+                elif done.value["probe"] != ours:
+                    raise ScenarioError(_other_version(done.value, ours))
+                else:
+                    journal.add(done.value)
+                advance(len(journal.done), f"{len(journal.done)} of {planned.count}")
+        except KeyboardInterrupt:
+            status = INTERRUPTED
+        finally:
+            journal.close()
+    wall_s = time.perf_counter() - begun
+    if not journal.done:
+        print(f"schmidt: no run has ended; nothing is in {out}", file=sys.stderr)
+        return status or INCOMPLETE
+    table.write(out)
+    write(planned, out, wall_s, len(journal.done) - before)
+    missing = planned.count - len(journal.done)
+    where = f"report {out / 'report.html'}, table {out / table.TABLE}"
+    print(f"{len(journal.done)} of {planned.count} runs, {where}")
+    if missing > 0:
+        why = "interrupted" if status == INTERRUPTED else "out of time" if late else "workers were lost"
+        print(f"schmidt: {why}, {missing} runs are missing: --resume makes them", file=sys.stderr)
+        return status or INCOMPLETE
+    return status
+
+
+def _job(planned: plan.Plan, case: plan.Case, out: Path) -> Job:
+    return Job(
+        key=case.key,
+        index=case.index,
+        values=case.values,
+        document=case.document,
+        beside=str(planned.scenario.parent.resolve()),
+        metrics=planned.metrics,
+        keep=planned.keep,
+        kept=None if planned.keep == "nothing" else str(out.resolve() / "runs"),
+    )
+
+
+def _other_version(row: Row, ours: str) -> str:
+    return (
+        f"the worker on {row['machine']} runs another version (schmidt {row['version']}): "
+        f"the digest of its probe is {row['probe'][:12]}, here it is {ours[:12]}"
+    )
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """SIGTERM ends a campaign as Ctrl-C does."""
+
+    def stop(_signal: int, _frame: FrameType | None) -> NoReturn:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,104 @@
+"""The host program beside `schmidt serve`: telescope client, consoles, LX200, Alpaca in their own process."""
+
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from threading import Lock
+
+from host.outside import Outside
+from scenarios.doors.busmirror import BusMirror
+from scenarios.doors.hostmessages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
+from scenarios.doors.keeper import Keeper
+from scenarios.doors.pc import TelescopePc
+from scenarios.doors.runs import RecordedRuns
+from scenarios.doors.table import ON_HOST, doors_on
+
+_LOOK_S = 0.02
+"""Wall time without a slice after which the host looks for itself, for a stop while time stands still."""
+
+
+class HostMain:
+    """What the pipe brings goes to the telescope client; what it and the pages want goes back."""
+
+    def __init__(self, pipe: Connection, settings: Settings) -> None:
+        self._pipe = pipe
+        self._sending = Lock()
+        self._now_ns = 0
+        options = settings.options
+        self.pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
+        self.outside = Outside()
+        self.bus = BusMirror(settings.boards, settings.kinds, self._send)
+        self.runs = RecordedRuns(options.runs, settings.headers, self.pc.journal)
+        self._doors = doors_on(ON_HOST, options, self)
+        self._keepers = [Keeper(door, lambda text: self._send(Said(text))) for door in self._doors]
+
+    def run(self) -> None:
+        """Until told to close, or nobody is there any more."""
+        try:
+            for keeper in self._keepers:
+                keeper.open()
+        except (OSError, ValueError) as error:
+            self._send(Opened([], str(error)))
+            self._close()
+            return
+        self._send(Opened(self._told()))
+        try:
+            while not self._pipe.poll(_LOOK_S) or self._take(self._pipe.recv()):
+                self.pc.poll(self._now_ns)
+                for keeper in self._keepers:
+                    keeper.poll(self._now_ns)
+        except (EOFError, OSError):  # the emulator has gone without a word
+            self._close()
+            return
+        told = self._told()
+        self._close()
+        self._send(Taken(False, False, told))
+
+    def _take(self, message: object) -> bool:
+        """A message; False when it is the last."""
+        if isinstance(message, Slice):
+            self._now_ns = message.now_ns
+            for t_ns, report in message.reports:
+                self.pc.link.receive(t_ns, report)
+            for board, data in message.lines:
+                self.runs.receive(message.now_ns, board, data)
+            if message.bus is not None:
+                self.bus.state = message.bus
+            self.pc.poll(self._now_ns)
+            self._send(Taken(self.bus.watching, self.runs.recording, self._told()))
+        elif isinstance(message, Done):
+            self.bus.done(message)
+        return not isinstance(message, Close)
+
+    def _told(self) -> list[tuple[str, str]]:
+        now = self.pc.telescope.snapshot
+        state = f"{now.activity}, {self.pc.journal.errors} errors"
+        return [("the host", state), *((door.name, door.state()) for door in self._doors)]
+
+    def _close(self) -> None:
+        for keeper in self._keepers:
+            keeper.close()
+        self.outside.close()
+        self.pc.close()
+
+    def _report(self, _t_ns: int, report: bytes) -> None:
+        self._send(Report(report))
+
+    def _send(self, message: object) -> None:
+        with self._sending, suppress(ConnectionError):  # an emulator that has gone is seen when it is heard
+            self._pipe.send(message)
+
+
+def main(number: int) -> None:
+    """Of the process; the pipe's file number is inherited."""
+    with Connection(number) as pipe:
+        try:
+            settings = pipe.recv()
+        except EOFError:
+            return
+        try:
+            side = HostMain(pipe, settings)
+        except (OSError, ValueError) as error:
+            with suppress(ConnectionError):
+                pipe.send(Opened([], str(error)))
+            return
+        side.run()

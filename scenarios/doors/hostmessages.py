@@ -1,0 +1,101 @@
+"""What `schmidt serve` and the host program beside it tell each other, over a pipe.
+
+The host has a process of its own, as it has on the telescope: browsers and HTTP would otherwise hold Python's
+lock when a tick is due. Nothing but these values crosses; the emulator's side is `hostprocess`, the host's
+`hostmain`.
+"""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from bus.protocol import Device
+from host.console.views import FaultKind, Node
+from scenarios.doors.options import DoorOptions
+from scenarios.language.model import Scenario
+
+
+class Settings(NamedTuple):
+    """The first message: all that a host is told. boards: names of all; devices: those it expects; headers:
+    of the axis logs; `scenario` has a date."""
+
+    scenario: Scenario
+    options: DoorOptions
+    boards: list[str]
+    devices: tuple[Device, ...]
+    headers: dict[str, dict[str, str]]
+    kinds: list[FaultKind]
+
+
+class BusState(NamedTuple):
+    """The wire as it stands. frames: (end, sender, identifier, data) of the last ones, newest last."""
+
+    nodes: list[Node]
+    load: float
+    errors: dict[str, int]
+    running: list[tuple[int, str]]
+    frames: list[tuple[int, str, int, bytes]]
+
+
+class Slice(NamedTuple):
+    """To the host: simulated time has come this far, and this has come over the cables since. lines: (board,
+    bytes) of RS232 lines that are recorded. bus: None when nobody looks at it."""
+
+    now_ns: int
+    reports: list[tuple[int, bytes]]
+    lines: list[tuple[str, bytes]]
+    bus: BusState | None
+
+
+class Taken(NamedTuple):
+    """From the host: that slice is done with. Until then no other is sent. watching: somebody looks at the
+    bus; recording: somebody wants the lines; doors: (name, state) of each."""
+
+    watching: bool
+    recording: bool
+    doors: list[tuple[str, str]]
+
+
+class Report(NamedTuple):
+    """From the host: a USB report for the gateway."""
+
+    data: bytes
+
+
+class Said(NamedTuple):
+    """From the host: a line for the user, such as a door that broke."""
+
+    text: str
+
+
+class Wish(NamedTuple):
+    """From the host: do something to the emulator (a name in `EmulatedBus`); answered by `Done`."""
+
+    number: int
+    name: str
+    arguments: tuple[Any, ...]
+
+
+class Done(NamedTuple):
+    """To the host: what became of a wish; bad: it was refused, and why."""
+
+    number: int
+    text: str
+    bad: bool
+
+
+class Opened(NamedTuple):
+    """From the host, once: doors are open, or why not."""
+
+    doors: list[tuple[str, str]]
+    error: str = ""
+
+
+class Close(NamedTuple):
+    """To the host: hang up, write the logs, answer `Taken` and end."""
+
+
+def program() -> str:
+    """The host's side as Python is told to run it; the pipe's number is its argument."""
+    return f"import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r});" + (
+        " from scenarios.doors.hostmain import main; main(int(sys.argv[1]))"
+    )

@@ -1,0 +1,137 @@
+"""`schmidt host`: the host program by itself, on real cables or on a served network's."""
+
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+from time import monotonic, sleep
+
+from rich.console import Console
+
+from bus.protocol import Device
+from host.client import TICK_NS
+from host.console.heard import HeardBus
+from host.links.ports import CanPort, HidrawPort, SerialPort, SocketPort
+from host.links.task import LinkTask
+from host.outside import Outside
+from host.serial_link import SerialLink
+from scenarios.doors.keeper import Keeper
+from scenarios.doors.options import HostOptions
+from scenarios.doors.pc import TelescopePc, dated
+from scenarios.doors.runs import RecordedRuns
+from scenarios.doors.table import ON_HOST, doors_on
+from scenarios.lab.networks import config_from, devices_of
+from scenarios.lab.prepare import chosen
+from scenarios.lab.session import log_headers
+from scenarios.language.model import Scenario
+
+SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
+_SERIAL = "serial "
+
+
+class HostProgram:
+    """Links, telescope and doors on the PC's own clock."""
+
+    def __init__(self, options: HostOptions, console: Console) -> None:
+        """Raises ValueError for what cannot be meant."""
+        ports = _ports(options.serial)
+        self.inbox: SimpleQueue[tuple[str, bytes]] = SimpleQueue()
+        said: SimpleQueue[str] = SimpleQueue()
+        self._said, self._console = said, console
+        scenario, model = chosen(options.scenario, network_name=options.network)
+        scenario = dated(scenario)
+        self.pc = TelescopePc(scenario, self._send, expected(scenario), options.logs)
+        self.outside = Outside()
+        self.usb = LinkTask(options.usb, lambda: _port(options.usb), self.inbox, said.put)
+        self.tasks = [self.usb]
+        self.serial: dict[str, SerialLink] = {}
+        for board, url in ports.items():
+            self.tasks.append(LinkTask(_SERIAL + board, _serial(url), self.inbox, said.put))
+            self.serial[_SERIAL + board] = SerialLink(
+                Device[board], self.pc.journal, lambda _t, _packet: None
+            )
+        self.bus = HeardBus(self.pc.telescope.client)
+        self.runs = RecordedRuns(options.runs, log_headers(scenario, model), self.pc.journal, list(ports))
+        self.keepers = [Keeper(door, console.print) for door in doors_on(ON_HOST, options, self)]
+        self._start_s = monotonic()
+
+    def run(self, duration_s: float | None = None) -> None:
+        """Until Ctrl-C, or for a time."""
+        try:
+            for keeper in self.keepers:
+                keeper.open()
+            for task in self.tasks:
+                task.start()
+            doors = ", ".join(keeper.door.name for keeper in self.keepers) or "no door"
+            self._console.print(f"host on {self.usb.name} with {doors}; Ctrl-C ends it")
+            while duration_s is None or monotonic() - self._start_s < duration_s:
+                self.tick()
+                sleep(max(0.0, TICK_NS * 1e-9 - (monotonic() - self._start_s) % (TICK_NS * 1e-9)))
+        except KeyboardInterrupt:
+            pass
+        finally:
+            self.close()
+
+    def tick(self) -> None:
+        """What has come in since the last one, then the telescope."""
+        now_ns = round((monotonic() - self._start_s) * 1e9)
+        for _ in range(self.inbox.qsize()):
+            name, data = self.inbox.get()
+            if name in self.serial:
+                self.serial[name].receive(now_ns, data)
+                self.runs.receive(now_ns, name.removeprefix(_SERIAL), data)
+            else:
+                self.pc.link.receive(now_ns, data)
+                self.bus.take(now_ns, data)
+        self.pc.poll(now_ns)
+        for link in self.serial.values():
+            link.watch(now_ns)
+        for keeper in self.keepers:
+            keeper.poll(now_ns)
+        self._tell(now_ns)
+
+    def close(self) -> None:
+        """Doors, links, logs."""
+        for keeper in self.keepers:
+            keeper.close()
+        self.outside.close()
+        for task in self.tasks:
+            task.close()
+        self.pc.close()
+
+    def _tell(self, now_ns: int) -> None:
+        while True:
+            try:
+                line = self._said.get_nowait()
+            except Empty:
+                return
+            self._console.print(line)
+            self.pc.journal.status(now_ns, "LINK", line)
+
+    def _send(self, _t_ns: int, report: bytes) -> None:
+        self.usb.write(report)
+
+
+def expected(scenario: Scenario) -> tuple[Device, ...]:
+    """The boards that a scenario's network has: those that should live."""
+    return devices_of(config_from(scenario.network, {}, scenario.file.parent))
+
+
+def _port(spec: str) -> HidrawPort | SocketPort | CanPort:
+    kind, _, rest = spec.partition(":")
+    if kind == "unix":
+        return SocketPort(rest)
+    return CanPort(rest) if kind == "can" else HidrawPort(spec)
+
+
+def _serial(url: str) -> Callable[[], SerialPort]:
+    return lambda: SerialPort(url)
+
+
+def _ports(serial: tuple[str, ...]) -> dict[str, str]:
+    """Ports of the RS232 lines, by board."""
+    ports: dict[str, str] = {}
+    for each in serial:
+        board, equals, url = each.partition("=")
+        if board not in SERIAL or not equals or not url:
+            raise ValueError(f'--serial "{each}": expected BOARD=PORT, BOARD one of {", ".join(SERIAL)}')
+        ports[board] = url
+    return ports

@@ -1,0 +1,124 @@
+"""A served network: everything a door may touch."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from bus.outside.node import OutsideNode
+from bus.outside.pacer import Pacer
+from bus.outside.punctual import Punctuality
+from plant.model import PlantModel
+from scenarios.doors.entry import Entry, Journal
+from scenarios.doors.lines import Lines
+from scenarios.doors.usb import Usb
+from scenarios.lab.wiring import wired
+from scenarios.language.model import Scenario
+
+if TYPE_CHECKING:
+    from scenarios.doors.standing import Standing
+    from scenarios.doors.steps import Steps
+
+BOARD = "board"
+"""Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""
+DEBUG = "debug"
+"""Kind of entry of a debug port: `NAME ` and the bytes."""
+FAULT = "fault"
+"""Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
+
+
+class LiveNetwork:
+    """Network, pace and ways in. Nothing in here knows a particular door.
+
+    entry: where things enter. usb: the gateway's USB cable, for host programs in this process too. lines: the
+    five RS232 lines. pacer: speed and pause, both changeable at any time. `stop()` ends the serving.
+    nodes: of the doors to CAN, by their kinds of entry. snapshot: takes one of this session under a name and
+    says where; None: it takes none. begun: a network to go on with, instead of a new one.
+    steps: when clients step time; None: it is paced.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        model: PlantModel,
+        speed: float = 1.0,
+        journal: Journal | None = None,
+        begun: Standing | None = None,
+    ) -> None:
+        self.scenario = scenario
+        self.model = model
+        self.network, self.faults = wired(scenario, model) if begun is None else (begun.network, begun.faults)
+        self.entry = Entry(self.network.queue, journal)
+        cable = None if begun is None else begun.usb
+        self.usb = cable or Usb(self.network.queue, self.network.hid)
+        self.usb.enter_by(self.entry)
+        self.nodes: dict[str, OutsideNode] = {} if begun is None else begun.nodes
+        self.snapshot: Callable[[str], str] | None = None
+        self.lines = Lines(self.network.uarts)
+        self.pacer = Pacer(self.network.queue, speed)
+        self.punctual = Punctuality(self.pacer)
+        self.ending = False
+        self.steps: Steps | None = None
+        self.entry.register(BOARD, self._switch)
+        self.entry.register(DEBUG, self._debug)
+        self.entry.register(FAULT, self._fault)
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        return self.network.queue.now_ns
+
+    def node(self, index: int) -> OutsideNode:
+        """The node on the wire for the door to CAN of this number, from 0 on."""
+        kind = f"can{index}"
+        if kind not in self.nodes:
+            name = f"outside {index}" if index else "outside"
+            self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
+        return self.nodes[kind]
+
+    def stop(self) -> None:
+        """End the serving with the next slice."""
+        self.ending = True
+
+    def switch(self, board: str, on: bool) -> None:
+        """Switch the supply of a board, by name; raises NetworkError for one there is not."""
+        self.network.board(board)
+        self.entry.enter(BOARD, f"{board} {'on' if on else 'off'}".encode())
+
+    def _switch(self, data: bytes) -> None:
+        name, _, state = data.decode().partition(" ")
+        board = self.network.board(name)
+        (board.power_on if state == "on" else board.power_off)(self.now_ns)
+
+    def debug(self, board: str, data: bytes) -> None:
+        """Bytes for a board's debug port."""
+        self.entry.enter(DEBUG, board.encode() + b" " + data)
+
+    def _debug(self, data: bytes) -> None:
+        name, _, text = data.partition(b" ")
+        self.network.debug[name.decode()].write(self.now_ns, text)
+
+    def start_fault(self, name: str, **arguments: Any) -> int:
+        """Start a fault now (`scenarios.lab.faults`); returns its number. Raises FaultError."""
+        values = self.faults.check(name, arguments)
+        self.entry.enter(FAULT, f"start {name} {json.dumps(values)}".encode())
+        return self.faults.running[-1].number
+
+    def clear_fault(self, number: int) -> None:
+        """End a fault now; raises FaultError when it is not on."""
+        if all(each.number != number for each in self.faults.running):
+            self.faults.clear(number)  # says what is on
+        self.entry.enter(FAULT, f"clear {number}".encode())
+
+    def _fault(self, data: bytes) -> None:
+        word, _, rest = data.decode().partition(" ")
+        if word == "clear":
+            self.faults.clear(int(rest))
+            return
+        name, _, arguments = rest.partition(" ")
+        self.faults.start(name, **json.loads(arguments))
+
+    def run_until(self, t_ns: int) -> None:
+        """Let simulated time go on to `t_ns`, as fast as it goes."""
+        self.network.queue.run_until(t_ns)

@@ -1,0 +1,104 @@
+"""The host's telescope client for a scenario: link, logs, telescope, ticked by whoever owns the time."""
+
+import datetime as dt
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Protocol
+
+from bus.protocol import Device
+from host.client import TICK_NS, Client
+from host.console.views import BusView
+from host.link import HidLink
+from host.logs.ascii import AsciiLogs
+from host.logs.journal import Journal
+from host.logs.rotation import rotating
+from host.logs.sensors import readings
+from host.lx200.server import Lx200
+from host.outside import Outside
+from host.sky.observed import Clock
+from host.telescope import Observatory, Telescope
+from scenarios.doors.runs import RecordedRuns
+from scenarios.lab.networks import in_order
+from scenarios.lab.prepare import UNDATED
+from scenarios.language.model import Scenario
+
+
+def dated(scenario: Scenario) -> Scenario:
+    """The scenario, with today's sky when it has no date."""
+    if scenario.clock is not UNDATED:
+        return scenario
+    return replace(scenario, clock=Clock(dt.datetime.now(dt.UTC).replace(microsecond=0)))
+
+
+class TelescopePc:
+    """send: takes (t_ns, report), 64-byte OUT reports. devices: the boards that should live.
+    logs: folder of the four ASCII logs, or None.
+
+    A scenario without a date (the lab network) gets today's sky.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        send: Callable[[int, bytes], None],
+        devices: Sequence[Device],
+        logs: Path | None = None,
+    ) -> None:
+        scenario = dated(scenario)
+        self.clock = scenario.clock
+        if logs is not None:
+            logs.mkdir(parents=True, exist_ok=True)
+        self.files = None if logs is None else AsciiLogs(logs, self.clock.iso, rotating)
+        self.journal = Journal(self.files)
+        self.observatory = Observatory(scenario.site, self.clock, scenario.mount, scenario.horizon_rad)
+        self.link = HidLink(send)
+        client = Client(self.link, self.journal, in_order(devices))
+        self.telescope = Telescope(client, self.observatory, self.journal)
+        self._log_ns = round(scenario.status_period_s * 1e9)
+        self._next_log_ns = 0
+        self._next_ns = 0
+
+    @cached_property
+    def lx200(self) -> Lx200:
+        """The handbox that all LX200 doors share."""
+        return Lx200(self.telescope)
+
+    def poll(self, t_ns: int) -> None:
+        """Tick, when one is due, or at once for an emergency stop."""
+        if t_ns >= self._next_ns:
+            self._next_ns = max(self._next_ns + TICK_NS, t_ns + 1)
+        elif not self.telescope.urgent:
+            return
+        self.telescope.tick(t_ns)
+        if self.files is not None and t_ns >= self._next_log_ns:
+            self._next_log_ns = t_ns + self._log_ns
+            self.journal.sensors(t_ns, readings(self.telescope.client, self.observatory.mount))
+            self.files.flush()  # who follows a log reads it now, and a host that is killed has left it
+
+    def close(self) -> None:
+        """Bring the logs to disk; whoever still waits for the telescope is told that it is gone."""
+        self.telescope.close()
+        if self.files is not None:
+            self.files.close()
+
+
+class Host(Protocol):
+    """What doors for other programs stand on: the host program beside `schmidt serve`, or by itself."""
+
+    @property
+    def pc(self) -> TelescopePc:
+        """The telescope client."""
+
+    @property
+    def outside(self) -> Outside:
+        """Where servers run."""
+
+    @property
+    def bus(self) -> BusView:
+        """The wire, for the bus page."""
+
+    @property
+    def runs(self) -> RecordedRuns:
+        """Axis logs that a console records."""

@@ -1,0 +1,61 @@
+"""A client of `schmidt serve --clock steps`, in Python: time goes on in its calls and stands between."""
+
+import socket
+from contextlib import AbstractContextManager
+
+from bus.can import Frame
+from bus.can.candump import line, parsed
+from scenarios.doors.address import address
+from scenarios.doors.control import ControlError
+
+
+class Stepped(AbstractContextManager["Stepped"]):
+    """Joins the network served at [HOST:]PORT, once `clients` have (docs/guides/stepped-host.md).
+
+    name: puts its frames in order with those of others. token: for servers of another machine. Raises
+    ControlError for what is refused, OSError.
+    """
+
+    def __init__(self, at: str, name: str = "", clients: int = 1, token: str | None = None) -> None:
+        self._socket = socket.create_connection(address(at, "at"))
+        self._stream = self._socket.makefile("rw", encoding="utf-8", newline="\n")
+        self.now_ns = 0
+        """Simulated time after the last step."""
+        if token is not None:
+            self.ask(f"token {token}")
+        self.ask(f"join {clients} {name}")
+        self.ask("listen")
+
+    def ask(self, command: str) -> str:
+        """A line of the control plane; its answer without `ok`."""
+        return self._said(command)[1]
+
+    def _said(self, command: str) -> tuple[list[tuple[int, Frame]], str]:
+        self._stream.write(command + "\n")
+        self._stream.flush()
+        heard = []
+        while True:
+            text = self._stream.readline().rstrip("\n")
+            if text.startswith("("):
+                found = parsed(text)
+                assert found is not None, text
+                heard.append(found)
+            elif text.startswith("ok"):
+                return heard, text[3:]
+            else:
+                raise ControlError(text.removeprefix("error: ") or "the server has gone")
+
+    def send(self, identifier: int, data: bytes) -> None:
+        """A frame, with the next step."""
+        self.ask("send " + line(0, Frame(identifier, data)).split()[2])
+
+    def step(self, span: str) -> list[tuple[int, Frame]]:
+        """Let time go on by `5 ms`; every frame of the bus meanwhile, and when it ended, ns."""
+        heard, now = self._said(f"step {span}")
+        self.now_ns = int(now)
+        return heard
+
+    def __exit__(self, *_error: object) -> None:
+        """Leave; nobody waits for it any more."""
+        self._stream.close()
+        self._socket.close()

@@ -1,0 +1,184 @@
+"""The doors there are, one row each.
+
+A new door is a file beside this one, with a class that is a `Door`, and a row here: `schmidt serve` has its
+option then, and `schmidt host`, too, when it stands on the host program. Doors are imported when one is asked
+for, as the command line needs the rows alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+
+from scenarios.doors.options import DoorOptions, OptionError
+
+if TYPE_CHECKING:
+    from scenarios.doors.door import Door
+    from scenarios.doors.livenetwork import LiveNetwork
+    from scenarios.doors.pc import Host
+
+Place = TypeVar("Place")
+"""What a door stands on: the network in this process, or the host program wherever it runs."""
+
+
+class Asked(NamedTuple):
+    """One door as it was asked for. spec: what follows its option; number: of its kind, from 0."""
+
+    spec: str
+    number: int
+    options: DoorOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class DoorKind(Generic[Place]):
+    """A row: the option `--name` with its value's form, what `-h` says of it, what makes the door.
+
+    extra: of pyproject.toml, with the packages it imports beyond those of every installation.
+    """
+
+    name: str
+    form: str
+    help: str
+    make: Callable[[Asked, Place], Door]
+    repeatable: bool = True
+    extra: str | None = None
+
+
+def _can(asked: Asked, live: LiveNetwork) -> Door:
+    from scenarios.doors.can import CanDoor
+
+    return CanDoor(asked.spec, asked.number, live)
+
+
+def _serial(asked: Asked, live: LiveNetwork) -> Door:
+    from scenarios.doors.serial_pty import PtyDoor
+    from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
+
+    kinds: dict[str, type[PtyDoor | TcpDoor]] = {"pty": PtyDoor, "tcp": TcpDoor, "rfc2217": Rfc2217Door}
+    kind, _, rest = asked.spec.partition(":")
+    if kind not in kinds or not rest:
+        raise OptionError(
+            f'--serial "{asked.spec}": expected pty:DIR, tcp:[HOST:]PORT or rfc2217:[HOST:]PORT'
+        )
+    return kinds[kind](rest, live)
+
+
+def _hid(asked: Asked, live: LiveNetwork) -> Door:
+    from scenarios.doors.hid_uhid import UhidDoor
+    from scenarios.doors.hid_unix import UnixDoor
+
+    if asked.spec == "uhid":
+        return UhidDoor(live)
+    kind, _, path = asked.spec.partition(":")
+    if kind != "unix" or not path:
+        raise OptionError(f'--hid "{asked.spec}": expected uhid or unix:PATH')
+    return UnixDoor(path, live)
+
+
+def _debug(asked: Asked, live: LiveNetwork) -> Door:
+    from scenarios.doors.debug_pty import DebugDoor
+
+    return DebugDoor(asked.spec, live)
+
+
+def _control(asked: Asked, live: LiveNetwork) -> Door:
+    from scenarios.doors.control import ControlDoor
+
+    return ControlDoor(asked.spec, asked.options.token, live)
+
+
+def _lx200(asked: Asked, host: Host) -> Door:
+    from scenarios.doors.lx200 import Lx200Door
+
+    return Lx200Door(asked.spec, host)
+
+
+def _alpaca(asked: Asked, host: Host) -> Door:
+    from scenarios.doors.alpaca import AlpacaDoor
+
+    return AlpacaDoor(asked.spec, host)
+
+
+def _console(asked: Asked, host: Host) -> Door:
+    from scenarios.doors.console import ConsoleDoor
+
+    return ConsoleDoor(asked.spec, asked.options.token, host)
+
+
+ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
+    DoorKind(
+        name="can",
+        form="INTERFACE:CHANNEL",
+        help="The CAN bus, such as socketcan:vcan0; repeatable.",
+        make=_can,
+    ),
+    DoorKind(
+        name="serial",
+        form="pty:DIR|tcp:PORT|rfc2217:PORT",
+        help="The RS232 lines: pseudo-terminals in DIR, or TCP ports from PORT on (five; final: twelve).",
+        make=_serial,
+    ),
+    DoorKind(
+        name="hid", form="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket.", make=_hid
+    ),
+    DoorKind(
+        name="debug",
+        form="DIR",
+        help="Every board's debug port as a pseudo-terminal in DIR (slcan).",
+        make=_debug,
+        repeatable=False,
+    ),
+    DoorKind(
+        name="control",
+        form="[HOST:]PORT",
+        help="Speed, pause, status, stop (see schmidt control).",
+        make=_control,
+        repeatable=False,
+    ),
+)
+"""In the order in which their nodes come onto the wire."""
+ON_HOST: tuple[DoorKind[Host], ...] = (
+    DoorKind(
+        name="lx200",
+        form="[HOST:]PORT|pty:NAME",
+        help="LX200, for Stellarium and INDI; repeatable.",
+        make=_lx200,
+    ),
+    DoorKind(
+        name="alpaca",
+        form="[HOST:]PORT",
+        help="ASCOM Alpaca telescope and focuser, with discovery.",
+        make=_alpaca,
+        extra="alpaca",
+        repeatable=False,
+    ),
+    DoorKind(
+        name="console",
+        form="[HOST:]PORT",
+        help="The consoles, for a browser.",
+        make=_console,
+        extra="consoles",
+        repeatable=False,
+    ),
+)
+
+
+def asked(kinds: Sequence[DoorKind[Place]], options: DoorOptions) -> list[tuple[DoorKind[Place], Asked]]:
+    """What the options ask for of these kinds, in the table's order."""
+    return [
+        (kind, Asked(spec, number, options))
+        for kind in kinds
+        for number, spec in enumerate(options.asked.get(kind.name, ()))
+    ]
+
+
+def doors_on(kinds: Sequence[DoorKind[Place]], options: DoorOptions, place: Place) -> list[Door]:
+    """Those that the options ask for, closed. Raises ValueError subclasses for what cannot be meant."""
+    return [kind.make(each, place) for kind, each in asked(kinds, options)]
+
+
+def named(kinds: Iterable[DoorKind[Any]], joined: str) -> str:
+    """Their options in a sentence: `--lx200, --alpaca and --console`."""
+    *most, last = [f"--{kind.name}" for kind in kinds]
+    return f"{', '.join(most)} {joined} {last}"

@@ -1,0 +1,60 @@
+"""Commissioning: what the axis boards are set to for a plant's drive."""
+
+from math import pi
+
+from boards.axis import AxisConfig
+from boards.axis.config import TICK_NS
+from bus.protocol.scales import COUNTS_PER_TURN
+from plant.gears import RATIO
+from plant.parts import AxisModel, PlantModel
+from plant.plant import Plant
+
+_FRAME_BITS = 120
+"""Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
+POINTING_BANDWIDTH = 22.0
+"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors
+against the axis (about 130 rad/s, 5 % damped), which 10 ms of delay would otherwise drive."""
+_POINTING_KI = 0.08
+"""Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
+_CREEP_KI = 0.15
+"""Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
+
+
+def _inertia(axis: AxisModel) -> float:
+    """Load and both rotors at the axis, kg m2."""
+    return axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2
+
+
+def _unit_gain(model: PlantModel, axis: AxisModel) -> float:
+    """PWM steps that accelerate the axis by 1 count/5 ms in a second."""
+    motor, controller = axis.motor, model.controller
+    ohm = motor.loop
+    volts = model.supply.voltage.si * (1.0 - controller.counter_split.si) / controller.pwm_steps.si
+    torque_per_step = volts / ohm * motor.torque_constant.si * RATIO
+    counts_per_rad_s = COUNTS_PER_TURN / (2 * pi) * TICK_NS * 1e-9
+    return _inertia(axis) / (torque_per_step * counts_per_rad_s)
+
+
+def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) -> AxisConfig:
+    """Settings of an axis board that follow from the plant's drive: gains, split, PWM.
+
+    The file's Kp and Ki are those of the RA axis; the other axis gets them scaled by its inertia.
+    """
+    model = plant.model
+    controller = model.controller
+    part: AxisModel = getattr(model.axes, axis)
+    scale = _unit_gain(model, part) / _unit_gain(model, model.axes.ra)
+    pointing = POINTING_BANDWIDTH * _unit_gain(model, part)
+    return AxisConfig(
+        kp=controller.kp.si * scale,
+        ki=controller.ki.si * scale,
+        kp_pointing=pointing,
+        ki_pointing=pointing * _POINTING_KI,
+        ki_creep=pointing * _CREEP_KI,
+        counter_split=round(controller.counter_split.si * 100),
+        pwm_steps=round(controller.pwm_steps.si),
+        pwm_hz=round(controller.pwm_frequency.si),
+        low=limits[0],
+        high=limits[1],
+        frame_ns=_FRAME_BITS * round(1e9 / bitrate),
+    )

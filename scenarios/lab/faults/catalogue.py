@@ -1,0 +1,151 @@
+"""docs/reference/faults.md and the faults of the scenario schema, both from the table."""
+
+from typing import Any
+
+from scenarios.lab.faults.kind import Kind
+from scenarios.lab.faults.onsensor import unit
+from scenarios.lab.faults.parameter import Parameter
+from scenarios.lab.faults.place import AXES, SENSORS
+from scenarios.lab.faults.table import KINDS
+
+_LEVELS = {
+    "bus": "The cable and who is on it.",
+    "board": "A board as a whole.",
+    "chip": "Single chips, and the lines between them.",
+    "sensor": "What lies between the plant and the chip that reads it.",
+    "actuator": "The power stages and their supply.",
+    "plant": "What the motors turn.",
+}
+_WORDS: dict[str, dict[str, Any]] = {
+    "node": {"$ref": "#/$defs/node"},
+    "nodes": {"type": "array", "items": {"$ref": "#/$defs/node"}, "minItems": 1, "uniqueItems": True},
+    "sensor": {"enum": list(SENSORS)},
+    "axis": {"enum": list(AXES)},
+    "motor": {"enum": ["a", "b"]},
+}
+_HEAD = """# Faults
+
+Made from the table of faults (`scenarios/lab/faults/table.py`) by `python -m scenarios.run.publish`; do not edit. The same table is the schema, the live call and the code.
+
+A fault acts from a start until an end. In a scenario:
+
+```yaml
+faults:
+  - stuck_dominant: {}
+    at: 20 s
+    until: 20.5 s
+  - sensor_noise: {sensor: ra.absolute, deviation: 40}
+    name: a noisy encoder       # for the reader
+    at: 1 min                   # default: the start; until: default: the end
+```
+
+**Whether it acted.** A fault records when it first acted, and on what: a frame, a sample, an interrupt, a duty. `summary.json` (`faults`) and the report show it.
+A fault of a scenario that never acted fails the run. It may have begun too late, or met nothing, such as `frame_loss` of a board that is off.
+`may_not_act: true` beside it allows that. A campaign counts such faults of each run (`silent_faults`).
+
+From Python, on a network that runs (`scenarios.lab.faults.Faults`; numbers in base units, or text with a unit):
+
+```python
+faults = Faults(network, seed=1)
+number = faults.start("wrong_bitrate", node="DISPLAY", bitrate="125 kbit/s")
+network.run_until(...)
+faults.clear(number)  # faults.running: what is on; faults.kinds(): this table
+```
+
+On a served network: `served.start_fault(name, **arguments)` and `served.clear_fault(number)`, or the control plane, `schmidt control fault start babbler load=50%`, `fault clear 0`, `fault list`.
+There they enter like everything else: a recorded session replays with them.
+
+**What clearing means.** A fault that is over leaves nothing of its machinery in the network. Pins, receivers, parameters and the queue are those of a network that never had it. What it has
+moved stays moved, and is listed as "left" below. Where it says "nothing", the bus carries the same bits as in an undisturbed run. That holds once what was sampled under the fault has been sent. Tests show
+both for every fault of the table: from the state at clearing, a network without the machinery goes on bit by bit alike. (`tests/scenarios/lab/faults/`.)
+
+Several faults may act on the same thing; they may be cleared in any order.
+"""  # noqa: E501 - a page's lines
+
+
+def _values(each: Parameter) -> str:
+    if each.type in ("node", "nodes"):
+        return "a board" if each.type == "node" else "a list of boards"
+    if each.type in ("axis", "motor"):
+        return " ".join(f"`{word}`" for word in _WORDS[each.type]["enum"])
+    if each.type == "sensor":
+        return "a sensor"
+    kind = each.quantity or {"identifier": "a standard identifier", "whole": "a whole number"}.get(
+        each.type, "a number"
+    )
+    unit_text = f" {each.unit}" if each.unit not in ("", "1") else ""
+    if each.low is not None and each.high is not None:
+        kind += f", {each.low:g} to {each.high:g}{unit_text}"
+    return kind
+
+
+def _argument(each: Parameter) -> str:
+    default = "" if each.default in (None, "") else f", default {each.default:g}"
+    optional = " optional," if each.default == "" else ""
+    return f"`{each.name}`:{optional} {each.text} ({_values(each)}{default})"
+
+
+def page() -> str:
+    """The documentation."""
+    lines = [_HEAD]
+    for level, text in _LEVELS.items():
+        lines += [f"## {level.capitalize()}", text, ""]
+        lines += ["| fault | arguments | what happens | left when cleared |", "|---|---|---|---|"]
+        for kind in KINDS:
+            if kind.level == level:
+                arguments = ". ".join(_argument(each) for each in kind.parameters) or "none: `{}`"
+                lines.append(f"| `{kind.name}` | {arguments} | {kind.text} | {kind.cleared} |")
+        lines.append("")
+    units: dict[str, list[str]] = {}
+    for sensor in SENSORS:
+        units.setdefault(unit(sensor) or "a level", []).append(f"`{sensor}`")
+    lines += ["## Sensors", "| read in | sensors |", "|---|---|"]
+    lines += [f"| {each} | {' '.join(names)} |" for each, names in units.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _property(each: Parameter) -> dict[str, Any]:
+    if each.type in _WORDS:
+        return {**_WORDS[each.type], "description": each.text}
+    if each.quantity:
+        within = [each.low, each.high]
+        return {"$ref": f"#/$defs/{each.quantity}", "x-range": within, "description": each.text}
+    rule: dict[str, Any] = {"type": "integer" if each.type in ("identifier", "whole") else "number"}
+    bounds = {"minimum": each.low, "maximum": each.high}
+    rule |= {key: bound for key, bound in bounds.items() if bound is not None}
+    return {**rule, "description": each.text}
+
+
+def _object(kind: Kind) -> dict[str, Any]:
+    rule: dict[str, Any] = {
+        "type": "object",
+        "properties": {each.name: _property(each) for each in kind.parameters},
+        "additionalProperties": False,
+        "description": kind.text,
+    }
+    required = [each.name for each in kind.parameters if each.default is None]
+    if required:
+        rule["required"] = required
+    if kind.one_of:
+        rule |= {"minProperties": 1, "x-needs": list(kind.one_of)}
+    return rule
+
+
+def definition() -> dict[str, Any]:
+    """`$defs.fault` of the schema."""
+    time = {"$ref": "#/$defs/time"}
+    properties: dict[str, Any] = {
+        "name": {"type": "string"},
+        "at": {**time, "description": "From (default: the start)"},
+        "until": {**time, "description": "To (default: the end)"},
+        "may_not_act": {
+            "type": "boolean",
+            "description": "The run does not fail when this fault never acts (default: it does)",
+        },
+    }
+    return {
+        "type": "object",
+        "properties": properties | {kind.name: _object(kind) for kind in KINDS},
+        "additionalProperties": False,
+        "oneOf": [{"required": [kind.name]} for kind in KINDS],
+    }

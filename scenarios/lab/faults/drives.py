@@ -1,0 +1,78 @@
+"""The power stages between an axis board's PWM and its motors, and what is wrong with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from plant.kernels import layout as at
+from scenarios.lab.faults.evidence import Evidence
+
+if TYPE_CHECKING:
+    from scenarios.lab.network import Network
+
+
+class Stage(Protocol):
+    """A power stage that does something else: duties wanted (0..1 each) to duties had."""
+
+    evidence: Evidence
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Of motors A and B."""
+
+
+class _Axis:
+    """One axis while something is wrong with it."""
+
+    def __init__(self, network: Network, axis: str) -> None:
+        self._name = axis
+        self._pwm = getattr(network.boards[f"AXIS_{axis.upper()}"], "pwm")  # noqa: B009 - Board has none
+        self._below = self._pwm.drive
+        self.stages: list[Stage] = []
+        view, place = network.plant.view, AXES[axis] * at.WIDTH + at.DUTY
+        self._wanted = (view[place], view[place + 1])
+        self._pwm.drive = self.drive
+
+    def drive(self, t_ns: int, duty_a: float, duty_b: float) -> None:
+        """In the place of the pin."""
+        self._wanted = duty_a, duty_b
+        self.again(t_ns)
+
+    def again(self, t_ns: int) -> None:
+        """The switches as they are now."""
+        duties = self._wanted
+        for stage in self.stages:
+            before, duties = duties, stage.duties(duties)
+            if duties != before:
+                stage.evidence.act(t_ns, f"duties of {self._name}")
+        self._below(t_ns, *duties)
+
+    def leave(self) -> None:
+        self._pwm.drive = self._below
+
+
+AXES = {"ra": 0, "dec": 1}
+"""Axis to its row of the plant's world."""
+
+
+class Drives:
+    """All axes with a stage that is not as it should be."""
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._axes: dict[str, _Axis] = {}
+
+    def add(self, axis: str, stage: Stage, t_ns: int) -> None:
+        """From now on, whatever the board has commanded before."""
+        if axis not in self._axes:
+            self._axes[axis] = _Axis(self._network, axis)
+        self._axes[axis].stages.append(stage)
+        self._axes[axis].again(t_ns)
+
+    def remove(self, axis: str, stage: Stage, t_ns: int) -> None:
+        """The switches obey again."""
+        one = self._axes[axis]
+        one.stages.remove(stage)
+        one.again(t_ns)
+        if not one.stages:
+            one.leave()
+            del self._axes[axis]

@@ -1,0 +1,129 @@
+"""Faults of actuators and of what they move."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from bus.units import ARCSEC_PER_RAD
+from plant.kernels import layout as at
+from scenarios.lab.faults.drives import AXES
+from scenarios.lab.faults.evidence import Watched
+from scenarios.lab.faults.kind import Active
+from scenarios.lab.faults.place import Place
+
+
+class Staged:
+    """The power stage of an axis gives other duties than are wanted."""
+
+    def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
+        self._drives, self.given, self.evidence = place.drives, given, place.evidence
+        self._queue = place.network.queue
+        self._drives.add(given["axis"], self, t_ns)
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Of motors A and B."""
+        raise NotImplementedError
+
+    def clear(self, t_ns: int) -> None:
+        """The switches obey again: what was written last counts."""
+        self._drives.remove(self.given["axis"], self, t_ns)
+
+
+class _Motor(Staged):
+    """One motor whose switches give one duty, whatever is wanted."""
+
+    duty: float
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Of motors A and B."""
+        return (self.duty, wanted[1]) if self.given["motor"] == "a" else (wanted[0], self.duty)
+
+
+class MotorOpen(_Motor):
+    """A lead is off: no voltage reaches the winding."""
+
+    duty = 0.0
+
+
+class MosfetShort(_Motor):
+    """The switch conducts all the time."""
+
+    duty = 1.0
+
+
+class _Driven(Staged):
+    """Passes duties on."""
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Those."""
+        if any(wanted):
+            self.evidence.act(self._queue.now_ns, f"duties of {self.given['axis']}")
+        return wanted
+
+
+class _Turned:
+    """Numbers of the plant's world turned by a function, on one axis or both."""
+
+    places: tuple[int, ...]
+
+    def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
+        plant = place.network.plant
+        self.given = given
+        self._dials, self._plant = place.dials, plant
+        self._axes = [given["axis"]] if "axis" in given else list(AXES)
+        self._places = [AXES[axis] * at.WIDTH + each for axis in self._axes for each in self.places]
+        plant.advance(t_ns)
+        before = [plant.view[each] for each in self._places]
+        for each in self._places:
+            self._dials.add(plant.view, each, self)
+        moved = [plant.view[each] for each in self._places] != before
+        driven = [name for name in self._axes if moved and f"AXIS_{name.upper()}" in place.network.boards]
+        self._watches = [self.watch(place, name, t_ns) for name in driven]
+
+    def watch(self, place: Place, axis: str, _t_ns: int) -> Active:
+        """What tells that the changed numbers have counted: the axis has moved."""
+        owner, name, _ = place.pin(f"{axis}.incremental")
+        return Watched(place.layers, (owner, name), place.evidence, f"{axis}.incremental")
+
+    def turn(self, value: float) -> float:
+        """What becomes of a number."""
+        return value * float(self.given["factor"])
+
+    def clear(self, t_ns: int) -> None:
+        """As it was."""
+        self._plant.advance(t_ns)
+        for watch in self._watches:
+            watch.clear(t_ns)
+        for each in self._places:
+            self._dials.remove(self._plant.view, each, self)
+
+
+class WeakSupply(_Turned):
+    """The motors' supply has less voltage."""
+
+    places = (at.VOLTAGE, at.RIPPLE)
+
+    def watch(self, place: Place, axis: str, t_ns: int) -> Active:
+        """A motor is driven: it need not move."""
+        return _Driven(place, {"axis": axis}, t_ns)
+
+
+class Friction(_Turned):
+    """Coulomb and breakaway friction are other than declared."""
+
+    places = (at.DECLARED_FRICTION + at.F_COULOMB, at.DECLARED_FRICTION + at.F_STICTION)
+
+
+class Load(_Turned):
+    """The moved mass is another."""
+
+    places = (at.INERTIA,)
+
+
+class Play(_Turned):
+    """The gear train has more play."""
+
+    places = (at.HALF_PLAY,)
+
+    def turn(self, value: float) -> float:
+        """Half of it on each side."""
+        return value + 0.5 * float(self.given["angle"]) / ARCSEC_PER_RAD

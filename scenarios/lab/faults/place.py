@@ -1,0 +1,94 @@
+"""Where a fault acts: the network, and what several faults share on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from scenarios.lab.faults.drives import Drives
+from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Laid, Stacks, chained, last, turned
+from scenarios.lab.faults.parameter import FaultError
+
+if TYPE_CHECKING:
+    from bus.can.stuck import StuckDominant
+    from scenarios.lab.network import Network
+
+_OF_AN_AXIS = {
+    "incremental": ("AXIS_{}", "qei", "pin", None),
+    "absolute": ("POSITION_{}", "endat.encoder", "pin", None),
+    "auxiliary": ("AUXILIARY_{}", "pins", "encoder", None),
+    "tachometer_a": ("MOTOR_{}_A", "qei", "pin", None),
+    "tachometer_b": ("MOTOR_{}_B", "qei", "pin", None),
+    "current_a": ("AXIS_{}", "adc", "pin", 0),
+    "current_b": ("AXIS_{}", "adc", "pin", 1),
+}
+SENSORS: dict[str, tuple[str, str, str, int | None]] = {
+    **{
+        f"{axis}.{sensor}": (board.format(axis.upper()), chip, pin, motor)
+        for axis in ("ra", "dec")
+        for sensor, (board, chip, pin, motor) in _OF_AN_AXIS.items()
+    },
+    "focus.encoder": ("FOCUS", "qei", "pin", None),
+    "focus.index": ("FOCUS", "", "index_pin", None),
+    "focus.lvdt": ("FOCUS", "adc", "pin", None),
+}
+"""Sensor to the board that reads it, the chip on it, the chip's pin, and the motor it is asked for.
+
+`pins` of a declared board is a dict."""
+UNITS = {"current_a": "A", "current_b": "A", "lvdt": "V", "index": ""}
+"""Unit of a sensor's readings; the others count."""
+AXES = ("ra", "dec")
+WORDS = {"sensor": tuple(SENSORS), "axis": AXES, "motor": ("a", "b")}
+"""What an argument of each type may be, in any network."""
+
+
+class Place:
+    """network: where. random, evidence: of the fault that is being started. The rest is shared by all."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        self.random = np.random.default_rng(0)
+        self.evidence = Evidence("")
+        self.layers = Stacks(chained)
+        self.values = Stacks(last)
+        self.dials = Stacks(turned)
+        self.stuck: StuckDominant | None = None
+        self.drives = Drives(network)
+        self.held: dict[str, int] = {}
+        """How many faults keep a board off, or something else from working, by name."""
+        self.halted: dict[str, tuple[Laid, Evidence]] = {}
+        """Processors that stand still, by their name in `held`, and of the fault that began it."""
+
+    def board(self, name: str) -> Any:
+        """A board of the network; raises FaultError."""
+        try:
+            return self.network.boards[name]
+        except KeyError:
+            raise FaultError(f"this network has no board {name}") from None
+
+    def pin(self, sensor: str) -> tuple[Any, str, int | None]:
+        """(chip, attribute, motor) through which a board reads a sensor; raises FaultError when none does."""
+        board, chip, attribute, motor = SENSORS[sensor]
+        owner = self.board(board)
+        for part in filter(None, chip.split(".")):
+            owner = getattr(owner, part)
+        return owner, attribute, motor
+
+    def hold(self, name: str) -> bool:
+        """One more fault keeps this board off; whether it is the first."""
+        self.held[name] = self.held.get(name, 0) + 1
+        return self.held[name] == 1
+
+    def let_go(self, name: str) -> bool:
+        """One fewer; whether it was the last."""
+        self.held[name] -= 1
+        if self.held[name]:
+            return False
+        del self.held[name]
+        return True
+
+    def known(self) -> dict[str, tuple[str, ...]]:
+        """The words an argument may be, by its type."""
+        return {"node": tuple(self.network.boards), **WORDS}

@@ -1,0 +1,142 @@
+"""A scenario made ready to be wired: read, changed by the command line, checked against network and sky."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import datetime as dt
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from host.sky.observed import Clock
+from scenarios.language.configure import read_tables, with_firmware
+from scenarios.language.document import Document, ScenarioError, read
+from scenarios.language.load import DEFAULT_PLANT, convert
+from scenarios.language.model import Scenario
+from scenarios.language.own import located
+from scenarios.language.targets import check_targets
+from scenarios.language.validate import schema
+
+if TYPE_CHECKING:
+    from boards.core.declared import DeclaredBoard
+    from plant.model import PlantModel
+
+UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
+"""The lab network has no date: boards do not look at the sky, and a host takes today's."""
+_NEEDS = {"display": "DISPLAY", "focus": "FOCUS"}
+"""Board by action; every network has the axes."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Changes:
+    """What a command line says instead of the scenario; None: nothing.
+
+    isolated: firmware in C in processes of its own. speed: times real time.
+    status_period_s: of the status and sensor logs. plant, firmware, network: by name.
+    """
+
+    seed: int | None = None
+    plant: str | None = None
+    speed: float | None = None
+    status_period_s: float | None = None
+    firmware: str | None = None
+    network: str | None = None
+    isolated: bool = False
+
+    def to(self, scenario: Scenario) -> Scenario:
+        """The scenario with them; the firmware is a step and comes when the steps are checked."""
+        changed: dict[str, Any] = {
+            name: value
+            for name in ("seed", "speed", "status_period_s")
+            if (value := getattr(self, name)) is not None
+        }
+        if self.plant is not None:
+            changed["plant"] = {**scenario.plant, "file": self.plant}
+        if self.network is not None:
+            changed["network"] = {**scenario.network, "name": self.network}
+        if self.isolated:
+            changed["network"] = {**changed.get("network", scenario.network), "isolated": True}
+        return dataclasses.replace(scenario, **changed)
+
+
+def load(source: Path | Document) -> Scenario:
+    """The scenario of a file (or the name of one of schmidt's), or of what stands in it.
+
+    Relative names are looked for beside its `file`. Raises `ScenarioError` with one line of what and where.
+    """
+    document = source if isinstance(source, Document) else read(located(source))
+    return convert(document, language_of(document))
+
+
+def language_of(document: Document) -> dict[str, Any]:
+    """The language, with the names of the boards that the document brings along; raises `ScenarioError`."""
+    network = document.data.get("network") if isinstance(document.data, Mapping) else None
+    files = network.get("boards") if isinstance(network, Mapping) else None
+    if not isinstance(files, list) or not all(isinstance(file, str) for file in files):
+        return schema()
+    from scenarios.lab.nodes import load_board
+
+    boards: list[type[DeclaredBoard]] = []
+    for index, file in enumerate(files):
+        try:
+            boards.append(load_board(document.file.parent / file, boards))
+        except ValueError as error:
+            where = document.where(("network", "boards", index))
+            raise ScenarioError(f"{where}: network.boards: {error}") from None
+    names = [name for board in boards for name in board.KIND.nodes]
+    language = copy.deepcopy(schema())
+    nodes = language["properties"]["network"]["properties"]["nodes"]["properties"]
+    language["$defs"]["node"]["enum"] += [name for name in names if name not in nodes]
+    nodes |= {name: {"$ref": "#/$defs/settings"} for name in names}
+    return language
+
+
+def prepare(source: Path | Document, changes: Changes | None = None) -> tuple[Scenario, PlantModel]:
+    """Load a scenario, apply the command line's changes, check all that can be checked without running."""
+    from scenarios.language.plants import plant_model
+
+    changes = changes or Changes()
+    scenario = changes.to(load(source))
+    check_targets(scenario)
+    check_boards(scenario)
+    scenario = read_tables(scenario)
+    if changes.firmware is not None:
+        scenario = with_firmware(scenario, changes.firmware)
+    return scenario, plant_model(scenario.plant, scenario.file.parent)
+
+
+def check_boards(scenario: Scenario) -> None:
+    """Raise `ScenarioError` for the first step or fault that speaks of a board which is not there."""
+    from scenarios.lab.networks import config_from, devices_of
+
+    config = config_from(scenario.network, {}, scenario.file.parent)
+    names = [device.name for device in devices_of(config)]
+    wanted = [(step.where, _NEEDS[step.action]) for step in scenario.steps if step.action in _NEEDS]
+    wanted += [
+        (fault.where, fault.arguments["node"]) for fault in scenario.faults if "node" in fault.arguments
+    ]
+    for where, board in wanted:
+        if board not in names:
+            raise ScenarioError(f"{where}: the network '{config.name}' has no board {board}")
+
+
+def chosen(
+    scenario_file: Path | None = None,
+    seed: int | None = None,
+    plant: str | None = None,
+    network_name: str | None = None,
+) -> tuple[Scenario, PlantModel]:
+    """Scenario and plant of a file, or of a network by name (None: the scenario's, or `lab`).
+
+    Raises ValueError subclasses with one line for what cannot be used.
+    """
+    from scenarios.language.plants import plant_model
+
+    if scenario_file is not None:
+        return prepare(scenario_file, Changes(seed=seed, plant=plant, network=network_name))
+    name = network_name or "lab"
+    scenario = Scenario(
+        file=Path(name), name=name, clock=UNDATED, network={"name": name}, seed=1 if seed is None else seed
+    )
+    return scenario, plant_model({"file": plant or DEFAULT_PLANT}, Path())

@@ -1,0 +1,151 @@
+"""One run, wired: plant, boards, host and recorder on one event queue."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from bus.protocol import Device
+from host.client import TICK_NS, Client
+from host.link import HidLink
+from host.logs.sensors import readings
+from host.procedures.manual import AXES
+from plant.model import PlantModel
+from scenarios.lab.cables import Cables
+from scenarios.lab.faults import Faults
+from scenarios.lab.network import Network
+from scenarios.lab.networks import SERIAL, in_order
+from scenarios.lab.recorder import Recorder
+from scenarios.lab.wiring import powered
+from scenarios.language.model import Scenario
+from scenarios.language.programme import Programme
+
+
+class Session:
+    """Everything of one run. Build it, call `advance` until `programme.finished`, then `recorder.close`."""
+
+    def __init__(self, scenario: Scenario, model: PlantModel, folder: Path) -> None:
+        self.scenario = scenario
+        self.network = powered(scenario, model)
+        self.plant = self.network.plant
+        self.recorder = Recorder(folder, scenario, self.plant, log_headers(scenario, model))
+        self.network.wire.tap(self.recorder.can.take)
+        self.link = plugged(self.network)
+        self.client = Client(self.link, self.recorder.ascii, in_order(self.network.devices))
+        self.serial = [self.recorder.link(device) for device in SERIAL]
+        for link in self.serial:
+            self.network.uarts[link.device.name].sink = link.receive
+        self.programme = Programme(scenario, self.client, self.recorder.ascii)
+        self.faults = Faults(self.network, scenario.seed)
+        self.faults.schedule(scenario.faults)
+        self.ticked: Callable[[int], None] | None = None
+        """Told of every tick, for who records what the host hears."""
+        self.host_rows: list[tuple[float, ...]] = []
+        self.focus_rows: list[tuple[float, ...]] = []
+        """All rows so far, while somebody records."""
+        self._status_ns = round(scenario.status_period_s * 1e9)
+        self._next_status_ns = 0
+        self._host_rows: list[tuple[float, ...]] = []
+        self._focus_rows: list[tuple[float, ...]] = []
+        self.network.queue.at(TICK_NS, self._tick)
+
+    def advance(self, t_ns: int) -> None:
+        """Let simulated time go on to `t_ns`."""
+        self.network.queue.run_until(t_ns)
+        self.flush_traces()
+
+    def flush_traces(self) -> None:
+        """Hand the host's rows to their traces."""
+        if self._host_rows:
+            self.recorder.host.append(np.array(self._host_rows))
+            self.recorder.focus.append(np.array(self._focus_rows))
+            if self.ticked is not None:
+                self.host_rows += self._host_rows
+                self.focus_rows += self._focus_rows
+            self._host_rows.clear()
+            self._focus_rows.clear()
+
+    def adopt(self, network: Network) -> None:
+        """Go on with another network, one that has been where this host is."""
+        self.network, self.plant = network, network.plant
+        self.recorder.adopt(network.plant)
+        self.link._send = network.hid.write
+
+    def forget_rows(self) -> None:
+        """The traces of the host begin afresh."""
+        self._host_rows.clear()
+        self._focus_rows.clear()
+
+    def _tick(self, t_ns: int) -> None:
+        if self.ticked is not None:
+            self.ticked(t_ns)
+        self.work(t_ns)
+        self.network.queue.at(t_ns + TICK_NS, self._tick)
+
+    def work(self, t_ns: int) -> None:
+        """What the host does every 50 ms."""
+        self.client.now_ns = t_ns
+        self.programme.tick(t_ns)
+        self.client.tick(t_ns)
+        self._record(t_ns)
+        if t_ns >= self._next_status_ns:
+            self._next_status_ns += self._status_ns
+            self.recorder.ascii.sensors(t_ns, readings(self.client, self.scenario.mount))
+            for link in self.serial:
+                link.watch(t_ns)
+
+    def _record(self, t_ns: int) -> None:
+        client = self.client
+        ra, dec = client.position(Device.POSITION_RA), client.position(Device.POSITION_DEC)
+        errors = self.programme.pointing.errors_arcsec()
+        focus = client.focus()
+        nan = float("nan")
+        self._host_rows.append(
+            (
+                t_ns * 1e-9,
+                ra.position if ra else nan,
+                dec.position if dec else nan,
+                *(errors or (nan, nan)),
+                focus.position if focus else nan,
+            )
+        )
+        port = self.plant.focus
+        self._focus_rows.append((t_ns * 1e-9, port.position(t_ns), float(port.encoder(t_ns))))
+
+
+def plugged(network: Network) -> HidLink:
+    """The host's link: the gateway's USB, or every board's debug port where there is no gateway."""
+    if Device.GATEWAY.name in network.boards:
+        link = HidLink(network.hid.write)
+        network.hid.to_host = link.receive
+        return link
+    cables = Cables({board.device_type: network.debug[name] for name, board in network.boards.items()})
+    link = HidLink(cables.write)
+    cables.plug(link, network.queue.now_ns)
+    for voice in network.voices.values():
+        voice.start_alone()  # there is nobody who could send NMT
+    return link
+
+
+def log_headers(scenario: Scenario, model: PlantModel) -> dict[str, dict[str, str]]:
+    """Header of each axis log; `loop` is open when every step that moves the axis directly is open loop."""
+    stamp = scenario.clock.iso(0.0)
+    name = model.name.lower()
+    headers = {}
+    for axis in AXES:
+        actions = {step.action for step in scenario.steps if step.arguments.get("axis") == axis}
+        closed = {step.action for step in scenario.steps} & {"goto", "park"} or actions & {"move", "set_rate"}
+        headers[axis] = {
+            "axis": axis,
+            "session": f"{scenario.name} seed {scenario.seed}",
+            "loop": "open" if "open_loop" in actions and not closed else "closed",
+            "start_utc": stamp,
+            "counter_torque": f"{model.controller.counter_split.si:.2f}",
+            "supply_V": f"{model.supply.voltage.si:g}",
+            "temperature_C": f"{scenario.site.temperature_c:g}",
+            "note": f"schmidt, plant {model.name}",
+        }
+        for preload in ("low", "high"):
+            if preload in name:
+                headers[axis]["preload"] = preload
+    return headers

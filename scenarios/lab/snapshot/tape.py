@@ -1,0 +1,54 @@
+"""What the host of a run has heard since the start.
+
+Its programme is made of generators, which nothing can take apart: it lives again by hearing the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from scenarios.lab.session import Session
+
+Heard = list[tuple[str, tuple[Any, ...]]]
+"""(what, arguments), in order: "usb", "tick", "truth", or the name of a board on RS232."""
+
+
+class Ear:
+    """Between the network and who listens: notes what it hands on."""
+
+    def __init__(self, heard: Heard, kind: str, call: Callable[..., None]) -> None:
+        self._heard, self._kind, self._call = heard, kind, call
+
+    def __call__(self, *arguments: Any) -> None:
+        """Note it, and hand it on."""
+        self._heard.append((self._kind, arguments))
+        self._call(*arguments)
+
+
+class Tape:
+    """Records a session from its very start."""
+
+    def __init__(self, session: Session, heard: Heard) -> None:
+        self.heard = heard
+        self.ears = {kind: Ear(self.heard, kind, call) for kind, call in listeners(session).items()}
+        network = session.network
+        network.hid.to_host = self.ears["usb"]
+        for link in session.serial:
+            network.uarts[link.device.name].sink = self.ears[link.device.name]
+        session.plant._sink = self.ears["truth"]
+        session.ticked = self.tick
+
+    def tick(self, t_ns: int) -> None:
+        """The host's clock."""
+        self.heard.append(("tick", (t_ns,)))
+
+
+def listeners(session: Session) -> dict[str, Callable[..., None]]:
+    """Who hears what comes out of a network."""
+    calls: dict[str, Callable[..., None]] = {
+        "usb": session.link.receive,
+        "truth": session.recorder.take_truth,
+    }
+    return calls | {link.device.name: link.receive for link in session.serial}

@@ -1,0 +1,72 @@
+"""The network as it stands before anybody commands it: what `run`, `serve` and the checks work on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bus.time import generator
+from host.procedures.manual import AXES
+from scenarios.lab.network import Network, build
+from scenarios.lab.networks import config_from
+from scenarios.lab.prepare import chosen
+from scenarios.language.model import Scenario
+
+if TYPE_CHECKING:
+    from plant.model import PlantModel
+    from scenarios.lab.faults import Faults
+
+_FOCUS_START = 5
+"""The focus is found at most this many electrical periods from the middle. ASSUMPTION."""
+_HALF_STEPS_PER_PERIOD = 8
+"""The rotor rests where the phase that the board starts with holds it."""
+
+
+def powered(scenario: Scenario, model: PlantModel) -> Network:
+    """Plant, boards and bus of a scenario, parked and powered up; nothing goes wrong with them yet.
+
+    Its steps are not run: whoever is on the bus commands.
+    """
+    from plant.plant import Plant
+
+    pins = Plant(model, scenario.seed, start_steps(scenario))
+    config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
+    return build(config, pins, scenario.seed)
+
+
+def wired(scenario: Scenario, model: PlantModel) -> tuple[Network, Faults]:
+    """The same and the scenario's faults, which come at their times."""
+    from scenarios.lab.faults import Faults
+
+    made = powered(scenario, model)
+    faults = Faults(made, scenario.seed)
+    faults.schedule(scenario.faults)
+    return made, faults
+
+
+def wire(scenario: Scenario, model: PlantModel) -> Network:
+    """`wired`, for who wants no further faults."""
+    return wired(scenario, model)[0]
+
+
+def network(scenario_file: Path | None = None, network_name: str | None = None) -> Network:
+    """The network of a scenario, or one by its name."""
+    return wire(*chosen(scenario_file, network_name=network_name))
+
+
+def start_steps(scenario: Scenario) -> dict[str, float]:
+    """Where the telescope stands at first: parked unless the scenario says where, and the focus somewhere
+    near the middle, by the seed."""
+    mount = scenario.mount
+    periods = int(generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1))
+    return {
+        "ra": mount.ra.steps(scenario.start_rad.get("hour_angle", mount.park_hour_angle_rad)),
+        "dec": mount.dec.steps(scenario.start_rad.get("declination", mount.park_declination_rad)),
+        "focus": float(periods * _HALF_STEPS_PER_PERIOD),
+    }
+
+
+def soft_limits(scenario: Scenario) -> dict[str, tuple[int, int]]:
+    """Soft limits of each axis, (low, high) in steps."""
+    scales = {name: getattr(scenario.mount, name) for name in AXES}
+    return {name: (scale.low_steps, scale.high_steps) for name, scale in scales.items()}

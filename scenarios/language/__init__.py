@@ -1,0 +1,1 @@
+"""What a scenario may say: documents, units, the schema, plants, programme."""

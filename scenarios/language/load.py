@@ -1,0 +1,214 @@
+"""From a scenario file to a `Scenario`; everything wrong with it is found here, before anything is built."""
+
+import dataclasses
+import datetime as dt
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from bus.units import ARCSEC_PER_RAD
+from host.sky.mount import limits_mount
+from host.sky.observed import Clock
+from host.sky.site import NAINITAL, Site, standard_pressure_hpa
+from scenarios.language import model
+from scenarios.language.document import Document, ScenarioError
+from scenarios.language.units import parse
+from scenarios.language.validate import check, check_finite, nearest, schema
+
+DEFAULT_PLANT = "low-preload"
+BESIDE = ("name", "at", "until", "may_not_act")
+"""What stands beside a fault's own name."""
+_YEARS = (1960, 2100)
+"""UTC begins in 1960 (ERFA's table of leap seconds); beyond 2100 the sun's place is nobody's plan."""
+_AS_SAID = {
+    "name": "name",
+    "description": "description",
+    "network": "network",
+    "seed": "seed",
+    "time_limit": "time_limit_s",
+    "status": "status_period_s",
+    "traces": "trace_period_s",
+    "can": "can_log",
+}
+"""Words of a file, and of its `logs`, to fields of `Scenario`; what is not said is as the record has it."""
+_STEP_FIELDS = {"at": "at_s", "after": "after", "delay": "delay_s", "when": "when", "timeout": "timeout_s"}
+
+
+def convert(document: Document, language: dict[str, Any] | None = None) -> model.Scenario:
+    """Check and convert a parsed document; raises `ScenarioError` with one line of what and where.
+
+    language: the schema, when it knows more boards than the published one.
+    """
+    language = language or schema()
+    check(document, language)
+    check_finite(document)
+    data: dict[str, Any] = in_base_units(document.data, language)
+    steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
+    _check_names(document, steps)
+    plant = data.get("plant", DEFAULT_PLANT)
+    said = {**data, **data.get("logs", {})}
+    scenario = model.Scenario(
+        file=document.file,
+        clock=_clock(document, str(data["start_utc"])),
+        steps=steps,
+        faults=tuple(_fault(document, index, each) for index, each in enumerate(data.get("faults", []))),
+        expectations=tuple(
+            _expectation(document, index, each) for index, each in enumerate(data.get("expect", []))
+        ),
+        plant={"file": plant} if isinstance(plant, str) else plant,
+        site=_site(document, data.get("site", {})),
+        start_rad={axis: angle / ARCSEC_PER_RAD for axis, angle in data.get("start", {}).items()},
+        speed=None if data.get("speed", "max") == "max" else float(data["speed"]),
+        **{field: said[word] for word, field in _AS_SAID.items() if word in said},
+    )
+    scenario = _with_mount(document, scenario, data)
+    _check_windows(document, scenario)
+    return scenario
+
+
+def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
+    """A value with every quantity the schema marks turned into a number in its base unit."""
+    if "$ref" in rule:
+        rule = schema()["$defs"][str(rule["$ref"]).rsplit("/", 1)[1]]
+    if "x-quantity" in rule:
+        return parse(value, rule["x-quantity"])
+    if isinstance(value, Mapping):
+        properties: Mapping[str, Any] = _part(rule, "properties")
+        others = rule.get("additionalProperties") or {}
+        return {key: in_base_units(each, properties.get(key, others)) for key, each in value.items()}
+    if isinstance(value, list):
+        return [in_base_units(each, _part(rule, "items")) for each in value]
+    return value
+
+
+def _part(rule: Mapping[str, Any], part: str) -> Mapping[str, Any]:
+    """What a rule, or the first of its alternatives that has it, says of its `part`."""
+    own: Mapping[str, Any] = rule.get(part) or {}
+    return own or next((each[part] for each in rule.get("oneOf", []) if part in each), {})
+
+
+def _step(document: Document, index: int, data: dict[str, Any]) -> model.Step:
+    action = next(key for key in data if key not in _STEP_FIELDS and key != "name")
+    arguments = data[action]
+    target = arguments.get("target")
+    name = data.get("name") or (f"{action} {_target_name(target)}" if target else f"{action} {index + 1}")
+    return model.Step(
+        name=name,
+        action=action,
+        arguments=arguments,
+        where=document.where(("steps", index)),
+        **{field: data[word] for word, field in _STEP_FIELDS.items() if word in data},
+    )
+
+
+def _target_name(target: Any) -> str:
+    return target if isinstance(target, str) else str(target.get("name") or f"{target['ra']} {target['dec']}")
+
+
+def _fault(document: Document, index: int, data: dict[str, Any]) -> model.Fault:
+    kind = next(key for key in data if key not in BESIDE)
+    where = document.where(("faults", index))
+    at_s, until_s = data.get("at", 0.0), data.get("until")
+    if until_s is not None and until_s <= at_s:
+        raise ScenarioError(f"{where}: the fault ends at {until_s:g} s, before it starts at {at_s:g} s")
+    silent = data.get("may_not_act", False)
+    return model.Fault(
+        kind=kind, arguments=data[kind], where=where, at_s=at_s, until_s=until_s, may_not_act=silent
+    )
+
+
+def _expectation(document: Document, index: int, data: dict[str, Any]) -> model.Expectation:
+    kind = next(key for key in data if key != "name")
+    arguments = dict(data[kind])
+    upper = "at_most" in arguments
+    limit = float(arguments.pop("at_most" if upper else "at_least"))
+    words = [kind.replace("_", " "), *(str(arguments[key]) for key in ("axis", "source") if key in arguments)]
+    if "during" in arguments:
+        words.append(f"during {arguments['during']}")
+    name = data.get("name", " ".join(words))
+    return model.Expectation(
+        name=name,
+        kind=kind,
+        arguments=arguments,
+        limit=limit,
+        upper=upper,
+        where=document.where(("expect", index)),
+    )
+
+
+def _check_names(document: Document, steps: tuple[model.Step, ...]) -> None:
+    known: list[str] = []
+    for index, step in enumerate(steps):
+        if step.name in known and "name" in document.data["steps"][index]:
+            raise ScenarioError(f"{step.where}: there is already a step called {step.name!r}")
+        if step.after is not None and step.after not in known:
+            where = document.where(("steps", index, "after"))
+            raise ScenarioError(
+                f"{where}: no earlier step is called {step.after!r}; {nearest(step.after, known)}"
+            )
+        known.append(step.name)
+
+
+def _check_windows(document: Document, scenario: model.Scenario) -> None:
+    names = [step.name for step in scenario.steps]
+    for expectation in scenario.expectations:
+        during = expectation.arguments.get("during")
+        if during is not None and during not in names:
+            raise ScenarioError(
+                f"{expectation.where}: no step is called {during!r}; {nearest(during, names)}"
+            )
+
+
+def _clock(document: Document, text: str) -> Clock:
+    where = document.where(("start_utc",))
+    try:
+        start = dt.datetime.fromisoformat(text.replace(" ", "T", 1))
+        if not _YEARS[0] <= start.year <= _YEARS[1]:
+            raise ScenarioError(f"{where}: start_utc: the year must lie within {_YEARS[0]}..{_YEARS[1]}")
+        return Clock(start)
+    except ScenarioError:
+        raise
+    except ValueError as error:
+        reason = (
+            str(error) if "time zone" in str(error) else f"{text!r} is not a time like 2026-02-10T14:00:00Z"
+        )
+        raise ScenarioError(f"{where}: start_utc: {reason}") from None
+
+
+def _site(document: Document, data: dict[str, Any]) -> Site:
+    height = data.get("height", NAINITAL.height_m)
+    temperature = data.get("temperature", NAINITAL.temperature_c)
+    try:
+        return dataclasses.replace(
+            NAINITAL,
+            latitude_rad=data.get("latitude", NAINITAL.latitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
+            longitude_rad=data.get("longitude", NAINITAL.longitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
+            height_m=height,
+            temperature_c=temperature,
+            pressure_hpa=data.get("pressure", standard_pressure_hpa(height, temperature)),
+            humidity=data.get("humidity", NAINITAL.humidity),
+        )
+    except (ValueError, ArithmeticError) as error:
+        raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
+
+
+def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, Any]) -> model.Scenario:
+    given = {key: value / ARCSEC_PER_RAD for key, value in data.get("mount", {}).items()}
+    low = given.get("declination_low", model.DECLINATION_LOW_RAD)
+    high = given.get("declination_high", model.DECLINATION_HIGH_RAD)
+    park = min(max(scenario.site.latitude_rad, low), high)
+    horizon = data.get("site", {}).get("horizon")
+    try:
+        mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
+    except ValueError as error:
+        raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
+    for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):
+        angle = scenario.start_rad.get(axis)
+        if angle is not None and not scale.within(angle):
+            where = document.where(("start", axis))
+            raise ScenarioError(f"{where}: start.{axis}: {math.degrees(angle):g}° is beyond the soft limits")
+    return dataclasses.replace(
+        scenario,
+        mount=mount,
+        horizon_rad=scenario.horizon_rad if horizon is None else math.radians(horizon / 3600),
+    )

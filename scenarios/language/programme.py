@@ -1,0 +1,216 @@
+"""The steps of a scenario in their order: which may start, which run, which have ended and when."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from bus.protocol import Device, Opcode
+from host.client import Client, ClientError, Procedure
+from host.logs.ascii import AsciiLogs
+from host.procedures import focus, manual, power
+from host.procedures.pointing import CLASSES, Pointing
+from host.sky.catalogue import Star
+from host.sky.track import StarTrack
+from host.sky.visibility import Unreachable, check_reachable
+from scenarios.language import configure
+from scenarios.language.model import Scenario, Step
+from scenarios.language.targets import target_of
+
+
+@dataclass
+class Record:
+    """What became of a step. Times in seconds; None: not yet."""
+
+    step: Step
+    start_s: float | None = None
+    end_s: float | None = None
+    failed: str = ""
+    star: Star | None = None
+    focus_goal: float | None = None
+    """Where a focus step sends the housing, half steps."""
+
+
+class Programme:
+    """Starts and advances the steps; called once per tick of the client."""
+
+    def __init__(self, scenario: Scenario, client: Client, logs: AsciiLogs) -> None:
+        self.records = [Record(step) for step in scenario.steps]
+        self.pointing = Pointing(client, scenario.mount)
+        self.failed = False
+        self._scenario = scenario
+        self._client = client
+        self._logs = logs
+        self._running: dict[int, Procedure] = {}
+        self._waiting = list(range(len(self.records)))
+        self._before = [self._predecessors(index) for index in self._waiting]
+        self._ready_since_s: dict[int, float] = {}
+        self._due_s: dict[int, float] = {}
+        """Since when a step may start but for its `when`: its timeout counts from there."""
+        self._stopping: Procedure | None = None
+
+    @property
+    def finished(self) -> bool:
+        """All steps have ended, or one has failed."""
+        return self.failed or not (self._waiting or self._running)
+
+    def tick(self, t_ns: int) -> None:
+        """Start what may start, advance what runs; after a failure, stop the axes."""
+        if self.failed:
+            self._stop()
+            return
+        if self._waiting:
+            self._start_ready(t_ns * 1e-9)
+        for index in list(self._running):
+            if not self.failed:
+                self._advance(index, t_ns)
+
+    def _start_ready(self, t_s: float) -> None:
+        in_line = False
+        for index in list(self._waiting):
+            beside = self.records[index].step.after is not None
+            if not beside and in_line:
+                continue  # an earlier step of the line has not even started
+            in_line = in_line or not beside
+            if self._may_start(index, t_s):
+                self._waiting.remove(index)
+                self._start(index, t_s)
+            elif self._late(index, t_s):
+                step = self.records[index].step
+                self._fail(index, t_s, f"not {step.when} within {step.timeout_s:g} s")
+            if self.failed:
+                return
+
+    def _stop(self) -> None:
+        """Nobody watches a telescope whose programme has failed."""
+        if self._stopping is None:
+            self._stopping = manual.stop(self._client, "both")
+        with suppress(StopIteration, ClientError):
+            next(self._stopping)
+
+    def _may_start(self, index: int, t_s: float) -> bool:
+        step = self.records[index].step
+        if step.at_s is not None and t_s < step.at_s:
+            return False
+        for record in reversed(self._before[index]):  # the last one is the likeliest not to have ended
+            if record.end_s is None:
+                return False
+        if t_s - self._ready_since_s.setdefault(index, t_s) < step.delay_s:
+            return False
+        self._due_s.setdefault(index, t_s)
+        return step.when is None or self._holds(step.when)
+
+    def _late(self, index: int, t_s: float) -> bool:
+        """Whether a step's timeout is over, the wait for its `when` included."""
+        timeout_s = self.records[index].step.timeout_s
+        return timeout_s is not None and t_s - self._due_s.get(index, t_s) > timeout_s
+
+    def _predecessors(self, index: int) -> list[Record]:
+        """What has to end before a step may start."""
+        after = self.records[index].step.after
+        if after is not None:
+            return [record for record in self.records[:index] if record.step.name == after]
+        # in line: everything before, except what runs beside the line because of its `after`
+        return [record for record in self.records[:index] if record.step.after is None]
+
+    def _holds(self, condition: str) -> bool:
+        axes = [self._client.motion(axis) for axis in power.AXES]
+        conditions: dict[str, Callable[[], bool]] = {
+            "powered": lambda: all(power.powered(self._client, axis) for axis in power.AXES),
+            "on_target": lambda: self.pointing.on_target,
+            "tracking": lambda: self.pointing.tracking,
+            "stopped": lambda: all(motion is not None and not motion.velocity for motion in axes),
+        }
+        return conditions[condition]()
+
+    def _start(self, index: int, t_s: float) -> None:
+        record = self.records[index]
+        record.start_s = t_s
+        self._logs.status(self._client.now_ns, "HOST", f"step {record.step.name!r} starts")
+        try:
+            self._running[index] = self._procedure(record, t_s)
+        except (ClientError, Unreachable) as error:
+            self._fail(index, t_s, str(error))
+
+    def _advance(self, index: int, t_ns: int) -> None:
+        record = self.records[index]
+        t_s = t_ns * 1e-9
+        try:
+            next(self._running[index])
+        except StopIteration:
+            del self._running[index]
+            record.end_s = t_s
+            self._logs.status(t_ns, "HOST", f"step {record.step.name!r} is done")
+        except (ClientError, Unreachable) as error:
+            self._fail(index, t_s, str(error))
+        else:
+            if self._late(index, t_s):
+                self._fail(index, t_s, f"not done within {record.step.timeout_s:g} s")
+
+    def _fail(self, index: int, t_s: float, reason: str) -> None:
+        record = self.records[index]
+        record.failed, record.end_s = reason, t_s
+        self.failed = True
+        self._running.clear()
+        self._waiting.clear()
+        for other in self.records:  # whatever ran beside it ends here as well
+            if other.start_s is not None and other.end_s is None:
+                other.end_s, other.failed = t_s, "given up"
+        self._logs.error(self._client.now_ns, "HOST", f"step {record.step.name!r} failed: {reason}")
+
+    def _procedure(self, record: Record, t_s: float) -> Procedure:
+        step, client, scenario = record.step, self._client, self._scenario
+        given = step.arguments
+        match step.action:
+            case "power_on":
+                return power.power_on(client, given.get("health_check", True))
+            case "goto":
+                record.star = target_of(given["target"], step.where)
+                check_reachable(record.star, scenario, t_s)
+                track = StarTrack(record.star, scenario.site, scenario.clock, scenario.mount)
+                return self.pointing.goto(track, tuple(given.get("classes", CLASSES)))
+            case "track":
+                record.star = self.pointing.track.star if self.pointing.track else None
+                return self.pointing.follow(given["for"])
+            case "move":
+                return manual.hold_button(
+                    client, given["axis"], given["class"], given["direction"], given["for"]
+                )
+            case "set_rate":
+                return manual.set_rate(client, given["axis"], given["rate"], given["for"])
+            case "open_loop":
+                return manual.open_loop(client, given["axis"], given["effort"], given["for"])
+            case "stop":
+                return manual.stop(client, given.get("axis", "both"))
+            case "focus":
+                return _focus(client, given, record)
+            case "park":
+                return self.pointing.park()
+            case "wait":
+                return client.wait(given["for"])
+            case "firmware":
+                return configure.firmware(client, given["use"])
+            case "compensation":
+                return configure.compensate(client, given["table"])
+            case "set_parameter":
+                device = _device(client, given["node"])
+                return client.ask(device, Opcode.SET_PARAMETER, given["parameter"], given["value"])
+            case "display":
+                return client.ask(_device(client, "DISPLAY"), Opcode.BRIGHTNESS, given["brightness"])
+        raise AssertionError(f"the schema knows {step.action!r}, the programme does not")
+
+
+def _device(client: Client, name: str) -> Device:
+    return next(device for device in client.devices if device.name == name)
+
+
+def _focus(client: Client, given: dict[str, float | str | bool], record: Record) -> Procedure:
+    now = client.focus()
+    if "to" in given:
+        record.focus_goal = float(given["to"])
+        return focus.move_to(client, float(given["to"]))
+    if "by" in given:
+        record.focus_goal = now.position + float(given["by"]) if now is not None else None
+        return focus.step_by(client, float(given["by"]))
+    if "state" in given:
+        return focus.set_state(client, str(given["state"]))
+    return focus.reference(client)

@@ -1,0 +1,189 @@
+"""A document against the published schema; errors name file, line, field and the nearest valid word."""
+
+import difflib
+import json
+import math
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from scenarios.language.document import Document, Path_, ScenarioError
+from scenarios.language.units import BASE, UNITS, UnitError, parse, unit_of
+
+SCHEMA_FILE = Path(__file__).parents[1] / "scenario.schema.json"
+
+_TYPES = {
+    "object": "a block of fields",
+    "array": "a list",
+    "string": "text",
+    "integer": "a whole number",
+    "number": "a number",
+    "boolean": "true or false",
+    "null": "nothing",
+}
+
+
+@cache
+def schema() -> dict[str, Any]:
+    """The published JSON schema of the scenario language."""
+    loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+    return loaded
+
+
+@cache
+def _validator() -> Any:
+    """The class that knows our quantities and their bounds, and fields of which one is needed.
+
+    Making one takes longer than using it on a file.
+    """
+    from jsonschema import Draft202012Validator, ValidationError
+    from jsonschema.validators import extend
+
+    def quantity(_: object, kind: str, value: object, __: object) -> Iterable[Exception]:
+        try:
+            parse(value, kind)
+        except UnitError as error:
+            yield ValidationError(str(error))
+
+    def within(_: object, bounds: list[float], value: object, rule: Mapping[str, str]) -> Iterable[Exception]:
+        kind = rule.get("x-quantity") or rule["$ref"].rsplit("/", 1)[1]
+        with suppress(UnitError):  # which its own rule reports
+            if not bounds[0] <= parse(value, kind) <= bounds[1]:
+                yield ValidationError(f"{value} is out of range; {_limits(bounds, value, kind)}")
+
+    def one_of(_: object, names: list[str], value: Mapping[str, object], __: object) -> Iterable[Exception]:
+        if not set(names) & set(value):
+            yield ValidationError(f"needs a {' or an '.join(names)}")
+
+    rules = {"x-quantity": quantity, "x-range": within, "x-needs": one_of}
+    return extend(Draft202012Validator, rules)  # type: ignore[no-untyped-call]
+
+
+def _limits(bounds: Iterable[float], value: object, kind: str) -> str:
+    """Bounds, which are in the base unit, in the unit that the value has: `0..89 deg`."""
+    word = unit_of(value)
+    scale = UNITS[word].factor if word else 1.0
+    low, high = (f"{bound / scale:g}" for bound in bounds)
+    return f"{low}..{high} {word or BASE[kind]}".removesuffix(" 1")
+
+
+def check(document: Document, language: dict[str, Any] | None = None) -> None:
+    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow.
+
+    language: a JSON schema; None: that of scenarios.
+    """
+    validator = _validator()(language or schema())
+    found = (_describe(document, error) for error in validator.iter_errors(_plain(document.data)))
+    problems = sorted({problem for problem in found if problem is not None})
+    if problems:
+        message = problems[0][2]
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise ScenarioError(message + more)
+
+
+def check_finite(document: Document) -> None:
+    """Raise `ScenarioError` for a number that is none: `.inf` and `.nan` pass every bound of a schema."""
+    waiting: list[tuple[Path_, Any]] = [((), document.data)]
+    while waiting:
+        path, value = waiting.pop()
+        if isinstance(value, float) and not math.isfinite(value):
+            field = ".".join(str(part) for part in path)
+            raise ScenarioError(f"{document.where(path)}: {field}: {value} is no number to work with")
+        if isinstance(value, Mapping):
+            waiting += [((*path, str(key)), each) for key, each in value.items()]
+        elif isinstance(value, list):
+            waiting += [((*path, index), each) for index, each in enumerate(value)]
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """A hint that names the nearest valid word, or all of them when none is near."""
+    known = list(words)
+    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.5)
+    if near:
+        return f"did you mean {next(k for k in known if k.lower() == near[0])!r}?"
+    return "use one of " + ", ".join(known) if known else "none is allowed here"
+
+
+def _describe(document: Document, error: Any) -> tuple[int, int, str] | None:
+    path: Path_ = tuple(error.absolute_path)
+    field = ".".join(str(part) for part in path) or "the file"
+    kind, expected = error.validator, error.validator_value
+    if kind == "additionalProperties":
+        known = list(error.schema.get("properties", {}))
+        wrong = next(key for key in error.instance if key not in known)
+        path = (*path, wrong)
+        inside = f" in {field}" if error.absolute_path else ""
+        text = f"unknown field {str(wrong)!r}{inside}; {nearest(str(wrong), known)}"
+    elif kind == "enum":
+        text = f"{field}: {error.instance!r} is not known; {nearest(str(error.instance), map(str, expected))}"
+    elif kind == "type":
+        names = [expected] if isinstance(expected, str) else expected
+        wanted = " or ".join(_TYPES[name] for name in names)
+        text = f"{field}: expected {wanted}, found {_found(error.instance)}"
+    elif kind == "required":
+        missing = [name for name in expected if name not in error.instance]
+        text = f"{field}: field {missing[0]!r} is missing"
+    elif kind == "oneOf" and (inner := _meant(error)) is not None:
+        return _describe(document, inner)
+    elif kind == "oneOf":
+        text = _choice(field, error)
+        if not text:
+            return None
+    elif kind == "pattern" and "propertyNames" in error.absolute_schema_path:
+        text = f"{field}: {error.instance!r} is not a parameter's number (see the protocol page)"
+    elif kind == "x-quantity":
+        text = f"{field}: {error.message}"
+    elif kind in ("minimum", "maximum", "exclusiveMinimum"):
+        bound = {"minimum": "at least", "maximum": "at most", "exclusiveMinimum": "more than"}[kind]
+        text = f"{field}: {error.instance} is out of range; it must be {bound} {expected}"
+    elif kind == "maxItems":
+        text = f"{field}: {len(error.instance)} entries; at most {expected}"
+    else:
+        text = f"{field}: {error.message}"
+    location = document.where(path)
+    rank = 0 if kind == "additionalProperties" else 1  # a misspelt field explains the missing one
+    return int(location.rsplit(":", 1)[1]), rank, f"{location}: {text}"
+
+
+def _meant(error: Any) -> Any:
+    """Of a value that is none of several forms: the error in the only form of its type, None: none is."""
+    of_type = {id(form) for form in error.validator_value if form.get("type") in ("object", "array")}
+    errors = [each for each in error.context if id(error.validator_value[each.schema_path[0]]) in of_type]
+    wrong = {each.schema_path[0] for each in errors if each.validator == "type" and not each.path}
+    inside = [each for each in errors if each.schema_path[0] not in wrong]
+    return inside[0] if len({each.schema_path[0] for each in inside}) == 1 else None
+
+
+def _choice(field: str, error: Any) -> str:
+    """Steps, faults and expectations hold exactly one of several keys."""
+    keys = [each["required"][0] for each in error.validator_value if "required" in each]
+    if keys and isinstance(error.instance, Mapping):
+        given = [key for key in keys if key in error.instance]
+        if not given:
+            if set(error.instance) - set(error.schema.get("properties", {})):
+                return ""  # the unknown field is reported already
+            return f"{field}: says nothing to do; use one of {', '.join(keys)}"
+        return f"{field}: holds {' and '.join(given)}, but only one is allowed"
+    forms = [each.get("title", each.get("type", "?")) for each in error.validator_value]
+    return f"{field}: {error.instance!r} is neither {' nor '.join(map(str, forms))}"
+
+
+def _found(value: object) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, Mapping):
+        return "a block of fields"
+    return f"a list of {len(value)}" if isinstance(value, list) else repr(value)
+
+
+def _plain(value: object) -> object:
+    """YAML's time stamps and odd keys as text, so that the schema sees JSON's types only."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)

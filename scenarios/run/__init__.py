@@ -1,0 +1,1 @@
+"""A scenario run, judged and reported."""

@@ -1,0 +1,214 @@
+"""Expectations against what a run left: one function per kind, in a table.
+
+Schema and page are made from the table (`scenarios/run/publish.py`); nothing else knows a kind.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from scenarios.lab.faults.evidence import Evidence
+from scenarios.language.model import Expectation
+from scenarios.language.programme import Record
+from scenarios.language.units import BASE
+from scenarios.run.errors import NoData, pointing_errors, rate_errors
+from scenarios.run.outcome import Array, Outcome
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """One line of the report."""
+
+    name: str
+    passed: bool
+    value: float | None
+    limit: float
+    unit: str
+    upper: bool
+    reason: str = ""
+
+    def as_json(self) -> dict[str, Any]:
+        """The fields of `summary.json`."""
+        said = ("name", "passed", "value", "limit", "unit", *(["reason"] if self.reason else []))
+        return {name: getattr(self, name) for name in said}
+
+
+def judge(outcome: Outcome) -> list[Verdict]:
+    """Verdicts on the programme, on faults that never acted, and on all expectations, in their order."""
+    failed = [record for record in outcome.records if record.failed]
+    done = sum(record.end_s is not None and not record.failed for record in outcome.records)
+    reason = f"{failed[0].step.name}: {failed[0].failed}" if failed else ""
+    if outcome.counters.get("interrupted"):
+        reason = reason or "the run was interrupted"
+    total = len(outcome.records)
+    if done < total and not reason:
+        reason = f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
+    programme = Verdict(
+        name="programme completed",
+        passed=done == total,
+        value=done,
+        limit=total,
+        unit="steps",
+        upper=False,
+        reason=reason,
+    )
+    silent = [_silent(each) for each in outcome.faults if each.missing]
+    return [programme, *silent, *(_judge_one(outcome, each) for each in outcome.scenario.expectations)]
+
+
+def _silent(fault: Evidence) -> Verdict:
+    return Verdict(
+        name=f"fault {fault.name} from {fault.at_ns * 1e-9:g} s on acted",
+        passed=False,
+        value=0,
+        limit=1,
+        unit="times",
+        upper=False,
+        reason=f"{fault.where}: it met nothing; may_not_act: true beside it allows that",
+    )
+
+
+def _judge_one(outcome: Outcome, expectation: Expectation) -> Verdict:
+    kind = KINDS[expectation.kind]
+    limit, upper = expectation.limit, expectation.upper
+    value, reason = None, ""
+    try:
+        value = kind.measure(outcome, expectation.arguments)
+    except NoData as error:
+        reason = str(error)
+    passed = value is not None and bool(value <= limit if upper else value >= limit)
+    return Verdict(
+        name=expectation.name,
+        passed=passed,
+        value=value,
+        limit=limit,
+        unit=kind.unit,
+        upper=upper,
+        reason=reason,
+    )
+
+
+def pointing_error(outcome: Outcome, given: dict[str, Any]) -> float:
+    """Telescope against the star's observed place, ″; `sky` is the angle between them."""
+    parts = []
+    for record, low_s, high_s in _windows(outcome, given, "pointing_error"):
+        ra, dec = pointing_errors(outcome, record, low_s, high_s, given.get("source", "truth"))[1:]
+        match given.get("axis", "sky"):
+            case "ra":
+                parts.append(ra)
+            case "dec":
+                parts.append(dec)
+            case _:
+                assert record.star is not None
+                parts.append(np.hypot(ra * np.cos(record.star.declination_rad), dec))
+    return _statistic(np.concatenate(parts), given)
+
+
+def tracking_rate_error(outcome: Outcome, given: dict[str, Any]) -> float:
+    """Rate of an axis less the rate it should have, ″/s."""
+    parts = [
+        rate_errors(outcome, record, given.get("axis", "ra"), given.get("source", "truth"), low_s, high_s)[1]
+        for record, low_s, high_s in _windows(outcome, given, "tracking_rate_error")
+    ]
+    return _statistic(np.concatenate(parts), given)
+
+
+def focus_error(outcome: Outcome, given: dict[str, Any]) -> float:
+    """True focus position less the commanded one, half steps."""
+    from host.logs import traces
+
+    parts = []
+    for record, low_s, high_s in _windows(outcome, given, "focus_error"):
+        if record.focus_goal is None:
+            continue
+        rows = traces.read(outcome.folder / "focus.parquet", ("true_half_steps",), low_s, high_s)
+        parts.append(rows["true_half_steps"] - record.focus_goal)
+    if not parts or not sum(map(len, parts)):
+        raise NoData("no focus move in the window")
+    return _statistic(np.concatenate(parts), given)
+
+
+def _windows(outcome: Outcome, given: dict[str, Any], kind: str) -> list[tuple[Record, float, float]]:
+    """The windows that count: the named step, or every step of the kind's actions."""
+    named, actions = given.get("during"), KINDS[kind].steps
+    records = [outcome.record(named)] if named else [r for r in outcome.records if r.step.action in actions]
+    found = [(record, outcome.window(record, given.get("settle", 0.0))) for record in records]
+    windows = [(record, *window) for record, window in found if window is not None]
+    if not windows:
+        raise NoData(f"{named or ' or '.join(actions)} was not reached, or is shorter than its settling time")
+    return windows
+
+
+def _statistic(values: Array, given: dict[str, Any]) -> float:
+    if not len(values):
+        raise NoData("nothing was recorded in the window")
+    return float(STATISTICS[given.get("statistic", "peak")](values))
+
+
+STATISTICS: dict[str, Callable[[Array], Any]] = {
+    "peak": lambda values: np.max(np.abs(values)),
+    "rms": lambda values: np.sqrt(np.mean(values**2)),
+    "mean": lambda values: np.abs(np.mean(values)),
+    "final": lambda values: abs(values[-1]),
+    "p95": lambda values: np.percentile(np.abs(values), 95),
+}
+
+
+class Kind(NamedTuple):
+    """One expectation. measure: of an outcome, given the arguments. limit: its quantity; "": a bare number.
+
+    text: what is measured. steps: the actions whose time counts, none: the whole run. words: what a field may
+    say and what that means, the default first.
+    """
+
+    measure: Callable[[Outcome, dict[str, Any]], float]
+    limit: str
+    text: str
+    steps: tuple[str, ...] = ()
+    words: Mapping[str, Mapping[str, str]] = {}
+
+    @property
+    def unit(self) -> str:
+        """Base unit of value and limit."""
+        return BASE[self.limit] if self.limit else "1"
+
+
+def _counter(name: str, text: str, limit: str = "") -> Kind:
+    return Kind(lambda outcome, _given: float(outcome.counters[name]), limit, text)
+
+
+KINDS: dict[str, Kind] = {
+    "pointing_error": Kind(
+        pointing_error,
+        "angle",
+        "telescope less the star's observed place",
+        ("track",),
+        {
+            "axis": {"sky": "the angle between them", "ra": "", "dec": ""},
+            "source": {"truth": "the plant", "encoder": "what the host read"},
+        },
+    ),
+    "tracking_rate_error": Kind(
+        tracking_rate_error,
+        "rate",
+        "rate of an axis less the rate it should have",
+        ("track", "set_rate"),
+        {
+            "axis": {"ra": "", "dec": ""},
+            "source": {
+                "truth": "the plant",
+                "counts_5ms": "velocity counts of single 5 ms samples",
+                "mean_1s": "their means over 1 s",
+            },
+        },
+    ),
+    "focus_error": Kind(focus_error, "focus", "true focus position less the commanded one", ("focus",)),
+    "bus_load": _counter("bus_load", "mean load of the CAN bus", "fraction"),
+    "overruns": _counter("overruns", "lost interrupts of all boards"),
+    "frame_errors": _counter("frame_errors", "error frames on the bus"),
+    "error_log_entries": _counter("error_log_entries", "lines in `errors.log`"),
+    "steps_completed": _counter("steps_completed", "steps that ended as they should"),
+    "real_time_factor": _counter("real_time_factor", "simulated over wall time (depends on the machine)"),
+}

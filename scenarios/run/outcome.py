@@ -1,0 +1,103 @@
+"""What a finished (or interrupted) run leaves to be judged: the folder, the steps, the counters."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from host.logs import traces
+from host.sky.catalogue import Star
+from host.sky.mount import STEPS_PER_TURN
+from host.sky.observed import observe_many
+from scenarios.lab.faults.evidence import Evidence
+from scenarios.language.model import Scenario
+from scenarios.language.programme import Record
+
+Array = npt.NDArray[np.float64]
+_RAD_PER_STEP = 2 * np.pi / STEPS_PER_TURN
+_KNOT_S = 1.0
+
+
+@dataclass
+class Outcome:
+    """Files by way of `folder`, everything else as it stood when the run ended."""
+
+    folder: Path
+    scenario: Scenario
+    records: list[Record]
+    counters: dict[str, Any]
+    bus: list[tuple[float, float, int]] = field(default_factory=list)
+    """(t s, load of the second before, frames so far), once a simulated second."""
+    faults: list[Evidence] = field(default_factory=list)
+    """Of all there were, whether they acted."""
+    _places: dict[tuple[Star, tuple[float, float]], tuple[Array, Array, Array]] = field(
+        default_factory=dict, repr=False
+    )
+
+    def record(self, name: str) -> Record:
+        """The step of a name."""
+        return next(record for record in self.records if record.step.name == name)
+
+    def window(self, record: Record, settle_s: float = 0.0) -> tuple[float, float] | None:
+        """Start and end of a step, s, without its first `settle_s`; None when it has nothing to offer."""
+        if record.start_s is None or record.end_s is None or record.end_s <= record.start_s + settle_s:
+            return None
+        return record.start_s + settle_s, record.end_s
+
+    def truth(self, axis: str, low_s: float, high_s: float) -> tuple[Array, Array, Array]:
+        """Time s, true angle of the axis (rad, zero at hour angle or declination zero), true rate rad/s."""
+        rows = traces.read(self.folder / f"truth-{axis}.parquet", ("angle", "rate"), low_s, high_s)
+        scale = getattr(self.scenario.mount, axis)
+        return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
+
+    def overview(self, axis: str, first: str = "rate") -> tuple[Array, Array, Array]:
+        """The whole run in a few thousand points: time, true angle and rate as `truth` gives them.
+
+        Extremes of the column `first` are kept.
+        """
+        order = ("rate", "angle") if first == "rate" else ("angle", "rate")
+        rows = traces.overview(self.folder / f"truth-{axis}.parquet", order)
+        scale = getattr(self.scenario.mount, axis)
+        return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
+
+    def host(self, low_s: float, high_s: float) -> dict[str, Array]:
+        """The host's own trace."""
+        return traces.read(
+            self.folder / "host.parquet",
+            ("ra_error_arcsec", "dec_error_arcsec", "focus_half_steps"),
+            low_s,
+            high_s,
+        )
+
+    def star_places(self, star: Star, t_s: Array) -> tuple[Array, Array]:
+        """Observed hour angle and declination, rad: exact every second, linear between (within 1e-6″)."""
+        span = float(np.floor(t_s[0])) - 1, float(np.ceil(t_s[-1])) + 2 * _KNOT_S
+        if (star, span) not in self._places:  # most expectations ask about the same stretch
+            knots = np.arange(*span, _KNOT_S)
+            hour_angle, declination, _, _ = observe_many(star, self.scenario.site, self.scenario.clock, knots)
+            self._places[star, span] = knots, np.unwrap(hour_angle), declination
+        knots, hour_angle, declination = self._places[star, span]
+        return np.interp(t_s, knots, hour_angle), np.interp(t_s, knots, declination)
+
+    def axis_log(self, axis: str, low_s: float, high_s: float) -> dict[str, Array]:
+        """Columns t and velocity of the axis log, rows of the window."""
+        from pyarrow import csv
+
+        path = self.folder / f"axis-{axis}.csv"
+        with path.open() as file:
+            header = sum(1 for _ in iter(lambda: file.readline().startswith("#"), False))
+        parts: list[Array] = [np.empty((2, 0))]
+        with csv.open_csv(
+            path,
+            read_options=csv.ReadOptions(skip_rows=header),
+            convert_options=csv.ConvertOptions(
+                include_columns=["t", "velocity"], column_types={"t": "float64", "velocity": "float64"}
+            ),
+        ) as batches:
+            for batch in batches:
+                rows = np.stack([np.from_dlpack(batch.column(name)) for name in ("t", "velocity")])
+                parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
+        t, velocity = np.concatenate(parts, axis=1)
+        return {"t": t, "velocity": velocity}

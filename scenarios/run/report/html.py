@@ -1,0 +1,108 @@
+"""`report.html`: one page with everything inside, and the figures as files beside it."""
+
+from __future__ import annotations
+
+import base64
+import io
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from host.logs.files import LogError, write_file
+from scenarios.run.evaluate import Verdict
+from scenarios.run.outcome import Outcome
+from scenarios.run.report.figures import FIGURES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LIBRARIES = ("numpy", "numba", "pyerfa", "python-can", "cantools", "pyarrow", "matplotlib")
+
+
+def write(
+    outcome: Outcome,
+    verdicts: list[Verdict],
+    summary: dict[str, Any],
+    compared: tuple[list[dict[str, Any]], Figure] | None = None,
+) -> None:
+    """Draw the figures and write the page into the outcome's folder.
+
+    compared: rows and figure of the same scenario without compensation (scenarios/run/compared.py).
+    """
+    pictures = []
+    if compared is not None:
+        data = picture(compared[1], outcome.folder / "compensation.png")
+        pictures.append({"title": "Compensation", "data": data})
+    for name, (title, draw) in FIGURES.items():
+        figure = draw(outcome)
+        if figure is not None:
+            pictures.append({"title": title, "data": picture(figure, outcome.folder / f"{name}.png")})
+    text = rendered(
+        Path(__file__).with_name("report.html.j2"),
+        scenario=outcome.scenario,
+        verdicts=verdicts,
+        passed=all(verdict.passed for verdict in verdicts),
+        steps=_timeline(outcome),
+        summary=summary,
+        pictures=pictures,
+        compared=compared[0] if compared is not None else [],
+        versions=_versions(),
+        start=outcome.scenario.clock.iso(0.0),
+        files=sorted(path.name for path in outcome.folder.iterdir() if path.is_file()),
+    )
+    try:
+        write_file(outcome.folder / "report.html", text)
+    except OSError as error:
+        raise LogError(f"{outcome.folder / 'report.html'}: {(error.strerror or '').lower()}") from None
+
+
+def _figure(value: float | None) -> str:
+    """A number for people: four figures, and nothing where rounding errors are all there is."""
+    if value is None:
+        return "–"
+    return "0" if abs(value) < 1e-9 else f"{value:.4g}"
+
+
+def rendered(template: Path, **what: Any) -> str:
+    """The page that a template makes of what it is given."""
+    import jinja2
+
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(template.parent), autoescape=True)
+    environment.filters["figure"] = _figure
+    return environment.get_template(template.name).render(what)
+
+
+def picture(figure: Figure, path: Path) -> str:
+    """Save a figure, and give its PNG in base 64 for the page."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    write_file(path, buffer.getvalue())
+    return base64.b64encode(buffer.getvalue()).decode()
+
+
+def _timeline(outcome: Outcome) -> list[dict[str, Any]]:
+    """Steps as bars: shares of the run's length in percent."""
+    length = max(outcome.counters["simulated_s"], 1e-9)
+    rows = []
+    for record in outcome.records:
+        row: dict[str, Any] = {
+            "name": record.step.name,
+            "action": record.step.action,
+            "failed": record.failed,
+        }
+        if record.start_s is not None:
+            end_s = record.end_s if record.end_s is not None else length
+            row |= {
+                "start": record.start_s,
+                "seconds": end_s - record.start_s,
+                "left": 100 * record.start_s / length,
+                "width": max(0.3, 100 * (end_s - record.start_s) / length),
+            }
+        rows.append(row)
+    return rows
+
+
+def _versions() -> dict[str, str]:
+    found = {"schmidt": version("schmidt"), "Python": platform.python_version()}
+    return found | {name: version(name) for name in _LIBRARIES}

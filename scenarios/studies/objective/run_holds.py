@@ -1,0 +1,62 @@
+"""`schmidt objective`: the paper's objective on the emulated boards, from many starts."""
+
+import itertools
+import json
+import shlex
+
+from rich.console import Console
+
+from host.logs.files import write_file
+from plant.model import load
+from scenarios.language import compensation as compensations
+from scenarios.progress import shown
+from scenarios.studies.objective.bench import MODES
+from scenarios.studies.objective.cases import cases, ladder, starts
+from scenarios.studies.objective.table import HEADINGS, Row, line, markdown, measure
+from scenarios.studies.options import ObjectiveOptions
+
+
+def objective(options: ObjectiveOptions) -> int:
+    """Print the table, write objective.json and one-arcsecond.md into `out`; 0 when every judged row is met.
+
+    Raises ValueError for what cannot be used.
+    """
+    console, out = Console(), options.out
+    rows_of = ladder() if options.steps else cases(options.compensation is not None)
+    chosen = [case for case in rows_of if options.only is None or options.only in case.name]
+    if not chosen:
+        names = "; ".join(case.name for case in rows_of)
+        raise ValueError(f"--only {options.only}: no row's name contains this; the rows are: {names}")
+    plants = load(options.plant), load(options.plant_high)
+    given = options.compensation
+    table = [] if given is None else compensations.load(given).parameters()
+    out.mkdir(parents=True, exist_ok=True)
+    rows: list[Row] = []
+    console.print(_aligned(HEADINGS), highlight=False, soft_wrap=True)
+    with shown("holds", len(chosen) * len(MODES) * options.starts * options.seeds) as show:
+        count = itertools.count(1)
+        for row in measure(chosen, plants, table, options, lambda text: show(next(count), text)):
+            rows.append(row)
+            console.print(_aligned(line(row)), highlight=False, soft_wrap=True)
+    command = shlex.join(["schmidt", "objective", *_given(options)])
+    write_file(out / "one-arcsecond.md", markdown(rows, command))
+    angles = starts(options.shift, options.starts)
+    data = {"command": command, "starts_deg": angles, "rows": [row.as_json() for row in rows]}
+    write_file(out / "objective.json", json.dumps(data, indent=1) + "\n")
+    return 0 if all(row.passed for row in rows) else 1
+
+
+def _aligned(cells: tuple[str, ...]) -> str:
+    return f"{cells[0]:46}{cells[1]:6}" + "".join(f"{cell:>13}" for cell in cells[2:7]) + "  " + cells[7]
+
+
+def _given(options: ObjectiveOptions) -> list[str]:
+    """The command line that says so again: what is not as it is by itself."""
+    default = ObjectiveOptions(out=options.out)
+    words = ["--steps"] if options.steps else []
+    for name in ("compensation", "starts", "seeds", "shift", "seconds", "plant", "plant_high", "only"):
+        value = getattr(options, name)
+        if value != getattr(default, name):
+            text = f"{value:g}" if isinstance(value, int | float) else str(value)
+            words += [f"--{name.replace('_', '-')}", text]
+    return words

@@ -1,0 +1,29 @@
+"""E4: closed loop at 1 to 3 deg/s."""
+
+from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.measures import peak_percent
+from scenarios.studies.paper.runs import SLOW_SLEW, slow_slew
+from scenarios.studies.paper.starts import Benches
+
+
+def measure(benches: Benches) -> Figures:
+    """Peaks at 1, 2 and 3 deg/s."""
+    return {
+        f"peak {speed / 3600:g}": peak_percent(slow_slew(benches("low"), speed).rate, speed)
+        for speed in SLOW_SLEW
+    }
+
+
+ROW = Experiment(
+    id="E4", title="closed loop, 1–3°/s", where="Fig. 12", figure="< 1 % peak",
+    quote="the peak errors are within 1% at slow speeds in the range of 1 to 3 deg/s.",
+    bound="Low preload, closed loop at three speeds, 6 s after 7 s.",
+    limits=tuple(
+        Limit(
+            figure=f"peak {v / 3600:g}", unit="%", low=0.0, high=1.0, words=f"peak at {v / 3600:g}°/s",
+            scale=0.3,
+        )
+        for v in SLOW_SLEW
+    ),
+    measure=measure,
+)  # fmt: skip

@@ -1,0 +1,55 @@
+"""E5: open loop at 600 and 1000 arcsec/s."""
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.runs import OPENED, high_speed
+from scenarios.studies.paper.scales import LOG_PERIOD_S
+from scenarios.studies.paper.starts import Benches
+
+SECONDS, SETTLE, EDGE = 60.0, 4.0, 5.0
+CORNER_HZ = 0.05
+"""Slower errors are drifts: the speed that an open loop happens to settle at, and the balance of the axis."""
+
+
+def fast_peak(rate: Array, setpoint: float) -> float:
+    """Return the peak of a high-passed velocity, percent of the set point, `EDGE` s left out at both ends."""
+    high = butter(2, CORNER_HZ, "highpass", fs=1.0 / LOG_PERIOD_S, output="sos")
+    edge = round(EDGE / LOG_PERIOD_S)
+    passed = sosfiltfilt(high, rate)[edge:-edge]
+    return float(np.max(np.abs(passed)) / setpoint * 100.0)
+
+
+def measure(benches: Benches) -> Figures:
+    """High-passed peaks in open and closed loop."""
+    found: Figures = {}
+    over = []
+    for speed in OPENED:
+        run = high_speed(benches("low"), speed, SECONDS + 2 * EDGE, SETTLE, SECONDS + 2 * EDGE)
+        assert run.opened is not None
+        opened, closed = (fast_peak(log.rate, speed) for log in (run.opened, run.closed))
+        found[f"peak {speed:g}"] = opened
+        over.append(opened - closed)
+    found["over"] = min(over)
+    return found
+
+
+ROW = Experiment(
+    id="E5", title="open loop, 600–1000″/s", where="Fig. 6(a)", figure="up to 15 % peak",
+    quote="Without a feedback controller, the peak error reaches up to 15% and also limit cycles are more "
+    "prominent whereas the feedback control improves the performance and limits the peak error close to 7%.",
+    bound="Low preload. The loop is opened at the mean effort that it had needed. The figure is the "
+    "velocity of the 5 ms counts above 0.05 Hz over 60 s. Its peak is also above that of the closed "
+    "loop before.",
+    limits=(
+        *(
+            Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=15.0, words=f"peak at {v:g}″/s", scale=2.0)
+            for v in OPENED
+        ),
+        Limit(figure="over", unit="points", low=0.0, high=EVER, words="points above the closed loop",
+            scale=1.0),
+    ),
+    measure=measure,
+)  # fmt: skip

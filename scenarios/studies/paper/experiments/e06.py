@@ -1,0 +1,70 @@
+"""E6: open loop at 100 arcsec/s, the slowest open-loop speed, and the loop closed."""
+
+import numpy as np
+
+from plant.units import ARCSEC_PER_TURN
+from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.log import Log
+from scenarios.studies.paper.measures import line_amplitude, peak_percent, stalled, strongest_line
+from scenarios.studies.paper.runs import LOW, low_speed
+from scenarios.studies.paper.starts import Benches
+
+TURN_ARCSEC = ARCSEC_PER_TURN / 360.489
+"""arcsec of the axis in a motor turn."""
+NAN = float("nan")
+
+
+def order(log: Log) -> float:
+    """Return the strongest slow line's cycles per motor turn."""
+    mean = float(log.rate.mean())
+    return strongest_line(log.rate, 0.01, 0.2).frequency_hz * TURN_ARCSEC / max(1.0, mean)
+
+
+def measure(benches: Benches) -> Figures:
+    """The staircase of open-loop efforts and what the loop leaves of the slow line."""
+    run = low_speed(lambda: benches("low"))
+    nearest, lowest = run.nearest, run.lowest
+    if nearest is None or lowest is None:
+        return {}
+    line = strongest_line(nearest.rate, 0.01, 0.2)
+    mean = float(nearest.rate.mean())
+    effort = round(float(np.median(nearest.effort)))
+    step_up = benches("low")
+    step_up.closed_loop(1.4 * LOW, 4.0)
+    above = step_up.open_loop(effort + 1, 72.0).after(12.0)
+    moving = not stalled(above.rate)
+    return {
+        "line": line.frequency_hz,
+        "nearest": abs(mean - LOW),
+        "lowest": lowest,
+        "left": line_amplitude(run.closed.rate, line.frequency_hz) / max(1e-9, line.amplitude),
+        "narrower": peak_percent(nearest.rate, mean) - peak_percent(run.closed.rate, LOW),
+        "order a step up": order(above) / max(1e-9, order(nearest)) if moving else NAN,
+        "mean": mean,
+        "amplitude": line.amplitude,
+        "speed a step up": float(above.rate.mean()),
+    }
+
+
+ROW = Experiment(
+    id="E6", title="100″/s, open against closed", where="Fig. 7", figure="≈ 0.05 Hz",
+    quote="in absence of a feedback control, the errors are quite high and some low frequency oscillations "
+    "close to 0.05 Hz are riding on the velocity response whereas the feedback control filters out the low "
+    "frequency errors and also reduces the error band. / in the open loop ... it is not possible to reach "
+    "speeds below 100 arc sec/s.",
+    bound="Low preload, open loop, effort lowered in the smallest steps from 140″/s until the axis stays "
+    "put. The line is the strongest between 0.01 and 0.2 Hz of the run nearest to 100″/s. The closed "
+    "loop at 100″/s filters that line out and has the smaller peak error. One PWM step above, the "
+    "axis runs too, and its strongest line is the same order of the motor.",
+    limits=(
+        Limit(figure="lowest", unit="″/s", low=80.0, high=115.0, words="lowest open-loop speed", scale=15.0),
+        Limit(figure="nearest", unit="″/s", low=0.0, high=15.0, words="off 100″/s", scale=10.0),
+        Limit(figure="line", unit="Hz", low=0.04, high=0.06, words="strongest slow line", scale=0.01),
+        Limit(figure="left", unit="1", low=0.0, high=0.3, words="left of it by the loop", scale=0.1),
+        Limit(figure="narrower", unit="points", low=0.0, high=EVER, words="error band narrower by",
+            scale=5.0),
+        Limit(figure="order a step up", unit="1", low=0.85, high=1.15, words="line's order one step up",
+            scale=0.1),
+    ),
+    measure=measure, beside=(("mean", "″/s"), ("amplitude", "″/s"), ("speed a step up", "″/s")),
+)  # fmt: skip

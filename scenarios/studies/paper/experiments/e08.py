@@ -1,0 +1,54 @@
+"""E8: run-down and moment of inertia."""
+
+from scenarios.studies.paper.coasting import drive
+from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.frictionmap import friction_map
+from scenarios.studies.paper.experiments.noise import Noise
+from scenarios.studies.paper.published import INERTIA
+from scenarios.studies.paper.rundown import fit_run_downs
+from scenarios.studies.paper.runs import run_down
+from scenarios.studies.paper.starts import Benches, with_inertia
+
+OTHERS = (0.8, 1.2)
+SPEEDS = (7200.0, 2400.0)
+"""arcsec/s: the slew speed of Table 1, and a third of it."""
+
+
+def measure(benches: Benches) -> Figures:
+    """Inertia of the plant and of two others, percent off what each has."""
+    plant = benches.plants["low"]
+    noise = Noise(benches.start.seed, f"e8.{benches.start.angle_deg}")
+    noise.constant = 1.0  # an error of the torque constant is one of J, share for share: E7 has it
+    fit = friction_map(benches, "low", noise).fit
+    if fit is None:
+        return {}
+    sheet = drive(plant)
+    setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
+    found: Figures = {}
+    for factor in (1.0, *OTHERS):
+        model = plant if factor == 1.0 else with_inertia(plant, factor)
+        logs = [noise.log(run_down(benches.of(model), setpoint)) for setpoint in setpoints]
+        inertia = fit_run_downs(logs, setpoints, fit, sheet).inertia
+        found[f"off {factor:g}"] = (inertia / (factor * INERTIA) - 1.0) * 100.0
+        found[f"J {factor:g}"] = inertia
+    return found
+
+
+ROW = Experiment(
+    id="E8", title="run-down, J", where="Fig. 9", figure="1.76e6 N mm s²",
+    quote="after reaching a steady state speed, the input torque is set to zero ... As the applied voltage "
+    "and electrical model of the motor are known, copper losses in the armature can be calculated. From the "
+    "deceleration curve and friction characteristics, the moment of inertia was determined to be J = 1.76 × "
+    "10⁶ N-mm sec².",
+    bound="Low preload, from 2°/s and 2400″/s both ways, with the friction of a map like E7's. A bridge "
+    "with diodes stops the axis in some 50 ms while its trains swing. So J, the trains' damping and "
+    "the moment of the command are fitted to the logged counts. Load and rotors swing on Table 1's "
+    "trains, with currents from the electrical model. The same holds for plants with less and with "
+    "more inertia.",
+    limits=(
+        Limit(figure="off 1", unit="%", low=-5.0, high=5.0, words="J of the plant", scale=5.0),
+        Limit(figure="off 0.8", unit="%", low=-5.0, high=5.0, words="J of the plant with 0.8 J", scale=5.0),
+        Limit(figure="off 1.2", unit="%", low=-5.0, high=5.0, words="J of the plant with 1.2 J", scale=5.0),
+    ),
+    measure=measure, beside=(("J 1", "kg m²"),),
+)  # fmt: skip

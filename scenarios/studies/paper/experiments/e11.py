@@ -1,0 +1,44 @@
+"""E11: low gains give stick-slip."""
+
+from scenarios.studies.paper.bench import Bench
+from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.stickslip import stick_slips
+from scenarios.studies.paper.runs import TRACKING, tracking
+from scenarios.studies.paper.starts import Benches, viscous_only
+
+FACTORS = (0.5, 0.25, 0.1)
+LEAP = 1.5
+
+
+def measure(benches: Benches) -> Figures:
+    """Cycles with lowered gains, less those that the same axis shows without Coulomb friction: gears alone
+    can push a loop that is weak enough through zero and beyond, which is no stick-slip."""
+    kp, ki = benches.gains
+    smooth = viscous_only(benches.plants["low"])
+
+    def cycles(bench: Bench) -> int:
+        return stick_slips(tracking(bench, 120.0, 40.0), TRACKING, LEAP)
+
+    found = {}
+    for factor in FACTORS:
+        gains = (kp * factor, ki * factor)
+        found[f"at {factor:g}"] = float(cycles(benches("low", gains)) - cycles(benches.of(smooth, gains)))
+    return {"most": max(found.values()), "own": float(cycles(benches("low")))} | found
+
+
+ROW = Experiment(
+    id="E11", title="low gains", where="section 4", figure="stick slip",
+    quote="our simulation results showed oscillations due to stiction which may be reduced by reducing the "
+    "PI gains. But at low gains, the actual system exhibits stick slip motion hence we preferred keeping "
+    "the gains high.",
+    bound="Low preload, 15″/s, 120 s after 40 s, both gains at a half, a quarter and a tenth. A cycle is a "
+    "stick phase followed by more than 1.5 set points. Cycles that the same axis shows without "
+    "Coulomb friction are taken off.",
+    limits=(
+        Limit(figure="most", unit="1", low=3.0, high=EVER, words="stick-slip cycles with low gains",
+            scale=2.0),
+        Limit(figure="own", unit="1", low=0.0, high=0.0, words="cycles with the plant file's gains",
+            scale=2.0),
+    ),
+    measure=measure, beside=tuple((f"at {factor:g}", "cycles") for factor in FACTORS),
+)  # fmt: skip

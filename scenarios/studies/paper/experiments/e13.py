@@ -1,0 +1,44 @@
+"""E13: negligible rms at all velocities."""
+
+import numpy as np
+
+from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.measures import means
+from scenarios.studies.paper.runs import HIGH, LOW, SLOW_SLEW, TRACKING
+from scenarios.studies.paper.starts import Benches
+
+SPEEDS = (TRACKING, LOW, *HIGH, *SLOW_SLEW)
+OBJECTIVE = 1.0
+"""arcsec/s: the paper's objective for velocity."""
+SHARE = 0.01
+"""Of the set point: the paper's "within 1%"."""
+
+
+def allowed(speed: float) -> float:
+    """Return what is negligible at a speed, arcsec/s."""
+    return max(OBJECTIVE, SHARE * speed)
+
+
+def measure(benches: Benches) -> Figures:
+    """Rms error of one-second means of the true rate over what is negligible, at every speed."""
+    found = {}
+    for speed in SPEEDS:
+        settle = 25.0 if speed < LOW else 8.0
+        log = benches("low").closed_loop(speed, settle + 12.0).after(settle)
+        error = means(log.true_rate) - speed
+        found[f"at {speed:g}"] = float(np.sqrt(np.mean(error**2))) / allowed(speed)
+    return {"worst": max(found.values())} | found
+
+
+ROW = Experiment(
+    id="E13", title="rms at all velocities", where="abstract", figure="negligible",
+    quote="This controller is able to maintain negligible rms errors at all velocities.",
+    bound="Low preload, closed loop at ten speeds from 15″/s to 3°/s. The figure is the rms error of one- "
+    "second means of the true rate. Allowed is the objective, 1″/s, or 1 % of the set point, "
+    "whichever is more.",
+    limits=(
+        Limit(figure="worst", unit="1", low=0.0, high=1.0, words="largest rms over what is allowed",
+            scale=0.4),
+    ),
+    measure=measure, beside=tuple((f"at {speed:g}", "of the allowed") for speed in SPEEDS),
+)  # fmt: skip

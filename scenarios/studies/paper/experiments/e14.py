@@ -1,0 +1,37 @@
+"""E14: a motor at rest draws 6 A at 24 V."""
+
+import numpy as np
+
+from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.friction_map import data_sheet, ripple_free
+from scenarios.studies.paper.runs import BROKEN_AWAY, break_away
+from scenarios.studies.paper.scales import EFFORT_SCALE
+from scenarios.studies.paper.starts import Benches
+
+RATED_A = 6.0
+
+
+def measure(benches: Benches) -> Figures:
+    """Stalled current at full duty, from the current of an effort that does not move the axis yet."""
+    log = break_away(benches("high"), 1)
+    gone = np.nonzero(np.abs(log.counts) > BROKEN_AWAY)[0]
+    end = max(40, (int(gone[0]) if gone.size else log.t_s.size) - 20)
+    held = slice(end - 40, end)
+    current = ripple_free(log, data_sheet(benches.plants["high"]))[0][held]
+    duty = log.effort[held] / EFFORT_SCALE
+    return {"stall": float(current @ duty / (duty @ duty)), "break-away current": float(current[-5:].mean())}
+
+
+ROW = Experiment(
+    id="E14", title="stall current", where="section 3.2", figure="6 A at 24 V",
+    quote="The motors operate at 24 V DC and are capable of continuously providing stalling current of 6 A.",
+    bound="High preload, effort rising until the axis breaks away. The figure is the current of the leading "
+    "motor per duty while it stands, carried on to full duty. ASSUMPTION: 10 %, as the tolerance of a "
+    "winding is not printed. Read as a thermal rating, the sentence bounds what a stalled motor may "
+    "draw: the current at break-away.",
+    limits=(
+        Limit(figure="stall", unit="A", low=0.9 * RATED_A, high=1.1 * RATED_A,
+            words="stalled current at full duty", scale=3.0),
+    ),
+    measure=measure, beside=(("break-away current", "A"),),
+)  # fmt: skip

@@ -1,0 +1,63 @@
+"""What every row is: a sentence of the paper, figures measured at one start, and the bounds they are held
+to."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scenarios.studies.paper.starts import Benches
+
+Figures = dict[str, float]
+EVER = 1e9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """Bounds of one figure, inclusive. scale: a small change of it, the unit of the search's distance."""
+
+    figure: str
+    unit: str
+    low: float
+    high: float
+    words: str
+    scale: float = 1.0
+
+    def holds(self, value: float) -> bool:
+        """Whether a value is within the bounds; NaN never is."""
+        return self.low <= value <= self.high
+
+    def excess(self, value: float) -> float:
+        """How far outside, in units of `scale`; negative inside, by the distance to the nearer bound."""
+        if value != value:
+            return EVER
+        if self.one_sided:
+            return (value - self.high) / self.scale
+        return max(self.low - value, value - self.high) / self.scale
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether only the upper bound means anything: figures that cannot be negative."""
+        return self.low <= 0.0 < self.high < EVER and self.low != -self.high
+
+    @property
+    def bounds(self) -> str:
+        """The bounds as text."""
+        if self.one_sided or self.high == 0.0:
+            return f"≤ {self.high:g}"
+        return f"≥ {self.low:g}" if self.high >= EVER else f"{self.low:g}–{self.high:g}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Experiment:
+    """One row. figure: published, in words; quote: the paper's text (Opt. Eng. 52(8) 081607); bound: how it
+    is measured and why held to these limits; beside: figures that are printed and decide nothing, with
+    unit."""
+
+    id: str
+    title: str
+    where: str
+    figure: str
+    quote: str
+    bound: str
+    limits: tuple[Limit, ...]
+    measure: Callable[[Benches], Figures]
+    beside: tuple[tuple[str, str], ...] = ()

@@ -1,0 +1,110 @@
+"""The torque-velocity map of one preload from noisy logs, and the characteristic fitted to it.
+
+Steady states in closed loop where the loop holds them. Below the slowest of these the loop may leap instead:
+there the loop is opened (as the authors did for Figs. 6 and 7) and the effort lowered in the smallest steps,
+until the axis no longer keeps its speed. There and back go over the same stretch, because the balance of the
+axis changes along it. Runs whose currents reach the end of the
+converter are left out: what it reads there is not the current.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.studies.paper.experiments.noise import Noise
+from scenarios.studies.paper.friction_map import (
+    DataSheet,
+    FrictionFit,
+    MapPoint,
+    break_away_point,
+    data_sheet,
+    fit_friction,
+    steady_point,
+)
+from scenarios.studies.paper.log import Log
+from scenarios.studies.paper.measures import cycles, stalled
+from scenarios.studies.paper.runs import MAP_SPEEDS, break_away, map_pair, opened_pair
+from scenarios.studies.paper.scales import ARCSEC
+from scenarios.studies.paper.starts import Benches
+
+STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
+"""Shares: how far the mean velocity may be off the set point, and how uncertain the mean torque may be, for a
+steady state."""
+ADC_FULL = 1023.0
+"""Largest count of the 10-bit converter: 6.24 A."""
+BREAK_AWAYS = (0.15, 0.2, 0.3)
+"""s that each effort lasts on the way to break-away. Three, because the rate at that moment, some 10
+arcsec/s, is read in counts of 2.3 and is all that is known of the curve's steep end."""
+TRIALS = 80
+"""Pairs of efforts tried at most."""
+
+
+def saturated(log: Log) -> bool:
+    """Whether a current was at the end of the converter's range."""
+    return bool(max(np.max(log.adc_a), np.max(log.adc_b)) >= ADC_FULL)
+
+
+def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
+    """Whether a run is a steady state. A limit cycle is none: its torque belongs to no velocity."""
+    if any(stalled(log.rate) or cycles(np.abs(log.rate), speed) for log in logs):
+        return False
+    off = abs(point.rate / ARCSEC / speed - 1.0)
+    return off < STEADY_RATE and point.unrest < STEADY_TORQUE * point.torque
+
+
+@dataclass(frozen=True)
+class Map:
+    """Points, the speeds at which the loop had no steady state, and the fit (None: too few points)."""
+
+    points: list[MapPoint]
+    left_out: list[float]
+    fit: FrictionFit | None
+
+
+def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
+    """Measure the map: steady states in both directions, and the break-away torques as its points near
+    rest."""
+    sheet = noise.sheet(data_sheet(benches.plants[preload]))
+    points = []
+    for step_s in BREAK_AWAYS:
+        ways = [noise.log(break_away(benches(preload), way, step_s)) for way in (1, -1)]
+        points.append(break_away_point(ways[0], ways[1], sheet))
+    left_out: list[float] = []
+    slowest: tuple[Log, Log] | None = None
+    for speed in reversed(MAP_SPEEDS):
+        bench = benches(preload)
+        there, back = map_pair(bench, speed)
+        logs = (noise.log(there), noise.log(back))
+        point = steady_point(logs[0], logs[1], sheet)
+        if any(saturated(log) for log in logs):
+            continue
+        if steady(speed, point, logs):
+            points.append(point)
+            slowest = logs if not left_out else slowest
+        else:
+            left_out.append(speed)
+    if left_out and slowest is not None:
+        points += opened(benches, preload, noise, sheet, slowest)
+    return Map(points, left_out, fit_friction(points) if len(points) >= 6 else None)
+
+
+def opened(
+    benches: Benches, preload: str, noise: Noise, sheet: DataSheet, begin: tuple[Log, Log]
+) -> Iterator[MapPoint]:
+    """Yield the steady states with the loop opened, one for every step of the effort, until one is none.
+
+    Lowered is the effort there and the effort back in turn, so that a step of the map is half a step of the
+    PWM. begin: there and back at the slowest speed that the loop holds. The efforts there and back keep the
+    difference that the loop had needed between them: the balance of the axis pulls to one side.
+    """
+    speed = float(begin[0].rate.mean())
+    efforts = [round(abs(float(log.effort.mean()))) for log in begin]
+    for lower in range(1, min(TRIALS, 2 * min(efforts))):
+        bench = benches(preload)
+        there, back = opened_pair(bench, speed, efforts[0] - (lower + 1) // 2, lower // 2 - efforts[1])
+        logs = (noise.log(there), noise.log(back))
+        point = steady_point(logs[0], logs[1], sheet)
+        if point.rate <= 0.0 or not steady(point.rate / ARCSEC, point, logs):
+            return
+        yield point

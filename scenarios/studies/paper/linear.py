@@ -1,0 +1,105 @@
+"""The paper's linear model: equation (6) and its PI loop."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plant.parts import PlantModel
+from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.scales import ARCSEC, CONTROL_PERIOD_S, COUNT_RATE, EFFORT_SCALE, GEAR_RATIO
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearAxis:
+    """The RA axis, reflected to the motor shaft: what equation (6) needs. SI units.
+
+    drive: share of the effort that is left after the counter motor's, by superposition (paper 3.3).
+    """
+
+    torque_constant: float
+    resistance: float
+    inductance: float
+    inertia: float
+    viscous: float
+    stiction: float
+    voltage: float
+    drive: float
+
+    @property
+    def denominator(self) -> tuple[float, float, float]:
+        """Coefficients of s^2, s, 1 in equation (6)."""
+        r, inductance, j, s2, k = (
+            self.resistance, self.inductance, self.inertia, self.viscous, self.torque_constant,
+        )  # fmt: skip
+        return 1.0, r / inductance + s2 / j, r * s2 / (inductance * j) + k * k / (j * inductance)
+
+    @property
+    def gain(self) -> float:
+        """Steady rad/s at the motor per volt."""
+        return self.torque_constant / (self.inertia * self.inductance) / self.denominator[2]
+
+    @property
+    def offset_voltage(self) -> float:
+        """Voltage that stiction takes away: Ts R / K."""
+        return self.stiction * self.resistance / self.torque_constant
+
+
+def linear_axis(model: PlantModel) -> LinearAxis:
+    """Return equation (6) for the RA axis of a plant. Torsion and play are neglected, the rotors' inertia is
+    counted."""
+    axis, motor = model.axes.ra, model.axes.ra.motor
+    square = GEAR_RATIO**2
+    return LinearAxis(
+        torque_constant=motor.torque_constant.si,
+        resistance=motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
+        inductance=motor.inductance.si,
+        inertia=axis.inertia.si / square + 2.0 * motor.rotor_inertia.si,
+        viscous=axis.friction.viscous.si / square + 2.0 * motor.drag.si,
+        stiction=axis.friction.stiction.si / GEAR_RATIO,
+        voltage=model.supply.voltage.si,
+        drive=1.0 - model.controller.counter_split.si,
+    )
+
+
+def simulate_loop(
+    axis: LinearAxis,
+    gains: tuple[float, float],
+    pwm_steps: int,
+    arcsec_s: float,
+    seconds: float,
+    ramp_arcsec_s2: float,
+) -> tuple[Array, Array, Array]:
+    """Return (t, velocity in arcsec/s, effort in 1/3000) of equation (6) in the loop of the paper's PI, from
+    rest.
+
+    gains: Kp, Ki in PWM steps per count. The set point rises with `ramp_arcsec_s2`, as the firmware's does.
+    One row per controller period, s. Steps of 0.1 ms; the effort acts Delta t / 2 late; the controller sees
+    the mean velocity of its period, unquantised. At rest the stiction only holds: it never pushes back.
+    """
+    kp, ki = gains
+    fine, dt = 50, CONTROL_PERIOD_S / 50
+    decay = float(np.exp(-axis.resistance * dt / axis.inductance))
+    count = round(seconds / CONTROL_PERIOD_S)
+    out, efforts = np.zeros(count), np.zeros(count)
+    to_axis = 1.0 / GEAR_RATIO / ARCSEC
+    current = speed = effort = before = error = setpoint = 0.0
+    for k in range(count):
+        travelled = 0.0
+        for j in range(fine):
+            applied = before if j < fine // 2 else effort
+            volt = applied / pwm_steps * axis.voltage * axis.drive - axis.offset_voltage
+            goal = (volt - axis.torque_constant * speed) / axis.resistance
+            current = goal + (current - goal) * decay
+            speed += dt * (axis.torque_constant * current - axis.viscous * speed) / axis.inertia
+            if speed <= 0.0 and volt <= 0.0:
+                speed = current = 0.0
+            travelled += speed * dt
+        out[k] = travelled / CONTROL_PERIOD_S * to_axis
+        setpoint = min(arcsec_s, setpoint + ramp_arcsec_s2 * CONTROL_PERIOD_S)
+        new = (setpoint - out[k]) / COUNT_RATE
+        before = effort
+        effort = min(max(effort + kp * (new - error) + ki * new, -pwm_steps), pwm_steps)
+        error = new
+        efforts[k] = effort * EFFORT_SCALE / pwm_steps
+    times: Array = (np.arange(count, dtype=np.float64) + 1.0) * CONTROL_PERIOD_S
+    return times, out, efforts

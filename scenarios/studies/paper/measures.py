@@ -1,0 +1,97 @@
+"""Figures taken from a velocity record, the way the paper states them.
+
+The paper gives "peak errors" without saying over which average. Every figure is therefore computed for a
+record the caller chooses: velocity as logged (counts of 5 ms), true velocity, or means of one second.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.scales import LOG_PERIOD_S
+
+
+def peak_percent(rate: Array, setpoint: float) -> float:
+    """Return the largest deviation from `setpoint`, percent of it. Both in arcsec/s."""
+    return float(np.max(np.abs(rate - setpoint)) / abs(setpoint) * 100.0)
+
+
+def means(rate: Array, seconds: float = 1.0) -> Array:
+    """Return means over consecutive windows of `seconds`; an incomplete last window is left out."""
+    width = round(seconds / LOG_PERIOD_S)
+    count = rate.size // width
+    if not count:
+        raise ValueError(f"{rate.size} samples are fewer than one window of {seconds} s")
+    return np.asarray(rate[: count * width].reshape(count, width).mean(axis=1), dtype=np.float64)
+
+
+def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
+    """Return how often the velocity went from below to above: below (1 - depth) and then above (1 + depth)
+    set points.
+
+    A limit cycle does that again and again; quantisation of a steady motion (7 to 8 percent at 15 arcsec/s)
+    never.
+    """
+    ratio = rate / setpoint
+    state, count = 0, 0
+    for low, high in zip(ratio < 1.0 - depth, ratio > 1.0 + depth, strict=True):
+        if low:
+            state = -1
+        elif high:
+            if state < 0:
+                count += 1
+            state = 1
+    return count
+
+
+@dataclass(frozen=True)
+class Line:
+    """A spectral line: frequency, Hz, and amplitude, in the unit of the record."""
+
+    frequency_hz: float
+    amplitude: float
+
+
+def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float = LOG_PERIOD_S) -> Line:
+    """Return the strongest sinusoid of `record` between two frequencies.
+
+    Strongest is the one that explains most of what an offset and a trend leave: its amplitude alone would
+    favour slow sinusoids that offset and trend cancel again. Frequencies are tried on a grid of a tenth of
+    the record's resolution. Raises ValueError when not one period of `high_hz` fits.
+    """
+    span = record.size * period_s
+    if span * high_hz < 1.0:
+        raise ValueError(f"a record of {span:.1f} s cannot show lines below {high_hz} Hz")
+    # decimate: lines far below the sampling rate need no 10 ms samples
+    width = max(1, int(0.05 / (high_hz * period_s)))
+    count = record.size // width
+    y = record[: count * width].reshape(count, width).mean(axis=1)
+    t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
+    t = t - t.mean()
+    still = np.column_stack([np.ones_like(t), t / span])
+    rest = y - still @ np.linalg.lstsq(still, y, rcond=None)[0]
+    best, most = Line(low_hz, 0.0), -1.0
+    for f in np.arange(low_hz, high_hz, 0.1 / span):
+        swing = np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
+        coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
+        explained = float(rest @ rest - np.sum((rest - swing @ coefficient) ** 2))
+        if explained > most:
+            best, most = Line(float(f), float(np.hypot(coefficient[0], coefficient[1]))), explained
+    return best
+
+
+def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
+    """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
+    t = np.arange(record.size) * period_s
+    t = t - t.mean()
+    still = np.column_stack([np.ones_like(t), t])
+    rest = record - still @ np.linalg.lstsq(still, record, rcond=None)[0]
+    swing = np.column_stack([np.cos(2 * np.pi * frequency_hz * t), np.sin(2 * np.pi * frequency_hz * t)])
+    coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
+    return float(np.hypot(coefficient[0], coefficient[1]))
+
+
+def stalled(rate: Array) -> bool:
+    """Whether the axis stood still during any whole second of the record (arcsec/s)."""
+    return bool(np.min(np.abs(means(rate))) < 1.0)
