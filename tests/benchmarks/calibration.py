@@ -1,7 +1,5 @@
 """`python -m tests.benchmarks.calibration [--json FILE] [--quick]`: time of a log, two peers."""
 
-from __future__ import annotations
-
 import json
 import os
 import platform
@@ -20,6 +18,7 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from scenarios.progress import stages
 from tests.benchmarks.drives import TRUE_LINES, Drive, write_drive
 from tests.benchmarks.peers import Answer, MissingPeer, Residual, residual_of, sindy, whole_vector
 
@@ -27,6 +26,15 @@ SEED = 1001  # a development seed: 1000 to 1999
 ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "MKL", "NUMBA", "VECLIB_MAXIMUM")}
 LIMIT_S, TEN_LIMIT_S = 20.0, 240.0  # asked for: one log on one core, ten on two
 STAGES_OF = {"gravity_imbalance": ("axis", 1)}  # a finding without a stage of its own
+
+USUAL_S = {
+    "logs": 10.0,
+    "schmidt calibrate, one log on one core": 20.0,
+    "the same residual for the peers": 5.0,
+    "PySINDy": 10.0,
+    "scipy least squares": 30.0,
+    "schmidt calibrate, many logs on two cores": 200.0,
+}  # ASSUMPTION, of the order of the limits; the pace at hand is measured
 
 
 class BenchmarkFailed(ValueError):
@@ -76,19 +84,19 @@ def _children_s() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def measure(quick: bool, say: Console) -> dict[str, Any]:
+def measure(quick: bool) -> dict[str, Any]:
     """All figures. quick: two logs of two minutes instead of ten of ten, to try the benchmark itself."""
     seconds, count = (120.0, 2) if quick else (600.0, 10)
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, stages("bench of calibration", USUAL_S) as stage:
         folder = Path(name)
-        with say.status("logs"):
-            drives = [write_drive(folder / f"log{k}.csv", seconds, SEED + k) for k in range(count)]
-        with say.status("schmidt calibrate, one log on one core"):
-            before_s = _children_s()
-            alone_s, report = calibrate(drives[0], folder / "alone")
-            alone_cpu_s = _children_s() - before_s
-        with say.status("the same residual for the peers"):
-            residual = residual_of(drives[0])
+        stage("logs")
+        drives = [write_drive(folder / f"log{k}.csv", seconds, SEED + k) for k in range(count)]
+        stage("schmidt calibrate, one log on one core")
+        before_s = _children_s()
+        alone_s, report = calibrate(drives[0], folder / "alone")
+        alone_cpu_s = _children_s() - before_s
+        stage("the same residual for the peers")
+        residual = residual_of(drives[0])
         answers = {"schmidt calibrate": answer_of(alone_s, report, alone_cpu_s)}
         missing = {}
         peers: tuple[tuple[str, Callable[[Residual], Answer]], ...] = (
@@ -96,16 +104,16 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
             ("scipy least squares", whole_vector),
         )
         for title, peer in peers:
-            with say.status(title):
-                try:
-                    answers[title] = peer(residual)
-                except MissingPeer as error:
-                    missing[title] = str(error)
-        with say.status(f"schmidt calibrate, {count} logs on two cores"):
-            begin = perf_counter()
-            with ThreadPoolExecutor(2) as pool:
-                many = list(pool.map(lambda d: calibrate(d, folder / d.path.stem), drives))
-            many_s = perf_counter() - begin
+            stage(title)
+            try:
+                answers[title] = peer(residual)
+            except MissingPeer as error:
+                missing[title] = str(error)
+        stage("schmidt calibrate, many logs on two cores")
+        begin = perf_counter()
+        with ThreadPoolExecutor(2) as pool:
+            many = list(pool.map(lambda d: calibrate(d, folder / d.path.stem), drives))
+        many_s = perf_counter() - begin
     right = sum(answer_of(*each).named for each in many)
     extra = sum(len(each[1]["effects"]) > len(TRUE_LINES) for each in many)
     return {
@@ -178,7 +186,7 @@ def main(target: Path | None, quick: bool) -> None:
     """Measure calibration and its peers."""
     console = Console(width=None if sys.stdout.isatty() else 140)
     try:
-        figures = measure(quick, console)
+        figures = measure(quick)
     except ValueError as error:
         raise click.ClickException(str(error)) from None
     show(figures, console)

@@ -1,14 +1,12 @@
 """Logs for the calibration benchmark: ten minutes of one axis in one file, from the plant's compiled loop."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant.loop import LOG_COLUMNS, SAMPLE_S, simulate
+from plant.loop import LOG_COLUMNS, SAMPLE_S, Excitation, simulate
 from plant.model import load, with_effects
 from plant.parts import EffectModel, Number
 
@@ -71,7 +69,9 @@ def write_drive(path: Path, seconds: float, seed: int) -> Drive:
     model = load("low_preload")
     model = with_effects(model, "ra", (*model.axes.ra.effects, *drawn))
     wanted = programme(seconds, rng)
-    log = simulate(model, "ra", len(wanted) * SAMPLE_S, setpoint=wanted, seed=seed, start_steps=START_STEPS)
+    log = simulate(
+        model, "ra", len(wanted) * SAMPLE_S, Excitation(setpoint=wanted, start_steps=START_STEPS), seed=seed
+    )
     with path.open("w", encoding="utf-8") as file:
         file.write(HEADER.format(seed=seed) + ",".join(LOG_COLUMNS) + "\n")
         np.savetxt(

@@ -1,7 +1,5 @@
 """Two peers on the residual that `schmidt calibrate` works on: same rows, same held-out part, same unit."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,8 +8,10 @@ from time import perf_counter, process_time
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.readers.axis import read_axis_log
-from calibration.twomotors.look import analyse
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.rigfile import telescope
+from calibration.look.axis_channels import analyse
+from calibration.look.options import Options
 from plant.gears import ORDERS as STAGES
 from tests.benchmarks.drives import TRUE_LINES, Drive
 
@@ -68,7 +68,8 @@ class Answer:
 
 def residual_of(drive: Drive) -> Residual:
     """The residual as the calibration makes it, before any effect."""
-    result = analyse([read_axis_log(drive.path)], [])
+    run = read_axis_log(drive.path)
+    result = analyse([run], telescope(run.header["axis"]), Options())
     selection, motion = result.selections["T"], result.motion
     p, d = selection.problem, result.declared
     columns = [k for k, (label, _) in enumerate(p.base_labels) if label.startswith("declared ")]
@@ -81,7 +82,7 @@ def residual_of(drive: Drive) -> Residual:
         selection.before.residual,
         p.base[:, columns],
         float(selection.before.beta[0]),
-        (d.viscous, d.coulomb, d.stiction, d.stribeck_speed),
+        (d.viscous, d.coulomb, d.stiction, d.stribeck_rate),
         p.train,
         p.test,
     )

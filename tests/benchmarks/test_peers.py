@@ -1,17 +1,14 @@
 """The peers see what is put in front of them; the benchmark says so when one is missing."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
 import pytest
 
 from plant.gears import ORDERS as STAGES
+from plant.units import ARCSEC
 from tests.benchmarks.drives import LEVELS, programme
 from tests.benchmarks.peers import MissingPeer, Residual, rms, sindy, whole_vector
-
-ARCSEC = np.pi / 648000.0
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from tests.blind import harness
 from tests.blind.options import options
 from tests.blind.sealer.cells import SETS
 
-SCORED_SEED = 20261122  # of the set `strata` 44 are opened (docs/blind.md); development uses 1000-1999
+SCORED_SEED = 20261122  # of the set `strata` 44 are opened (docs/results/blind.md); development has 1000-1999
 
 
 @click.command()
@@ -28,7 +28,7 @@ def main(
     if not orders:
         raise click.ClickException(f"--only {only}: no case of the set {name} has this in its key")
     harness.run(orders, seed, out / str(seed), jobs, command, scheduler)
-    click.echo((out / str(seed) / "table.md").read_text())
+    click.echo((out / str(seed) / "blind.md").read_text())
     click.echo(f"every case: {out / str(seed) / 'results.json'}")
 
 

@@ -13,16 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
-
 from scenarios.campaign.executor import each
+from scenarios.progress import shown
 from tests.blind import finder, score, table
 from tests.blind.sealer.case import Order, seal
 
@@ -52,25 +44,18 @@ def in_parallel(
 ) -> None:
     """All orders through the campaigns' executor with a progress bar: `jobs` processes here, or a Dask
     scheduler whose workers see the output folder. An order whose worker keeps dying is left without."""
-    columns = (
-        TextColumn("{task.description:8}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns) as bar:
-        task = bar.add_task(what, total=len(orders))
+    with shown(what, len(orders)) as show:
         if jobs == 1 and scheduler is None:
-            for order in orders:
+            for count, order in enumerate(orders, 1):
                 work(order, *args)
-                bar.advance(task)
+                show(count, order.key)
             return
         named = {order.key: order for order in orders}
-        for done in each(partial(_work, work, args), named.items(), jobs=jobs, scheduler=scheduler):
+        answers = each(partial(_work, work, args), named.items(), jobs=jobs, scheduler=scheduler)
+        for count, done in enumerate(answers, 1):
             if done.error and not done.died:
                 raise RuntimeError(f"{what} {done.key}: {done.error}")
-            bar.advance(task)
+            show(count, done.key)
 
 
 def _work(work: Callable[..., None], args: tuple[object, ...], order: Order) -> None:
@@ -169,7 +154,7 @@ def run(
     lines = table.figures(rows)
     results = {"about": about, "figures": lines, "cases": rows}
     (out / "results.json").write_text(json.dumps(results, indent=1))
-    (out / "table.md").write_text(
+    (out / "blind.md").write_text(
         table.markdown(lines, about) + "\n" + table.reliability(rows) + "\n" + table.per_name(rows)
     )
     return results

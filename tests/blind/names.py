@@ -9,6 +9,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from tests.blind.sealer.declared import ADC_A_PER_COUNT
+
 Truth = dict[str, Any]
 ARCSEC = math.pi / 648000.0
 GEAR_RATIO = (113 / 27) * (123 / 21) * (250 / 17)
@@ -102,7 +104,7 @@ EFFECTS: dict[str, dict[str, Read]] = {
     "position_friction": {"amplitude": raw("POSF_A", size=True)},
     "load_friction": {"coefficient": raw("LOADF")},
     "friction_warmup": {"depth": raw("WARM_A", -1.0), "time_constant": raw("WARM_TAU")},
-    "preload_change": {"change": raw("PRELOAD_A")},
+    "preload_change": {"change": raw("PRELOAD_A"), "start": raw("PRELOAD_T0")},
     "gravity_imbalance": {"amplitude": raw("GRAV_A", size=True), "phase": counter_phase("GRAV_PH")},
     "gear_eccentricity": {
         "amplitude": raw("L1_T", size=True),
@@ -118,18 +120,18 @@ EFFECTS: dict[str, dict[str, Read]] = {
     "structural_mode": {"frequency": raw("W2", 0.5 / math.pi), "damping": raw("Z2"), "inertia": raw("J2")},
     "encoder_eccentricity": {"amplitude": raw("ECC_1", size=True), "second": raw("ECC_2", size=True)},
     "encoder_subdivision": {"amplitude": raw("SUB_1", size=True), "second": raw("SUB_2", size=True)},
-    "roller_slip": {"slip": raw("SLIP_C"), "limit": raw("SLIP_A0")},
+    "roller_slip": {"creep": raw("SLIP_C"), "threshold": raw("SLIP_A0")},
     "roller_ratio": {"error": raw("ROLLER_EPS", 1e6)},
-    "adc_offset": {"offset": either("ADC_OFF_A", "ADC_OFF_B")},
+    "adc_offset": {"offset": either("ADC_OFF_A", "ADC_OFF_B", factor=ADC_A_PER_COUNT)},
     "adc_gain": {"gain": relative_gain},
     "pwm_deadband": {"deadband": raw("DEADBAND")},
     "diode_braking": {"share": raw("DIODE")},
     "supply_sag": {"resistance": raw("SAG")},
     "winding_heating": {"thermal_resistance": raw("HEAT"), "time_constant": raw("HEAT_TAU")},
-    "magnet_weakening": {"loss": raw("MAG_A")},
+    "magnet_weakening": {"loss": raw("MAG_A"), "start": raw("MAG_T0")},
     "wind_torque": {"deviation": raw("WIND")},
     "cable_wrap": {"stiffness": raw("CABLE_K"), "hysteresis": raw("CABLE_H")},
-    "brake_drag": {"torque": raw("BRAKE_T")},
+    "brake_drag": {"torque": raw("BRAKE_T"), "start": raw("BRAKE_T0")},
     "bearing_pass": {"order": raw("L1_ORDER"), "amplitude": raw("L1_T", size=True)},
     "encoder_thermal_drift": {"drift": raw("DRIFT")},
     "channel_delay": {"delay": either("DELAY_POS", "DELAY_TACH", "DELAY_ADC", "DELAY_VEL")},
@@ -138,9 +140,15 @@ EFFECTS: dict[str, dict[str, Read]] = {
 }
 
 
+#: names of the truth file that are another parameter's in a report
+OTHERWISE = {"roller_slip": ("slip",)}
+
+
 def parameter_truths(effect: dict[str, Any], truth: Truth) -> dict[str, list[float]]:
     """True values of one effect's parameters by the report's name; also under the truth file's own names."""
     out = {name: [float(item["value"])] for name, item in effect["parameters"].items()}
+    for name in OTHERWISE.get(effect["name"], ()):
+        out.pop(name, None)
     raws = effect.get("raw", {})
     for name, read in EFFECTS.get(effect["name"], {}).items():
         values = read(raws, truth)

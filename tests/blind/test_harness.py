@@ -41,7 +41,7 @@ def test_seal_find_open_score_and_resume(tmp_path: Path) -> None:
     again = harness.run(ORDERS, 1004, tmp_path, 1, command)
     assert len(CALLS) == 2
     assert again["cases"] == results["cases"]
-    assert "| figure | must | aim |" in (tmp_path / "table.md").read_text()
+    assert "| figure | must | aim |" in (tmp_path / "blind.md").read_text()
 
     truth = tmp_path / "truth" / "b.json"
     truth.write_text(truth.read_text().replace('"seed": 1004', '"seed": 1005'))

@@ -2,16 +2,18 @@
 
 from dataclasses import dataclass, field
 
-from boards.axis import AxisBoard, AxisConfig, AxisPins
-from boards.motor_velocity import MotorVelocityBoard, MotorVelocityPins
-from boards.position import PositionBoard, PositionPins
+from boards.axis import AxisBoard, AxisConfig, AxisPeers, AxisPins
+from boards.motor_velocity import MotorVelocityBoard
+from boards.position import PositionBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, Reply, pack_command, unpack_reply
 from bus.time import EventQueue, Oscillator
+from bus.units import ARCSEC, ARCSEC_PER_TURN
+from tests.boards.places import place
 from tests.boards.rigid import RigidAxis
 
 CENTRE = 1 << 28
-STEP_ARCSEC = 1_296_000 / (1 << 29)
+STEP_ARCSEC = ARCSEC_PER_TURN / (1 << 29)
 RA = Device.AXIS_RA
 
 
@@ -30,22 +32,22 @@ class Lab:
         self.pc.on_receive = self._hear
         plant = self.plant
         self.axis = AxisBoard(
-            "AXIS_RA", Device.AXIS_RA, self.queue, self.wire,
-            AxisPins(plant.incremental, plant.drive, plant.current), Oscillator(12.0, 77_777_777),
-            self.config, Device.POSITION_RA, (Device.MOTOR_RA_A, Device.MOTOR_RA_B),
-        )  # fmt: skip
+            place(Device.AXIS_RA, self.wire, Oscillator(12.0, 77_777_777)),
+            AxisPins(encoder=plant.incremental, drive=plant.drive, current=plant.current),
+            self.config,
+            AxisPeers(position=Device.POSITION_RA, motor_a=Device.MOTOR_RA_A, motor_b=Device.MOTOR_RA_B),
+        )
         self.axis.uart.sink = lambda t_ns, packet: self.packets.append((t_ns, packet))
         self.position = PositionBoard(
-            "POSITION_RA", Device.POSITION_RA, self.queue, self.wire, PositionPins(plant.absolute),
-            Oscillator(-31.0, 1_234_567),
-        )  # fmt: skip
+            place(Device.POSITION_RA, self.wire, Oscillator(-31.0, 1_234_567)), plant.absolute
+        )
         motors = [
             MotorVelocityBoard(
-                device.name, device, self.queue, self.wire,
-                MotorVelocityPins(lambda t_ns, k=k: plant.tachometer(t_ns, k)), Oscillator(5.0 * k, k),
+                place(device, self.wire, Oscillator(5.0 * k, k)),
+                lambda t_ns, k=k: plant.tachometer(t_ns, k),
             )
             for k, device in enumerate((Device.MOTOR_RA_A, Device.MOTOR_RA_B))
-        ]  # fmt: skip
+        ]
         self.boards = [self.axis, self.position, *motors]
         for board in self.boards:
             board.begin()
@@ -72,4 +74,4 @@ class Lab:
     @property
     def angle_arcsec(self) -> float:
         """True angle from the start."""
-        return self.plant.angle * 206264.806
+        return self.plant.angle / ARCSEC

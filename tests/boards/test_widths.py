@@ -15,10 +15,10 @@ INT32 = (1 << 31) - 1
 
 def test_L3_the_sequence_of_packets_is_eight_bits_in_the_board_too() -> None:
     lab = Lab()
-    lab.axis.sequence = lab.position.packets = 0xFF
+    lab.axis.packets.sequence = lab.position.packets.sequence = 0xFF
     lab.run(0.6)
-    assert lab.axis.sequence in (0, 1)
-    assert lab.position.packets in (0, 1)
+    assert lab.axis.packets.sequence in (0, 1)
+    assert lab.position.packets.sequence in (0, 1)
     decoder = PacketDecoder()
     found = [packet.sequence for _, data in lab.packets for packet in decoder.feed(data)]
     assert found[:2] == [255, 0]

@@ -1,21 +1,19 @@
 """Logs of another telescope's azimuth with two motors, made by the blind tests' simulator with numbers of its
 own (azimuth.yaml), as a table in degrees, rpm, mA and per cent."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from plant.units import ARCSEC
 from tests.blind.sealer.draw import Drive
 from tests.blind.sealer.drive_runs import Trace, run_all
 from tests.blind.sealer.manoeuvres import Run, piecewise
 
 RIG = Path(__file__).with_name("azimuth.yaml")
 RATIO = 360 / 18 * 91 / 15 * 71 / 12
-ARCSEC = math.pi / 648000.0
 TAPE = 80e6 / (2 * math.pi)  # counts per rad
 TICK_S = 0.005
 CODES = 2**26  # of the encoder on the axis

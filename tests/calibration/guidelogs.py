@@ -1,7 +1,5 @@
 """Guide logs made up from numbers: drift, a random walk, slow quasi-periodic wander, and a worm or none."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,13 +1,11 @@
 """Axis logs for the tests, made by the plant's compiled loop (not by the sealer of tests/blind)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from plant.loop import LogColumns, simulate
+from plant.loop import Excitation, LogColumns, simulate
 from plant.model import default_files, load, with_effects
 from plant.parts import EffectModel, Number
 
@@ -46,7 +44,9 @@ def write_logs(
     paths, start = [], 4e8
     for k, kind in enumerate(kinds):
         wanted = manoeuvre(kind)
-        log = simulate(model, "ra", len(wanted) * 0.01, setpoint=wanted, seed=k + 1, start_steps=start)
+        log = simulate(
+            model, "ra", len(wanted) * 0.01, Excitation(setpoint=wanted, start_steps=start), seed=k + 1
+        )
         start = float(log.position[-1])
         paths.append(folder / f"run{k + 1}.log")
         write_log(paths[-1], log, 2 * k)

@@ -1,10 +1,9 @@
 """Bad input, one clear answer each: what a reader cannot use is named with its place, and too little data
 never gets a confident name."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 from calibration.command import calibrate
 from calibration.decide.tolerance import INFLATION, inflation
 from calibration.errors import CalibrationInputError
+from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
@@ -126,6 +126,22 @@ def test_a_table_that_cannot_be_used_names_its_column(tmp_path: Path, body: str,
     (tmp_path / "d.csv").write_text("t,x,u\n" + body)
     with pytest.raises(CalibrationInputError, match=says):
         read_table(tmp_path / "d.csv", load_rig(tmp_path / "rig.yaml"))
+
+
+def test_a_million_columns_are_refused_at_once(tmp_path: Path) -> None:
+    """The reader would take half a minute for their names; the time limit of the tests says the rest."""
+    (tmp_path / "rig.yaml").write_text(RIG)
+    for name, text in (("d.csv", ""), ("d.log", LOG[: LOG.index("\nt,") + 1])):
+        wide = text + ",".join(["t"] * 1_000_000) + "\n" + ",".join(["0"] * 1_000_000) + "\n"
+        (tmp_path / name).write_text(wide)
+    for read in (
+        lambda: read_table(tmp_path / "d.csv", load_rig(tmp_path / "rig.yaml")),
+        lambda: read_axis_log(tmp_path / "d.log"),
+    ):
+        begun_s = monotonic()
+        with pytest.raises(CalibrationInputError, match="1000000 columns, at most 4096"):
+            read()
+        assert monotonic() - begun_s < 10.0
 
 
 def test_columns_of_a_table_may_be_given_by_their_place(tmp_path: Path) -> None:

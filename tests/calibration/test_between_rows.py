@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.channels.electrical import electrical_problem
-from calibration.channels.frame import build_frame
-from calibration.channels.motion import motion_of
-from calibration.channels.torque import WIDTH
-from calibration.declaredplant import declared_numbers
-from calibration.readers.axis import read_axis_log
+from calibration.balances.electrical import electrical_problem
+from calibration.balances.frame import build_frame
+from calibration.balances.motion import motion_of
+from calibration.balances.torque import WIDTH
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.declaredplant import declared_numbers
 from calibration.statistics.regression import gls
-from plant.loop import simulate
+from plant.loop import Excitation, simulate
 from plant.model import load
 from tests.calibration.logs import write_log
 
@@ -25,7 +25,7 @@ RAMPS = 2400.0 * np.abs((np.arange(2 * ROWS) * 0.005 + 1.25) % 5.0 - 2.5) - 3000
 def test_the_gain_of_the_law_explains_the_volts(tmp_path: Path, held: bool) -> None:
     model = load("low_preload")
     wanted = RAMPS[::2] if held else RAMPS
-    log = simulate(model, "ra", ROWS * 0.01, setpoint=wanted, seed=3, start_steps=3e8)
+    log = simulate(model, "ra", ROWS * 0.01, Excitation(setpoint=wanted, start_steps=3e8), seed=3)
     path = tmp_path / "run1.log"
     write_log(path, log)
     runs = [read_axis_log(path, path.read_text(encoding="utf-8"))]

@@ -1,8 +1,6 @@
 """Measured logs, changed on purpose: what was done to them is named, and nothing else that the log as it was
 measured does not show."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from functools import cache
@@ -134,7 +132,7 @@ def test_what_was_done_to_a_measured_log_is_named_and_nothing_else(
     if change is mains:
         assert any(e["frequency_Hz"] == pytest.approx(50.0, rel=0.001) for e in data["effects"])
     if change is drag:
-        assert value(data, name, "onset") == pytest.approx(0.35 * 24.84, abs=0.1)
+        assert value(data, name, "start") == pytest.approx(0.35 * 24.84, abs=0.1)
     if change is late:
         was = value(sound(drive), name, "delay")
         assert value(data, name, "delay") == pytest.approx(was + 0.0033, abs=0.0001)

@@ -1,8 +1,6 @@
 """What columns alone say: one that measures nothing is refused, a line that the filter takes away is told, a
 ratio of two sensors is no gap and no delay."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +8,9 @@ import pytest
 
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
+from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
-from calibration.readers.axis import read_axis_log
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion

@@ -1,7 +1,5 @@
 """A rig file that declares its controller: the command against its law."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.decide.select import Selection
+from calibration.decide.selection import Selection
 from calibration.errors import CalibrationInputError
 from calibration.inputs.rigfile import load_rig
 from calibration.report import plots
@@ -164,9 +162,9 @@ def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.Monkey
     logs = sorted(tmp_path.glob("run*.csv"))
     assert calibrate(logs, tmp_path / "rig.yaml", [], tmp_path / "pictures") == 0
     page = (tmp_path / "pictures" / "report.html").read_text()
-    assert "the law's gains are those of the fitted rows" in page.replace("&#39;", "'")
+    assert "a law's gains among them, are those of the fitted rows" in page.replace("&#39;", "'")
     law = drawn[-1]
-    after = plots.held_residuals(law, law.problem.test)[1]
+    after = law.model.residual(law.problem, law.problem.test)
     assert np.sqrt(np.mean(after**2)) == pytest.approx(law.held.after) and law.held.after < 0.05
 
 

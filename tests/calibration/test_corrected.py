@@ -1,38 +1,36 @@
 """Findings in, effects of a plant file out: every name, its signs, and an `unknown` over the axis angle."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from calibration.candidates.axis_lines import LABELS
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.friction import stop_operator
-from calibration.candidates.unknown import spline_columns
-from calibration.channels.frame import build_frame
-from calibration.channels.torque import Transmission, torque_problem
-from calibration.corrected.convert import CONVERTERS, convert
-from calibration.corrected.curves import curve_of
-from calibration.corrected.lines import nearest_place
-from calibration.corrected.making import Facts
+from calibration.balances.candidate import Candidate
+from calibration.balances.frame import build_frame
+from calibration.balances.motion import motion_of
+from calibration.balances.recursions import stop_operator
+from calibration.balances.torque import WIDTH, Transmission, torque_problem
 from calibration.decide.select import select
-from calibration.declaredplant import declared_numbers
 from calibration.finding import Curve, Finding, Parameter
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.declaredplant import declared_model, declared_numbers
+from calibration.look.scene import view_of_pair
 from calibration.names import NAMES as FOUND
-from calibration.plantfile import correct, declared_model
-from calibration.readers.axis import read_axis_log
-from plant.effects import NAMES
-from plant.effects.evaluate import evaluate, evaluate_function, signals, values_over
-from plant.effects.rows import KINDS, _function
+from calibration.names.inplant import Facts, as_found
+from calibration.names.position_friction import nearest_place
+from calibration.names.unknown import spline_columns
+from calibration.replay.curves import curve_of
+from calibration.replay.plantfile import convert, correct
+from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE, CURRENT, MEMORY, MOTOR, MOTOR_ANGLE
 from plant.effects.unknown import formula
+from plant.evaluate import evaluate, evaluate_function, signals, values_over
 from plant.gears import ORDERS, RATIO
-from plant.loop import simulate
+from plant.loop import Excitation, simulate
 from plant.model import PlantModel, dumps, load, loads, with_effects
 from plant.parts import EffectModel, Function
+from plant.rows import KINDS, _function, values
 from tests.calibration.logs import COLUMNS, FORMATS, HEADER, manoeuvre
 
 FACTS = Facts("a test", half_play=0.5 * np.radians(21.0), middle=1.0, span=0.5, warming=-1 / 3600)
@@ -53,16 +51,16 @@ def finding(name: str, channel: str = "T", domain: str = "time", **numbers: floa
 
 #: every form in which the pipeline finds a name: (finding, what the plant file must hold of it, or None)
 FORMS: list[tuple[Finding, str | None]] = [
-    (finding("stribeck_change", breakaway=900.0), None),
+    (finding("stribeck_change", stiction_factor=1.5), None),
     (finding("presliding", sigma_0=2e6), None),
-    (finding("viscous_change", sigma_2=9e3), None),
-    (finding("coulomb_change", coulomb=400.0), None),
+    (finding("viscous_change", factor=1.4), None),
+    (finding("coulomb_change", factor=1.7), None),
     (finding("shaft_compliance", "K", stiffness=1e6), None),
     (finding("friction_asymmetry", coulomb_asymmetry=0.1), "friction_asymmetry"),
     (finding("position_friction", order=123.4, amplitude=5.0, phase=1.0), "position_friction"),
-    (finding("load_friction", mu=0.1), "load_friction"),
-    (finding("friction_warmup", amplitude=0.3, tau=60.0), "friction_warmup"),
-    (finding("preload_change", fraction=0.4, onset=100.0), "preload_change"),
+    (finding("load_friction", coefficient=0.1), "load_friction"),
+    (finding("friction_warmup", depth=-0.3, time_constant=60.0), "friction_warmup"),
+    (finding("preload_change", change=0.4, start=100.0), "preload_change"),
     (finding("gravity_imbalance", amplitude=40.0, phase=0.3), "gravity_imbalance"),
     (finding("gear_eccentricity", stage="shaft1", harmonic=1, amplitude=9.0, phase=1.0), "gear_eccentricity"),
     (
@@ -73,53 +71,53 @@ FORMS: list[tuple[Finding, str | None]] = [
     (finding("gear_mesh", "K", stage="mesh2", harmonic=1, amplitude=3.0, phase=1.0), "gear_eccentricity"),
     (finding("damaged_tooth", stage="shaft1", amplitude=60.0, phase=0.3, width=0.02), "damaged_tooth"),
     (
-        finding("motor_cogging", stage="motor", harmonic=37, amplitude=0.03, phase=1.0, motor=0.0),
+        finding("motor_cogging", stage="motor", harmonic=37, amplitude=0.03, phase=1.0, motor=1.0),
         "motor_cogging",
     ),
     (
-        finding("torque_ripple", stage="motor", harmonic=37, ripple=0.05, phase=1.0, motor=1.0),
+        finding("torque_ripple", stage="motor", harmonic=37, ripple=0.05, phase=1.0, motor=2.0),
         "torque_ripple",
     ),
-    (finding("backlash_loss", "E", counter_loss=0.9), "backlash_loss"),
-    (finding("structural_mode", inertia_2=200.0, frequency=9.0, damping=0.02), "structural_mode"),
+    (finding("backlash_loss", "E", loss=0.9), "backlash_loss"),
+    (finding("structural_mode", inertia=200.0, frequency=9.0, damping=0.02), "structural_mode"),
     (finding("encoder_eccentricity", "K", amplitude=2.0, phase=0.5), "encoder_eccentricity"),
     (
         finding(
-            "encoder_eccentricity", "S", stage="roller", harmonic=1, order=24.5, amplitude=1e-4, phase=0.5
+            "encoder_eccentricity", "S", stage="roller", harmonic=1, order=24.5, amplitude=0.84, phase=0.5
         ),
         "encoder_eccentricity",
     ),
     (finding("encoder_subdivision", "S", order=32768.0, amplitude=0.2, phase=0.5), "encoder_subdivision"),
-    (finding("roller_ratio", "S", scale=5e-4), "roller_ratio"),
-    (finding("roller_slip", "S", slip=0.02, limit=0.005), "roller_slip"),
-    (finding("roller_slip", "S", creep=0.02, limit=0.005), "roller_slip"),
+    (finding("roller_ratio", "S", error=500.0), "roller_ratio"),
+    (finding("roller_slip", "S", creep=0.02, threshold=0.005), "roller_slip"),
+    (finding("roller_slip", "S", slip=0.02, threshold=0.005), "roller_slip"),
     (finding("play", "K", gap=12.0), "play"),
-    (finding("adc_offset", "E", offset=5.0, motor=1.0), "adc_offset"),
+    (finding("adc_offset", "E", offset=0.03, motor=2.0), "adc_offset"),
     (finding("adc_offset", offset_torque=5.0), "adc_offset"),
-    (finding("adc_gain", "E", gain=0.05, motor=0.0), "adc_gain"),
-    (finding("adc_gain", gain_b=0.05), "adc_gain"),
-    (finding("pwm_deadband", "E", u0=0.01), "pwm_deadband"),
-    (finding("diode_braking", "E", fraction=0.8), "diode_braking"),
+    (finding("adc_gain", "E", gain=0.05, motor=1.0), "adc_gain"),
+    (finding("adc_gain", gain=0.05, motor=2.0), "adc_gain"),
+    (finding("pwm_deadband", "E", deadband=0.01), "pwm_deadband"),
+    (finding("diode_braking", "E", share=0.8), "diode_braking"),
     (finding("supply_sag", "E", resistance=0.2), "supply_sag"),
-    (finding("winding_heating", "E", thermal_resistance=1.5, tau=90.0), "winding_heating"),
-    (finding("magnet_weakening", "E", fraction=0.1, motor=1.0), "magnet_weakening"),
-    (finding("wind_torque", sigma=3.0, corner=0.1), "wind_torque"),
-    (finding("cable_wrap", stiffness=30.0, neutral_torque=5.0, loop=8.0, loop_travel=0.02), "cable_wrap"),
-    (finding("brake_drag", torque=50.0, onset=100.0), "brake_drag"),
-    (finding("brake_drag", torque=-50.0, onset=100.0), "brake_drag"),
+    (finding("winding_heating", "E", thermal_resistance=1.5, time_constant=90.0), "winding_heating"),
+    (finding("magnet_weakening", "E", loss=0.1, motor=2.0), "magnet_weakening"),
+    (finding("wind_torque", deviation=3.0, correlation_time=1.6), "wind_torque"),
+    (finding("cable_wrap", stiffness=30.0, neutral_torque=5.0, hysteresis=8.0, width=0.02), "cable_wrap"),
+    (finding("brake_drag", torque=50.0, start=100.0), "brake_drag"),
+    (finding("brake_drag", torque=-50.0, start=100.0), "brake_drag"),
     (finding("bearing_pass", order=437.3, amplitude=9.0, phase=1.0), "bearing_pass"),
     (finding("encoder_thermal_drift", "K", drift=2.0), "encoder_thermal_drift"),
-    (finding("channel_delay", "S", delay=0.004, note="the velocity column is late"), "channel_delay"),
+    (finding("channel_delay", "S", delay=0.004, column=2.0), "channel_delay"),
     (finding("channel_delay", "S", delay=0.004, note="the current or effort column is late"), None),
-    (finding("clock_jitter", "S", sigma=3e-4), "clock_jitter"),
-    (finding("sample_loss", "S", fraction=0.05, note="50 rows missing in 2 gaps"), "sample_loss"),
-    (finding("log_wrap", "S", note="run1: position wraps at 2^24 counts, 3 times"), "log_wrap"),
-    (finding("log_wrap", "S", note="run1: velocity stops at 127 counts"), "log_wrap"),
-    (finding("command_disturbance", "S", amplitude=20.0, phase=0.1, frequency=0.8), "command_disturbance"),
+    (finding("clock_jitter", "S", deviation=3e-4), "clock_jitter"),
+    (finding("sample_loss", "S", packet_loss=0.05), "sample_loss"),
+    (finding("log_wrap", "S", column=1.0, bits=24.0, mode=0.0), "log_wrap"),
+    (finding("log_wrap", "S", column=2.0, bits=8.0, mode=1.0), "log_wrap"),
+    (finding("command_disturbance", "S", amplitude=0.007, phase=0.1, frequency=0.8), "command_disturbance"),
     (finding("unknown", domain="reversal", loop=12.0, travel=1e-3), "unknown"),
     (finding("unknown", domain="reversal", **{f"loop_{k}": 1.0 for k in range(5)}), "unknown"),
     (finding("unknown", domain="time", frequency=0.7, amplitude=4.0, phase=0.2), "unknown"),
-    (finding("unknown", "E", "motor_angle", amplitude=0.2, phase=0.2, motor=1.0), "unknown"),
+    (finding("unknown", "E", "motor_angle", amplitude=0.2, phase=0.2, motor=2.0), "unknown"),
     (finding("unknown", "E", "time", frequency=49.9, amplitude=0.05), "unknown"),
     (finding("unknown", "S", "command", size=20.0, period=3.0), None),
     (
@@ -133,8 +131,8 @@ FORMS: list[tuple[Finding, str | None]] = [
 
 
 def test_every_name_of_the_catalogue_has_a_form() -> None:
-    own = {n.name for n in FOUND.values() if n.own is not None}
-    assert {f.name for f, _ in FORMS} | own == set(NAMES) == set(CONVERTERS) | own
+    as_it_is = {n.name for n in FOUND.values() if n.to_plant is as_found}
+    assert {f.name for f, _ in FORMS} | as_it_is == set(REGISTRY) == set(FOUND)
 
 
 @pytest.mark.parametrize("found, written", FORMS, ids=lambda x: getattr(x, "name", None))
@@ -148,11 +146,15 @@ def test_what_is_found_is_in_the_plant_file_or_has_a_remark(found: Finding, writ
         assert all(n.source for n in effect.parameters.values())
 
 
+def test_a_loss_that_begins_is_told_with_its_time() -> None:
+    loss = finding("magnet_weakening", "E", loss=0.1, start=120.0, duration=5.0)
+    remarks = FOUND["magnet_weakening"].to_plant(loss, FACTS).remarks
+    assert len(remarks) == 1 and "from 120 s on" in remarks[0]
+
+
 def torque(effect: EffectModel, angle: np.ndarray) -> np.ndarray:
     """The torque on the axis, N m."""
-    order = ORDERS[effect.stage] * effect.harmonic if effect.stage else 0.0
-    numbers = {k: n.si for k, n in effect.parameters.items()}
-    return evaluate(effect.name, signals(len(angle), {ANGLE: angle}), numbers, order=order)
+    return evaluate(effect.name, signals(len(angle), {ANGLE: angle}), values(effect))
 
 
 @pytest.mark.parametrize(
@@ -172,16 +174,19 @@ def test_a_line_pushes_against_the_torque_the_motors_had_to_add(found: Finding) 
     assert np.allclose(torque(made, angle), -supplied, atol=1e-6)
 
 
-@pytest.mark.parametrize("motor", [0, 1])
+@pytest.mark.parametrize("motor", [1, 2])
 def test_lines_of_a_motor_know_that_its_angle_lies_half_the_play_off(motor: int) -> None:
     axis = np.linspace(0.0, 0.01, 200)
     seen = RATIO * axis  # the angle as calibration has it: the axis' times the ratio
-    real = seen + (1 - 2 * motor) * FACTS.half_play
-    for name, unit in LABELS.items():
+    real = seen + (3 - 2 * motor) * FACTS.half_play
+    for name, unit in {
+        "motor_cogging": ("amplitude", "N m at the motor"),
+        "torque_ripple": ("ripple", "1"),
+    }.items():
         size = {"motor_cogging": 0.03, "torque_ripple": 0.05}[name]
         numbers = {unit[0]: size, "phase": 1.0, "motor": float(motor)}
         (made,) = convert(finding(name, stage="motor", harmonic=37, **numbers), FACTS).effects
-        rows = signals(200, {MOTOR_ANGLE: real, MOTOR: np.full(200, float(motor)), CURRENT: np.ones(200)})
+        rows = signals(200, {MOTOR_ANGLE: real, MOTOR: np.full(200, motor - 1.0), CURRENT: np.ones(200)})
         pushed = evaluate(name, rows, {k: n.si for k, n in made.parameters.items()})
         assert np.allclose(pushed, -size * np.cos(37 * seen + 1.0), atol=1e-9)
 
@@ -208,7 +213,7 @@ def test_a_line_of_friction_keeps_its_phase_where_the_axis_was() -> None:
 
 def test_a_brake_that_lets_go_lowers_the_friction_under_it() -> None:
     model = with_effects(load(), "ra", ())
-    corrected, _ = correct(model, "ra", [finding("brake_drag", torque=-50.0, onset=100.0)], FACTS)
+    corrected, _ = correct(model, "ra", [finding("brake_drag", torque=-50.0, start=100.0)], FACTS)
     before, after = model.axes.ra.friction, corrected.axes.ra.friction
     assert after.coulomb.si == pytest.approx(before.coulomb.si - 50.0)
     (drag,) = corrected.axes.ra.effects
@@ -225,7 +230,9 @@ def logs(folder: Path, model: PlantModel) -> list[Path]:
     paths, start = [], 4e8
     for k, kind in enumerate(("sweep", "sweep", "ramp", "sweep")):
         wanted = manoeuvre(kind)
-        log = simulate(model, "ra", len(wanted) * 0.01, setpoint=wanted, seed=k + 1, start_steps=start)
+        log = simulate(
+            model, "ra", len(wanted) * 0.01, Excitation(setpoint=wanted, start_steps=start), seed=k + 1
+        )
         start = float(log.position[-1])
         path = folder / f"run{k + 1}.log"
         with path.open("w", encoding="utf-8") as file:
@@ -245,21 +252,25 @@ def test_a_smooth_torque_over_the_angle_comes_back_as_an_unknown_within_its_unce
     runs = [read_axis_log(p) for p in paths]
     frame = build_frame(runs)
     whole = np.ones(len(frame.t))
-    drive = Transmission(0.39 * RATIO, {"a": whole, "b": whole}, 0.0, 3e6)
+    drive = Transmission(
+        per_ampere=0.39 * RATIO, left={"a": whole, "b": whole}, softness_s2=0.0, stiffness=3e6
+    )
     t = torque_problem(frame, drive, frame.run == 3, declared_numbers(runs, None))
     assert t is not None
-    columns = spline_columns(t.context.angle, 16)
+    motion = motion_of(frame, WIDTH)
+    view = view_of_pair(frame, motion)
+    columns = spline_columns(view.x[view.rows], 16)
     labels = tuple((f"knot_{k}", "N m") for k in range(columns.shape[1]))
     s = select(t.problem, [Candidate("unknown", "axis_angle", columns, labels)], np.random.default_rng(0))
     assert [c.candidate.name for c in s.chosen] == ["unknown"] and s.held.after < s.held.before
-    curve = curve_of(s, 0, t.context)
+    curve = curve_of(s, 0, view)
     assert curve is not None
     found = replace(finding("unknown", domain="axis_angle"), curve=curve)
     corrected, remarks = correct(plain, "ra", [found], FACTS)
     (effect,) = loads(dumps(corrected)).axes.ra.effects
     assert remarks == [] and effect.function is not None and "95 %" in effect.function.source
     knots, heights = (np.array(v) for v in zip(*effect.function.knots, strict=True))
-    travelled = t.context.angle[t.problem.train]
+    travelled = view.x[view.rows][t.problem.train]
     angle = np.linspace(*np.quantile(travelled, [0.03, 0.97]), 200)
     made, half = evaluate_function(knots, heights, angle), np.interp(angle, curve.x, curve.half)
     # an asymmetry of friction takes up a constant: the function is known up to that

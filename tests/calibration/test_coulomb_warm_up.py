@@ -1,7 +1,5 @@
 """Friction that warms up without its viscous part, anew in every file: named alone, with size and time."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +19,7 @@ def test_the_coulomb_part_alone_warms_up(tmp_path: Path, rise: float) -> None:
     data = answer(tmp_path, FORCE, *tables)
     assert found(data) == ["friction_warmup"]
     told = data["effects"][0]["parameters"]
-    assert told["relative_rise_of_coulomb"]["value"] == pytest.approx(rise, rel=0.05)
-    assert told["tau_in_run"]["value"] == pytest.approx(8.0, rel=0.1)
+    assert told["depth"]["value"] == pytest.approx(-rise, rel=0.05)
+    assert told["of_coulomb"]["value"] == 1.0
+    assert told["time_constant_in_run"]["value"] == pytest.approx(8.0, rel=0.1)
     assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.02)

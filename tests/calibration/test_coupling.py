@@ -1,16 +1,14 @@
 """A gapped coupling of the axis encoder: which flank drives it, the path meanwhile, the rows fitted."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from calibration.channels.coupling import carried_on, driven_side
-from calibration.channels.frame import Frame
-from calibration.channels.motion import motion_of
-from calibration.channels.torque import slid
-from calibration.inputs.telescope import telescope
-from calibration.readers.drive import ARCSEC
+from calibration.balances.coupling import carried_on, driven_side
+from calibration.balances.frame import Frame
+from calibration.balances.motion import motion_of
+from calibration.balances.torque import slid
+from calibration.inputs.rigfile import telescope
+from plant.units import ARCSEC
 
 DT, GAP, NOISE = 0.01, 8.0, 0.0015  # s, arcsec, arcsec
 ONE_RUN = np.zeros(6000, dtype=np.int64)
@@ -59,9 +57,11 @@ def test_rows_are_fitted_again_once_the_bristles_hold_nothing_of_the_unseen_path
     position, unseen = 1e-6 * np.arange(1000.0), np.zeros(1000)
     unseen[200:300] = 1.0
     columns = {"position": position, "unseen": unseen}
+    zero = np.zeros(1000, dtype=np.int64)
     frame = Frame(
-        [], DT, DT * np.arange(1000), np.zeros(1000), *[np.zeros(1000, int)] * 2, columns, {}, telescope("ra")
-    )
+        runs=[], period_s=DT, t=DT * np.arange(1000), clock=np.zeros(1000), run=zero, session=zero,
+        columns=columns, scale={}, rig=telescope("ra"),
+    )  # fmt: skip
     m = motion_of(frame, 3)
     assert not m.trusted[197:303].any() and m.trusted[320:900].all() and m.fresh.sum() == 1
     settled = slid(m, unseen, 5e-5)

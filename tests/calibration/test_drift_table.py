@@ -1,7 +1,5 @@
 """A mount's encoder against the sky, as a table: looked at as a guide log is."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,17 +1,15 @@
 """What a drive's answer may not say: sizes of a sign that physics excludes, files apart by whole counters, a
 floor below what is made again; and what it says of a rate or a delay that it cannot name."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
-from calibration.channels.problem import Problem
-from calibration.decide.select import fitted, select
-from calibration.response.prune import signed
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.decide.rules import signed
+from calibration.decide.select import select
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
 
 SHARED = FORCE.replace("unit: m}", "unit: rad}") + "runs: {origin: shared}\n"
@@ -26,7 +24,19 @@ def loops(rng: np.random.Generator, n: int, second: float) -> tuple[Problem, Can
     one, good = np.ones((n, 1)), np.ones(n, dtype=bool)
     t = np.arange(n, dtype=np.float64) * np.float64(0.01)
     problem = Problem(
-        "T", "N", y, one, [("offset", "N")], t, zero, zero, good, held, 0.01, ar_order=0, block_s=0.5
+        channel="T",
+        unit="N",
+        y=y,
+        base=one,
+        base_labels=[("offset", "N")],
+        t=t,
+        run=zero,
+        session=zero,
+        valid=good,
+        held=held,
+        period_s=0.01,
+        ar_order=0,
+        block_s=0.5,
     )
     return problem, Candidate("presliding", "reversal", x, (("first", "N"), ("second", "N")))
 
@@ -39,7 +49,7 @@ def test_a_part_of_an_effect_with_the_wrong_sign_is_left_out_of_it(second: float
     assert len(s.chosen) == 1
     bound = type(free)(**{**free.__dict__, "sign": 1})
     s.chosen[0] = type(s.chosen[0])(**{**s.chosen[0].__dict__, "candidate": bound})
-    ((c, beta),) = fitted(signed(s))
+    ((c, beta),) = signed(s).fitted
     assert [n for n, _ in c.labels] == left and (beta > 0).all()
 
 

@@ -1,8 +1,6 @@
 """Drives with a rig file: what was done to their columns is found and undone, names are right where
 the truth is known."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -13,10 +11,10 @@ import pytest
 from calibration.command import calibrate, show_rig
 from calibration.errors import CalibrationInputError
 from calibration.inputs.matlab import read_matlab
-from calibration.inputs.record import quantum
 from calibration.inputs.rigfile import load_rig
+from calibration.inputs.run import quantum
 from calibration.names import NAMES
-from plant.effects import NAMES as CATALOGUE
+from plant.effects import REGISTRY as CATALOGUE
 
 FORCE = """rig: bench
 columns:
@@ -151,7 +149,7 @@ def test_warmth_from_file_to_file_is_no_preload(tmp_path: Path) -> None:
         files.append((clock, x, u + 2.0 * np.sign(v) * np.exp(-clock / 100.0)))
     data = answer(tmp_path, FORCE, *files)
     assert found(data)[0] == "friction_warmup"
-    assert data["effects"][0]["parameters"]["tau"]["value"] == pytest.approx(100.0, rel=0.3)
+    assert data["effects"][0]["parameters"]["time_constant"]["value"] == pytest.approx(100.0, rel=0.3)
 
 
 def test_play_between_two_encoders(tmp_path: Path) -> None:
@@ -191,11 +189,11 @@ def test_keys_that_say_nothing_are_refused(tmp_path: Path, old: str, new: str, s
         load_rig(path)
 
 
-def test_a_column_that_stands_twice_and_json_say_so(tmp_path: Path) -> None:
+def test_a_column_that_stands_twice_or_nowhere_says_so(tmp_path: Path) -> None:
     (tmp_path / "rig.yaml").write_text(FORCE)
     for name, text, says in (
         ("a.csv", "t,x,x,u\n0,1,2,3\n1,2,3,4\n", "stands more than once"),
-        ("b.json", '[{"t": 0}]', "is JSON"),
+        ("b.json", '[{"t": 0}]', "no such column; the file has t"),
     ):
         (tmp_path / name).write_text(text)
         with pytest.raises(CalibrationInputError, match=says):
@@ -245,7 +243,6 @@ def test_the_quantum_is_the_step_of_a_rounded_column_and_none_of_a_smooth_one() 
 def test_every_name_is_of_the_catalogue_and_says_how_to_be_told_apart() -> None:
     for name in NAMES.values():
         assert name.name in CATALOGUE and name.experiment
-        assert set(name.twins) <= set(CATALOGUE) and name.name not in name.twins
 
 
 def several(count: int = 3) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:

@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from calibration.command import calibrate
-from scenarios import run as runner
-from scenarios.document import parse
-from scenarios.load import convert
-from scenarios.plants import plant_model
+from scenarios.language.document import parse
+from scenarios.language.load import convert
+from scenarios.language.plants import plant_model
+from scenarios.run import run as runner
 
 #: arcsec/s, s: both directions, speeds on both sides of the Stribeck speed, tens of degrees, small reversals
 RATES = [
@@ -110,7 +110,7 @@ def test_an_added_imbalance_is_named_with_its_size(low: Path) -> None:
 @pytest.mark.long
 def test_an_added_supply_sag_is_named_beside_the_ripple_of_the_current(high: Path) -> None:
     report = verdict(high, "ra")
-    # A wind of less than a newton metre may be named beside it: a known weakness (docs/calibration.md).
+    # A wind of less than a newton metre may be named beside it, too (docs/reference/calibration.md).
     assert report["effects"][0]["name"] == "supply_sag"
     assert {e["name"] for e in report["effects"][1:]} <= {"wind_torque"}
     assert report["effects"][0]["parameters"]["resistance"]["value"] == pytest.approx(0.4, rel=0.25)

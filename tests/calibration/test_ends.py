@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.inputs.ends import converter_end, piled_at
-from calibration.readers.run import Run
+from calibration.inputs.run import Run
+from calibration.inputs.stuck import converter_end, piled_at
 from tests.blind.drives.case import seal
 from tests.blind.drives.cells import SETS
 

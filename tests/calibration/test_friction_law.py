@@ -1,7 +1,5 @@
 """A drive with one motor whose friction has a declared shape: a dip from rest, bristles, both."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +7,7 @@ import pytest
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.rigfile import load_rig
-from calibration.rigview import show
+from calibration.report.rigview import show_rig
 from tests.calibration.test_drives import FORCE, PERIOD, answer, found
 
 MASS, COULOMB, VISCOUS = 2.0, 3.0, 4.0
@@ -63,7 +61,7 @@ def test_what_is_understood_is_shown(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(RIG + LAW)
     said = "friction law: 1.6 times Coulomb's from rest, Stribeck 0.05 rad/s; bristles of 0.03 rad"
-    assert said in show(path, [], None).splitlines()
+    assert said in show_rig(path, [], None).splitlines()
 
 
 @pytest.mark.parametrize(

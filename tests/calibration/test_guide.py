@@ -1,7 +1,5 @@
 """Guide logs as mounts and PHD2 versions write them: what is summed up, what is refused, what a worm is."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -9,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount
 from calibration.command import calibrate
-from calibration.drift.mounts import SIDEREAL_DAY_S, known_mount
 from calibration.errors import CalibrationInputError
+from calibration.inputs.guidelog import read_guide_log
 from calibration.inputs.logs import read_drive
-from calibration.readers.guide import read_guide_log
-from calibration.readers.run import Run
+from calibration.inputs.run import Run
 from tests.calibration import guidelogs
 from tests.calibration.guidelogs import TOP, section
 from tests.calibration.test_readers import GUIDE

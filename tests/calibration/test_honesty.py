@@ -1,28 +1,21 @@
 """What an answer is worth: probabilities, withdrawals, floors, what is lacking."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
-from calibration.answers import error_row
-from calibration.candidates.amplifier import _phase
-from calibration.candidates.axis_lines import _between
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.kinematic import lag_in_gap
-from calibration.channels.problem import Problem
+from calibration.balances.problem import Problem
 from calibration.decide.heldout import HeldOut
-from calibration.decide.missing import above_floor
-from calibration.decide.passive import sound
-from calibration.decide.probability import kind_of, probability
-from calibration.decide.select import select
 from calibration.decide.thresholds import AXIS_EARNED
-from calibration.decide.verdict import Verdict, as_dict, judge
-from calibration.decide.withdraw import withdraw
+from calibration.decide.verdict import effect_as_dict, judge, kind_of, probability
+from calibration.decide.withdraw import against_nature, failed_controls, withdraw
 from calibration.finding import Finding, Parameter, middle
-from calibration.twomotors.lacks import motion_lacks
+from calibration.look.lacks import motion_lacks
+from calibration.look.looked import Balance
+from calibration.names.command_disturbance import _phase
+from calibration.names.freelines import between
+from calibration.names.play import lag_in_gap
 
 
 def row(after: float, floor: float | None) -> dict[str, dict[str, Any]]:
@@ -56,9 +49,8 @@ def test_a_name_is_worth_what_such_answers_earned(
 
 def test_what_is_left_above_two_floors_never_has_nine_tenths() -> None:
     assert AXIS_EARNED["above"].probability < 0.9
-    data = as_dict(Verdict("found", [finding()], error=row(5.0, 1.0), earned=AXIS_EARNED))
-    assert data["effects"][0]["probability"] == round(AXIS_EARNED["above"].probability, 4)
-    assert above_floor(row(5.0, 1.0)) == {"torque": 5.0} and above_floor(row(5.0, None)) == {}
+    data = effect_as_dict(finding(), 0, row(5.0, 1.0), AXIS_EARNED)
+    assert data["probability"] == round(AXIS_EARNED["above"].probability, 4)
 
 
 def test_a_name_whose_control_was_accepted_is_withdrawn_and_not_lost() -> None:
@@ -67,7 +59,7 @@ def test_a_name_whose_control_was_accepted_is_withdrawn_and_not_lost() -> None:
         {"what": "time reversed (gear_mesh on mesh3)", "accepted": True, **place},
         {"what": "sign flipped", "accepted": False, "name": "brake_drag", "stage": None, "harmonic": None},
     ]
-    kept, refused = withdraw([finding(), Finding("brake_drag", "T", "time")], tried)
+    kept, refused = withdraw([finding(), Finding("brake_drag", "T", "time")], failed_controls(tried))
     assert [f.name for f in kept] == ["brake_drag"]
     assert refused == [("T", "gear_mesh on mesh3", "withdrawn: accepted as well with time reversed")]
     assert judge([], ["a second speed"]) == ("cannot tell", "a second speed")
@@ -75,13 +67,18 @@ def test_a_name_whose_control_was_accepted_is_withdrawn_and_not_lost() -> None:
 
 
 def test_a_floor_is_not_limited_to_what_is_left() -> None:
-    n = 10
+    zero, every = np.zeros(10), np.ones(10, dtype=bool)
+    run = zero.astype(np.int64)
     p = Problem(
-        "T", "N m", *[np.zeros(n), np.zeros((n, 1))], [], *[np.zeros(n)] * 3, *[np.ones(n, bool)] * 2, 1
-    )
-    s = type("S", (), {"problem": p, "held": HeldOut(2.0, 0.8, 0.0, 0.0)})()
-    assert error_row(s, 1.0)["floor"] == 1.0  # above after: the noise of this stretch was less
-    assert error_row(s, None)["floor"] is None and error_row(s, float("nan"))["floor"] is None
+        channel="T", unit="N m", y=zero, base=zero[:, None], base_labels=[], t=zero, run=run, session=run,
+        valid=every, held=every, period_s=1.0,
+    )  # fmt: skip
+    s = type("S", (), {"problem": p, "held": HeldOut(before=2.0, after=0.8)})()
+    one, *none = [Balance(key="T", row="torque", selection=s, floor=f) for f in (1.0, None, np.nan)]
+    assert one.error["floor"] == 1.0  # above after: the noise of this stretch was less
+    assert one.times == pytest.approx(0.8)
+    assert all(b.error["floor"] is None and b.times == 0.0 for b in none)
+    assert Balance(key="S1", row=None, selection=s, floor=1.0).times == 0.0
 
 
 def test_intervals_are_computed_or_absent() -> None:
@@ -89,22 +86,6 @@ def test_intervals_are_computed_or_absent() -> None:
     found = middle(np.array([1.0, 1.2, 0.9, 1.1, 1.0]), "s")
     assert found.low is not None and found.high is not None and found.low < 1.0 < found.high
     assert found.times(2.0).high == pytest.approx(2 * found.high)
-
-
-def test_a_log_that_is_too_short_names_the_candidate_that_was_close() -> None:
-    rng = np.random.default_rng(2)
-    t = np.arange(1500) * 0.01  # 15 s: 5 blocks of 3 s
-    line = np.column_stack([np.cos(2 * np.pi * t), np.sin(2 * np.pi * t)])
-    nothing = np.zeros(1500, dtype=bool)
-    run = nothing.astype(np.int64)
-    y, base = line @ [1.0, 0.0] + 0.1 * rng.standard_normal(1500), np.ones((1500, 1))
-    labels = [("offset", "N m")]
-    p = Problem("T", "N m", y, base, labels, t, run, run, ~nothing, nothing, 0.01, block_s=3.0)
-    c = Candidate("bearing_pass", "axis_angle", line, (("amplitude", "N m"),), kind="line")
-    s = select(p, [c], rng)
-    assert not s.chosen
-    assert [r.what for r in s.refused] == ["every candidate", "bearing_pass"]
-    assert "60 s" in s.refused[0].why and "closest" in s.refused[1].why
 
 
 def test_one_speed_and_one_direction_are_said() -> None:
@@ -136,13 +117,27 @@ def test_a_fit_with_a_negative_inertia_names_nothing() -> None:
     zero, every = np.zeros(10), np.ones(10, dtype=bool)
     run = zero.astype(np.int64)
     labels = [("inertia", "kg m2"), ("coulomb", "N m")]
-    p = Problem("T", "N m", zero, np.zeros((10, 2)), labels, zero, run, run, every, every, 1.0)
+    p = Problem(
+        channel="T",
+        unit="N m",
+        y=zero,
+        base=np.zeros((10, 2)),
+        base_labels=labels,
+        t=zero,
+        run=run,
+        session=run,
+        valid=every,
+        held=every,
+        period_s=1.0,
+    )
     for inertia, kept in ((-5.0, 0), (-0.5, 1), (5.0, 1)):  # half a standard error below zero is no sign
         fit = type("F", (), {"beta": np.array([inertia, 3.0]), "covariance": np.eye(2)})()
         s = type("S", (), {"problem": p, "after": fit})()
-        found, refused = sound([finding()], {"T": s})
+        found, refused = withdraw([finding()], against_nature({"T": s}))
         assert (len(found), len(refused)) == (kept, 1 - kept)
-    assert not refused and "inertia would be -5" in sound([finding()], {"T": _with(s, -5.0)})[1][0][2]
+    assert not refused
+    _, ((*_, why),) = withdraw([finding()], against_nature({"T": _with(s, -5.0)}))
+    assert "inertia would be -5" in why
 
 
 def _with(s: Any, inertia: float) -> Any:
@@ -152,8 +147,8 @@ def _with(s: Any, inertia: float) -> Any:
 
 def test_a_free_order_is_moved_within_its_cell_and_never_onto_a_stage() -> None:
     known = np.array([14.7, 24.5, 250.0])
-    assert _between(20.7, known, 1.0) == (20.2, 21.2)
-    low, high = _between(249.2, known, 1.0)
+    assert between(20.7, known, 1.0) == (20.2, 21.2)
+    low, high = between(249.2, known, 1.0)
     assert (low, high) == (248.7, pytest.approx(250.0 - 0.35))
-    low, high = _between(24.9, known, 1.0)
+    low, high = between(24.9, known, 1.0)
     assert (low, high) == (pytest.approx(24.85), pytest.approx(25.4))

@@ -1,8 +1,6 @@
 """The plant's own loop, whose clock starts anew with every run: what begins in each keeps its name and size;
 what only looks like wind, or like another law of the command, is neither."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -33,8 +31,8 @@ def test_a_preload_that_changes_in_every_run(tmp_path: Path) -> None:
     report = answer(tmp_path, change)
     assert [e["name"] for e in report["effects"]] == ["preload_change"]
     found = report["effects"][0]["parameters"]
-    assert found["fraction"]["value"] == pytest.approx(0.5, rel=0.05)
-    assert found["onset_in_run"]["low"] < 12.5 and found["onset_in_run"]["high"] > 12.0
+    assert found["change"]["value"] == pytest.approx(0.5, rel=0.05)
+    assert found["start_in_run"]["low"] < 12.5 and found["start_in_run"]["high"] > 12.0
     assert report["error"]["torque"]["after"] < 2 * report["error"]["torque"]["floor"]
     (written,) = (e for e in load(tmp_path / "out" / "plant.yaml").axes.ra.effects if e.name == change.name)
     assert written.parameters["change"].value == pytest.approx(0.5, rel=0.05)
@@ -46,8 +44,8 @@ def test_a_warm_up_that_begins_in_every_run(tmp_path: Path) -> None:
     # a bristle answers a change of a third in the first order only: that may be left, without a name
     assert [e["name"] for e in report["effects"] if e["name"] != "unknown"] == ["friction_warmup"]
     found = report["effects"][0]["parameters"]
-    assert found["amplitude"]["value"] == pytest.approx(0.3, rel=0.1)
-    assert found["tau_in_run"]["value"] == pytest.approx(20.0, rel=0.15)
+    assert found["depth"]["value"] == pytest.approx(-0.3, rel=0.1)
+    assert found["time_constant_in_run"]["value"] == pytest.approx(20.0, rel=0.15)
 
 
 def ornstein_uhlenbeck(tau_s: float, seconds: float, period_s: float, seed: int) -> np.ndarray:
@@ -66,8 +64,9 @@ def test_a_wind_has_its_corner(tau: float) -> None:
     rate = 1e-3 * np.sign(np.sin(2 * np.pi * np.arange(len(e)) * 0.05 / 40.0))
     found = wind(e, regression(e, np.column_stack([np.ones(len(e)), rate]), 0.05), 0.1)
     assert found is not None and found.name == "wind_torque"
-    assert found.parameters["corner"].value == pytest.approx(1 / (2 * np.pi * tau), rel=0.15)
-    assert found.parameters["sigma"].value == pytest.approx(1.0, rel=0.1)
+    # the corner, 1 / (2 pi time), is what the 15 % belong to: it is read from the lag of half the correlation
+    assert 1 / found.parameters["correlation_time"].value == pytest.approx(1 / tau, rel=0.15)
+    assert found.parameters["deviation"].value == pytest.approx(1.0, rel=0.1)
 
 
 def test_what_turns_over_with_the_direction_is_no_wind() -> None:

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
+from calibration.balances.candidate import Candidate
+from calibration.decide.rules import signed
 from calibration.decide.scan import fit_with
-from calibration.decide.superfluous import unphysical
+from calibration.decide.selection import Selection
 from tests.calibration.test_statistics import regression
 
 
@@ -23,4 +24,5 @@ def test_a_size_that_physics_excludes_beside_the_others_goes() -> None:
     alone = [fit_with(p, p.base, c) for c in both]
     picks = [c for c in alone if c is not None]
     assert len(picks) == 2 and all(c.fit.beta[-1] > 0 for c in picks)
-    assert unphysical(p, picks) == 0 and unphysical(p, picks[1:]) is None
+    assert [c.name for c in signed(Selection.of(p, picks)).candidates] == ["supply_sag"]
+    assert len(signed(Selection.of(p, picks[1:])).chosen) == 1

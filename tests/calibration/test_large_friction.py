@@ -1,14 +1,12 @@
 """Friction that is nearly all over the place, bristles softer than any spring, a quick encoder's rounding."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from calibration.channels.view import position_noise
-from calibration.inputs.record import quantum
+from calibration.balances.noise import position_noise
+from calibration.inputs.run import quantum
 from tests.calibration.test_drives import PERIOD, answer, found
 from tests.calibration.test_friction_law import COULOMB, MASS, RIG, TRAVEL, VISCOUS
 

@@ -1,16 +1,14 @@
 """What is above the floor decides which names may stay; a rig's floor comes from its columns alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from calibration.decide.residual import Left, settle
 from calibration.finding import Finding
-from calibration.response.left import Left, settle
-from calibration.twomotors.applied import too_little
-from calibration.twomotors.result import AxisResult
+from calibration.look.applied import too_little
+from calibration.look.axis_result import AxisResult
 from tests.calibration.test_drives import FORCE, answer, motion
 
 

@@ -1,7 +1,5 @@
 """Real guide logs: which worm or gear they show, and what it takes off frames that nothing was fitted to."""
 
-from __future__ import annotations
-
 import csv
 import json
 from pathlib import Path

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.unknown import spline_columns
-from calibration.channels.problem import Problem
-from calibration.decide.heldout import HeldOut
-from calibration.decide.judge import Refusal, design
-from calibration.decide.scan import Contender, fit_with
-from calibration.decide.superfluous import drop_needless
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.decide.rules import leave_out, needless
+from calibration.decide.scan import fit_with
+from calibration.decide.selection import Selection
+from calibration.names.unknown import spline_columns
 
 PERIOD_S, ROWS = 0.03, 8000
 NOISE, GRAVITY = 0.5, 30.0  # N m
@@ -28,17 +27,17 @@ def test_an_unnamed_function_beside_the_name_it_stood_for(size: float, stays: bo
     run = np.repeat(np.arange(4), ROWS // 4)
     valid = np.ones(ROWS, dtype=bool)
     p = Problem(
-        "T",
-        "N m",
-        y,
-        speed[:, None],
-        [("viscous", "N m s/rad")],
-        t,
-        run,
-        np.zeros(ROWS, dtype=np.int64),
-        valid,
-        run == 3,
-        PERIOD_S,
+        channel="T",
+        unit="N m",
+        y=y,
+        base=speed[:, None],
+        base_labels=[("viscous", "N m s/rad")],
+        t=t,
+        run=run,
+        session=np.zeros(ROWS, dtype=np.int64),
+        valid=valid,
+        held=run == 3,
+        period_s=PERIOD_S,
     )
     knots = spline_columns(w, 9)
     labels = tuple((f"knot_{k}", "N m") for k in range(knots.shape[1]))
@@ -50,13 +49,12 @@ def test_an_unnamed_function_beside_the_name_it_stood_for(size: float, stays: bo
         (("amplitude", "N m"),),
         kind="line",
     )
-    picks: list[Contender] = []
+    picks = Selection.of(p)
     for c in (unnamed, load):
-        fitted = fit_with(p, design(p, [x.candidate for x in picks]), c)
+        fitted = fit_with(p, picks.columns, c)
         assert fitted is not None
-        picks.append(fitted)
-    refused: list[Refusal] = []
-    drop_needless(p, picks, [[], []], [HeldOut(1, 1, 0, 0)] * 2, 0.05, refused)
-    assert ("unknown" in [x.candidate.name for x in picks]) == stays
-    assert bool(refused) != stays
-    assert picks[-1].candidate.name == "gravity_imbalance"
+        picks = picks.keep([*picks.chosen, fitted])
+    s = leave_out(picks, needless(0.05))
+    assert ("unknown" in [c.name for c in s.candidates]) == stays
+    assert bool(s.refused) != stays
+    assert s.candidates[-1].name == "gravity_imbalance"

@@ -5,8 +5,6 @@ Every case goes through the network of boards as `schmidt run` builds it (10-bit
 on the axis it names, so the other axis of the same run is a case without an effect.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,10 +15,10 @@ import pytest
 import yaml
 
 from calibration.command import calibrate
-from scenarios import run as runner
-from scenarios.document import parse
-from scenarios.load import convert
-from scenarios.plants import plant_model
+from scenarios.language.document import parse
+from scenarios.language.load import convert
+from scenarios.language.plants import plant_model
+from scenarios.run import run as runner
 
 Move = tuple[str, dict[str, Any]]
 

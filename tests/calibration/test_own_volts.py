@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from calibration.readers.axis import read_axis_log
-from calibration.twomotors.look import analyse
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.rigfile import telescope
+from calibration.look.axis_channels import analyse
+from calibration.look.options import Options
 from plant.model import default_files, load
 from tests.calibration.logs import write_logs
 
@@ -13,7 +15,8 @@ from tests.calibration.logs import write_logs
 def volts(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
     """The channel's base by name, after nothing was named in it; logs of 140 s without an effect."""
     paths = write_logs(tmp_path_factory.mktemp("own"), [])
-    s = analyse([read_axis_log(p, p.read_text(encoding="utf-8")) for p in paths], []).selections["E"]
+    runs = [read_axis_log(p, p.read_text(encoding="utf-8")) for p in paths]
+    s = analyse(runs, telescope(runs[0].header["axis"]), Options()).selections["E"]
     assert [c.candidate.name for c in s.chosen] == []
     names = [name for name, _ in s.problem.base_labels]
     return dict(zip(names, s.after.beta.tolist(), strict=True))

@@ -1,55 +1,61 @@
 """What an effect looks like in the residuals: friction levels, second masses, encoder errors, magnets."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.context import Context
-from calibration.candidates.electrical import from_cold, weakened
-from calibration.candidates.kinematic import subdivision
-from calibration.candidates.modes import _resonance
-from calibration.channels.declared import Friction
-from calibration.channels.frame import Frame
-from calibration.channels.friction import bristle
-from calibration.channels.level import level_of
-from calibration.channels.motion import Motion, motion_of
-from calibration.channels.problem import Problem
-from calibration.channels.recursions import lowpass
+from calibration.balances.candidate import Candidate
+from calibration.balances.frame import Frame
+from calibration.balances.friction import Path, Sliding, path_of
+from calibration.balances.motion import Motion, motion_of
+from calibration.balances.problem import Problem
+from calibration.balances.recursions import lowpass
 from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
-from calibration.decide.heldout import predict_residual
+from calibration.decide.heldout import Model
 from calibration.decide.merge import merge
 from calibration.finding import Finding, Parameter
-from calibration.inputs.telescope import telescope
+from calibration.inputs.declaration import FrictionLaw
+from calibration.inputs.rigfile import telescope
 from calibration.inputs.train import train_of
+from calibration.look.scene import scene_of_balance
+from calibration.look.volts import weakened
+from calibration.names import NAMES
+from calibration.names.inplant import Facts
+from calibration.names.pair import Pair
+from calibration.names.scene import MOTOR, RATES
+from calibration.names.structural_mode import second_mass
 from calibration.statistics.regression import gls
 from plant.gears import ORDERS as STAGES
+from plant.units import ARCSEC
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
 TRAIN = train_of(telescope("ra"))
 DT = 0.01
-FRICTION = Friction(2.7, 4e-4, 2.5e4, 229.0, 6700.0, 1960.0)
+COULOMB = 229.0  # N m
+LAW = FrictionLaw(stiction_ratio=2.7, stribeck_speed=4e-4, bristle_travel=4e-5)
+
+
+def logged(position: np.ndarray) -> Frame:
+    """One run with this position, rad."""
+    n = len(position)
+    zero = np.zeros(n)
+    return Frame(
+        runs=[],
+        period_s=DT,
+        t=DT * np.arange(n),
+        clock=zero,
+        run=zero.astype(int),
+        session=zero.astype(int),
+        columns={"position": position},
+        scale={},
+        rig=telescope("ra"),
+    )
 
 
 def moved(position: np.ndarray, width: int = 3) -> Motion:
     """Motion of one run with this position, rad."""
-    n = len(position)
-    zero = np.zeros(n)
-    frame = Frame(
-        [],
-        DT,
-        DT * np.arange(n),
-        zero,
-        zero.astype(int),
-        zero.astype(int),
-        {"position": position},
-        {},
-        telescope("ra"),
-    )
-    return motion_of(frame, width)
+    return motion_of(logged(position), width)
 
 
 def back_and_forth(n: int = 6000) -> np.ndarray:
@@ -57,32 +63,30 @@ def back_and_forth(n: int = 6000) -> np.ndarray:
     return np.asarray(0.005 * np.sin(2 * np.pi * np.arange(n) * DT / 30.0))
 
 
-def level(position: np.ndarray):  # type: ignore[no-untyped-def]
-    m = moved(position)
-    n = len(position)
-    return level_of(m, FRICTION, 2.0, DT * np.arange(n), np.zeros(n, dtype=int))
+def sliding(path: Path) -> Sliding:
+    step = np.gradient(path.position)
+    return Sliding(law=LAW, path=path, side=np.sign(step), speed=step / path.period_s, coulomb=COULOMB)
 
 
 def test_a_higher_level_answers_as_the_bristle_equation_scaled_does() -> None:
     """g -> (1 + e) g is (1 + e) times the solution with stiffness / (1 + e): equation (4) of the paper."""
-    position = back_and_forth()
-    known = level(position)
-    m, f, h = known.motion, FRICTION, 1e-4
+    m, h = moved(back_and_forth()), 1e-4
+    known = sliding(path_of(m))
 
     def scaled(factor: float) -> np.ndarray:
-        z = bristle(m.theta, m.starts, DT, f.ratio, f.stribeck_speed, f.stiffness / factor)
-        return m.at(factor * z) * f.coulomb
+        z = known.path.bristle(replace(LAW, bristle_travel=factor * 4e-5))
+        return m.at(factor * z) * COULOMB
 
     numeric = (scaled(1 + h) - scaled(1 - h)) / (2 * h)
-    answer = known.answer(known.steady)
+    answer = m.at(known.answer(known.steady))
     assert np.max(np.abs(answer - numeric)) < 0.01 * np.max(np.abs(numeric))
 
 
 def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristles_travel() -> None:
     out = np.concatenate([np.linspace(0, 0.01, 3000), np.linspace(0.01, 0.0, 3000)])
-    known = level(out)
-    answer = known.answer(np.ones(len(out)))
-    turn = np.argmin(np.abs(known.motion.pick - 3000))
+    m = moved(out)
+    answer = m.at(sliding(path_of(m)).answer(np.ones(len(out))))
+    turn = np.argmin(np.abs(m.pick - 3000))
     assert answer[turn - 50] == pytest.approx(1.0, abs=0.02)
     assert answer[turn + 1] > 0.3  # still the old side
     assert answer[turn + 200] == pytest.approx(-1.0, abs=0.02)
@@ -91,29 +95,45 @@ def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristle
 @pytest.mark.parametrize("width", [1, 3])
 def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width: int) -> None:
     """The counts lag by half their window: that lag's columns are made of the position, error and all."""
-    arcsec, amplitude = np.pi / 648000, 0.02
+    amplitude = 0.02
     t = DT * np.arange(8000)
-    rate = 200 * arcsec * (1.2 + np.sin(2 * np.pi * t / 17.0))  # 0.01 to 0.11 periods a row
+    rate = 200 * ARCSEC * (1.2 + np.sin(2 * np.pi * t / 17.0))  # 0.01 to 0.11 periods a row
     true = np.cumsum(rate) * DT
-    m = moved(true + amplitude * arcsec * np.sin(LINES * true + 0.4), width)
-    axis = moved(true, width)
+    frame = logged(true + amplitude * ARCSEC * np.sin(LINES * true + 0.4))
+    m, axis = motion_of(frame, width), moved(true, width)
     row = m.pick
 
     def base(of: Motion) -> np.ndarray:
-        return np.column_stack([of.acceleration[row], np.gradient(of.acceleration, DT)[row]]) / arcsec
+        return np.column_stack([of.acceleration[row], np.gradient(of.acceleration, DT)[row]]) / ARCSEC
 
-    counted = axis.rate[row] / arcsec + base(axis) @ np.array([-2.5e-3, 8e-5])  # s, s2
+    lags = {"velocity_delay": -2.5e-3, "window_curvature": 8e-5}  # s, s2
+    counted = axis.rate[row] / ARCSEC + base(axis) @ np.array(list(lags.values()))
     run, valid = np.zeros(len(row), dtype=np.int64), m.trusted[row]
-    y = counted - m.rate[row] / arcsec
+    y = counted - m.rate[row] / ARCSEC
     problem = Problem(
-        "S", "arcsec/s", y, base(m), [], t[row], run, run, valid, ~valid, m.period_s, ar_order=0
+        channel="S",
+        unit="arcsec/s",
+        y=y,
+        base=base(m),
+        base_labels=[],
+        t=t[row],
+        run=run,
+        session=run,
+        valid=valid,
+        held=~valid,
+        period_s=m.period_s,
+        ar_order=0,
     )
-    zero = np.zeros(len(row))
-    c = Context(t[row], m.theta[row], m.rate[row], zero, zero, run, run, "arcsec", "rad", 2 * np.pi, zero)
-    (one,) = subdivision(c, m, np.array([-2.5e-3, 8e-5]), LINES)
+    scene = scene_of_balance(Pair(frame=frame, motion=m), problem, y, lags)
+    (one,) = NAMES["encoder_subdivision"].columns(scene)
     beta = gls(y, np.hstack([problem.base, one.columns]), valid, 0).beta
     assert np.hypot(*beta[2:4]) == pytest.approx(amplitude, rel=0.03)
     assert np.hypot(*beta[4:6]) < 0.1 * amplitude
+    sizes = {"amplitude": Parameter(amplitude, "arcsec")}
+    sizes["phase"] = Parameter(float(np.arctan2(-beta[3], beta[2])), "rad")
+    found = Finding("encoder_subdivision", "S", "axis_angle", order=float(LINES), parameters=sizes)
+    (made,) = NAMES["encoder_subdivision"].to_plant(found, Facts("a test")).effects
+    assert made.parameters["phase"].value == pytest.approx(0.4, abs=0.05)
 
 
 @pytest.mark.parametrize("hertz", [2.0, 6.0, 11.0])
@@ -124,8 +144,8 @@ def test_a_second_mass_has_the_width_and_height_of_its_equation(hertz: float, ze
     t = DT * np.arange(n)
     for detune in (0.98, 1.0, 1.02):
         w, w0 = 2 * np.pi * hertz * detune, 2 * np.pi * hertz
-        shape = _resonance(np.sin(w * t), run, DT, np.arange(n))
-        made = np.sqrt(2) * np.std(shape(np.array([hertz, zeta]))[n // 2 :, 0])
+        second = second_mass(np.sin(w * t), run, DT, hertz, zeta)
+        made = np.sqrt(2) * np.std(second[n // 2 :])
         s = 1j * w
         exact = abs((2 * zeta * w0 * s + w0**2) / (s**2 + 2 * zeta * w0 * s + w0**2))
         assert made == pytest.approx(exact, rel=0.06)
@@ -134,8 +154,8 @@ def test_a_second_mass_has_the_width_and_height_of_its_equation(hertz: float, ze
 def test_a_second_mass_is_at_rest_when_a_run_begins() -> None:
     run = np.repeat([0, 1], 500)
     push = np.where(run == 0, 1.0, 0.0)
-    shape = _resonance(push, run, DT, np.arange(1000))(np.array([5.0, 0.005]))
-    assert np.all(shape[run == 1] == 0.0) and np.ptp(shape[run == 0]) > 1.0
+    second = second_mass(push, run, DT, 5.0, 0.005)
+    assert np.all(second[run == 1] == 0.0) and np.ptp(second[run == 0]) > 1.0
 
 
 def test_windings_cool_in_a_pause() -> None:
@@ -154,11 +174,24 @@ def test_a_line_of_known_size_and_new_phase_is_taken_off_a_run_that_was_not_fitt
     columns = np.hstack([pair * (run == k)[:, None] for k in (0, 1)])
     y = 2.0 * np.cos(x + np.where(run == 0, 0.4, 2.1)) + 0.1 * rng.standard_normal(n)
     one = np.ones(n, dtype=bool)
-    p = Problem("S", "1", y, np.zeros((n, 0)), [], t, run, run, one, run == 1, DT)
+    p = Problem(
+        channel="S",
+        unit="1",
+        y=y,
+        base=np.zeros((n, 0)),
+        base_labels=[],
+        t=t,
+        run=run,
+        session=run,
+        valid=one,
+        held=run == 1,
+        period_s=DT,
+    )
     beta = np.array([2 * np.cos(0.4), -2 * np.sin(0.4), 0.0, 0.0])
-    left = predict_residual(p, columns, beta, p.test, [slice(0, 4)])
+    left = Model(x=columns, beta=beta, phases=[slice(0, 4)]).residual(p, p.test)
     assert np.std(left) == pytest.approx(0.1, rel=0.1)
-    half = predict_residual(p, columns, beta / 2, p.test, [slice(0, 4)])  # the size is not fitted there
+    # the size is not fitted there
+    half = Model(x=columns, beta=beta / 2, phases=[slice(0, 4)]).residual(p, p.test)
     assert np.std(half) == pytest.approx(1.0 / np.sqrt(2), rel=0.1)
 
 
@@ -180,7 +213,18 @@ def volts(sector: float, size: float) -> Volts:
     held = np.arange(n) > 8000
     one = np.ones(n, dtype=bool)
     p = Problem(
-        "E", "V", e, np.zeros((n, 0)), [], DT * 3 * np.arange(n), zero, zero, one, held, 3 * DT, block_s=3.0
+        channel="E",
+        unit="V",
+        y=e,
+        base=np.zeros((n, 0)),
+        base_labels=[],
+        t=DT * 3 * np.arange(n),
+        run=zero,
+        session=zero,
+        valid=one,
+        held=held,
+        period_s=3 * DT,
+        block_s=3.0,
     )
     return Volts(p, e, turns)
 
@@ -208,21 +252,20 @@ def test_what_the_volts_lost_of_a_magnet_is_lost_in_the_torque() -> None:
         "magnet_weakening",
         "time",
         zero,
-        (("fraction", "1"),),
-        fixed={"onset": (50.0, "s"), "ramp": (10.0, "s")},
+        (("loss", "1"),),
+        fixed={"start": (50.0, "s"), "duration": (10.0, "s")},
     )
     left = weakened([(both, np.array([0.02]))], clock)
     assert left["a"][0] == 1.0 and left["b"][-1] == pytest.approx(0.98)
-    one = Candidate(
-        "magnet_weakening", "velocity", zero, (("fraction", "1"),), fixed={"motor": (1.0, "0 A, 1 B")}
-    )
+    one = Candidate("magnet_weakening", "velocity", zero, (("loss", "1"),), fixed={"motor": (2.0, MOTOR)})
     left = weakened([(one, np.array([0.05]))], clock)
     assert left["a"].min() == 1.0 and left["b"].max() == pytest.approx(0.95)
 
 
 def test_heating_is_told_of_the_cold_resistance() -> None:
     p = Parameter(2.0, "K/W", 1.8, 2.2)
-    f = from_cold(Finding("winding_heating", "E", "time", parameters={"thermal_resistance": p}), 1.1)
+    found = Finding("winding_heating", "E", "time", parameters={"thermal_resistance": p})
+    f = NAMES["winding_heating"].retold(found, {"resistance": 1.1, "torque_constant": 1.0})
     told = f.parameters["thermal_resistance"]
     assert (told.value, told.low) == (pytest.approx(2.42), pytest.approx(2.178))
 
@@ -252,3 +295,8 @@ def test_ripple_at_the_order_of_a_mesh_that_the_encoders_see_is_the_mesh_s() -> 
         "torque_ripple",
         "gear_mesh",
     }
+
+
+def test_what_an_axis_shows_between_its_encoders_is_seen_in_their_rates() -> None:
+    seen = {n.name for n in NAMES.values() if RATES in n.channels}
+    assert seen == {"encoder_eccentricity", "encoder_subdivision", "roller_ratio", "roller_slip"}

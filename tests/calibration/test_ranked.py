@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from calibration.candidates.candidate import Candidate
+from calibration.balances.candidate import Candidate
 from calibration.decide.scan import Contender, ranked
 from calibration.statistics.regression import Fit
 from calibration.statistics.whitening import Whitener
@@ -18,7 +18,16 @@ def contender(name: str, columns: np.ndarray, gain: float, bayes: float, kind: s
     candidate = Candidate(name, "time", columns, labels, kind=kind)
     zero = np.zeros(ROWS)
     fit = Fit(np.ones(width), np.eye(width), zero, Whitener(np.zeros(0)), 1.0, 0.0, ROWS)
-    return Contender(candidate, fit, 50.0, bayes, gain, 1.0, slice(0, width))
+    return Contender(
+        candidate=candidate,
+        fit=fit,
+        wald=250.0,
+        blocks=100.0,
+        bayes=bayes,
+        gain=gain,
+        effect=1.0,
+        at=slice(0, width),
+    )
 
 
 def test_the_simpler_of_two_that_say_the_same_goes_first() -> None:

@@ -3,19 +3,20 @@
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
-from calibration.candidates.electrical import reading_error, weakened
+from calibration.balances.candidate import Candidate
+from calibration.look.volts import reading_error, weakened
+from calibration.names.scene import MOTOR
 
 CLOCK = np.arange(5.0)
 
 
 def gain(motor: float) -> Candidate:
     return Candidate(
-        "adc_gain", "current", np.zeros((4, 1)), (("gain", "1"),), fixed={"motor": (motor, "0 A, 1 B")}
+        "adc_gain", "current", np.zeros((4, 1)), (("gain", "1"),), fixed={"motor": (motor, MOTOR)}
     )
 
 
-@pytest.mark.parametrize(("motor", "key", "other"), [(0.0, "a", "b"), (1.0, "b", "a")])
+@pytest.mark.parametrize(("motor", "key", "other"), [(1.0, "a", "b"), (2.0, "b", "a")])
 def test_a_gain_that_volts_show_is_undone_in_the_torque(motor: float, key: str, other: str) -> None:
     left = weakened([(gain(motor), np.array([0.02]))], CLOCK)
     assert left[key] == pytest.approx(np.full(5, 0.98))
@@ -24,4 +25,4 @@ def test_a_gain_that_volts_show_is_undone_in_the_torque(motor: float, key: str, 
 
 def test_which_reading_is_right_is_half_known() -> None:
     assert reading_error([]) == 0.0
-    assert reading_error([(gain(0.0), np.array([-0.02]))]) == pytest.approx(0.01)
+    assert reading_error([(gain(1.0), np.array([-0.02]))]) == pytest.approx(0.01)

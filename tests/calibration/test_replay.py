@@ -1,25 +1,25 @@
 """The closed loop run again: gains of the log, a held-out run near the floor, what is said else."""
 
-from __future__ import annotations
-
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from calibration.channels.frame import Frame, build_frame
+from calibration.balances.frame import Frame, build_frame
 from calibration.command import calibrate
-from calibration.readers.axis import read_axis_log
+from calibration.inputs.axislog import read_axis_log
 from calibration.replay.compare import breaking, comparable
 from calibration.replay.gains import identify
 from calibration.replay.held import replay
 from calibration.replay.trace import ticks
 from plant.gears import RATIO
-from plant.loop import simulate
+from plant.loop import Excitation, simulate
 from plant.model import default_files, load, with_effects, with_value
-from tests.calibration.logs import effect, write_logs
+from tests.calibration.logs import effect, write_log, write_logs
 
 LINE = effect("gear_mesh", "mesh3", amplitude=(12.0, "N m"), phase=(0.7, "rad"))
 PER_AMPERE = 0.39 * RATIO
@@ -47,7 +47,7 @@ def test_the_plant_that_made_the_log_replays_to_the_floor_and_one_without_the_ef
     frame: Frame,
 ) -> None:
     plain = with_effects(load(default_files()["low_preload"]), "ra", ())
-    again = replay(frame, frame.run == 3, "ra", plain, with_effects(plain, "ra", [LINE]), PER_AMPERE)
+    again = replay(frame, frame.run == 3, plain, with_effects(plain, "ra", [LINE]), PER_AMPERE)
     assert set(again.rows) == {"torque", "velocity", "position"}
     for channel in ("torque", "velocity"):
         row = again.rows[channel]
@@ -61,16 +61,39 @@ def test_the_plant_that_made_the_log_replays_to_the_floor_and_one_without_the_ef
 def test_a_corrected_plant_that_is_worse_is_said_to_be_worse(frame: Frame) -> None:
     plain = with_effects(load(default_files()["low_preload"]), "ra", ())
     wrong = effect("gear_mesh", "mesh3", amplitude=(12.0, "N m"), phase=(0.7 - np.pi, "rad"))
-    again = replay(frame, frame.run == 3, "ra", plain, with_effects(plain, "ra", [wrong]), PER_AMPERE)
+    again = replay(frame, frame.run == 3, plain, with_effects(plain, "ra", [wrong]), PER_AMPERE)
     assert again.rows["torque"]["after"] > 1.5 * again.rows["torque"]["before"]
     assert any("WORSE" in reason and "torque" in reason for reason in again.reasons)
 
 
+@pytest.mark.parametrize("late_rows", [0, 8])
+def test_teeth_are_compared_at_the_logs_own_angle_whatever_its_controller_does_in_a_step(
+    tmp_path: Path, late_rows: int
+) -> None:
+    """80 ms late at a step of 4000 arcsec/s: 0.45 of the teeth's period."""
+    wanted = np.repeat([1200.0, -2800.0, 1200.0, -2800.0, 600.0], 900)
+    given = np.concatenate([np.repeat(wanted[0], late_rows), wanted[: len(wanted) - late_rows]])
+    plain = with_effects(load(default_files()["low_preload"]), "ra", ())
+    toothed = with_effects(
+        plain, "ra", [effect("gear_mesh", "mesh2", amplitude=(12.0, "N m"), phase=(0.7, "rad"))]
+    )
+    log = simulate(toothed, "ra", 45.0, Excitation(setpoint=given, start_steps=4e8), seed=3)
+    write_log(tmp_path / "run.log", replace(log, setpoint=wanted))
+    frame = build_frame([read_axis_log(tmp_path / "run.log")])
+    again = replay(frame, np.ones(len(frame.t), dtype=bool), plain, toothed, PER_AMPERE)
+    row = again.rows["velocity"]
+    assert row["after"] < 1.5 * row["floor"] and row["before"] > 5.0 * row["after"]
+    (said,) = [r for r in again.reasons if "transients" in r]
+    moved = float(re.search(r"([\d.]+) arcsec after", said)[1])  # type: ignore[index]
+    by_hand = np.sqrt(np.mean(np.square([0.0, 4000.0, 4000.0, 4000.0, 3400.0]))) * 0.01 * late_rows
+    assert moved == pytest.approx(by_hand, abs=30.0)  # the start itself is known to 10 ms, 12 arcsec
+
+
 def test_runs_that_are_not_held_out_are_left_alone(frame: Frame) -> None:
     model = with_effects(load(default_files()["low_preload"]), "ra", [LINE])
-    again = replay(frame, frame.run == 2, "ra", model, model, PER_AMPERE)
+    again = replay(frame, frame.run == 2, model, model, PER_AMPERE)
     assert again.run == "run3" and again.rows["torque"]["before"] == again.rows["torque"]["after"]
-    nothing = replay(frame, np.zeros(len(frame.t), dtype=bool), "ra", model, model, PER_AMPERE)
+    nothing = replay(frame, np.zeros(len(frame.t), dtype=bool), model, model, PER_AMPERE)
     assert nothing.rows == {} and len(nothing.reasons) == 1
 
 
@@ -95,8 +118,8 @@ def test_a_ramp_of_the_set_point_is_filled_in_between_the_rows_and_a_jump_is_not
 
 def test_the_clock_of_the_loop_can_start_late() -> None:
     model = with_effects(load(), "ra", [effect("brake_drag", torque=(200.0, "N m"), start=(100.0, "s"))])
-    early = simulate(model, "ra", 4.0, setpoint=600.0, effort=0.0)
-    late = simulate(model, "ra", 4.0, setpoint=600.0, effort=0.0, start_s=98.0)
+    early = simulate(model, "ra", 4.0, Excitation(setpoint=600.0, effort=0.0))
+    late = simulate(model, "ra", 4.0, Excitation(setpoint=600.0, effort=0.0, start_s=98.0))
     assert late.t[0] == pytest.approx(98.0)
     assert np.array_equal(early.position[:199], late.position[:199])
     assert np.mean(late.effort[-50:]) > 1.2 * np.mean(early.effort[-50:])
@@ -104,7 +127,7 @@ def test_the_clock_of_the_loop_can_start_late() -> None:
 
 def test_a_late_column_still_starts_from_its_first_reading() -> None:
     model = with_effects(load(), "ra", [effect("channel_delay", column=(1.0, "1"), delay=(0.05, "s"))])
-    log = simulate(model, "ra", 0.2, setpoint=0.0, start_steps=4e8, start_s=30.0)
+    log = simulate(model, "ra", 0.2, Excitation(setpoint=0.0, start_steps=4e8, start_s=30.0))
     assert abs(log.position[0] - 4e8) < 2
 
 
@@ -130,9 +153,9 @@ def test_an_open_loop_run_is_driven_by_its_effort(tmp_path: Path) -> None:
     rows = [",".join([c[0], "", *c[2:]]) for c in (line.split(",") for line in text[at + 1 :])]
     paths[0].write_text("\n".join(text[: at + 1] + rows) + "\n")
     frame = build_frame([read_axis_log(paths[0])])
-    again = replay(frame, np.ones(len(frame.t), dtype=bool), "ra", model, model, PER_AMPERE)
+    again = replay(frame, np.ones(len(frame.t), dtype=bool), model, model, PER_AMPERE)
     assert any("open loop" in reason for reason in again.reasons)
     assert again.rows["velocity"]["after"] < 0.05 * 1500.0
     weak = with_value(model, "axes.ra.friction.coulomb", 300.0)
-    off = replay(frame, np.ones(len(frame.t), dtype=bool), "ra", model, weak, PER_AMPERE)
+    off = replay(frame, np.ones(len(frame.t), dtype=bool), model, weak, PER_AMPERE)
     assert off.rows["velocity"]["after"] > 2.0 * off.rows["velocity"]["before"]

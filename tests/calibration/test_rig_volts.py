@@ -1,7 +1,5 @@
 """A rig with volts and current: a brushed motor simulated here, and what its electrical balance says."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -91,18 +89,18 @@ def test_a_sound_motor_gives_its_numbers_and_no_name(tmp_path: Path) -> None:
     ("name", "size", "value", "changes"),
     [
         ("supply_sag", "resistance", 0.4, {"sag_ohm": 0.4}),
-        ("pwm_deadband", "u0", 0.02, {"dead": 0.02}),
+        ("pwm_deadband", "deadband", 0.02, {"dead": 0.02}),
         ("adc_offset", "offset", 0.05, {"offset_a": 0.05}),
         ("winding_heating", "thermal_resistance", 12.0, {"heat": (12.0, 25.0)}),
         (
             "magnet_weakening",
-            "fraction",
+            "loss",
             0.08,
             {"constant": lambda t, angle, i: K * (1 - 0.08 * np.clip((t - 22.0) / 5.0, 0.0, 1.0))},
         ),
         (  # most of the log is weak: its mean constant is not the one that fell
             "magnet_weakening",
-            "fraction",
+            "loss",
             0.25,
             {"constant": lambda t, angle, i: K * (1 - 0.25 * (t > 5.0))},
         ),

@@ -1,13 +1,11 @@
 """A rotary drive of any rig file: a damaged tooth of a part, a cable bundle about the axis."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from calibration.candidates.friction import stop_operator
+from calibration.balances.recursions import stop_operator
 from tests.calibration.test_drives import COULOMB, PERIOD, VISCOUS, answer, found
 
 RIG = """rig: turntable behind a pinion

@@ -1,7 +1,5 @@
 """Stamps that shake beside samples taken on time, and samples that shake with stamps that say so."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ import pytest
 from calibration.command import calibrate
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
+from tests.calibration.logs import write_logs
 
 RIG = """rig: arm
 columns:
@@ -22,6 +21,7 @@ response: {channel: effort, unit: N m}
 estimate: [inertia, viscous, coulomb, offset]
 """
 PERIOD_S = 0.004
+PLACES = (333, 1040, 1500, 2222)  # rows at a steady rate
 
 
 def log(folder: Path, stamps: str, shake_s: float, seed: int = 1) -> Path:
@@ -54,7 +54,7 @@ def test_stamps_that_shake_are_named_and_put_right(tmp_path: Path, shake_s: floa
     report = told(tmp_path, log(tmp_path, "shake", shake_s))
     (found,) = report["effects"]
     assert found["name"] == "clock_jitter"
-    assert found["parameters"]["sigma"]["value"] == pytest.approx(shake_s, rel=0.05)
+    assert found["parameters"]["deviation"]["value"] == pytest.approx(shake_s, rel=0.05)
     (tmp_path / "sound").mkdir()
     sound = told(tmp_path / "sound", log(tmp_path / "sound", "shake", 0.0))
     assert sound["effects"] == []
@@ -71,3 +71,28 @@ def test_right_stamps_are_left_alone(tmp_path: Path, stamps: str, shake_s: float
 
 def load_rig_of(folder: Path) -> Any:
     return load_rig(folder / "rig.yaml")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("jumps", "name"), [(True, "unknown"), (False, "sample_loss")])
+def test_a_stamp_that_jumps_is_no_lost_row_where_the_position_goes_on(
+    tmp_path: Path, jumps: bool, name: str
+) -> None:
+    """At a steady rate 37 lost rows are 37 rows' travel, and a jump of the clock is one's."""
+    paths = write_logs(tmp_path, [], ("steps", "steps", "steps"))
+    for path in paths:
+        lines = path.read_text().splitlines()
+        first = next(k for k, line in enumerate(lines) if line.startswith("t,")) + 1
+        rows = [line.split(",", 1) for line in lines[first:]]
+        table, late_s = [], 0.0
+        for k, (t, rest) in enumerate(rows):
+            late_s += 0.37 * (k in PLACES)
+            if jumps or not any(place <= k < place + 37 for place in PLACES):
+                table.append(f"{float(t) + jumps * late_s:.6f},{rest}")
+        path.write_text("\n".join(lines[:first] + table) + "\n")
+    calibrate(paths, out=tmp_path / "out", plots=False, replay=False)
+    (found,) = json.loads((tmp_path / "out" / "report.json").read_text())["effects"]
+    assert (found["name"], found["domain"]) == (name, "clock")
+    if jumps:
+        assert found["parameters"]["jump"]["value"] == pytest.approx(0.37, abs=1e-6)
+        assert found["note"].startswith("12 stamps")

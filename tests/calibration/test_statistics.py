@@ -1,26 +1,22 @@
 """The statistics hold their level on coloured noise, and intervals cover."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import chi2
 
-from calibration.candidates.candidate import Candidate, sine_columns
-from calibration.candidates.context import direction_of, since_reversal, turning_points
-from calibration.candidates.friction import stop_operator
-from calibration.candidates.orders import order_spectrum, peaks
-from calibration.channels.frame import boxcar
-from calibration.channels.noise import rough
-from calibration.channels.problem import Problem
-from calibration.decide.heldout import FOLDS, cross_validate, folds
-from calibration.decide.parameters import pairs_by_section
+from calibration.balances.candidate import Candidate, pairs_by_section, sine_columns
+from calibration.balances.context import direction_of, since_reversal, turning_points
+from calibration.balances.filters import boxcar
+from calibration.balances.noise import rough
+from calibration.balances.problem import Problem
+from calibration.balances.recursions import stop_operator
+from calibration.decide.heldout import cross_validate, folds
 from calibration.decide.scan import look
+from calibration.decide.thresholds import FOLDS
+from calibration.statistics.orders import order_spectrum, peaks
 from calibration.statistics.regression import gls
 from calibration.statistics.surrogate import orthonormal_blocks, score, taken_away, together
-from calibration.statistics.tails import chi2_log10
 from calibration.statistics.whitening import Whitener, fit_ar
 
 
@@ -30,12 +26,6 @@ def coloured(rng: np.random.Generator, n: int, a: float) -> np.ndarray:
     for k in range(1, n):
         out[k] = a * out[k - 1] + w[k]
     return out
-
-
-@pytest.mark.parametrize("gain", [0.1, 3.0, 30.0, 600.0])
-def test_tails_agree_with_scipy_and_stay_finite_far_out(gain: float) -> None:
-    assert chi2_log10(gain, 2) == pytest.approx(-chi2.logsf(gain, 2) / np.log(10), rel=1e-6)
-    assert np.isfinite(chi2_log10(1e6, 4))
 
 
 def test_whitening_takes_the_colour_out_and_respects_gaps() -> None:
@@ -130,7 +120,18 @@ def regression(y: np.ndarray, base: np.ndarray, period_s: float, runs: int = 1) 
     t = np.tile(np.arange(n // runs) * period_s, runs)  # every file's own time
     nothing = np.zeros(n, dtype=bool)
     return Problem(
-        "T", "N m", y, base, [("offset", "N m")], t, run, run, ~nothing, nothing, period_s, ar_order=4
+        channel="T",
+        unit="N m",
+        y=y,
+        base=base,
+        base_labels=[("offset", "N m"), ("viscous", "N m s/rad")][: base.shape[1]],
+        t=t,
+        run=run,
+        session=run,
+        valid=~nothing,
+        held=nothing,
+        period_s=period_s,
+        ar_order=4,
     )
 
 
@@ -164,7 +165,7 @@ def test_an_exact_line_gains_through_one_filter_though_its_own_residual_is_white
     columns = np.column_stack([np.cos(2 * np.pi * 0.7 * t), np.sin(2 * np.pi * 0.7 * t)])
     p = regression(columns @ [1.0, 0.5] + 0.02 * rng.standard_normal(3000), np.ones((3000, 1)), 0.01)
     line = Candidate("bearing_pass", "axis_angle", columns, (("amplitude", "N m"),), kind="line", order=7.0)
-    top = look(p, p.base, [line]).contenders[0]
+    top = look(p, p.base, p.fit(), [line])[0]
     # n log(rms with / rms without): sqrt(0.625 + 0.0004) over 0.02 in white noise, less through a filter
     assert top.gain > 0.5 * 3000 * np.log(np.sqrt(0.6254) / 0.02)
     assert top.bayes > 0

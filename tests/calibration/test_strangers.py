@@ -1,7 +1,5 @@
 """Drives that nobody tuned on: what they lack is named, or said to be in its domain; never something else."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

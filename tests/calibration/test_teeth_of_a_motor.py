@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
+from calibration.balances.candidate import Candidate
 from calibration.finding import Finding
-from calibration.twomotors.torque import _of_a_gear
+from calibration.look.torque import _of_a_gear
 from plant.gears import ORDERS
 
 MESH = ORDERS["motor"] * 27

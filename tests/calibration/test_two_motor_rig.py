@@ -1,7 +1,5 @@
 """An axis with two motors that is not the Schmidt telescope's, declared by a rig file."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -10,8 +8,7 @@ import pytest
 
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
-from calibration.inputs.rigfile import load_rig
-from calibration.inputs.telescope import telescope
+from calibration.inputs.rigfile import load_rig, telescope
 from calibration.inputs.train import train_of
 from plant.gears import ORDERS, RATIO
 from tests.blind.drives.case import seal
@@ -68,13 +65,13 @@ def test_its_numbers_are_calibrated_and_nothing_is_found(tmp_path: Path) -> None
         ),
         ({"RIP_A": 0.05, "RIP_N": 7.0, "RIP_PH": 0.3}, "torque_ripple", "motor", "ripple", 0.05),
         ({"SAG": 0.3}, "supply_sag", None, "resistance", 0.3),
-        ({"DEADBAND": 0.02}, "pwm_deadband", None, "u0", 0.02),
-        ({"ROLLER_EPS": 2e-4}, "roller_ratio", "tape", "scale", 2e-4),
+        ({"DEADBAND": 0.02}, "pwm_deadband", None, "deadband", 0.02),
+        ({"ROLLER_EPS": 2e-4}, "roller_ratio", "tape", "error", 200.0),
         (  # early: the mean constant of the log is not the one that fell
             {"MAG_A": 0.1, "MAG_T0": 40.0, "MAG_RAMP": 5.0, "MAG_SIDE": 0.0},
             "magnet_weakening",
             None,
-            "fraction",
+            "loss",
             0.1,
         ),
         ({"BRAKE_T": 10.0, "BRAKE_T0": 120.0}, "brake_drag", None, "torque", 10.0),
@@ -109,7 +106,7 @@ def test_the_telescopes_declaration_is_what_is_emulated() -> None:
     ("old", "new", "says"),
     [
         ("supply_V: 36\n", "", "a column of the supply or supply_V"),
-        ("kind: motor", "kind: gear_mesh", "one stage of kind motor, here are 0"),
+        ("kind: motor", "kind: gear_mesh", "one stage of kind motor"),
         ("kind: roller", "kind: motor_cogging", "beside motors one of axis, motor, roller"),
         ("column: west_mA, unit: A", "column: west_mA, unit: mA", "columns.current_b.unit: 'mA', must be A"),
         ("az_deg, unit: deg", "az_deg, unit: mm", "columns.position.unit: 'mm', must be an angle"),

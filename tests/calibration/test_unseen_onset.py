@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from calibration.candidates.candidate import Candidate
-from calibration.channels.problem import Problem
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
 from calibration.decide.parameters import parameters_of
+from calibration.decide.refine import never_begins, unseen
 from calibration.decide.select import select
-from calibration.decide.unseen import never_begins, unseen
 
 # three runs of 100 s with pauses of 20 s; the middle one is held out
 CLOCK = np.concatenate([np.arange(0, 100, 0.03) + 120.0 * k for k in range(3)])
@@ -20,7 +20,17 @@ def problem(onset: float, seed: int = 1) -> Problem:
     y = SIZE * (onset < CLOCK) + 0.5 * np.random.default_rng(seed).standard_normal(len(CLOCK))
     wave = np.sin(CLOCK)[:, None]
     return Problem(
-        "T", "N m", y, wave, [("wave", "N m")], CLOCK, RUN, np.zeros_like(RUN), CLOCK >= 0, RUN == 1, 0.03
+        channel="T",
+        unit="N m",
+        y=y,
+        base=wave,
+        base_labels=[("wave", "N m")],
+        t=CLOCK,
+        run=RUN,
+        session=np.zeros_like(RUN),
+        valid=CLOCK >= 0,
+        held=RUN == 1,
+        period_s=0.03,
     )
 
 
@@ -35,7 +45,7 @@ def step(at: float) -> Candidate:
         "time",
         shape(np.array([at])),
         (("torque", "N m"),),
-        fixed={"onset": (at, "s")},
+        fixed={"start": (at, "s")},
         shape=shape,
         steps=(6.0,),
     )
@@ -47,7 +57,7 @@ def test_any_onset_in_the_pause_is_told_as_the_stretch(onset: float, tried: floa
     s = select(problem(onset), [step(tried)], np.random.default_rng(0))
     assert [c.candidate.name for c in s.chosen] == ["brake_drag"]
     assert s.held.after == pytest.approx(0.5, rel=0.05)
-    told = parameters_of(s, 0)["onset"]
+    told = parameters_of(s, 0)["start"]
     assert told.low == pytest.approx(100.0, abs=0.5) and told.high == pytest.approx(240.0, abs=0.5)
 
 
@@ -55,7 +65,7 @@ def test_a_step_that_fitted_rows_see_has_no_stretch() -> None:
     p = problem(50.0)
     assert unseen(p, step(50.0)) is None
     s = select(p, [step(48.0)], np.random.default_rng(0))
-    told = parameters_of(s, 0)["onset"]
+    told = parameters_of(s, 0)["start"]
     assert told.value == pytest.approx(50.0, abs=1.0) and told.low is not None and told.high is not None
     assert told.low < 50.0 < told.high < 60.0
 

@@ -6,15 +6,25 @@ from pathlib import Path
 import pytest
 
 from calibration.decide.tolerance import unsettled_reading
-from calibration.declaredplant import Declared, declared_numbers
 from calibration.errors import CalibrationInputError
 from calibration.finding import Parameter
-from calibration.readers.axis import read_axis_log
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.declaredplant import Declared, declared_numbers
 from tests.calibration.test_readers import tiny_log, write
 
 TRAIN = 3.08e6  # N m/rad, paper Table 1
 TABLE_1 = (1.0, 0.5)  # it may mean one train, or both side by side
-PAPER = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, TRAIN, 0.39, 2.2, readings=TABLE_1)
+PAPER = Declared(
+    coulomb=229.0,
+    stiction=621.0,
+    stribeck_rate=4e-4,
+    viscous=6700.0,
+    bristle_stiffness=5.9e6,
+    stiffness=TRAIN,
+    torque_constant=0.39,
+    resistance=2.2,
+    readings=TABLE_1,
+)
 
 
 @pytest.mark.parametrize(

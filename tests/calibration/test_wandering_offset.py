@@ -1,7 +1,5 @@
 """An effort whose zero walks: no effect of the drive, told, and no cover for effects that are there."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +40,7 @@ def test_a_brake_beside_a_walk_keeps_its_name_and_size(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, *files(4, 0.5, drag=0.8))
     top = data["effects"][0]
     assert top["name"] == "brake_drag"
-    assert top["parameters"]["drag"]["value"] == pytest.approx(0.8, rel=0.1)
+    assert top["parameters"]["torque"]["value"] == pytest.approx(0.8, rel=0.1)
 
 
 def test_a_still_offset_is_left_as_it_is(tmp_path: Path) -> None:

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.channels.frame import build_frame
-from calibration.channels.motion import motion_of
-from calibration.channels.torque import WIDTH
-from calibration.channels.windup import wind_up
-from calibration.declaredplant import declared_numbers
-from calibration.readers.axis import read_axis_log
-from plant.loop import simulate
+from calibration.balances.frame import build_frame
+from calibration.balances.kinematic import wind_up
+from calibration.balances.motion import motion_of
+from calibration.balances.torque import WIDTH
+from calibration.inputs.axislog import read_axis_log
+from calibration.inputs.declaredplant import declared_numbers
+from plant.loop import Excitation, simulate
 from plant.model import PlantModel, load
 from tests.calibration.logs import manoeuvre, write_log
 
@@ -28,7 +28,7 @@ def softer(model: PlantModel, times: float) -> PlantModel:
 def test_the_encoders_tell_it(tmp_path: Path, times: float) -> None:
     model = softer(load("low_preload"), times)
     wanted = manoeuvre("ramp")
-    log = simulate(model, "ra", len(wanted) * 0.01, setpoint=wanted, seed=4, start_steps=3e8)
+    log = simulate(model, "ra", len(wanted) * 0.01, Excitation(setpoint=wanted, start_steps=3e8), seed=4)
     path = tmp_path / "run1.log"
     write_log(path, log)
     runs = [read_axis_log(path, path.read_text(encoding="utf-8"))]

@@ -5,18 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calibration.channels.electrical import electrical_problem
-from calibration.channels.frame import Frame
-from calibration.channels.motion import motion_of
-from calibration.channels.torque import WIDTH
-from calibration.declaredplant import Declared
-from calibration.inputs.telescope import telescope
+from calibration.balances.electrical import electrical_problem
+from calibration.balances.frame import Frame
+from calibration.balances.motion import motion_of
+from calibration.balances.torque import WIDTH
+from calibration.inputs.declaredplant import Declared
+from calibration.inputs.rigfile import telescope
 
 DT, ROWS, FINE = 0.01, 24_000, 10  # s, rows, steps of the drive per row
 V, R, K, RATIO, STIFFNESS = 24.0, 2.385, 0.39, 360.49, 3.08e6  # hardware.md 1.2, 2.3, 2.4
 SHARE = 0.1  # counter torque, of the effort
 LEAP = 1e-4  # rad that the axis stands behind before it goes
-DECLARED = Declared(229.0, 621.0, 4e-4, 6700.0, 5.9e6, STIFFNESS, K, R)
+DECLARED = Declared(
+    coulomb=229.0,
+    stiction=621.0,
+    stribeck_rate=4e-4,
+    viscous=6700.0,
+    bristle_stiffness=5.9e6,
+    stiffness=STIFFNESS,
+    torque_constant=K,
+    resistance=R,
+)
 
 
 def constant(stiffness: float) -> float:
@@ -40,11 +49,21 @@ def constant(stiffness: float) -> float:
     }
     scale |= {"effort_full_scale": 3000.0, "adc_end_A": np.inf}
     zero = np.zeros(ROWS, dtype=np.int64)
-    frame = Frame([], DT, t[::FINE], np.zeros(ROWS), zero, zero, columns, scale, telescope("ra"))
+    frame = Frame(
+        runs=[],
+        period_s=DT,
+        t=t[::FINE],
+        clock=np.zeros(ROWS),
+        run=zero,
+        session=zero,
+        columns=columns,
+        scale=scale,
+        rig=telescope("ra"),
+    )
     m = motion_of(frame, WIDTH)
     found = electrical_problem(frame, m, zero > 0, replace(DECLARED, stiffness=stiffness))
     assert found is not None
-    return found.constant
+    return found.windings.constant
 
 
 def test_the_constant_is_right_though_the_axis_leaps() -> None:

@@ -2,6 +2,8 @@
 should."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,11 +12,12 @@ import pytest
 
 from bus import protocol as p
 from bus.can import Frame, Wire
-from bus.conformance import Level, Settings, parse, run
+from bus.conformance import CheckResult, Level, Settings, board_of, parse, run
 from bus.conformance.cli import check, conformance_command
 from bus.conformance.limits import PARAMETERS
-from bus.external import SpecError, open_bus
-from bus.pythoncan import SchmidtBus
+from bus.kit import CHECKS
+from bus.outside.external import SpecError, open_bus
+from bus.outside.pythoncan import SchmidtBus
 from bus.time import EventQueue
 
 DISPLAY = p.Device.DISPLAY
@@ -36,10 +39,20 @@ class FakeDisplay:
         self.port.accept(None)
         self.port.on_receive = self.take
         self.identifier = p.HEARTBEAT_BASE + self.device
-        self.beat = p.pack_heartbeat(self.device, p.State.READY, 0, 0, 0)
+        self.spoil: Callable[[bytes], bytes] = bytes
+        """What becomes of a heartbeat on its way."""
+        self.state, self.tec = p.State.READY, 0
+        self.uptime_steps, self.overruns = 1, 0
+        """More in every heartbeat."""
         self.beats = 0
         self.answers = 1
         self.answer_ns = 0
+        self.slow: set[int] = set(range(0x100))
+        """Opcodes whose answer takes `answer_ns`."""
+        self.elsewhere = p.REPLY_BASE + self.device
+        self.twisted: dict[int, int] = {}
+        """Byte of every answer -> added to it."""
+        self.cut = 8
         self.health = 0
         self.says = self.device
         self.replace: dict[int, int] = {}
@@ -54,7 +67,9 @@ class FakeDisplay:
         wire.queue.at(10_000_000, self.tick)
 
     def tick(self, t_ns: int) -> None:
-        self.port.send(Frame(self.identifier, self.beat), t_ns)
+        up, lost = t_ns // SECOND_NS * self.uptime_steps, self.beats * self.overruns
+        beat = p.pack_heartbeat(self.device, self.state, up, lost, self.tec)
+        self.port.send(Frame(self.identifier, self.spoil(beat)), t_ns)
         if self.chatter:
             self.port.send(self.chatter, t_ns)
         interval = self.beats_ns[self.beats % len(self.beats_ns)]
@@ -83,9 +98,12 @@ class FakeDisplay:
             self.port.accept([])
         opcode, result, parameter, value = self.result(frame.data)
         result = self.replace.get(result, result)
+        late_ns = self.answer_ns if opcode in self.slow else 0
         for _ in range(self.answers):
-            reply = p.pack_reply(self.says, opcode, result, parameter, value)
-            self.port.send(Frame(p.REPLY_BASE + self.device, reply), t_ns + self.answer_ns)
+            reply = bytearray(p.pack_reply(self.says, opcode, result, parameter, value))
+            for at, more in self.twisted.items():
+                reply[at] = reply[at] + more & 0xFF
+            self.port.send(Frame(self.elsewhere, bytes(reply[: self.cut])), t_ns + late_ns)
 
     def result(self, data: bytes) -> tuple[int, int, int, int]:
         opcode = data[1] if len(data) > 1 else 0
@@ -102,6 +120,8 @@ class FakeDisplay:
 
     def obey(self, opcode: int, arguments: tuple[int, ...]) -> tuple[int, int, int]:
         """Result, parameter, value."""
+        if opcode in (p.Opcode.GET_PARAMETER, p.Opcode.SET_PARAMETER):
+            return p.Result.OUT_OF_RANGE, arguments[0], 0
         if opcode != p.Opcode.BRIGHTNESS or not self.darkest <= arguments[0] <= self.brightest:
             return p.Result.OUT_OF_RANGE, 0, 0
         return p.Result.OK, 0, 0
@@ -172,17 +192,56 @@ class FakeAxis(FakeDisplay):
         return False
 
 
-def failures(change: Change, kind: type[FakeDisplay] = FakeDisplay) -> set[tuple[str, Level]]:
+class FakePosition(FakeDisplay):
+    """The same for a position board."""
+
+    device = 0x23
+    model = p.Device.POSITION_RA
+
+    def __init__(self, wire: Wire) -> None:
+        super().__init__(wire)
+        self.limits = {4: 0, 5: 0}
+        self.frames, self.frame_steps = 0, (1,)
+        wire.queue.at(11_000_000, self.measure)
+
+    def measure(self, t_ns: int) -> None:
+        data = p.pack_position(self.device, 0, 5, 1, self.frames & 0xFF)
+        self.port.send(Frame(p.MEASUREMENT_BASE + self.device, data), t_ns)
+        at = t_ns // 5_000_000
+        if at % 50 == 2:
+            self.port.send(Frame(p.SUMMARY_BASE + self.device, p.pack_summary(self.device, 0, 5)), t_ns)
+        self.frames += self.frame_steps[at % len(self.frame_steps)]
+        self.wire.queue.at(t_ns + 5_000_000, self.measure)
+
+    def obey(self, opcode: int, arguments: tuple[int, ...]) -> tuple[int, int, int]:
+        number = arguments[0]
+        if number not in self.limits:
+            return p.Result.OUT_OF_RANGE, number, 0
+        if opcode == p.Opcode.SET_PARAMETER:
+            low, high = PARAMETERS["POSITION"][number]
+            if not low <= arguments[1] <= high:
+                return p.Result.OUT_OF_RANGE, number, self.limits[number]
+            self.limits[number] = arguments[1]
+        return p.Result.OK, number, self.limits[number]
+
+
+BOARDS = {FakeDisplay: DISPLAY, FakeAxis: parse("axis:0x13"), FakePosition: parse("position:0x23")}
+
+
+def wrong(change: Change, kind: type[FakeDisplay] = FakeDisplay) -> list[CheckResult]:
     wire = Wire(EventQueue())
     fake = kind(wire)
     change(fake)
-    board = DISPLAY if kind is FakeDisplay else parse("axis:0x13")
     with SchmidtBus(wire) as bus:
-        results = run(bus, devices=(board,), settings=Settings(motion=True, stamps_s=0.0))
-    return {(result.check, result.level) for result in results if not result.passed}
+        results = run(bus, devices=(BOARDS[kind],), settings=Settings(motion=True, stamps_s=0.0))
+    return [result for result in results if not result.passed]
 
 
-@pytest.mark.parametrize("kind", [FakeDisplay, FakeAxis])
+def failures(change: Change, kind: type[FakeDisplay] = FakeDisplay) -> set[tuple[str, Level]]:
+    return {(result.check, result.level) for result in wrong(change, kind)}
+
+
+@pytest.mark.parametrize("kind", BOARDS)
 def test_a_sound_board_passes(kind: type[FakeDisplay]) -> None:
     assert failures(lambda _: None, kind) == set()
 
@@ -195,18 +254,28 @@ def changed(**values: object) -> Change:
     return change
 
 
-SOUND = p.pack_heartbeat(DISPLAY, p.State.READY, 0, 0, 0)
 MS = 1_000_000
 WRONG: list[tuple[str, Change, set[str]]] = [
     ("another identifier", changed(identifier=0x7A0), {"identifier", "undocumented"}),
-    ("seven bytes", changed(beat=SOUND[:7]), {"length"}),
-    ("another device type", changed(beat=b"\x52" + SOUND[1:]), {"device type"}),
-    ("a state that is none", changed(beat=SOUND[:2] + b"\x09" + SOUND[3:]), {"contents"}),
+    ("seven bytes", changed(spoil=lambda beat: beat[:7]), {"length"}),
+    ("another device type", changed(spoil=lambda beat: b"\x52" + beat[1:]), {"device type"}),
+    ("a state that is none", changed(spoil=lambda beat: beat[:2] + b"\x09" + beat[3:]), {"contents"}),
     ("three percent slow", changed(beats_ns=(1030 * MS,)), {"period"}),
     ("every other heartbeat late", changed(beats_ns=(1050 * MS, 950 * MS)), {"jitter"}),
     ("heartbeats in pairs", changed(beats_ns=(400 * MS, 1600 * MS)), {"jitter", "gap"}),
     # under load its three transmit buffers are full of answers that are not due yet
     ("answers when it likes", changed(answer_ns=25 * MS), {"response time"}),
+    ("answers 12 ms late", changed(answer_ns=12 * MS), {"response time"}),
+    ("answers 600 ms late", changed(answer_ns=600 * MS), {"response time"}),
+    ("is late with one command", changed(answer_ns=90 * MS, slow={p.Opcode.BRIGHTNESS}), {"response time"}),
+    ("its uptime stands", changed(uptime_steps=0), {"uptime"}),
+    ("its uptime runs at double speed", changed(uptime_steps=2), {"uptime"}),
+    ("loses an interrupt a second", changed(overruns=1), {"overruns"}),
+    ("disturbed on the bus", changed(tec=200), {"error counter"}),
+    ("in FAULT", changed(state=p.State.FAULT), {"state"}),
+    ("answers under another identifier", changed(elsewhere=0x191), {"answers"}),
+    ("answers with seven bytes", changed(cut=7), {"answers"}),
+    ("names another opcode", changed(twisted={1: 1}), {"answers"}),
     ("not healthy", changed(health=4), {"health"}),
     ("off", lambda fake: setattr(fake.port, "online", False), {"answers", "identifier"}),
     ("deaf", lambda fake: fake.port.accept([]), {"answers"}),
@@ -247,17 +316,99 @@ AXES: list[tuple[str, Change, set[str]]] = [
     ("moves although it is off", changed(looks_at_state=False), {"wrong state", "limits"}),
     ("keeps what it has refused", changed(beyond="kept"), {"limits"}),
     ("cuts what does not fit, and says nothing", changed(beyond="cut"), {"limits", "out of range"}),
+    ("repeats another parameter's number", changed(twisted={3: 1}), {"command", "limits", "out of range"}),
+]
+POSITIONS: list[tuple[str, Change, set[str]]] = [
+    ("its sequence stands", changed(frame_steps=(0,)), {"sequence"}),
+    ("its sequence stands now and then", changed(frame_steps=(1, 1, 0)), {"sequence"}),
+    ("its sequence skips", changed(frame_steps=(1, 1, 2)), {"sequence"}),
+]
+BROKEN = [
+    pytest.param(kind, change, found, id=what)
+    for kind, table in ((FakeDisplay, WRONG), (FakeAxis, AXES), (FakePosition, POSITIONS))
+    for what, change, found in table
 ]
 
 
-@pytest.mark.parametrize(("what", "change", "found"), WRONG, ids=[each[0] for each in WRONG])
-def test_what_is_wrong_is_found(what: str, change: Change, found: set[str]) -> None:
-    assert {name for name, _ in failures(change)} == found
+@pytest.mark.parametrize(("kind", "change", "found"), BROKEN)
+def test_what_is_wrong_is_found(kind: type[FakeDisplay], change: Change, found: set[str]) -> None:
+    assert {name for name, _ in failures(change, kind)} == found
 
 
-@pytest.mark.parametrize(("what", "change", "found"), AXES, ids=[each[0] for each in AXES])
-def test_what_is_wrong_with_an_axis_is_found(what: str, change: Change, found: set[str]) -> None:
-    assert {name for name, _ in failures(change, FakeAxis)} == found
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (changed(elsewhere=0x191), "none, twice; answered with 0x191 instead of 0x151"),
+        (changed(elsewhere=0x111), "none, twice; answered with 0x111 instead of 0x151"),
+        (changed(cut=7), "none, twice; answered with 7 bytes instead of 8"),
+        (changed(twisted={1: 4}), "none, twice; answered for opcode 0x05 instead of 0x01"),
+        (changed(answer_ns=90 * MS, slow={p.Opcode.BRIGHTNESS}), "the slowest to BRIGHTNESS"),
+        (changed(tec=200), "TEC 200"),
+        (changed(overruns=3), "0 at first, 12 at last"),
+        (changed(uptime_steps=0), "0 s more"),
+    ],
+)
+def test_what_came_instead_is_shown(change: Change, said: str) -> None:
+    (result,) = wrong(change)
+    assert said in result.observed
+    assert result.level == Level.ERROR
+
+
+def test_a_wrong_parameter_is_shown() -> None:
+    found = {result.subject: result for result in wrong(changed(twisted={3: 2}), FakeAxis)}
+    result = found["AXIS:0x13 GET_PARAMETER 1"]
+    assert (result.expected, result.observed) == (
+        "one reply: OK of parameter 1",
+        "OK value 10 of parameter 3",
+    )
+
+
+KIT = """
+from bus.can import Wire
+from bus.registry import publish
+from bus.time import EventQueue
+from tests.conformance.test_checks import FakeDisplay
+wire = Wire(EventQueue())
+fake = FakeDisplay(wire)
+fake.{name} = {value}
+publish("kit", wire)
+"""
+
+
+@pytest.mark.parametrize(("name", "value", "code"), [("health", 4, 0), ("answer_ns", 12 * MS, 1)])
+def test_kit_and_command_end_alike(name: str, value: int, code: int, tmp_path: Path) -> None:
+    wire = Wire(EventQueue())
+    setattr(FakeDisplay(wire), name, value)
+    with SchmidtBus(wire) as bus:
+        assert check(bus, None, Settings(stamps_s=0.0), [board_of(DISPLAY)]) == code
+    (tmp_path / "conftest.py").write_text(KIT.format(name=name, value=value))
+    options = [
+        "--can",
+        "schmidt:kit",
+        "--board",
+        "display:0x51",
+        "--can-stamps",
+        "0",
+        "-p",
+        "no:cacheprovider",
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "bus.kit", "-c", "/dev/null", *options, str(tmp_path)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == code, done.stdout + done.stderr
+    assert ("1 warning" in done.stdout) == (name == "health")
+
+
+def test_the_kit_has_every_check() -> None:
+    seen: set[str] = set()
+    for kind in BOARDS:
+        wire = Wire(EventQueue())
+        kind(wire)
+        with SchmidtBus(wire) as bus:
+            results = run(bus, devices=(BOARDS[kind],), settings=Settings(motion=True, stamps_s=0.0))
+        seen |= {result.check for result in results}
+    assert seen <= set(CHECKS)
 
 
 def test_health_is_advice_not_law(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

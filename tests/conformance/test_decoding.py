@@ -2,10 +2,10 @@
 
 from bus.can import Frame
 from bus.conformance import Settings, run
+from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import Device
 from bus.protocol.database import database
-from bus.pythoncan import SchmidtBus
-from scenarios.served import network
+from scenarios.lab.wiring import network
 
 
 def test_L1_cantools_decodes_every_frame_and_byte_0_is_the_sender() -> None:

@@ -7,9 +7,9 @@ from bus import protocol as p
 from bus.can import Wire
 from bus.conformance import CheckResult, Settings, parse, run
 from bus.conformance.limits import PARAMETERS
-from bus.pythoncan import SchmidtBus
+from bus.outside.pythoncan import SchmidtBus
 from bus.time import EventQueue
-from scenarios.served import network
+from scenarios.lab.wiring import network
 from tests.conformance.test_checks import FakeAxis
 
 END = [p.Opcode.STOP, p.Opcode.POWER, p.Opcode.STOP, p.Opcode.POWER]

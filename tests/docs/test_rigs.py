@@ -1,4 +1,4 @@
-"""The examples of docs/rigs.md are rig files."""
+"""The examples of docs/reference/rig-examples.md are rig files."""
 
 import re
 from pathlib import Path
@@ -6,11 +6,13 @@ from pathlib import Path
 import pytest
 
 from calibration.inputs.rigfile import load_rig
-from calibration.rigview import show
+from calibration.report.rigview import show_rig
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = re.findall(
-    r"```yaml\n(.*?)```", (ROOT / "docs" / "rigs.md").read_text(encoding="utf-8"), re.DOTALL
+    r"```yaml\n(.*?)```",
+    (ROOT / "docs" / "reference" / "rig-examples.md").read_text(encoding="utf-8"),
+    re.DOTALL,
 )
 
 
@@ -23,4 +25,4 @@ def test_an_example_of_the_page_is_read(tmp_path: Path, number: int) -> None:
 
 @pytest.mark.parametrize("path", sorted((ROOT / "calibration" / "rigs").glob("*.yaml")), ids=lambda p: p.stem)
 def test_what_comes_along_is_shown(path: Path) -> None:
-    assert show(path, [], None).startswith(load_rig(path).name)
+    assert show_rig(path, [], None).startswith(load_rig(path).name)

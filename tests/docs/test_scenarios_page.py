@@ -1,4 +1,4 @@
-"""docs/scenarios.md against the published schema, the unit table and the loader."""
+"""The scenario language's pages against the published schema, the unit table and the loader."""
 
 import re
 from pathlib import Path
@@ -7,15 +7,16 @@ from typing import Any
 import pytest
 import yaml
 
-from scenarios.document import parse
-from scenarios.load import convert
-from scenarios.plants import plant_model
-from scenarios.units import UNITS
-from scenarios.validate import schema
+from scenarios.language.document import parse
+from scenarios.language.load import convert
+from scenarios.language.plants import plant_model
+from scenarios.language.units import UNITS
+from scenarios.language.validate import schema
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-FAULTS = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "scenarios.md").read_text(encoding="utf-8")
+FAULTS = (ROOT / "docs" / "reference" / "faults.md").read_text(encoding="utf-8")
+FIELDS = (ROOT / "docs" / "reference" / "scenario-fields.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 
@@ -38,8 +39,9 @@ def words(rule: Any) -> set[str]:
 
 def code() -> set[str]:
     """What stands in back quotes or in an example on the page, cut into words."""
-    spans = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", PAGE + FAULTS, flags=re.DOTALL))
+    spans = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", PAGE + FIELDS + FAULTS, flags=re.DOTALL))
     found = {word for span in spans for word in re.findall(r"[\w.+-]+", span)}
+    found |= {part for word in found for part in word.split(".")}  # `focus.to` has a row of its own
     return found | {word for example in EXAMPLES for word in re.findall(r"[\w.+-]+", example)}
 
 
@@ -47,17 +49,30 @@ def test_every_word_of_the_schema_is_on_the_page() -> None:
     known = code()
     sensors = {f"{part}.{name}" for part in ("ra", "dec") for name in known} | known  # "ra. or dec. with …"
     missing = sorted(word for word in words(schema()) if word not in sensors)
-    assert not missing, f"docs/scenarios.md does not mention {', '.join(missing)}"
+    assert not missing, f"no page of the language mentions {', '.join(missing)}"
 
 
 @pytest.mark.parametrize(
-    ("part", "heading"), [("step", "Steps"), ("fault", "Faults"), ("expectation", "Expectations")]
+    ("part", "page"),
+    [
+        ("step", FIELDS.split("\n## step\n")[1].split("\n## ")[0]),
+        ("fault", FAULTS),
+        ("expectation", PAGE.split("\n## Expectations\n")[1].split("\n## ")[0]),
+    ],
+    ids=["step", "fault", "expectation"],
 )
-def test_every_action_fault_and_expectation_has_a_row(part: str, heading: str) -> None:
-    section = FAULTS if part == "fault" else PAGE.split(f"\n## {heading}\n")[1].split("\n## ")[0]
-    rows = set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE))
+def test_every_action_fault_and_expectation_has_a_row(part: str, page: str) -> None:
+    rows = set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE))
     names = set(schema()["$defs"][part]["properties"]) - {"name"}
-    assert names - rows <= {"at", "until"} if part == "fault" else names <= rows, names - rows
+    assert names - rows <= {"at", "until", "may_not_act"} if part == "fault" else names <= rows, names - rows
+
+
+def test_every_field_has_a_meaning() -> None:
+    """In its own row, or in the section that its kind links to."""
+    rows = re.findall(r"^\| (`[^|]+`) \| ([^|]+) \|(.*)\|$", FIELDS, re.MULTILINE)
+    silent = [name for name, kind, text in rows if text.strip() in ("", "required") and "](#" not in kind]
+    assert len(rows) > 80
+    assert not silent, f"no description in scenario.schema.json: {', '.join(silent)}"
 
 
 def test_every_unit_is_on_the_page() -> None:
@@ -71,7 +86,7 @@ def test_every_example_loads() -> None:
     whole = yaml.safe_load(EXAMPLES[0])
     for example in EXAMPLES:
         text = yaml.safe_dump(whole | yaml.safe_load(example), allow_unicode=True, sort_keys=False)
-        scenario = convert(parse(text, Path("docs/scenarios.md")))
+        scenario = convert(parse(text, Path("docs/reference/scenarios.md")))
         assert scenario.steps
         plant_model(scenario.plant, ROOT)
 

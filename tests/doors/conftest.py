@@ -5,8 +5,10 @@ from time import perf_counter, sleep
 
 import pytest
 
-from scenarios.doors import Door, Keeper, Served
-from scenarios.served import chosen
+from scenarios.doors.door import Door
+from scenarios.doors.keeper import Keeper
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.lab.prepare import chosen
 
 MS = 1_000_000
 
@@ -15,7 +17,7 @@ class Bench:
     """served, and the doors that have been opened on it; said: what the keepers reported."""
 
     def __init__(self) -> None:
-        self.served = Served(*chosen())
+        self.served = LiveNetwork(*chosen())
         self.keepers: list[Keeper] = []
         self.said: list[str] = []
 

@@ -4,8 +4,6 @@ It commands boards over the gateway's socket and the telescope over LX200, hangs
 and resumes. Afterwards the session's own logs are held against what it was told.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

@@ -1,5 +1,6 @@
 """The control plane: commands, tokens, and clients that break the rules."""
 
+import contextlib
 import json
 import socket
 
@@ -136,3 +137,17 @@ def test_no_more_than_eight_are_taken_at_once(bench: Bench, door: ControlDoor) -
     bench.run(1)
     assert bench.served.ending
     ask.socket.close()
+
+
+def test_a_web_page_is_hung_up_on(bench: Bench, door: ControlDoor) -> None:
+    """A form in any page can post `stop` to a port of this machine."""
+    page = Caller(bench, door.port)
+    assert page.send(b"POST / HTTP/1.1\r\nHost: x\r\n\r\nstop\n") == ""
+    torn = Caller(bench, door.port)
+    assert torn.send(b"PO") == ""
+    assert torn.send(b"ST / HTTP/1.1\r\n\r\nstop\n") == ""
+    assert not bench.served.ending
+    for caller in (page, torn):
+        with contextlib.suppress(ConnectionResetError):  # what it had not read was thrown away
+            assert caller.socket.recv(1) == b""
+        caller.socket.close()

@@ -1,7 +1,5 @@
 """Ten thousand frames a second from outside, through a real socket, at a server in a process of its own."""
 
-from __future__ import annotations
-
 import os
 import re
 import time
@@ -26,7 +24,7 @@ PERIODS_S = {
     Device.POSITION_RA: 0.005, Device.POSITION_DEC: 0.005, Device.AXIS_RA: 0.01, Device.AXIS_DEC: 0.01,
     Device.MOTOR_RA_A: 0.01, Device.MOTOR_DEC_B: 0.01, Device.FOCUS: 0.05,
 }  # fmt: skip
-"""Measurements of the boards (docs/protocol.md)."""
+"""Measurements of the boards (docs/reference/protocol.md)."""
 
 
 def flood(bus: can.BusABC, frames: int) -> tuple[float, int]:

@@ -1,21 +1,23 @@
 """The host program in its process beside the emulator: what crosses the pipe, and how either one dies."""
 
-from __future__ import annotations
-
 import os
 import signal
 import socket
 import time
+from multiprocessing import Pipe
 from pathlib import Path
 
 import pytest
 
 from bus.protocol import Device
-from scenarios.doors import Served
 from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.busview import EmulatedBus
-from scenarios.doors.hostlink import Done, Wish
-from scenarios.served import chosen
+from scenarios.doors.hostmain import main
+from scenarios.doors.hostmessages import Done, Settings, Wish
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.options import ServeOptions
+from scenarios.doors.pc import dated
+from scenarios.lab.prepare import chosen
 from tests.doors.process import Serving, free_port
 
 PATIENCE_S = 120.0
@@ -25,7 +27,7 @@ class Both:
     """Both ends of the bus page's view, with a pipe of plain lists between them."""
 
     def __init__(self) -> None:
-        self.served = Served(*chosen())
+        self.served = LiveNetwork(*chosen())
         self.bus = EmulatedBus(self.served)
         self.wishes: list[Wish] = []
         self.mirror = BusMirror(list(self.served.network.boards), self.bus.fault_kinds(), self.wishes.append)
@@ -119,3 +121,15 @@ def test_an_emulator_that_is_killed_takes_its_host_along(tmp_path: Path) -> None
         while Path(f"/proc/{host}/cmdline").exists() and Path(f"/proc/{host}/cmdline").read_bytes():
             assert time.monotonic() < end_s
             time.sleep(0.1)
+
+
+def test_a_host_whose_emulator_has_gone_ends_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
+    """Ctrl-C while it starts: nobody reads what it says."""
+    served = LiveNetwork(*chosen())
+    options = ServeOptions(asked={"lx200": (f"127.0.0.1:{free_port()}",)})
+    ours, theirs = Pipe()
+    ours.send(Settings(dated(served.scenario), options, [], (), {}, []))
+    ours.close()
+    main(os.dup(theirs.fileno()))
+    theirs.close()
+    assert capfd.readouterr() == ("", "")

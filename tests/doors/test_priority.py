@@ -1,7 +1,5 @@
 """`serve --realtime`: ticks before ordinary programs, their children not, and what is not granted."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

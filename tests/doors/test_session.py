@@ -13,13 +13,14 @@ import pytest
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command
 from bus.protocol.report import pack_report
-from scenarios.doors import Keeper, Served
 from scenarios.doors.can import CanDoor
+from scenarios.doors.keeper import Keeper
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.parking import park
 from scenarios.doors.payload import pack_frame, unpack_frame
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import ReplayError, replay
-from scenarios.served import chosen
+from scenarios.lab.prepare import chosen
 from tests.doors.conftest import MS, Bench
 from tests.fuzz import inputs
 
@@ -30,7 +31,7 @@ def record(folder: Path, seed: int = 3) -> str:
     """A session with commands over CAN and USB and hostile frames, in slices of odd lengths."""
     scenario, model = chosen()
     recording = Recording(folder, scenario, model)
-    served = Served(scenario, model, journal=recording)
+    served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:session", 0, served)
     recording.attach(served)
     plug = served.usb.plug("pc")

@@ -13,21 +13,21 @@ import pytest
 from bus.can.candump import CandumpWriter
 from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command
 from bus.protocol.report import pack_report
-from scenarios.doors import Served
 from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
 from scenarios.doors.hid_report import out_report
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay, replay_rest
 from scenarios.doors.snapshots import Snapshots
+from scenarios.doors.standing import standing
+from scenarios.lab.prepare import chosen, prepare
+from scenarios.lab.snapshot import SnapshotError
+from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.run import Order
 from scenarios.native.finder import compiled
-from scenarios.run import prepare, run
-from scenarios.served import chosen
-from scenarios.snapshot import SnapshotError
-from scenarios.snapshot.file import read
-from scenarios.snapshot.run import Order
-from scenarios.snapshot.served import standing
+from scenarios.run.run import Way, run
 from tests.doors.conftest import MS, Bench
 from tests.doors.process import PROGRAM, ROOT, Serving, free_port
 from tests.fuzz import inputs
@@ -42,7 +42,7 @@ def schmidt(*words: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(line, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
 
 
-def _busy(served: Served, door: CanDoor, random: Random, slices: int) -> None:
+def _busy(served: LiveNetwork, door: CanDoor, random: Random, slices: int) -> None:
     """Slices of odd lengths with commands, hostile frames and reports, debug bytes, supply and faults."""
     plug = served.usb.plug("pc")
     for _ in range(slices):
@@ -73,7 +73,7 @@ def _session(folder: Path, seed: int) -> list[Path]:
     random = Random(seed)
     scenario, model = chosen()
     recording = Recording(folder / "session", scenario, model)
-    served = Served(scenario, model, journal=recording)
+    served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:snapshot", 0, served)
     recording.attach(served)
     Snapshots(folder / "taken", served, recording)
@@ -112,7 +112,7 @@ def test_a_session_that_goes_on_is_recorded_and_replayed_like_any(tmp_path: Path
     snapshot = _session(tmp_path, 5)[1]
     stood = standing(read(snapshot))
     recording = Recording(tmp_path / "on", stood.scenario, stood.model, snapshot)
-    served = Served(stood.scenario, stood.model, journal=recording, begun=stood)
+    served = LiveNetwork(stood.scenario, stood.model, journal=recording, begun=stood)
     CanDoor("virtual:on", 0, served)
     recording.attach(served)
     first = (tmp_path / "session" / "entered.log").read_text().splitlines()[stood.entries :]
@@ -132,7 +132,7 @@ def test_clients_of_the_session_are_not_in_it(tmp_path: Path) -> None:
     """A door's node stays on the bus, acknowledges, and is there for the next door; nobody hears."""
     stood = standing(read(_session(tmp_path, 6)[0]))
     assert list(stood.nodes) == ["can0"]
-    served = Served(stood.scenario, stood.model, begun=stood)
+    served = LiveNetwork(stood.scenario, stood.model, begun=stood)
     ports = len(served.network.wire.ports)
     door = CanDoor("virtual:next", 0, served)
     assert door.node is stood.nodes["can0"]
@@ -147,9 +147,9 @@ def test_on_from_a_run(tmp_path: Path) -> None:
     (short := tmp_path / "short.yaml").write_text(SHORT)
     order = Order(1_700_000_000, tmp_path / "of-a-run")
     scenario, model = prepare(short)
-    run(scenario, model, tmp_path / "run", lambda *_: None, report=False, snapshot=order)
+    run(scenario, model, tmp_path / "run", lambda *_: None, Way(report=False, snapshot=order))
     stood = standing(read(order.file))
-    served = Served(stood.scenario, stood.model, begun=stood)
+    served = LiveNetwork(stood.scenario, stood.model, begun=stood)
     assert served.now_ns == 1_700_000_000
     log = CandumpWriter(io := BytesIO())
     served.network.wire.tap(log.take)

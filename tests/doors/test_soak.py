@@ -1,7 +1,5 @@
 """A random client at a served network: what was acknowledged was done, and the logs have no gap."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

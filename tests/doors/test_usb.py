@@ -5,17 +5,18 @@ import pytest
 from bus.protocol import Device, Opcode, Reply, pack_command, unpack_reply
 from bus.protocol.report import pack_report
 from host.link import HidLink
-from scenarios.doors import EntryError, Served, UsbFull, UsbPlug
-from scenarios.doors.usb import OUT_LIMIT
-from scenarios.served import chosen
+from scenarios.doors.entry import EntryError
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.usb import OUT_LIMIT, UsbFull, UsbPlug
+from scenarios.lab.prepare import chosen
 
 PING = pack_report([pack_command(Device.DISPLAY, Opcode.PING)])
 MS = 1_000_000
 
 
 @pytest.fixture
-def served() -> Served:
-    served = Served(*chosen())
+def served() -> LiveNetwork:
+    served = LiveNetwork(*chosen())
     served.run_until(20 * MS)
     return served
 
@@ -31,7 +32,7 @@ def pump(plug: UsbPlug, link: HidLink) -> None:
         link.receive(t_ns, report)
 
 
-def test_two_programs_command_and_both_hear_all_answers(served: Served) -> None:
+def test_two_programs_command_and_both_hear_all_answers(served: LiveNetwork) -> None:
     plugs = [served.usb.plug(name) for name in ("one", "two")]
     links = [HidLink(plug.write) for plug in plugs]
     heard = [replies(link) for link in links]
@@ -46,7 +47,7 @@ def test_two_programs_command_and_both_hear_all_answers(served: Served) -> None:
     assert links[0].measurements[Device.POSITION_RA]
 
 
-def test_a_flood_of_reports_waits_is_bounded_and_all_are_answered(served: Served) -> None:
+def test_a_flood_of_reports_waits_is_bounded_and_all_are_answered(served: LiveNetwork) -> None:
     plug = served.usb.plug("flood")
     link = HidLink(plug.write)
     heard = replies(link)
@@ -62,7 +63,7 @@ def test_a_flood_of_reports_waits_is_bounded_and_all_are_answered(served: Served
     assert served.network.boards["GATEWAY"].dropped == 0
 
 
-def test_a_program_that_does_not_read_loses_the_oldest_and_is_told(served: Served) -> None:
+def test_a_program_that_does_not_read_loses_the_oldest_and_is_told(served: LiveNetwork) -> None:
     plug = served.usb.plug("asleep")
     served.run_until(served.now_ns + 40_000 * MS)
     assert plug.lost > 0
@@ -74,7 +75,7 @@ def test_a_program_that_does_not_read_loses_the_oldest_and_is_told(served: Serve
     assert plug.reports() == []
 
 
-def test_nothing_enters_in_the_middle_of_a_slice(served: Served) -> None:
+def test_nothing_enters_in_the_middle_of_a_slice(served: LiveNetwork) -> None:
     plug = served.usb.plug("rude")
     served.network.queue.at(served.now_ns + MS, lambda t_ns: plug.write(t_ns, PING))
     served.entry.running = True
@@ -83,7 +84,7 @@ def test_nothing_enters_in_the_middle_of_a_slice(served: Served) -> None:
 
 
 @pytest.mark.parametrize("length", [0, 1, 63, 65, 1000])
-def test_reports_of_a_wrong_length_are_refused(served: Served, length: int) -> None:
+def test_reports_of_a_wrong_length_are_refused(served: LiveNetwork, length: int) -> None:
     with pytest.raises(ValueError, match="64"):
         served.usb.plug("odd").write(0, bytes(length))
 
@@ -91,7 +92,7 @@ def test_reports_of_a_wrong_length_are_refused(served: Served, length: int) -> N
 @pytest.mark.parametrize(
     "report", [bytes([0x61, *range(1, 64)]), b"\xff" * 64, bytes(range(64)), b"\x80" * 64]
 )
-def test_reports_of_nonsense_harm_nobody(served: Served, report: bytes) -> None:
+def test_reports_of_nonsense_harm_nobody(served: LiveNetwork, report: bytes) -> None:
     served.usb.plug("nonsense").write(0, report)
     served.run_until(served.now_ns + 100 * MS)
     assert all(board.on for board in served.network.boards.values())

@@ -4,8 +4,6 @@ The consoles run as they are served, on a socket; NiceGUI keeps its pages in the
 server per process and every attack meets the same one.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import select
@@ -20,13 +18,13 @@ from typing import Any
 from nicegui import Client
 
 from host.console.server import Consoles
-from scenarios.doors import Served
 from scenarios.doors.address import listen
 from scenarios.doors.busmirror import BusMirror
-from scenarios.doors.host import HostDoor
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.runs import RecordedRuns
-from scenarios.served import chosen
+from scenarios.lab.prepare import chosen
 from tests.fuzz import inputs
+from tests.host.inprocess import HostInProcess
 
 _PATHS = ("/", "/focus", "/alignment", "/maintenance", "/dome", "/bus", "/calibrate")
 _NAMES = (
@@ -76,12 +74,11 @@ class Server:
     """The consoles of a served network."""
 
     def __init__(self) -> None:
-        self.served = Served(*chosen())
-        self.host = HostDoor(self.served)
-        self.host.open()
-        runs = RecordedRuns(Path(tempfile.mkdtemp()), {}, self.host.hosted.journal)
+        self.served = LiveNetwork(*chosen())
+        self.host = HostInProcess(self.served)
+        runs = RecordedRuns(Path(tempfile.mkdtemp()), {}, self.host.pc.journal)
         bus = BusMirror(list(self.served.network.boards), [], lambda _wish: None)
-        self.consoles = Consoles(self.host.hosted.telescope, bus, runs, "word")
+        self.consoles = Consoles(self.host.pc.telescope, bus, runs, "word")
         listener = listen("127.0.0.1", 0)
         self.port = int(listener.getsockname()[1])
         self.service = self.host.outside.keep(self.consoles.serve(listener))
@@ -114,7 +111,7 @@ class Browser:
         self.client, self.elements = page or at.page(path)
         self.socket = socket.create_connection(("127.0.0.1", at.port), 60)
         self.socket.sendall(
-            b"GET /_nicegui_ws/socket.io/?EIO=4&transport=websocket HTTP/1.1\r\nHost: x\r\n"
+            b"GET /_nicegui_ws/socket.io/?EIO=4&transport=websocket HTTP/1.1\r\nHost: localhost\r\n"
             b"Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
             b"Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
         )

@@ -1,17 +1,16 @@
 """Attacks on the pins of chips: SPI transactions of the MCP2515, clock edges and bits of EnDat lines."""
 
-from __future__ import annotations
-
 from random import Random
 
-from boards.silicon.endat import ClockedEncoder, ClockedMaster, EndatError, check
-from boards.silicon.endat import registers as at
-from boards.silicon.endat.crc import crc_bits
-from boards.silicon.endat.crc import number as as_number
-from boards.silicon.endat.encoder import Phase
-from boards.silicon.endat.master import checked
-from boards.silicon.endat.registers import MODES
-from boards.silicon.mcp2515 import Mcp2515
+from boards.chips.endat import ClockedEncoder, ClockedMaster, EndatError
+from boards.chips.endat import registers as at
+from boards.chips.endat.encoder import Phase
+from boards.chips.endat.master import checked
+from boards.chips.endat.registers import MODES
+from boards.chips.mcp2515 import Mcp2515
+from boards.silicon.crc5 import crc_bits
+from boards.silicon.crc5 import number as as_number
+from boards.silicon.endat import check
 from bus.can import Wire
 from bus.time import EventQueue
 from tests.fuzz import near

@@ -3,18 +3,16 @@
 A snapshot that says by its digest that it is whole is trusted as a program is, so nothing here forges one.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from random import Random
 
-from scenarios.doors import Served
+from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.snapshots import Snapshots
-from scenarios.served import chosen
-from scenarios.snapshot import SnapshotError
-from scenarios.snapshot.file import read
-from scenarios.snapshot.served import standing
+from scenarios.doors.standing import standing
+from scenarios.lab.prepare import chosen
+from scenarios.lab.snapshot import SnapshotError
+from scenarios.lab.snapshot.file import read
 from tests.fuzz.inputs import MEMORY, data
 
 MS = 1_000_000
@@ -25,7 +23,7 @@ _INTACT = 0.005
 def snapshots(count: int, random: Random) -> dict[str, int]:
     """Files near a snapshot: what is taken goes on as the network it was taken of, all else is one line."""
     found = {"accepted": 0, "refused": 0}
-    served = Served(*chosen())
+    served = LiveNetwork(*chosen())
     served.run_until(20 * MS)
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         Snapshots(Path(folder), served).take("good")
@@ -44,7 +42,7 @@ def snapshots(count: int, random: Random) -> dict[str, int]:
                 continue
             if said != good:
                 raise AssertionError("a file that was changed was taken")
-            again = Served(stood.scenario, stood.model, begun=stood)
+            again = LiveNetwork(stood.scenario, stood.model, begun=stood)
             again.run_until(30 * MS)
             if again.network.wire.frames != served.network.wire.frames:
                 raise AssertionError("it went on as another network")

@@ -4,8 +4,6 @@ A command that the telescope has to carry out waits for a tick; the attack ticks
 waiting for what takes longer than a second, such as a slew.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import Coroutine
@@ -14,9 +12,9 @@ from typing import Any, TypeVar
 
 from host.alpaca.server import Alpaca
 from host.lx200.server import PLAIN, WITH_ARGUMENT, Lx200
-from scenarios.doors import Served
-from scenarios.doors.host import HostDoor
+from scenarios.doors.livenetwork import LiveNetwork
 from tests.fuzz import inputs
+from tests.host.inprocess import HostInProcess
 
 T = TypeVar("T")
 _TICK_NS = 50_000_000
@@ -27,17 +25,16 @@ _PATIENCE = 20
 class Hosted:
     """A served network with its host, ticked by whoever waits."""
 
-    def __init__(self, served: Served) -> None:
+    def __init__(self, served: LiveNetwork) -> None:
         self.served = served
-        self.host = HostDoor(served)
-        self.host.open()
+        self.host = HostInProcess(served)
         self.loop = asyncio.new_event_loop()
         for _ in range(_PATIENCE):
             self.tick()
 
     @property
     def telescope(self) -> Any:
-        return self.host.hosted.telescope
+        return self.host.pc.telescope
 
     def tick(self) -> None:
         self.host.poll(self.served.now_ns)
@@ -66,7 +63,7 @@ class Hosted:
         self.loop.close()
 
 
-def lx200(served: Served, count: int, random: Random) -> dict[str, int]:
+def lx200(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     """Bytes of LX200 clients: commands near the table, joined, torn, with rubbish between them."""
     from tests.fuzz.doors import rounds
 
@@ -87,7 +84,7 @@ def lx200(served: Served, count: int, random: Random) -> dict[str, int]:
     return found
 
 
-def alpaca(served: Served, count: int, random: Random) -> dict[str, int]:
+def alpaca(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     """Alpaca requests: members of both devices with parameters that are missing, doubled or absurd."""
     from tests.fuzz.doors import rounds
 

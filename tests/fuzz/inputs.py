@@ -10,6 +10,17 @@ MEMORY = "/dev/shm" if Path("/dev/shm").is_dir() else None
 """Where files of a few lines are written by the million: a disk would take most of the time."""
 _IDENTIFIERS = [base + device for device in Device for base in (0x080, 0x100, 0x200, 0x300, 0x700)]
 _EDGES = (0, 1, 0x7F, 0x80, 0xF3, 0xF7, 0xFF)
+_OBJECTS = (
+    0x1000, 0x1001, 0x1003, 0x1005, 0x1008, 0x1010, 0x1011, 0x1014, 0x1016, 0x1017, 0x1018, 0x1200, 0x1400,
+    0x1600, 0x1800, 0x1801, 0x1803, 0x1A00, 0x1A01, 0x1A03, 0x2000, 0x2101, 0x2102, 0x5000,
+)  # fmt: skip
+_REQUESTS = (0x23, 0x2F, 0x40, 0x60, 0x80, 0xA0, 0xA1, 0xA2, 0xA3, 0xA4, 0xC0)
+"""SDO: downloads, uploads, segments, aborts, blocks (CiA 301, 7.2.4.3)."""
+_SETTINGS = (
+    b"save", b"load", bytes(4), b"\x81\x03\x00\x80", b"\x81\x03\x00\x00", b"\x01\x00\x00\x00",
+    b"\xff\x00\x00\x00", b"\x20\x00\x02\x21", b"\x40\x03\x00\x20", b"\x08\x00\x01\x10", b"\x64\x00\x7f\x00",
+)  # fmt: skip
+"""Stored, moved, by SYNC, mapped objects, a master watched."""
 _WORDS = (
     "speed", "pause", "resume", "power", "status", "stop", "token", "help", "FOCUS", "AXIS_RA", "on", "off",
     "snapshot", "../x", "/tmp/x",
@@ -51,6 +62,27 @@ def frame(random: Random) -> Frame:
     extended = random.random() < 0.5
     identifier = random.randrange(1 << (29 if extended else 11))
     return Frame(identifier, data(random, 8), extended, random.random() < 0.2)
+
+
+def canopen(random: Random, nodes: list[int]) -> Frame:
+    """An NMT command or an SDO request to one of `nodes`, often of a wrong length, or any frame."""
+    kind = random.random()
+    node = random.choice(nodes)
+    if kind < 0.3:
+        command = random.choice((0x01, 0x02, 0x80, 0x81, 0x82, 0x50, 0x60, random.randrange(256)))
+        said = bytes([command, random.choice((0, node, random.randrange(256)))])
+        return Frame(
+            0x000, said[: random.choice((0, 1, 2, 2, 2))] + data(random, 6) * (random.random() < 0.1)
+        )
+    if kind < 0.9:
+        index = random.choice(_OBJECTS)
+        head = bytes([random.choice((random.randrange(256), *_REQUESTS))]) + index.to_bytes(2, "little")
+        value = random.choice((data(random, 4).ljust(4, b"\0"), *_SETTINGS))
+        said = head + bytes([random.randrange(6)]) + value
+        return Frame(0x600 + node, said if random.random() < 0.8 else said[: random.randrange(8)])
+    if kind < 0.95:  # SYNC, a master's heartbeat, a PDO where one may have been moved
+        return Frame(random.choice((0x080, 0x77F, 0x700 + node, 0x381, 0x401)), data(random, 8))
+    return frame(random)
 
 
 def report(random: Random) -> bytes:

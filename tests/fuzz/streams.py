@@ -4,8 +4,6 @@ Whatever is accepted must say what the input says (nothing changes silently), an
 byte must come out as the one that is fed whole.
 """
 
-from __future__ import annotations
-
 from random import Random
 
 from boards.core.debug import frame_of

@@ -26,8 +26,8 @@ from host.sky.mount import STEP_ARCSEC
 from host.telescope.state import axis_state
 from plant.model import load
 from plant.plant import Plant
-from scenarios.network import build
-from scenarios.networks import NetworkConfig
+from scenarios.lab.network import build
+from scenarios.lab.networks import NetworkConfig
 from tests.host.console.test_parts import MOUNT
 
 SECOND_NS = 1_000_000_000
@@ -71,8 +71,8 @@ def test_H5_on_the_final_network_both_encoders_agree_within_what_is_stated(rate:
     network.hid.to_host = link.receive
     client = Client(link, Journal(None))
     if rate:
-        from boards.axis.config import rate_q16
         from bus.protocol import Opcode, pack_command
+        from bus.protocol.scales import rate_q16
 
         for command in ((Opcode.POWER, 1), (Opcode.SET_RATE, rate_q16(rate))):
             link.queue(pack_command(Device.AXIS_RA, *command))

@@ -16,9 +16,9 @@ from bus.protocol.report import pack_report, unpack_report
 from host.links.ports import CanPort
 from host.links.task import LinkTask, Port
 from scenarios.doors.hid_unix import UnixDoor
-from scenarios.doors.options import DoorOptions
-from scenarios.host import HostProgram, boards_of
-from scenarios.served import chosen
+from scenarios.doors.hostprogram import HostProgram, expected
+from scenarios.doors.options import HostOptions
+from scenarios.lab.prepare import chosen
 from tests.host.telescope.conftest import Rig
 
 
@@ -73,7 +73,7 @@ def test_H1_a_broken_link_is_said_once_opened_again_and_stops_nobody(monkeypatch
 
 
 def test_a_can_port_carries_commands_and_measurements_as_the_gateway_does() -> None:
-    from bus.external import open_bus
+    from bus.outside.external import open_bus
 
     port, other = CanPort("virtual:links"), open_bus("virtual:links")
     try:
@@ -115,13 +115,12 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
     served: Path, tmp_path: Path
 ) -> None:
     text = StringIO()
-    options = DoorOptions(logs=tmp_path / "logs")
-    program = HostProgram(
-        None, f"unix:{served}", {"AXIS_RA": str(tmp_path / "missing")}, options, Console(file=text)
-    )
+    missing = f"AXIS_RA={tmp_path / 'missing'}"
+    options = HostOptions(usb=f"unix:{served}", serial=(missing,), logs=tmp_path / "logs")
+    program = HostProgram(options, Console(file=text))
     for task in program.tasks:
         task.start()
-    telescope = program.hosted.telescope
+    telescope = program.pc.telescope
     try:
         program.tick()
         future = None
@@ -140,5 +139,5 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
 
 @pytest.mark.parametrize(("network", "count"), [(None, 11), ("lab", 11), ("serial", 5), ("final", 18)])
 def test_the_host_expects_the_boards_of_the_network_it_is_told(network: str | None, count: int) -> None:
-    boards = boards_of(chosen(network_name=network)[0])
-    assert len(boards) == count and ("DOME" in boards) == (network == "final")
+    boards = expected(chosen(network_name=network)[0])
+    assert len(boards) == count and ("DOME" in [board.name for board in boards]) == (network == "final")

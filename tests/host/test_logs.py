@@ -18,6 +18,7 @@ from host.logs.axis import AxisLog
 from host.logs.files import LineFile, LogError
 
 HEADER = {"axis": "ra", "session": "night", "loop": "closed", "start_utc": "2026-02-10T14:00:00Z"}
+RANDOM = np.random.default_rng(1)
 SAMPLE = AxisSample(-12, 268435456, 7, 100, 20, 5, -5, 77, round(6.533333 * 65536))
 
 
@@ -172,7 +173,7 @@ ROWS = [(index * 0.01, SAMPLE._replace(velocity=index, effort=-index * 100)) for
 
 
 def test_sample_loss_loses_whole_packets_and_repeats_samples() -> None:
-    lose = distort.sample_loss(0.3, 0.2, np.random.default_rng(1))
+    lose = distort.sample_loss(np.random.default_rng(1), packet_loss=0.3, repeats=0.2)
     results = [lose(list(ROWS)) for _ in range(2000)]
     assert {len(rows) for rows in results} == {0, 25}
     assert np.mean([not rows for rows in results]) == pytest.approx(0.3, abs=0.04)  # 4 sigma
@@ -182,7 +183,7 @@ def test_sample_loss_loses_whole_packets_and_repeats_samples() -> None:
 
 
 def test_clock_jitter_moves_stamps_only() -> None:
-    jitter = distort.clock_jitter(0.001, np.random.default_rng(1))
+    jitter = distort.clock_jitter(np.random.default_rng(1), deviation=0.001)
     off = np.array(
         [t - u for _ in range(400) for (t, _), (u, _) in zip(jitter(list(ROWS)), ROWS, strict=True)]
     )
@@ -193,8 +194,8 @@ def test_clock_jitter_moves_stamps_only() -> None:
 @given(value=st.integers(-3000, 3000), bits=st.integers(4, 12))
 def test_log_wrap_keeps_the_low_bits_or_clips(value: int, bits: int) -> None:
     row = [(0.0, SAMPLE._replace(effort=value))]
-    wrapped = distort.log_wrap(0, bits, False)(row)[0][1].effort
-    clipped = distort.log_wrap(0, bits, True)(row)[0][1].effort
+    wrapped = distort.log_wrap(RANDOM, column=0.0, bits=bits, mode=0.0)(row)[0][1].effort
+    clipped = distort.log_wrap(RANDOM, column=0.0, bits=bits, mode=1.0)(row)[0][1].effort
     assert (wrapped - value) % (1 << bits) == 0
     assert -(1 << (bits - 1)) <= wrapped < 1 << (bits - 1)
     assert clipped == min(max(value, -(1 << (bits - 1))), (1 << (bits - 1)) - 1)

@@ -1,7 +1,5 @@
 """The web server under consoles and Alpaca: an application that does not start is an error of its door."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 from collections.abc import AsyncIterator

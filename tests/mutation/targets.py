@@ -4,28 +4,28 @@ _BITS = tuple(f"tests/bus/can/test_{name}.py" for name in ("bits", "disturbance"
 _ERRORS = tuple(f"tests/bus/can/test_{name}.py" for name in ("disturbance", "trouble"))
 _RECOVERY = tuple(f"tests/bus/can/test_{name}.py" for name in ("recovery", "stuck", "trouble"))
 _CHIP = (
-    "tests/boards/silicon/mcp2515/test_transmit.py",
-    "tests/boards/silicon/mcp2515/test_receive.py",
-    "tests/boards/silicon/mcp2515/test_modes_and_errors.py",
-    "tests/boards/silicon/mcp2515/test_timing.py",
-    "tests/boards/silicon/mcp2515/test_registers.py",
+    "tests/boards/chips/mcp2515/test_transmit.py",
+    "tests/boards/chips/mcp2515/test_receive.py",
+    "tests/boards/chips/mcp2515/test_modes_and_errors.py",
+    "tests/boards/chips/mcp2515/test_timing.py",
+    "tests/boards/chips/mcp2515/test_registers.py",
 )
 _TRANSMIT, _RECEIVE, _MODES, _TIMING, _REGISTERS = ((name,) for name in _CHIP)
-_ENDAT = ("tests/boards/silicon/test_endat.py", "tests/boards/silicon/test_endat_clocked.py")
+_ENDAT = ("tests/boards/silicon/test_endat.py", "tests/boards/chips/test_endat_clocked.py")
 _CODECS = "tests/bus/protocol"
 _PROTOCOL = tuple(f"{_CODECS}/test_{name}.py" for name in ("edges", "flags", "codecs"))
 
 TARGETS: dict[str, tuple[str, ...]] = {
-    "boards/silicon/endat/crc.py": _ENDAT,
-    "boards/silicon/mcp2515/chip.py": _CHIP,
-    "boards/silicon/mcp2515/errorflags.py": (*_MODES, *_TIMING, *_REGISTERS),
-    "boards/silicon/mcp2515/receive.py": _RECEIVE,
-    "boards/silicon/mcp2515/registers.py": _CHIP,
-    "boards/silicon/mcp2515/spi.py": (*_TRANSMIT, *_REGISTERS),
-    "boards/silicon/mcp2515/transmit.py": _TRANSMIT,
-    "boards/silicon/microchip_can/acceptance.py": _RECEIVE,
-    "boards/silicon/microchip_can/bittiming.py": _TIMING,
-    "boards/silicon/microchip_can/message.py": (*_TRANSMIT, *_RECEIVE),
+    "boards/silicon/crc5.py": _ENDAT,
+    "boards/chips/mcp2515/chip.py": _CHIP,
+    "boards/chips/mcp2515/errorflags.py": (*_MODES, *_TIMING, *_REGISTERS),
+    "boards/chips/mcp2515/receive.py": _RECEIVE,
+    "boards/chips/mcp2515/registers.py": _CHIP,
+    "boards/chips/mcp2515/spi.py": (*_TRANSMIT, *_REGISTERS),
+    "boards/chips/mcp2515/transmit.py": _TRANSMIT,
+    "boards/chips/microchip_can/acceptance.py": _RECEIVE,
+    "boards/chips/microchip_can/bittiming.py": _TIMING,
+    "boards/chips/microchip_can/message.py": (*_TRANSMIT, *_RECEIVE),
     "bus/can/bits.py": _BITS,
     "bus/can/confinement.py": ("tests/bus/can/test_confinement.py", *_ERRORS, *_MODES),
     "bus/can/disturbance.py": _ERRORS,

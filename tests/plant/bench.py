@@ -11,7 +11,6 @@ from plant.model import EffectModel, PlantModel
 from plant.plant import Plant
 
 SECOND = 1_000_000_000
-ARCSEC = np.pi / 648000.0
 
 
 def bare(name: str = "low_preload") -> PlantModel:

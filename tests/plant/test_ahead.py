@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from plant import ahead, compiled
+from plant import ahead, builder, compiled
 from plant.model import load
 from plant.plant import Plant
 
@@ -38,9 +38,9 @@ def test_what_cannot_be_built_is_said(tmp_path: Path, monkeypatch: pytest.Monkey
     def fail(_: Path) -> Path:
         raise OSError("no compiler")
 
-    monkeypatch.setattr(ahead, "_compile", fail)
-    with pytest.raises(ahead.AheadError, match="OSError: no compiler"):
-        ahead.build()
+    monkeypatch.setattr(builder, "_compile", fail)
+    with pytest.raises(builder.AheadError, match="OSError: no compiler"):
+        builder.build()
     assert not (tmp_path / "library").exists()
 
 
@@ -49,8 +49,8 @@ def test_it_is_the_just_in_time_kernel_to_the_bit(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(ahead, "LIBRARY", tmp_path / "library")
     ahead._library.cache_clear()
     try:
-        assert ahead.build()
-        assert not ahead.build(), "nothing to do the second time"
+        assert builder.build()
+        assert not builder.build(), "nothing to do the second time"
         before = ahead.find("advance")
     finally:
         ahead._library.cache_clear()

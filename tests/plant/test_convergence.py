@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from plant import model
-from plant.plant import TRUTH_COLUMNS, Plant
-from tests.plant.bench import ARCSEC, SECOND
+from plant.grid import TRUTH_COLUMNS
+from plant.plant import Plant
+from plant.units import ARCSEC
+from tests.plant.bench import SECOND
 
 RATE, ANGLE = (TRUTH_COLUMNS.index(c) for c in ("rate", "angle"))
 

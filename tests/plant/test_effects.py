@@ -2,21 +2,25 @@
 
 import dataclasses
 import re
+from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from plant import model
-from plant.effects import CATALOGUE, NAMES, REGISTRY
-from plant.effects.base import STAGES
-from plant.effects.dispatch import update, value
-from plant.effects.rows import KINDS
-from plant.effects.signals import MEMORY, VECTOR
+from plant.effects import REGISTRY
+from plant.effects.base import STAGES, Term
+from plant.effects.signals import MEMORY, MOTOR, SEED, TIME, VECTOR, Hook
+from plant.evaluate import values_over
+from plant.kernels.layout import ROW, ROW_MEMORY
 from plant.model import EffectModel, Function, Number
 from plant.plant import Plant
-from plant.units import UNITS
-from tests.plant.bench import ARCSEC, SECOND, bare, with_effect
+from plant.rows import KINDS
+from plant.units import ARCSEC, UNITS
+from tests.plant.bench import SECOND, bare, with_effect
 
 SHARED = Path(__file__).parents[3] / "shared" / "spec" / "effects.md"
 # what a run shows of an effect with its default size (or the one given here): "truth" is the motion itself
@@ -81,7 +85,7 @@ def declared() -> dict[str, np.ndarray]:
     return readings(Plant(bare(), 1, {"ra": 2**28}))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", REGISTRY)
 def test_effect_changes_its_own_channel_and_no_other(name: str, declared: dict[str, np.ndarray]) -> None:
     shown = readings(Plant(with_effect(instance(name)), 1, {"ra": 2**28}))
     different = {word for word in READINGS if not np.array_equal(shown[word], declared[word])}
@@ -91,14 +95,14 @@ def test_effect_changes_its_own_channel_and_no_other(name: str, declared: dict[s
         assert different == SHOWS[name]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", REGISTRY)
 def test_effect_that_is_off_is_silent(name: str, declared: dict[str, np.ndarray]) -> None:
     off = dataclasses.replace(instance(name), enabled=False)
     shown = readings(Plant(with_effect(off), 1, {"ra": 2**28}))
     assert all(np.array_equal(shown[word], declared[word]) for word in READINGS)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", REGISTRY)
 def test_effect_on_one_axis_leaves_the_other_alone(name: str) -> None:
     plain, other = Plant(bare(), 1), Plant(with_effect(instance(name)), 1)
     for plant in (plain, other):
@@ -113,7 +117,7 @@ def test_names_are_those_of_the_catalogue() -> None:
         pytest.skip("../shared is not there: the catalogue cannot be compared")
     rows = [line for line in SHARED.read_text().split("\n") if line.startswith("| `")]
     listed = {word for row in rows for word in re.findall(r"`(\w+)`", row.split("|")[1])}
-    assert listed | {"unknown"} == set(CATALOGUE)
+    assert listed | {"unknown"} <= set(REGISTRY)
 
 
 def test_every_effect_carries_its_own_name_bounds_units_and_sources() -> None:
@@ -126,34 +130,69 @@ def test_every_effect_carries_its_own_name_bounds_units_and_sources() -> None:
             assert parameter.unit in UNITS and parameter.source, (name, parameter.name)
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n not in ("unknown", "wind_torque")])
-def test_dispatch_calls_the_formula_of_the_effect(name: str) -> None:
-    """The kinds of rows.py and the chain of dispatch.py count alike; formulas run here as Python."""
-    from plant.effects import dispatch
-
-    rng = np.random.default_rng(1)
-    for term in REGISTRY[name].terms:
-        p = rng.uniform(0.3, 0.9, 40)
-        x = rng.uniform(0.3, 0.9, VECTOR)
-        called = []
-        module = getattr(dispatch, name)
-        names = {id(getattr(module, word)): word for word in dir(module)}
-        word = names[id(term.formula)]
-        original = getattr(module, word)
-        try:
-            setattr(module, word, lambda *given, seen=called: seen.append(given) or 0.0)
-            value.py_func(KINDS[term.formula], x, p)  # type: ignore[attr-defined]
-        finally:
-            setattr(module, word, original)
-        assert called, f"{name}.{word}"
+@pytest.mark.parametrize("name", [n for n in REGISTRY if n not in ("unknown", "wind_torque")])
+def test_dispatch_hands_each_formula_what_it_names(name: str) -> None:
+    """The compiled chain of dispatch.py against the formula in Python, its arguments given by name."""
+    effect, rng = REGISTRY[name], np.random.default_rng(1)
+    numbers = {word: rng.uniform(0.3, 0.9) for word in effect.numbers}
+    if "motor" in numbers:
+        numbers["motor"] = 2.0
+    for term in effect.terms:
+        if term.formula is None:
+            continue
+        p = np.zeros(ROW - ROW_MEMORY)
+        p[:MEMORY] = *rng.uniform(0.3, 0.9, SEED), 12345.0
+        p[MEMORY : MEMORY + len(numbers)] = list(numbers.values())
+        rows = rng.uniform(0.3, 0.9, (2, VECTOR))
+        rows[:, MOTOR] = 1.0
+        rows[1, TIME] = rows[0, TIME] + 0.1
+        memory = dict(zip(term.memory, p[1:] if term.of_motors else p, strict=False))
+        known = {**numbers, **memory, "seed": 12345.0}
         if term.update is not None:
-            advanced = []
-            module.update = lambda *given, seen=advanced: seen.append(given)
-            try:
-                update.py_func(KINDS[term.formula], x, p, 0.1)  # type: ignore[attr-defined]
-            finally:
-                module.update = term.update
-            assert advanced, f"{name}.update"
+            dt = rows[1, TIME] - rows[0, TIME]
+            after = term.update(rows[1], dt, **named(term.update, known))
+            known |= dict(zip(term.memory, np.atleast_1d(after), strict=True))
+        x = rows[1].copy()
+        expected = term.formula(x, **named(term.formula, known)) or 0.0
+        y = np.zeros(2)
+        values_over(KINDS[term.formula], rows, p, y)
+        assert (y[1], *rows[1]) == pytest.approx((expected, *x), rel=1e-12)
+        assert list(p[1:] if term.of_motors else p)[: len(term.memory)] == pytest.approx(
+            [known[word] for word in term.memory], rel=1e-12
+        )
+
+
+def named(function: Callable[..., Any], known: dict[str, float]) -> dict[str, float]:
+    """Those of the known numbers that a formula names."""
+    return {word: known[word] for word in signature(function).parameters if word in known}
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_formulas_name_every_parameter_of_the_declaration(name: str) -> None:
+    """Or it says where the effect acts; log effects are no part of the step."""
+    effect = REGISTRY[name]
+    functions = [f for term in effect.terms for f in (term.formula, term.update) if f is not None]
+    used = {word for function in functions for word in signature(function).parameters}
+    if functions:
+        declared = {parameter.name for parameter in effect.parameters} | {*effect.constants}
+        assert declared - used <= {"motor", "encoder"}
+        assert {word for term in effect.terms for word in term.memory} - used <= {"axis_rate"}
+    else:
+        assert [term.hook for term in effect.terms] == [Hook.LOG]
+
+
+def test_an_argument_that_is_no_parameter_is_one_clear_error() -> None:
+    def formula(x: np.ndarray, amplitud: float) -> float:
+        return amplitud * x[0]
+
+    def turned(x: np.ndarray, phase: float, amplitude: float) -> float:
+        return amplitude * x[0] + phase
+
+    for wrong in (formula, turned):
+        with pytest.raises(
+            TypeError, match=r"gravity_imbalance: .*in this order, of \(x, seed, amplitude, phase\)"
+        ):
+            dataclasses.replace(REGISTRY["gravity_imbalance"], terms=(Term(Hook.AXIS_TORQUE, wrong),))
 
 
 def test_too_many_effects_and_too_late_delays_are_refused() -> None:
@@ -191,19 +230,17 @@ def test_structural_mode_swings_at_its_frequency_whatever_the_drive() -> None:
     from plant.effects.structural_mode import formula
     from plant.effects.structural_mode import update as swing
 
-    p = np.zeros(20)
-    p[MEMORY : MEMORY + 3] = 9.0, 0.01, 200.0
-    p[0] = 1e-5
+    lead, rate, before = 1e-5, 0.0, 0.0
     x = np.zeros(VECTOR)
-    lead = []
+    leads = []
     for _ in range(4000):
-        swing.py_func(x, p, 5e-4)  # type: ignore[attr-defined]
-        lead.append(p[0])
-        assert np.sign(formula.py_func(x, p)) in (-1.0, 0.0, 1.0)  # type: ignore[attr-defined]
-    up = np.flatnonzero((np.array(lead[:-1]) < 0) & (np.array(lead[1:]) >= 0))
+        lead, rate, before = swing(x, 5e-4, lead, rate, before, frequency=9.0, damping=0.01)
+        leads.append(lead)
+        assert np.sign(formula(x, lead, rate, 9.0, 0.01, 200.0)) in (-1.0, 0.0, 1.0)
+    up = np.flatnonzero((np.array(leads[:-1]) < 0) & (np.array(leads[1:]) >= 0))
     assert (len(up) - 1) / ((up[-1] - up[0]) * 5e-4) == pytest.approx(9.0, rel=0.01)
     decay = np.exp(-2 * np.pi * 9.0 * 0.01 * 1.0)
-    assert max(lead[2000:2200]) / max(lead[:200]) == pytest.approx(decay, rel=0.1)
+    assert max(leads[2000:2200]) / max(leads[:200]) == pytest.approx(decay, rel=0.1)
 
 
 def test_gravity_imbalance_wants_more_current_up_than_down() -> None:

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.plant import Plant
-from tests.plant.bench import ARCSEC, bare
+from plant.units import ARCSEC
+from tests.plant.bench import bare
 
 MODEL = bare()
 

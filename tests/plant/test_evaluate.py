@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from scipy.interpolate import interp1d
 
 from plant.effects import signals as sig
-from plant.effects.evaluate import evaluate, signals, values_over
-from plant.effects.rows import KINDS, values, vector
 from plant.effects.unknown import COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD, formula
+from plant.evaluate import evaluate, signals, values_over
 from plant.kernels.layout import ROW, ROW_MEMORY
 from plant.model import EffectModel, Number
-from tests.plant.bench import ARCSEC
+from plant.rows import KINDS, values, vector
+from plant.units import ARCSEC
 
 
 def with_friction(rate: np.ndarray) -> np.ndarray:
@@ -31,15 +31,15 @@ def test_gear_eccentricity_is_a_sine_at_its_order() -> None:
     angle = np.linspace(0.0, 0.2, 500)
     y = evaluate(
         "gear_eccentricity", signals(500, {sig.ANGLE: angle}),
-        {"amplitude": 20.0, "kinematic": 1e-5, "phase": 0.3}, order=720.977,
+        {"amplitude": 20.0, "kinematic": 1e-5, "phase": 0.3, "order": 720.977},
     )  # fmt: skip
     assert np.allclose(y, 20.0 * np.sin(720.977 * angle + 0.3))
 
 
 def test_second_term_of_gear_eccentricity_is_its_kinematic_error() -> None:
     angle = np.linspace(0.0, 0.2, 500)
-    given_ = {"amplitude": 20.0, "kinematic": 1e-5, "phase": 0.3}
-    y = evaluate("gear_eccentricity", signals(500, {sig.ANGLE: angle}), given_, order=86.1, term=1)
+    given_ = {"amplitude": 20.0, "kinematic": 1e-5, "phase": 0.3, "order": 86.1}
+    y = evaluate("gear_eccentricity", signals(500, {sig.ANGLE: angle}), given_, term=1)
     assert np.allclose(y, 1e-5 * np.sin(86.1 * angle + 0.3))
 
 
@@ -68,8 +68,8 @@ def test_warm_up_follows_its_time_constant_in_motion() -> None:
 def test_diode_braking_uses_constants_of_the_plant() -> None:
     rows = signals(2, {sig.MOTOR_RATE: np.array([5.0, -5.0]), sig.MOTOR: np.zeros(2)})
     y = evaluate(
-        "diode_braking", rows, {"share": 1.0, "drop": 0.0},
-        constants={"torque_constant": 0.4, "resistance": 2.0, "ratio": 360.0},
+        "diode_braking", rows,
+        {"share": 1.0, "drop": 0.0, "torque_constant": 0.4, "resistance": 2.0, "ratio": 360.0},
     )  # fmt: skip
     assert np.allclose(y, [0.0, 0.4 * 0.4 * 5.0 / 2.0 * 360.0])
 
@@ -77,18 +77,13 @@ def test_diode_braking_uses_constants_of_the_plant() -> None:
 def test_wind_is_stationary_with_its_deviation_and_correlation() -> None:
     n = 200_000
     rows = signals(n, {sig.TIME: np.arange(n) * 0.01})
-    memory = np.array([0.0, 0.0, 0.0, 12345.0])
-    y = evaluate(
-        "wind_torque", rows, {"mean": 10.0, "deviation": 5.0, "correlation_time": 1.0}, memory=memory
-    )
+    wind = {"mean": 10.0, "deviation": 5.0, "correlation_time": 1.0}
+    y = evaluate("wind_torque", rows, {**wind, "seed": 12345.0})
     assert y.mean() == pytest.approx(10.0, abs=0.6)
     assert y.std() == pytest.approx(5.0, rel=0.1)
     centred = y - y.mean()
     assert (centred[:-100] * centred[100:]).mean() / centred.var() == pytest.approx(np.exp(-1.0), abs=0.1)
-    other = evaluate(
-        "wind_torque", rows[:100], {"mean": 10.0, "deviation": 5.0, "correlation_time": 1.0},
-        memory=np.array([0.0, 0.0, 0.0, 54321.0]),
-    )  # fmt: skip
+    other = evaluate("wind_torque", rows[:100], {**wind, "seed": 54321.0})
     assert not np.array_equal(other, y[:100])
 
 
@@ -143,7 +138,7 @@ def test_parameters_become_si_numbers_behind_the_order() -> None:
 
     given_ = {"amplitude": Number(2.0, "arcsec", "t")}
     effect = REGISTRY["encoder_eccentricity"]
-    numbers = vector(effect, 24.5, values(EffectModel("encoder_eccentricity", "roller", 1, given_)), {})
+    numbers = vector(effect, values(EffectModel("encoder_eccentricity", "roller", 1, given_)))
     assert numbers == [24.5, pytest.approx(2.0 * ARCSEC), 0.0, 0.0, 0.0]
 
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from plant.kernels.friction import relax, steady, stribeck, torque
+from plant.units import ARCSEC
 from tests.plant.bench import lugre
 
 g_of, torque_of, relaxed, steady_of = (f.py_func for f in (stribeck, torque, relax, steady))  # type: ignore[attr-defined]
@@ -81,7 +82,7 @@ def test_P5_steady_torque_is_equation_5_and_sigma2() -> None:
 
 def test_P5_torque_at_15_arcsec_per_s_is_the_computed_one() -> None:
     """hardware.md 1.1: 608.7, 556.3, 485.4 N m for delta 2, 1, 0.5 at low preload."""
-    rate = 15 * np.pi / 648000
+    rate = 15 * ARCSEC
     for exponent, expected in ((2.0, 608.7), (1.0, 556.3), (0.5, 485.4)):
         f = TELESCOPE.copy()
         f[6] = exponent

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from plant import model
-from plant.plant import TRUTH_COLUMNS, Plant
+from plant.grid import TRUTH_COLUMNS
+from plant.plant import Plant
 from tests.plant.bench import SECOND, bare
 from tests.plant.independent import Floats, rates
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from plant import model
-from plant.loop import LATENCY_S, LogColumns, simulate
+from plant.loop import LATENCY_S, Excitation, LogColumns, simulate
 from plant.plant import Plant
-from tests.plant.bench import ARCSEC, bare
+from plant.units import ARCSEC
+from tests.plant.bench import bare
 
 COUNT_ARCSEC = 1296000 / (4.608e6 * 24.5)
 
@@ -54,14 +55,14 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
 
 def test_B1_loop_is_the_plant_with_the_papers_pi_bit_by_bit() -> None:
     expected = by_hand(600.0, 400)
-    got = simulate(model.load(), "ra", 4.0, setpoint=600.0, seed=7)
+    got = simulate(model.load(), "ra", 4.0, Excitation(setpoint=600.0), seed=7)
     for word, column in expected.items():
         assert np.array_equal(getattr(got, word), column), word
     assert max(expected["velocity"]) > 200  # it did move
 
 
 def test_log_columns_are_those_of_the_axis_log() -> None:
-    log = simulate(bare(), "ra", 2.0, setpoint=1000.0, start_steps=2**29 - 1000)
+    log = simulate(bare(), "ra", 2.0, Excitation(setpoint=1000.0, start_steps=2**29 - 1000))
     assert len(log.t) == 200
     assert np.allclose(np.diff(log.t), 0.010)
     assert log.position.min() >= 0 and log.position.max() < 2**29
@@ -73,7 +74,7 @@ def test_log_columns_are_those_of_the_axis_log() -> None:
 
 
 def test_E1_counts_at_15_arcsec_per_s_alternate_around_6_53() -> None:
-    log = simulate(model.load(), "ra", 60.0, setpoint=15.0)
+    log = simulate(model.load(), "ra", 60.0, Excitation(setpoint=15.0))
     tail = log.velocity[4000:]
     assert tail.mean() == pytest.approx(6.5333, rel=0.02)
     assert np.array_equal(tail, np.rint(tail))
@@ -81,8 +82,8 @@ def test_E1_counts_at_15_arcsec_per_s_alternate_around_6_53() -> None:
 
 def test_open_loop_replay_follows_the_recorded_run() -> None:
     """Efforts logged every 10 ms, put back open loop, give the motion again."""
-    recorded = simulate(bare(), "ra", 20.0, setpoint=3600.0)
-    replayed = simulate(bare(), "ra", 20.0, effort=recorded.effort)
+    recorded = simulate(bare(), "ra", 20.0, Excitation(setpoint=3600.0))
+    replayed = simulate(bare(), "ra", 20.0, Excitation(effort=recorded.effort))
     late = slice(500, None)
     assert np.isnan(replayed.setpoint).all()
     difference = replayed.truth["rate"][late] - recorded.truth["rate"][late]
@@ -90,52 +91,52 @@ def test_open_loop_replay_follows_the_recorded_run() -> None:
 
 
 def test_start_in_motion_needs_no_run_up() -> None:
-    log = simulate(bare(), "ra", 1.0, setpoint=3600.0, start_rate=3600.0)
+    log = simulate(bare(), "ra", 1.0, Excitation(setpoint=3600.0, start_rate=3600.0))
     assert log.truth["rate"][0] == pytest.approx(3600 * ARCSEC)
 
 
 def test_setpoint_may_change_per_sample_and_open_up() -> None:
     wanted = np.full(400, 2000.0)
     wanted[200:] = np.nan
-    log: LogColumns = simulate(bare(), "ra", 4.0, setpoint=wanted, effort=0.0)
+    log: LogColumns = simulate(bare(), "ra", 4.0, Excitation(setpoint=wanted, effort=0.0))
     assert abs(log.truth["rate"][199] / ARCSEC - 2000.0) < 200
     assert abs(log.truth["rate"][-1] / ARCSEC) < 20.0  # what the bristles still ring
 
 
 def test_same_seed_same_log() -> None:
-    first, second = (simulate(model.load(), "dec", 2.0, setpoint=600.0, seed=3) for _ in range(2))
+    first, second = (simulate(model.load(), "dec", 2.0, Excitation(setpoint=600.0), seed=3) for _ in range(2))
     assert np.array_equal(first.truth["angle"], second.truth["angle"])
     assert np.array_equal(first.tach_b, second.tach_b)
 
 
 def test_errors_are_one_line() -> None:
     with pytest.raises(ValueError, match="expected ra or dec"):
-        simulate(bare(), "x", 1.0, setpoint=1.0)
+        simulate(bare(), "x", 1.0, Excitation(setpoint=1.0))
     with pytest.raises(ValueError, match="give a set point or an effort"):
-        simulate(bare(), "ra", 1.0)
+        simulate(bare(), "ra", 1.0, Excitation())
     with pytest.raises(ValueError, match="3 values for 100 samples"):
-        simulate(bare(), "ra", 1.0, setpoint=np.zeros(3))
+        simulate(bare(), "ra", 1.0, Excitation(setpoint=np.zeros(3)))
 
 
 @pytest.mark.slow
 def test_loop_runs_hundreds_of_times_faster_than_real_time() -> None:
     import time
 
-    simulate(model.load(), "ra", 1.0, setpoint=15.0)
+    simulate(model.load(), "ra", 1.0, Excitation(setpoint=15.0))
     best = min(_timed(time.perf_counter) for _ in range(5))
     assert 20.0 / best > 300  # the aim of 1000 is measured by the benchmark; machines under load are slower
 
 
 def _timed(clock: object) -> float:
     start = clock()  # type: ignore[operator]
-    simulate(model.load(), "ra", 20.0, setpoint=15.0)
+    simulate(model.load(), "ra", 20.0, Excitation(setpoint=15.0))
     return float(clock() - start)  # type: ignore[operator]
 
 
 def test_E7_torque_over_rate_is_table_2() -> None:
     """In steady slow sliding the friction torque of the truth is that of the LuGre fit."""
     rate = 2000.0
-    log = simulate(bare(), "ra", 20.0, setpoint=rate)
+    log = simulate(bare(), "ra", 20.0, Excitation(setpoint=rate))
     expected = 229 + 392 * np.exp(-((rate * ARCSEC / 4e-4) ** 2)) + 6700 * rate * ARCSEC
     assert log.truth["friction"][1000:].mean() == pytest.approx(expected, rel=0.01)
 
@@ -143,7 +144,7 @@ def test_E7_torque_over_rate_is_table_2() -> None:
 def test_E8_run_down_gives_the_published_inertia() -> None:
     """J dw/dt = -friction with J = 1.76e6 N mm s2, rotors included, when power is cut at 1 deg/s."""
     start = 3600.0
-    log = simulate(bare(), "ra", 0.3, effort=0.0, start_rate=start)
+    log = simulate(bare(), "ra", 0.3, Excitation(effort=0.0, start_rate=start))
     rate = log.truth["rate"]
     moving = rate > 1200 * ARCSEC
     k = int(moving.sum()) - 1

@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 
 from plant import model
 from plant.gears import RATIO
+from plant.grid import TRUTH_COLUMNS
 from plant.kernels import layout as at
-from plant.plant import TRUTH_COLUMNS, Plant
-from tests.plant.bench import ARCSEC, SECOND, bare, changed, truth
+from plant.plant import Plant
+from plant.units import ARCSEC
+from tests.plant.bench import SECOND, bare, changed, truth
 
 COLUMN = {name: k for k, name in enumerate(TRUTH_COLUMNS)}
 

@@ -1,6 +1,7 @@
 """The command as a user meets it: one clear line, exit status 2, never a traceback."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -23,6 +24,9 @@ from tests.scenarios.conftest import ROOT, SHORT, Command
         (["rum"], "rum"),
         (["effects", "gear_mash"], "did you mean 'gear_mesh'"),
         (["run", "short.yaml", "--out", "short.yaml/x"], "cannot be made"),
+        (["objective", "--only", "TRACK"], "the rows are: the paper's firmware; "),
+        (["objective", "--shift", "nan"], "nan is no number"),
+        (["objective", "--seconds", "nan"], "nan is no number"),
     ],
 )
 def test_unusable_input_is_one_line_and_status_2(
@@ -44,6 +48,14 @@ def test_run_prints_verdicts_and_exits_with_them(short: Path, schmidt: Command) 
     done = schmidt("run", short, "--out", "bad")
     assert done.returncode == 1
     assert "MISS bus load" in done.stdout
+
+
+def test_scenarios_of_schmidt_go_by_name(schmidt: Command) -> None:
+    done = schmidt("run", "quick_look", "--no-report", "--network", "serial", "--seed", "3")
+    assert "quick-look.yaml" in done.stderr, "the serial network has no gateway"
+    done = schmidt("run", "quick-lok")
+    assert done.returncode == 2
+    assert "quick-lok: no such file" in done.stderr and "did you mean 'quick-look'?" in done.stderr
 
 
 def test_effects_lists_the_catalogue(schmidt: Command) -> None:
@@ -82,13 +94,13 @@ def test_an_interrupted_run_leaves_readable_logs(short: Path, tmp_path: Path) ->
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
-@pytest.mark.parametrize("name", ["can.log", "commands.log", "axis-ra.csv", "summary.json"])
+@pytest.mark.parametrize("name", ["can.log", "commands.log", "axis-ra.csv", "summary.json", "report.html"])
 def test_a_full_disk_is_one_line(name: str, short: Path, schmidt: Command) -> None:
     (short.parent / "run").mkdir()
     (short.parent / "run" / name).symlink_to("/dev/full")
     done = schmidt("run", short, "--out", "run")
     assert done.returncode == 2
-    assert "no space left" in done.stderr
+    assert f"run/{name}: no space left" in done.stderr.replace(" cannot be written:", "")
     assert done.stderr.count("\n") == 1
     others = [path for path in (short.parent / "run").glob("axis-dec.csv") if path.name != name]
     for path in others:
@@ -108,12 +120,13 @@ def test_serve_paces_and_ends_and_names_a_wrong_interface(schmidt: Command) -> N
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
-def test_a_terminal_gets_a_progress_bar_and_a_pipe_does_not(
+def test_a_terminal_gets_a_progress_bar_and_a_pipe_lines(
     short: Path, tmp_path: Path, schmidt_process: Command
 ) -> None:
     import pty
 
-    assert schmidt_process("run", short, "--out", "a").stderr == ""
+    lines = schmidt_process("run", short, "--out", "a").stderr.splitlines()  # none when it is quick
+    assert all(re.fullmatch(r"schmidt: .*: \d+ %, .*", line) for line in lines), lines
     leader, follower = pty.openpty()
     process = subprocess.Popen(
         [sys.executable, "-c", "from scenarios.cli import main; main()", "run", "short.yaml", "--out", "b"],

@@ -46,7 +46,7 @@ def main(
     rows = [found[order.key] for order in orders]
     text = table.markdown(rows, seed)
     (out / str(seed) / "results.json").write_text(json.dumps(rows, indent=1))
-    (out / str(seed) / "table.md").write_text(text)
+    (out / str(seed) / "blind.md").write_text(text)
     click.echo(text)
 
 

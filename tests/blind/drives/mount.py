@@ -6,8 +6,6 @@ the measured data); seeing of 0.5 to 2 arcsec in an exposure of 1 to 4 s. Harmon
 ASSUMPTIONS.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field

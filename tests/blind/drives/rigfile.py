@@ -4,7 +4,7 @@ from tests.blind.drives.families import Family
 
 
 def controller(f: Family, plant: dict[str, float]) -> str:
-    """The loop's law in the words of docs/rigs.md."""
+    """The loop's law in the words of docs/reference/rigs.md."""
     p, v = plant["KP"], plant.get("KV", 0.0)
     if plant.get("CASCADE", 0.0) > 0.5:
         gains = f"position: {p!r}, velocity: {v!r}, rate_feedforward: {v!r}"

@@ -7,8 +7,6 @@ them); its owner declares them as its maker told, up to an eighth off. A column 
 0.3 ms is late by an interrupt or a frame of the bus.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """An axis with two motors as its owner sees it: the rig file and the tables."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,18 @@ from itertools import pairwise
 import pytest
 
 from boards.axis import AxisConfig
-from boards.axis.config import rate_q16
-from bus.protocol import AxisMode, Health, MotionFlag, Opcode, Result, unpack_motion, unpack_target
+from bus.protocol import (
+    AxisMode,
+    Device,
+    Health,
+    MotionFlag,
+    Opcode,
+    PositionFlag,
+    Result,
+    unpack_motion,
+    unpack_target,
+)
+from bus.protocol.scales import rate_q16
 from bus.protocol.serial import NO_SETPOINT, PacketDecoder
 from tests.boards.lab import CENTRE, RA, STEP_ARCSEC, Lab
 
@@ -133,6 +143,26 @@ def test_B3_targets_beyond_the_soft_limits_are_refused_and_the_limit_holds() -> 
     assert lab.command(Opcode.SET_CLASS, 1, -1).result == Result.OK
     lab.run(1.0)
     assert lab.axis.motion.mode == AxisMode.CLASS
+
+
+@pytest.mark.parametrize(("flag", "sign"), [(PositionFlag.LIMIT_HIGH, 1), (PositionFlag.LIMIT_LOW, -1)])
+def test_B3_a_limit_of_the_encoder_board_stops_what_leads_beyond_it(
+    lab: Lab, flag: PositionFlag, sign: int
+) -> None:
+    """Its limits are its own parameters; the axis board heeds them far inside its own."""
+    parameter = Opcode.SET_PARAMETER
+    lab.command(Opcode.SET_RATE, sign * rate_q16(600.0))
+    lab.run(1.0)
+    assert lab.axis.motion.mode == AxisMode.RATE and not lab.axis.limits.reached
+    if flag is PositionFlag.LIMIT_HIGH:
+        lab.command(parameter, 5, CENTRE - steps(3600.0), device=Device.POSITION_RA)
+    else:
+        lab.command(parameter, 4, CENTRE + steps(3600.0), device=Device.POSITION_RA)
+    lab.run(3.0)
+    assert lab.axis.motion.mode == AxisMode.STOP and lab.axis.limits.reached
+    lab.command(Opcode.SET_RATE, -sign * rate_q16(600.0))
+    lab.run(1.0)
+    assert lab.axis.motion.mode == AxisMode.RATE  # the way back is free
 
 
 def test_commands_that_move_need_power() -> None:

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.axis.compensator import Compensator
-from boards.axis.config import rate_q16
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE, TABLE
 from boards.core.interrupts import InterruptController
 from bus.protocol import AxisParameter, Opcode, Result
+from bus.protocol.scales import rate_q16
 from bus.time import EventQueue
 from tests.boards.lab import Lab
 
@@ -33,7 +33,7 @@ def put(lab: Lab, number: int, value: int) -> None:
 @given(st.integers(0, 3000 * ONE), st.integers(0, 3000 * ONE), st.integers(10, 25))
 def test_B1_more_effort_is_never_less_net_torque(one: int, other: int, split: int) -> None:
     lab = Lab()
-    lab.axis.set_split(split)
+    lab.axis.counter.split = split
     low, high = sorted((one, other))
     assert low - lab.axis.counter.share_q16(low, 0) <= high - lab.axis.counter.share_q16(high, 0)
 

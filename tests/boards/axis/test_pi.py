@@ -1,8 +1,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.axis.config import rate_q16
 from boards.axis.pi import IncrementalPi
+from bus.protocol.scales import rate_q16
 
 KP, KI = round(3.4 * 4096), round(0.037 * 4096)
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from boards.axis.commands import RATE_LIMIT
 from boards.axis.compensator import Compensator
-from boards.axis.config import COUNTS_PER_TURN, STEPS_PER_TURN, AxisConfig, rate_q16
+from boards.axis.config import AxisConfig
 from boards.axis.counter import CounterTorque
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
@@ -18,6 +18,7 @@ from boards.axis.profile import UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
 from bus.protocol import HARMONICS, AxisMode, AxisParameter
+from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 from bus.protocol.tach import pack_tach
 from tests.boards.checked import Checked, checked
 from tests.boards.lab import Lab
@@ -291,13 +292,13 @@ def test_B1_whatever_is_added_the_duty_registers_get_what_they_hold(
     board.parameters.set(AxisParameter.COUNTER_BIAS_Q8, Checked(bias))
     board.parameters.set(AxisParameter.DUTY_FRACTION, int(spread))
     board.parameters.set(AxisParameter.COMPENSATION, 1)
-    board.set_split(Checked(split))
+    board.counter.split = Checked(split)
     lab.run(0.02)
     board.motion.mode = AxisMode.RATE
     board.command_effort(None)
     board.pi.effort_q16 = Checked(effort)
     assert board.fine is not None
-    board.fine.drive(lab.queue.now_ns, 0, Checked(0))
+    board.fine.drive(lab.queue.now_ns, board.clock_ns(lab.queue.now_ns), 0, Checked(0), board.effort_command)
     assert all(0.0 <= duty <= 1.0 for duty in lab.plant.duties)
 
 

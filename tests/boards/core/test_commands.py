@@ -1,9 +1,10 @@
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.core import Answer, Parameter, ParameterTable, answer
-from boards.core.commands import i8, i16, i32, u8, u32
-from bus.protocol import Result
+from boards.core import OK, Answer, Parameter, ParameterTable, answer
+from boards.core.commands import Command
+from bus.protocol import Opcode, Result, pack_command
 
 DEVICE = 0x11
 
@@ -36,12 +37,20 @@ def test_any_frame_is_answered(data: bytes) -> None:
     assert reply.result in list(Result)
 
 
-@given(st.integers(-(2**31), 2**31 - 1))
-def test_arguments_are_little_endian(value: int) -> None:
-    data = value.to_bytes(4, "little", signed=True) + b"\xff\x80"
-    assert i32(data) == value
-    assert u32(data) == value % 2**32
-    assert (i8(data, 4), u8(data, 4), i16(data, 4)) == (-1, 255, -32513)
+@given(st.integers(0, 2**32 - 1), st.integers(0, 255))
+def test_arguments_are_taken_apart_as_the_protocol_has_them(target: int, speed_class: int) -> None:
+    taken: list[tuple[int, ...]] = []
+    command = Command(Opcode.MOVE_TO, lambda *values: taken.append(values))
+    data = pack_command(DEVICE, Opcode.MOVE_TO, target, speed_class)
+    assert command(17, data[2:]) == OK and taken == [(17, target, speed_class)]
+
+
+@pytest.mark.parametrize(("effort", "result"), [(-3, Result.OK), (5, Result.OK), (-4, 3), (6, 3)])
+def test_an_argument_beyond_its_bounds_does_not_reach_the_board(effort: int, result: int) -> None:
+    taken: list[int] = []
+    command = Command(Opcode.OPEN_LOOP, lambda _t_ns, value: taken.append(value), [(-3, 5)])
+    assert command(0, effort.to_bytes(6, "little", signed=True)).result == result
+    assert taken == ([effort] if result == Result.OK else [])
 
 
 def test_parameters_keep_their_bounds() -> None:

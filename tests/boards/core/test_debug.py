@@ -10,6 +10,7 @@ from boards.display import DisplayBoard
 from bus.can import Frame, Wire
 from bus.protocol import COMMAND_BASE, Device, Opcode, Result, pack_command, unpack_reply
 from bus.time import EventQueue, Oscillator
+from tests.boards.places import place
 
 MS = 1_000_000
 DISPLAY = Device.DISPLAY
@@ -23,9 +24,8 @@ class Desk:
         wire = Wire(self.queue)
         wire.attach("peer")
         self.board = DisplayBoard(
-            "DISPLAY", DISPLAY, self.queue, wire, Oscillator(0.0, 0),
-            (Device.POSITION_RA, Device.POSITION_DEC), Device.FOCUS,
-        )  # fmt: skip
+            place(DISPLAY, wire, Oscillator(0.0, 0)), (Device.POSITION_RA, Device.POSITION_DEC), Device.FOCUS
+        )
         self.board.begin()
         self.port = DebugPort(self.board, wire)
         self.heard: list[tuple[int, bytes]] = []

@@ -2,10 +2,11 @@ import pytest
 
 from boards.core import PeriodicBoard, Source
 from bus.can import Frame, Wire
-from bus.protocol import Opcode, Result, pack_command, unpack_heartbeat, unpack_reply
+from bus.protocol import Device, Opcode, Result, pack_command, unpack_heartbeat, unpack_reply
 from bus.time import EventQueue, Oscillator
+from tests.boards.places import place
 
-DEVICE = 0x35
+DEVICE = Device.MOTOR_DEC_B
 MS = 1_000_000
 
 
@@ -29,7 +30,7 @@ def bench(tick_cycles: int) -> tuple[EventQueue, Idle, list[Frame]]:
     queue = EventQueue()
     wire = Wire(queue)
     table = (Source("tick", 2, 10, tick_cycles), Source("can", 1, 10, 1000, level=True))
-    board = Idle("idle", DEVICE, queue, wire, Oscillator(0.0, 0), 1_000_000, table, 5 * MS)
+    board = Idle(place(DEVICE, wire, Oscillator(0.0, 0)), 1_000_000, table, 5 * MS)
     frames: list[Frame] = []
     pc = wire.attach("pc")
     pc.on_receive = lambda _t, frame: frames.append(frame)
@@ -50,7 +51,7 @@ def test_B9_a_routine_longer_than_its_period_loses_ticks_and_counts_them() -> No
     # 12 ms of work every 5 ms: it runs back to back, and of 240 fires 100 are served
     assert abs(len(board.ends) - 100) <= 1
     assert abs(board.cpu.overruns + len(board.ends) - 240) <= 3
-    heartbeat = unpack_heartbeat([f for f in frames if f.identifier == 0x735][-1].data)
+    heartbeat = unpack_heartbeat([f for f in frames if f.identifier == 0x734][-1].data)
     # by the end of the first routine, from 5 to 17 ms, one fire was remembered and one was lost
     assert heartbeat.overruns == 1
 
@@ -76,7 +77,7 @@ def test_a_board_without_supply_is_silent_and_boots_afresh() -> None:
     queue.run_until(5290 * MS)
     assert not frames
     queue.run_until(6501 * MS)
-    beats = [unpack_heartbeat(f.data) for f in frames if f.identifier == 0x735]
+    beats = [unpack_heartbeat(f.data) for f in frames if f.identifier == 0x734]
     assert [beat.uptime for beat in beats] == [0, 1]
     assert len(board.ends) == 240
 
@@ -86,7 +87,7 @@ def test_B9_a_board_knows_the_time_from_its_own_timer_only(ppm: float) -> None:
     queue = EventQueue()
     table = (Source("tick", 2, 10, 100), Source("can", 1, 10, 1000, level=True))
     crystal = Oscillator(ppm, 123_456_789)
-    board = Idle("idle", DEVICE, queue, Wire(queue), crystal, 1_000_000, table, 5 * MS)
+    board = Idle(place(DEVICE, Wire(queue), crystal), 1_000_000, table, 5 * MS)
     heard: list[int] = []
     board.mail[0x123] = lambda now_ns, _data: heard.append(now_ns)
     board.begin()

@@ -12,14 +12,14 @@ from bus.protocol import (
     unpack_reply,
 )
 from bus.time import EventQueue, Oscillator
+from tests.boards.places import place
 
 
 def test_B6_shows_positions_and_focus() -> None:
     queue = EventQueue()
     wire = Wire(queue)
     positions = (int(Device.POSITION_RA), int(Device.POSITION_DEC))
-    crystal = Oscillator(0.0, 0)
-    board = DisplayBoard("DISPLAY", Device.DISPLAY, queue, wire, crystal, positions, Device.FOCUS)
+    board = DisplayBoard(place(Device.DISPLAY, wire, Oscillator(0.0, 0)), positions, Device.FOCUS)
     pc = wire.attach("pc")
     replies = []
     pc.on_receive = lambda _t, f: replies.append(unpack_reply(f.data)) if f.identifier == 0x151 else None

@@ -17,6 +17,7 @@ from bus.protocol import (
 from bus.time import EventQueue, Oscillator
 from plant.focus import FocusPort
 from plant.model import load
+from tests.boards.places import place
 
 
 class Bench:
@@ -24,10 +25,10 @@ class Bench:
         self.queue = EventQueue()
         wire = Wire(self.queue)
         self.port = FocusPort(load("low_preload").focus, start)
-        pins = FocusPins(self.port.coils, self.port.encoder, self.port.index, self.port.lvdt)
-        self.board = FocusBoard(
-            "FOCUS", Device.FOCUS, self.queue, wire, pins, Oscillator(20.0, 0), FocusConfig()
+        pins = FocusPins(
+            coils=self.port.coils, encoder=self.port.encoder, index=self.port.index, lvdt=self.port.lvdt
         )
+        self.board = FocusBoard(place(Device.FOCUS, wire, Oscillator(20.0, 0)), pins, FocusConfig())
         self.pc = wire.attach("pc")
         self.pc.on_receive = self.hear
         self.replies: list[Reply] = []

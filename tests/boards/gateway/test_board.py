@@ -2,8 +2,9 @@ from boards.gateway import GatewayBoard
 from boards.gateway.firmware import RING_SLOTS
 from bus.can import Frame, Wire
 from bus.protocol import Device, Opcode, pack_command, pack_reply, pack_tach
-from bus.protocol.report import pack_report, unpack_report
+from bus.protocol.report import PLACES, pack_report, unpack_report
 from bus.time import EventQueue, Oscillator
+from tests.boards.places import place
 
 MS = 1_000_000
 
@@ -12,7 +13,7 @@ class Bench:
     def __init__(self) -> None:
         self.queue = EventQueue()
         self.wire = Wire(self.queue)
-        self.board = GatewayBoard("GATEWAY", Device.GATEWAY, self.queue, self.wire, Oscillator(0.0, 10**8))
+        self.board = GatewayBoard(place(Device.GATEWAY, self.wire, Oscillator(0.0, 10**8)))
         self.node = self.wire.attach("node")
         self.heard: list[Frame] = []
         self.node.on_receive = lambda _t, frame: self.heard.append(frame)
@@ -42,12 +43,12 @@ def test_B7_frames_reach_the_pc_with_their_identifiers_restored() -> None:
 def test_B7_a_full_report_leaves_at_the_next_usb_frame() -> None:
     bench = Bench()
 
-    numbers = iter(range(8))
+    nodes = iter(PLACES)
 
     def more(_t_ns: int, _frame: Frame | None) -> None:
-        number = next(numbers, None)
-        if number is not None:
-            bench.node.send(Frame(0x231, pack_tach(0x31, 0, number, 1)), bench.queue.now_ns)
+        node = next(nodes, None)
+        if node is not None:
+            bench.node.send(Frame(0x200 + node, pack_tach(node, 0, 5, 1)), bench.queue.now_ns)
 
     bench.node.on_sent = more
     more(0, None)
@@ -55,6 +56,15 @@ def test_B7_a_full_report_leaves_at_the_next_usb_frame() -> None:
     # eight frames take about a millisecond on the wire
     assert [t for t, _ in bench.reports] in ([MS], [2 * MS])
     assert len(bench.frames) == 8
+
+
+def test_L2_of_two_measurements_of_a_node_the_newer_is_reported() -> None:
+    bench = Bench()
+    bench.node.send(Frame(0x231, pack_tach(0x31, 0, 5, 1)), 0)
+    bench.node.send(Frame(0x231, pack_tach(0x31, 0, 6, 1)), 0)
+    bench.queue.run_until(20 * MS)
+    ((_, report),) = bench.reports
+    assert report == bytes(32) + pack_tach(0x31, 0, 6, 1) + bytes(24)
 
 
 def test_B7_commands_go_to_the_bus_in_order_and_the_gateway_answers_its_own() -> None:

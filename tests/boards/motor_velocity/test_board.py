@@ -1,10 +1,11 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boards.motor_velocity import MotorVelocityBoard, MotorVelocityPins
+from boards.motor_velocity import MotorVelocityBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, unpack_tach
 from bus.time import EventQueue, Oscillator
+from tests.boards.places import place
 
 
 @settings(deadline=None, max_examples=25)
@@ -16,9 +17,9 @@ def test_B4_counts_are_the_sum_of_what_the_shaft_turned(moves: list[int], start:
     for move in moves:
         counts.append(counts[-1] + move)
     board = MotorVelocityBoard(
-        "m", Device.MOTOR_RA_A, queue, wire,
-        MotorVelocityPins(lambda t_ns: counts[min(t_ns // 10_000_000, len(moves))]), Oscillator(0.0, 0),
-    )  # fmt: skip
+        place(Device.MOTOR_RA_A, wire, Oscillator(0.0, 0)),
+        lambda t_ns: counts[min(t_ns // 10_000_000, len(moves))],
+    )
     frames: list[Frame] = []
     wire.attach("pc").on_receive = lambda _t, frame: frames.append(frame)
     board.begin()

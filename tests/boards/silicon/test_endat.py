@@ -2,9 +2,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.silicon.endat import EndatEncoder, EndatMaster, check, crc5, position_crc
+from boards.silicon.crc5 import crc5
+from boards.silicon.endat import EndatEncoder, EndatMaster, check
 
-HEALTHY, ALARM = 0b10, 0b01
 positions = st.integers(0, (1 << 29) - 1)
 
 
@@ -20,8 +20,10 @@ positions = st.integers(0, (1 << 29) - 1)
     ],
 )
 def test_P8_crc_of_position_frames(position: int, healthy: int, alarm: int) -> None:
-    assert position_crc(position << 2 | HEALTHY) == healthy
-    assert position_crc(position << 2 | ALARM) == alarm
+    encoder = EndatEncoder(lambda _t: position)
+    assert encoder.transfer(0) >> 31 == healthy
+    encoder.alarm = True
+    assert encoder.transfer(0) >> 31 == alarm
 
 
 def test_crc_of_the_published_endat_2_1_vector() -> None:
@@ -31,9 +33,10 @@ def test_crc_of_the_published_endat_2_1_vector() -> None:
     assert crc5(int(word[::-1], 2), 24) == 30
 
 
-@given(st.integers(0, (1 << 31) - 1))
-def test_the_tables_agree_with_the_shift_register(data: int) -> None:
-    assert position_crc(data) == crc5(data, 31)
+@given(positions)
+def test_the_tables_agree_with_the_shift_register(position: int) -> None:
+    frame = EndatEncoder(lambda _t: position).transfer(0)
+    assert frame >> 31 == crc5(frame & (1 << 31) - 1, 31)
 
 
 @given(positions)

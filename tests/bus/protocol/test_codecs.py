@@ -22,12 +22,10 @@ PACK: dict[str, Any] = {
     "REPLY": lambda v: p.pack_reply(v["Device"], v["Opcode"], v["Result"], v["Parameter"], v["Value"]),
     "MOTION": lambda v: p.pack_motion(
         v["Device"],
-        v["Mode"],
-        flags(v, "Moving", "SoftLimit", "Fault", "Powered"),
+        v["Mode"] | flags(v, "Moving", "SoftLimit", "Fault", "Powered") << 4,
         v["Velocity"],
         v["Effort"],
-        v["AdcA"],
-        v["AdcB"],
+        (v["AdcA"], v["AdcB"]),
     ),
     "POSITION": lambda v: p.pack_position(
         v["Device"], flags(v, *POSITION_FLAGS), v["Position"], v["Age"], v["Sequence"]

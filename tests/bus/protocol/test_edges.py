@@ -1,4 +1,4 @@
-"""Values at and beyond the end of their fields; expectations are the DBC's widths and docs/protocol.md."""
+"""Values at and beyond the end of their fields; expected: the DBC's widths, docs/reference/protocol.md."""
 
 import pytest
 
@@ -47,12 +47,12 @@ def test_motion_at_the_ends_of_its_fields(
     velocity: int, effort: int, sent: tuple[int, int], told: int
 ) -> None:
     clip = Told()
-    data = p.pack_motion(0x12, 6, 0xF, velocity, effort, 1023, 0, clip)
+    data = p.pack_motion(0x12, 0xF6, velocity, effort, (1023, 0), clip)
     assert clip.times == told
     assert p.unpack_motion(data) == (0x12, 6, 0xF, *sent, 1023, 0)
     signals = database().get_message_by_name("AXIS_DEC_MOTION").decode(data, decode_choices=False)
     assert (signals["Velocity"], signals["Effort"], signals["AdcA"], signals["AdcB"]) == (*sent, 1023, 0)
-    assert p.unpack_motion(p.pack_motion(0x11, 0, 0, velocity, effort, 0, 1023))[3:5] == sent
+    assert p.unpack_motion(p.pack_motion(0x11, 0, velocity, effort, (0, 1023)))[3:5] == sent
 
 
 @pytest.mark.parametrize(
@@ -65,9 +65,9 @@ def test_target_at_the_ends_of_its_distance(distance: int, sent: int) -> None:
     assert data[1] == p.SUMMARY_KIND and clip.times == (sent != distance)
 
 
-@pytest.mark.parametrize(("delta", "sent"), [(40_000, 32_767), (-40_000, -32_768), (-32_768, -32_768)])
-def test_tach_cuts_its_difference(delta: int, sent: int) -> None:
-    assert p.unpack_tach(p.pack_tach(0x31, 3, 7, delta)) == (0x31, 3, 7, sent)
+@pytest.mark.parametrize("delta", [32_767, -1, -32_768])
+def test_tach_at_the_ends_of_its_difference(delta: int) -> None:
+    assert p.unpack_tach(p.pack_tach(0x31, 3, 7, delta)) == (0x31, 3, 7, delta)
 
 
 @pytest.mark.parametrize(
@@ -157,7 +157,7 @@ def test_samples_that_do_not_fit_are_cut_and_told_of_once() -> None:
 def test_a_declared_boards_packet_carries_its_frames() -> None:
     dome = DOME.nodes["DOME"]
     assert packet_bytes(dome) == 2 + 6 + 25 * 7 + 2
-    (packet,) = PacketDecoder().feed(pack_packet(dome, 0, 0, [tuple(range(249, 256))] * 25))
+    (packet,) = PacketDecoder({dome}).feed(pack_packet(dome, 0, 0, [tuple(range(249, 256))] * 25))
     assert packet.samples == (FrameSample(*range(249, 256)),) * 25
 
 

@@ -13,7 +13,7 @@ FLAGS: list[tuple[str, type[IntFlag], int]] = [
     ("POSITION_RA_POSITION", p.PositionFlag, 8),
     ("FOCUS_FOCUS", p.FocusFlag, 8),
 ]
-"""Frame, flags, bit of the first (the flags' field; docs/protocol.md)."""
+"""Frame, flags, bit of the first (the flags' field; docs/reference/protocol.md)."""
 
 
 @pytest.mark.parametrize(("frame", "kind", "first"), FLAGS, ids=[each[0] for each in FLAGS])

@@ -1,33 +1,16 @@
 """Opcodes of a declared board: arguments laid out as cantools packs them, bounds, what cannot be."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from cantools.database import load_string
 
-from bus.protocol.command import LAYOUTS
-from bus.protocol.names import DECLARED_OPCODES
-from bus.protocol.nodes import DOME, KINDS, Kind, KindError
+from bus.protocol import layout_of
+from bus.protocol.nodes import DOME, Kind, KindError
 from bus.protocol.nodes.command import Argument, arguments_of
 
 HEAD = 'VERSION ""\nBU_: GATEWAY NODE\n'
 COMMAND = HEAD + 'BO_ 128 COMMAND: 8 GATEWAY\n SG_ Opcode M : 8|8@1+ (1,0) [0|255] "" NODE\n'
-
-
-@pytest.fixture(autouse=True)
-def _as_before() -> Iterator[None]:
-    """Declared opcodes are known to the whole process; what comes along is read once, and is to stay."""
-    for kind in KINDS:
-        arguments_of(kind)
-    kept = dict(LAYOUTS), dict(DECLARED_OPCODES)
-    for number in kept[1]:
-        del LAYOUTS[number]  # type: ignore[attr-defined]
-    DECLARED_OPCODES.clear()
-    yield
-    for table, before in zip((LAYOUTS, DECLARED_OPCODES), kept, strict=True):
-        table.clear()  # type: ignore[attr-defined]
-        table.update(before)  # type: ignore[attr-defined]
 
 
 def text(signals: str, opcodes: str) -> str:
@@ -55,9 +38,9 @@ PLACES = [
 @pytest.mark.parametrize(("place", "value"), PLACES)
 def test_an_argument_lies_where_its_dbc_says(tmp_path: Path, place: str, value: int) -> None:
     signals = argument("Do_It", 0x50, place)
-    arguments_of(kind(tmp_path, signals, '80 "DO"'))
+    (opcode,) = arguments_of(kind(tmp_path, signals, '80 "DO"'))
     message = load_string(text(signals, '80 "DO"'), "dbc").messages[0]
-    layout, names = LAYOUTS[0x50]
+    layout, names = layout_of(opcode)
     packed = bytes([0, 0x50]) + layout.pack(value)
     assert packed == message.encode({"Opcode": 0x50, "Do_It": value}, strict=False)
     assert (len(packed), names) == (8, ("it",))
@@ -67,12 +50,11 @@ def test_several_arguments_go_in_the_order_of_their_places(tmp_path: Path) -> No
     signals = argument("Do_Last", 0x50, "40|16@1-") + argument("Do_First", 0x50, "16|8@1+")
     signals += argument("Other_Thing", 0x51, "16|8@1+") + argument("Do_Spare_One", 0x50, "24|8@1+")
     found = arguments_of(kind(tmp_path, signals, '80 "DO" 81 "OTHER"'))
-    layout, names = LAYOUTS[0x50]
+    layout, names = layout_of(next(iter(found)))
     assert names == ("first", "last")
     assert layout.pack(5, -2) == bytes([5, 0, 0, 0xFE, 0xFF, 0])
     assert {int(opcode): len(arguments) for opcode, arguments in found.items()} == {0x50: 2, 0x51: 1}
     assert [opcode.name for opcode in found] == ["DO", "OTHER"]
-    assert DECLARED_OPCODES[0x51].name == "OTHER"
 
 
 def test_bounds_are_those_of_the_wire(tmp_path: Path) -> None:
@@ -85,7 +67,7 @@ def test_bounds_are_those_of_the_wire(tmp_path: Path) -> None:
 def test_an_opcode_without_arguments_is_six_empty_bytes(tmp_path: Path) -> None:
     found = arguments_of(kind(tmp_path, "", '64 "FIRST" 125 "LAST"'))
     assert [int(opcode) for opcode in found] == [0x40, 0x7D]
-    assert LAYOUTS[0x7D][0].pack() == bytes(6)
+    assert layout_of(max(found))[0].pack() == bytes(6)
 
 
 def test_a_kind_without_commands_has_none(tmp_path: Path) -> None:
@@ -115,12 +97,11 @@ def test_an_argument_beyond_the_eighth_byte_is_refused(tmp_path: Path) -> None:
         arguments_of(given)
 
 
-def test_an_opcode_of_two_kinds_has_the_same_arguments_in_both(tmp_path: Path) -> None:
-    for name in "ab":
+def test_an_opcode_may_be_two_kinds_own_with_other_arguments(tmp_path: Path) -> None:
+    for name, sign in (("a", "+"), ("b", "-")):
         (tmp_path / name).mkdir()
-    arguments_of(kind(tmp_path / "a", argument("Do_It", 0x50, "16|8@1+"), '80 "DO"'))
-    with pytest.raises(KindError, match="opcode 0x50 is another board's, with other arguments"):
-        arguments_of(kind(tmp_path / "b", argument("Do_It", 0x50, "16|8@1-"), '80 "DO"'))
+        (opcode,) = arguments_of(kind(tmp_path / name, argument("Do_It", 0x50, f"16|8@1{sign}"), '80 "DO"'))
+        assert layout_of(opcode)[0].format == ("<0xB5x" if sign == "+" else "<0xb5x")
 
 
 def test_the_domes() -> None:

@@ -1,5 +1,6 @@
 """Declared boards: codecs against cantools, the file for other tools, and declarations that cannot be."""
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -8,21 +9,22 @@ from cantools.database import load_file, load_string
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bus.protocol import Device, Opcode, device_named, pack_command
+from bus.protocol import CommandError, Device, Opcode, pack_command
 from bus.protocol.nodes import (
+    DEVICES,
     DOME,
     KINDS,
     FrameCodec,
     Kind,
     KindError,
     arguments_of,
-    declare,
+    check_kind,
     documented,
     kind_of,
     messages_of,
     own_messages,
 )
-from bus.protocol.page import DBC_PATH, OTHERS
+from bus.protocol.page import DBC_PATH
 
 MEASURED = [m for kind in KINDS for m in messages_of(kind) if 0x200 <= m.frame_id < 0x400]
 
@@ -70,19 +72,26 @@ def test_final_dbc_says_what_the_declarations_say() -> None:
             for message in database.messages
         }  # fmt: skip
 
-    assert facts(load_file(DBC_PATH, strict=True)) == facts(documented((*Device, *OTHERS)))
+    assert facts(load_file(DBC_PATH, strict=True)) == facts(documented(DEVICES))
 
 
-def test_declared_devices_and_opcodes_are_found_and_not_counted() -> None:
-    assert len(Device) == 11
-    assert Device(0x71) is device_named("DOME")
-    assert kind_of(0x71) is DOME
-    assert kind_of(Device.DISPLAY) is None
-    assert arguments_of(DOME)[Opcode(0x40)][0].high == 35999
-    assert (Device(0x71).name, Opcode(0x40).name) == ("DOME", "DOME_GOTO")
-    assert pack_command(0x71, 0x40, 12345) == bytes([0x71, 0x40, 0x39, 0x30, 0, 0, 0, 0])
-    with pytest.raises(ValueError, match="127"):
-        Device(127)
+def test_declared_devices_and_opcodes_know_what_they_are_and_are_not_counted() -> None:
+    assert (len(Device), len(DEVICES)) == (11, 18)
+    dome, goto = DOME.device("DOME"), next(iter(arguments_of(DOME)))
+    assert (dome, goto, dome.name, goto.name) == (0x71, 0x40, "DOME", "DOME_GOTO")
+    assert kind_of(dome) is DOME and kind_of(Device.DISPLAY) is None
+    assert arguments_of(DOME)[goto][0].high == 35999
+    assert pack_command(dome, goto, 12345) == bytes([0x71, 0x40, 0x39, 0x30, 0, 0, 0, 0])
+    with pytest.raises(ValueError, match="113"):
+        Device(0x71)
+    with pytest.raises(CommandError, match="opcode 0x40 is not in the protocol"):
+        pack_command(dome, 0x40, 12345)
+
+
+@pytest.mark.parametrize("each", [Device.FOCUS, DOME.device("DOME"), *arguments_of(DOME)])
+def test_written_and_declared_ones_go_through_a_pipe(each: Device | Opcode) -> None:
+    again = pickle.loads(pickle.dumps(each))
+    assert (again, again.name, again.declared, type(again)) == (each, each.name, each.declared, type(each))
 
 
 @pytest.mark.parametrize(
@@ -91,6 +100,7 @@ def test_declared_devices_and_opcodes_are_found_and_not_counted() -> None:
         ("lower", {"lower": 0x7A}, "capitals"),
         ("OTHER", {"DOME_2": 0x7A}, "are called OTHER"),
         ("OTHER", {"OTHER": 0x80}, "not within"),
+        ("OTHER_X", {"OTHER_X": 0x7A}, "without an underscore"),
         ("OTHER", {"OTHER": 0x71}, "is taken"),
         ("OTHER", {"OTHER": 0x11}, "is taken"),
         ("DOME", {"DOME": 0x7A}, "declared twice"),
@@ -98,7 +108,7 @@ def test_declared_devices_and_opcodes_are_found_and_not_counted() -> None:
 )
 def test_a_declaration_that_cannot_be_is_one_line(name: str, nodes: dict[str, int], text: str) -> None:
     with pytest.raises(KindError, match=text) as error:
-        declare(Kind(name, nodes, Path("none.dbc")))
+        check_kind(Kind(name, nodes, Path("none.dbc")), KINDS)
     assert "\n" not in str(error.value)
 
 

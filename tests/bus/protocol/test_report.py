@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from bus import protocol as p
 from bus.can import Frame
-from bus.protocol.report import ReportError, pack_report, slot, unpack_commands, unpack_report
+from bus.protocol.report import PLACES, ReportError, pack_report, place, slot, unpack_commands, unpack_report
 
 devices = st.sampled_from(list(p.Device))
 seven = st.binary(min_size=7, max_size=7)
@@ -29,6 +29,19 @@ def test_B7_a_report_gives_the_frames_back(batch: list[Frame]) -> None:
     report = pack_report([slot(frame) for frame in batch])
     assert len(report) == 64
     assert unpack_report(report) == batch
+
+
+@given(st.lists(frames, max_size=8))
+def test_L2_a_node_is_in_its_place_with_its_newest_and_all_else_in_order(batch: list[Frame]) -> None:
+    report = place([slot(frame) for frame in batch])
+    back = unpack_report(report)
+    for at in range(8):
+        assert PLACES.get(report[8 * at], at) == at
+    for device in PLACES:
+        ours = [each for each in batch if each.identifier == p.MEASUREMENT_BASE + device]
+        assert [each for each in back if each.identifier == p.MEASUREMENT_BASE + device] == ours[-1:]
+    others = [each for each in batch if each.identifier - p.MEASUREMENT_BASE not in PLACES]
+    assert [each for each in back if each.identifier - p.MEASUREMENT_BASE not in PLACES] == others
 
 
 @given(st.lists(st.builds(lambda d, rest: bytes([d]) + rest, devices, seven), max_size=8))
@@ -83,7 +96,7 @@ def test_B7_a_summary_with_a_heartbeats_kind_is_refused() -> None:
 
 
 def test_B7_slots_byte_by_byte() -> None:
-    """docs/protocol.md: bit 7 of byte 0 marks what is no measurement; byte 1 tells the kinds apart."""
+    """docs/reference/protocol.md: bit 7 of byte 0 marks no measurement; byte 1 tells the kinds apart."""
     assert slot(Frame(0x211, bytes([0x11, 0x92, *range(6)]))) == bytes([0x11, 0x92, *range(6)])
     assert slot(Frame(0x111, bytes([0x11, 0x12, *range(6)]))) == bytes([0x91, 0x12, *range(6)])
     assert slot(Frame(0x311, bytes([0x11, 0xF3, *range(6)]))) == bytes([0x91, 0xF3, *range(6)])

@@ -1,7 +1,5 @@
 """Connecting waits for boards that have just been switched on, and not for ever."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import cast
 

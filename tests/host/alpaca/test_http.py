@@ -16,14 +16,16 @@ from tests.host.alpaca.conftest import AlpacaLive
 Answer = tuple[int, dict[str, object]]
 
 
-def ask(live: AlpacaLive, method: str, path: str, parameters: str = "") -> Answer:
+def ask(
+    live: AlpacaLive, method: str, path: str, parameters: str = "", headers: dict[str, str] | None = None
+) -> Answer:
     connection = HTTPConnection("127.0.0.1", live.port, timeout=10)
     try:
         if method == "PUT":
-            headers = {"Content-Type": "application/x-www-form-urlencoded"}
-            connection.request("PUT", path, parameters.encode("utf-8"), headers)
+            form = {"Content-Type": "application/x-www-form-urlencoded", **(headers or {})}
+            connection.request("PUT", path, parameters.encode("utf-8"), form)
         else:
-            connection.request(method, f"{path}?{parameters}" if parameters else path)
+            connection.request(method, f"{path}?{parameters}" if parameters else path, headers=headers or {})
         answer = connection.getresponse()
         body = answer.read()
         return answer.status, json.loads(body) if body.startswith(b"{") else {}
@@ -75,6 +77,21 @@ def test_malformed_puts_are_400(live: AlpacaLive, member: str, parameters: str) 
 @pytest.mark.parametrize("parameters", ["", "Axis=", "Axis=x", "ClientTransactionID=-1&Axis=0"])
 def test_malformed_gets_are_400(live: AlpacaLive, parameters: str) -> None:
     assert get(live, "axisrates", parameters)[0] == 400
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Host": "localhost:11111"}, 200),
+        ({"Host": "192.0.2.1:11111"}, 200),
+        ({"Host": "rebound.invalid:11111"}, 403),
+        ({"Origin": "http://page.invalid"}, 403),
+    ],
+)
+def test_a_foreign_host_or_page_is_refused(live: AlpacaLive, headers: dict[str, str], status: int) -> None:
+    """A name of anybody's may point at this machine: its page could send PUTs."""
+    for method in ("GET", "PUT"):
+        assert ask(live, method, "/api/v1/telescope/0/connected", "Connected=True", headers)[0] == status
 
 
 def test_unknown_places_are_refused(live: AlpacaLive) -> None:

@@ -1,7 +1,5 @@
 """A served network with consoles, a Chromium, and what the tests do on a page."""
 
-from __future__ import annotations
-
 import contextlib
 import shutil
 from collections.abc import Iterator

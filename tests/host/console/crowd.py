@@ -9,8 +9,6 @@ browsers on one core and the server, its host with it, on another: the nearest t
 browsers on others.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

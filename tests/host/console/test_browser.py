@@ -1,7 +1,5 @@
 """The consoles in a real Chromium: every control of every page, axe-core, the lock, a browser that goes."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -296,3 +294,30 @@ def test_dome_and_weather_on_the_network_that_has_them(browser: Any, tmp_path: P
         left = used.untouched(page, "section")
         page.close()
     assert left == set()
+
+
+def test_a_silent_board_is_an_alarm_on_every_page_until_it_is_acknowledged(
+    browser: Any, served: Consoles
+) -> None:
+    page, other = opened(browser, served, "/"), opened(browser, served, "/bus")
+    choose(other, "Board", "POSITION_RA")
+    press(other, "Cut its supply")
+    for each in (page, other):
+        each.get_by_role("alert").get_by_text("POSITION_RA is silent").wait_for()
+    assert page.locator(".stale").count() >= 4  # RA, hour angle, altitude, azimuth, errors
+    for width, height in ((1400, 700), (390, 800)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.mouse.wheel(0, 1500)
+        page.wait_for_function("scrollY > 100")
+        for seen in (page.get_by_role("button", name="STOP  (space)"), page.locator(".alarms")):
+            box = seen.bounding_box()
+            assert box["y"] >= 0 and box["y"] + box["height"] <= height
+        shot(page, f"alarms-{width}")
+        page.evaluate("scrollTo(0, 0)")
+    press(other, "Give it back")
+    page.wait_for_function("!document.querySelector('.stale')")
+    other.get_by_role("alert").get_by_text("(over)").first.wait_for()
+    press(other, "Acknowledge")
+    for each in (page, other):
+        each.locator(".alarms").wait_for(state="hidden")
+        each.close()

@@ -1,7 +1,5 @@
 """Ten browsers at once: all are served, no board suffers; how many ticks were late is printed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The bus page of a host on real boards: what it hears against what is on the wire."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

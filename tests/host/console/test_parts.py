@@ -1,7 +1,5 @@
 """Parts of the consoles without a browser: combination of encoders, sky map, who may look, tables."""
 
-from __future__ import annotations
-
 import asyncio
 import datetime as dt
 import math
@@ -14,10 +12,10 @@ from hypothesis import strategies as st
 
 from host.auxiliary import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
 from host.console.figures import hours
-from host.console.guard import COOKIE, Guard
 from host.console.live import Sample
 from host.console.plots import series
 from host.console.skymap import boundary, svg
+from host.guard import COOKIE, Guard
 from host.sky.mount import STEP_ARCSEC, Mount, scale_from_limits
 from host.sky.observed import Clock
 from host.sky.site import Site
@@ -74,7 +72,9 @@ def test_the_map_has_a_text_for_who_cannot_see_it() -> None:
     assert 'role="img"' in svg(about, None, None) and "nowhere yet" in svg(about, None, None)
 
 
-async def _ask(host: str, query: bytes = b"", cookie: bytes = b"") -> tuple[int, list[tuple[bytes, bytes]]]:
+async def _ask(
+    host: str, query: bytes = b"", cookie: bytes = b"", more: tuple[tuple[bytes, bytes], ...] = ()
+) -> tuple[int, list[tuple[bytes, bytes]]]:
     sent: list[dict[str, Any]] = []
 
     async def app(scope: Any, receive: Any, send: Any) -> None:
@@ -86,7 +86,7 @@ async def _ask(host: str, query: bytes = b"", cookie: bytes = b"") -> tuple[int,
     async def receive() -> Any:
         return {}
 
-    headers = [(b"cookie", cookie)] if cookie else []
+    headers = [*more, *([(b"cookie", cookie)] if cookie else [])]
     scope = {"type": "http", "client": (host, 1), "query_string": query, "headers": headers}
     await Guard(app, "word")(scope, receive, send)
     return sent[0]["status"], sent[0]["headers"]
@@ -99,6 +99,29 @@ def test_this_machine_may_look_and_others_need_the_token() -> None:
     status, headers = asyncio.run(_ask("192.0.2.7", b"token=word"))
     assert status == 200 and headers[0][0] == b"set-cookie"
     assert asyncio.run(_ask("192.0.2.7", b"", f"{COOKIE}=word".encode()))[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("host", "origin", "status"),
+    [
+        ("localhost:8080", None, 200),
+        ("127.0.0.1:8080", "http://127.0.0.1:8080", 200),
+        ("[::1]:8080", "http://[::1]:8080", 200),
+        ("dome.example:8080", "http://dome.example:8080", 200),
+        ("rebound.invalid:8080", None, 403),
+        ("rebound.invalid:8080", "http://rebound.invalid:8080", 403),
+        ("localhost:8080", "http://page.invalid", 403),
+        ("localhost:8080", "http://localhost:3000", 403),
+        ("localhost:8080", "null", 403),
+    ],
+)
+def test_a_foreign_host_or_page_is_refused(
+    host: str, origin: str | None, status: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A name of anybody's may point at this machine, and a page of anybody's may open a websocket."""
+    monkeypatch.setenv("SCHMIDT_HOSTS", "dome.example")
+    said = ((b"host", host.encode()), *(((b"origin", origin.encode()),) if origin is not None else ()))
+    assert asyncio.run(_ask("127.0.0.1", more=said))[0] == status
 
 
 def test_a_plot_has_only_points_that_it_shows() -> None:

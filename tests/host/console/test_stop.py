@@ -1,7 +1,5 @@
 """From the click on STOP to the axes' command on the bus, in emulated time, at several speeds."""
 
-from __future__ import annotations
-
 import os
 import time
 from pathlib import Path
@@ -13,7 +11,7 @@ from tests.host.console.conftest import Consoles, opened, press, state
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 STOP = "091#1111"
-"""AXIS_RA_COMMAND, device type, opcode STOP (docs/protocol.md)."""
+"""AXIS_RA_COMMAND, device type, opcode STOP (docs/reference/protocol.md)."""
 SPEEDS = (0.2, 1.0, 10.0)
 PRESS_S = 0.08
 """Wall time from a button's press to its release, the click. ASSUMPTION: people take 80 to 120 ms."""

@@ -1,5 +1,8 @@
 """Every row of the table of LX200 commands, over a real socket and a real pseudo-terminal."""
 
+import asyncio
+import contextlib
+import os
 import re
 import select
 import socket
@@ -13,8 +16,13 @@ import serial
 
 from host.lx200 import angles
 from host.lx200.server import Lx200
-from host.sky.apparent import apparent_of_star
+from host.telescope import desk
+from scenarios.doors.pc import TelescopePc
+from scenarios.lab.prepare import chosen
+from tests.host.inprocess import HostInProcess
 from tests.host.live import Live
+from tests.host.sky.places import apparent_of_star
+from tests.host.telescope.conftest import Rig
 
 SILENT_S = 0.15
 """Nothing has come for this long: there is no answer."""
@@ -112,6 +120,16 @@ def off_arcsec(client: Client, ra: str, dec: str) -> float:
 def test_ack_is_answered_without_hash(client: Client) -> None:
     client.send(b"\x06")
     assert client.rest() == b"P"
+
+
+def test_a_web_page_is_hung_up_on(door: Door) -> None:
+    """Its text may hold commands: a form in any page can post `:Me#` to a port of this machine."""
+    page = Client(door.port)
+    page.send(b"POST / HTTP/1.1\r\nHost: x\r\n\r\n:GVP#")
+    page.socket.settimeout(5)
+    with contextlib.suppress(ConnectionResetError):  # what it had not read was thrown away
+        assert page.socket.recv(64) == b""
+    page.socket.close()
 
 
 def test_positions_have_the_columns_stellarium_reads(client: Client) -> None:
@@ -324,3 +342,47 @@ def test_serial_the_same_and_again_after_reopening(door: Door) -> None:
             assert port.read(1) == b"P"
             port.write(b":GR#")
             assert re.fullmatch(rb"\d\d:\d\d:\d\d#", port.read_until(b"#"))
+
+
+def test_a_place_that_nobody_measured_is_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A host that has just been started again has no readings; zeros would be a place in the sky."""
+    monkeypatch.setattr(desk, "ANSWER_S", 0.1)
+    rig = Rig(tmp_path)
+    started = HostInProcess(rig.served)
+    session = Lx200(started.pc.telescope).session("new")
+    for command in (b":GR#", b":GD#", b":GA#", b":GZ#"):
+        assert asyncio.run(session.feed(command)) == b""
+    assert asyncio.run(session.feed(b":GVP#")) == b"schmidt#"
+
+    def hear() -> None:
+        sleep(0.05)
+        for _ in range(50):
+            started.poll(rig.served.now_ns)
+            rig.served.run_until(rig.served.now_ns + 10_000_000)
+
+    monkeypatch.setattr(desk, "ANSWER_S", 30.0)
+    thread = threading.Thread(target=hear)
+    thread.start()
+    assert asyncio.run(session.feed(b":GR#")).count(b":") == 2  # waited for
+    thread.join()
+    started.close()
+    rig.host.close()
+
+
+def test_a_killed_hosts_link_is_taken_over(tmp_path: Path) -> None:
+    """The number of its terminal is free again, and may be the new one's."""
+    link = tmp_path / "lx200"
+    master, slave = os.openpty()
+    link.symlink_to(os.ttyname(slave))
+    os.close(slave)
+    os.close(master)
+
+    async def serve() -> None:
+        serving = asyncio.create_task(Lx200.serve_pty(served.lx200, link))
+        await asyncio.sleep(0.1)
+        assert not serving.done() and link.exists()
+        serving.cancel()
+
+    served = TelescopePc(chosen()[0], lambda _t, _report: None, ())
+    asyncio.run(serve())
+    served.close()

@@ -7,12 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from host.sky.angles import ARCSEC_PER_RAD, format_degrees, parse_declination, parse_right_ascension, wrap_pi
+from bus.units import ARCSEC_PER_RAD
+from host.sky.angles import format_degrees, parse_declination, parse_right_ascension, wrap_pi
 from host.sky.catalogue import STARS, UnknownTarget, star
 from host.sky.mount import STEP_ARCSEC, limits_mount, scale_from_limits
 from host.sky.observed import Clock, observe
 from host.sky.site import NAINITAL
 from host.sky.visibility import Unreachable, check_reachable
+from host.telescope.observatory import Observatory
 
 MOUNT = limits_mount(math.radians(100), math.radians(-35), math.radians(89.9), NAINITAL.latitude_rad)
 EVENING = Clock(dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC))
@@ -38,22 +40,24 @@ def test_limits_the_wrong_way_round_are_refused() -> None:
 
 def test_a_star_below_the_horizon_is_refused_with_its_altitude() -> None:
     with pytest.raises(Unreachable, match=r"Antares is at altitude −.*below the horizon"):
-        check_reachable(star("Antares"), NAINITAL, EVENING, MOUNT, 0.0)
+        check_reachable(star("Antares"), Observatory(NAINITAL, EVENING, MOUNT), 0.0)
 
 
 def test_a_star_that_sets_during_the_track_is_refused() -> None:
     wide = limits_mount(math.radians(150), math.radians(-35), math.radians(85), NAINITAL.latitude_rad)
-    check_reachable(star("Deneb"), NAINITAL, EVENING, wide, 0.0, 0.0, horizon_rad=math.radians(2))
+    place = Observatory(NAINITAL, EVENING, wide, horizon_rad=math.radians(2))
+    check_reachable(star("Deneb"), place, 0.0, 0.0)
     with pytest.raises(Unreachable, match="before the track ends"):
-        check_reachable(star("Deneb"), NAINITAL, EVENING, wide, 0.0, 3600.0, horizon_rad=math.radians(2))
+        check_reachable(star("Deneb"), place, 0.0, 3600.0)
 
 
 def test_a_star_beyond_the_soft_limits_is_refused() -> None:
     narrow = limits_mount(math.radians(30), math.radians(-35), math.radians(85), NAINITAL.latitude_rad)
+    place = Observatory(NAINITAL, EVENING, narrow)
     with pytest.raises(Unreachable, match=r"Pollux is at hour angle −46°.*soft limits"):
-        check_reachable(star("Pollux"), NAINITAL, EVENING, narrow, 0.0)
+        check_reachable(star("Pollux"), place, 0.0)
     with pytest.raises(Unreachable, match="Polaris is at declination"):
-        check_reachable(star("Polaris"), NAINITAL, EVENING, narrow, 0.0)
+        check_reachable(star("Polaris"), place, 0.0)
 
 
 def test_stars_are_found_in_any_case_and_a_typo_gets_a_hint() -> None:

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from host.sky.angles import ARCSEC_PER_RAD, parse_declination, parse_right_ascension, wrap_pi
+from bus.units import ARCSEC_PER_RAD
+from host.sky.angles import parse_declination, parse_right_ascension, wrap_pi
 from host.sky.catalogue import Star, star
 from host.sky.observed import Clock, observe, observe_many, rates
 from host.sky.site import NAINITAL, Site, standard_pressure_hpa

@@ -12,11 +12,11 @@ from host.sky.apparent import Place, sidereal_time_rad, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.observed import Clock
 from host.telescope import Job, Telescope
-from scenarios.doors import Served
-from scenarios.doors.host import HostDoor
-from scenarios.load import DEFAULT_PLANT
-from scenarios.model import Scenario
-from scenarios.plants import plant_model
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.language.load import DEFAULT_PLANT
+from scenarios.language.model import Scenario
+from scenarios.language.plants import plant_model
+from tests.host.inprocess import HostInProcess
 
 T = TypeVar("T")
 START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
@@ -27,13 +27,12 @@ class Rig:
     """Boards, plant and telescope client on one queue."""
 
     def __init__(self, logs: Path | None = None, start: dt.datetime = START, network: str = "lab") -> None:
-        self.scenario = Scenario(Path("rig"), "rig", "", Clock(start), (), network={"name": network})
-        self.served = Served(self.scenario, plant_model({"file": DEFAULT_PLANT}, Path()))
+        self.scenario = Scenario(file=Path("rig"), name="rig", clock=Clock(start), network={"name": network})
+        self.served = LiveNetwork(self.scenario, plant_model({"file": DEFAULT_PLANT}, Path()))
         self.network = self.served.network
-        self.host = HostDoor(self.served, logs)
-        self.hosted = self.host.hosted
-        self.telescope: Telescope = self.hosted.telescope
-        self.host.open()
+        self.host = HostInProcess(self.served, logs)
+        self.pc = self.host.pc
+        self.telescope: Telescope = self.pc.telescope
         self.advance(2.0)
 
     def advance(self, seconds: float) -> None:
@@ -59,7 +58,7 @@ class Rig:
 
     def up(self, name: str = "here", hour_angle_h: float = -1.0, dec_deg: float = 20.0) -> Star:
         """A place in the sky that is up now, given by hour angle and declination."""
-        about, t_s = self.hosted.observatory, self.telescope.snapshot.t_s
+        about, t_s = self.pc.observatory, self.telescope.snapshot.t_s
         sidereal = sidereal_time_rad(about.site, about.clock, t_s)
         place = Place((sidereal - hour_angle_h * pi / 12) % (2 * pi), radians(dec_deg))
         return star_of_apparent(place, about.clock, t_s, name)

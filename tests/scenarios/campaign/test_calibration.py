@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from scenarios.campaign import table
-from scenarios.campaign.command import campaign
+from scenarios.campaign.run_campaign import campaign
 from tests.calibration.logs import effect, write_logs
 
 FRICTION = "axes.ra.friction.viscous"

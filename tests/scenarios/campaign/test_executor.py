@@ -2,6 +2,9 @@
 
 import os
 import signal
+import subprocess
+import sys
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from pathlib import Path
@@ -69,6 +72,44 @@ def test_a_task_that_always_kills_its_worker_is_given_up() -> None:
     (done,) = each(die, [("deadly", 0)], jobs=1)
     assert done.value is None
     assert "died" in done.error
+
+
+def sleep(given: str) -> None:
+    """Says which process it is, then works on for longer than any test."""
+    (Path(given) / str(os.getpid())).touch()
+    time.sleep(600)
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes in /proc")
+def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    program = (
+        "from scenarios.campaign.executor import each\n"
+        "from tests.scenarios.campaign.test_executor import sleep\n"
+        f"if __name__ == '__main__':\n    list(each(sleep, [('one', {str(tmp_path)!r})], jobs=1))\n"
+    )
+    (tmp_path / "parent.py").write_text(program)
+    root = str(Path(__file__).parents[3])
+    environment = {**os.environ, "PYTHONPATH": root}
+    with subprocess.Popen([sys.executable, tmp_path / "parent.py"], env=environment) as parent:
+        found: list[Path] = []
+        end = time.monotonic() + 60
+        while not found and time.monotonic() < end:
+            time.sleep(0.05)
+            found = [path for path in tmp_path.iterdir() if path.name.isdecimal()]
+        parent.kill()
+    (worker,) = found
+    end = time.monotonic() + 20
+    while time.monotonic() < end and _runs(worker.name):
+        time.sleep(0.05)
+    assert not _runs(worker.name)
+
+
+def _runs(process: str) -> bool:
+    """Whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_inputs_are_drawn_as_they_are_needed() -> None:

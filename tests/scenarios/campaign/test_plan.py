@@ -13,7 +13,7 @@ from scipy.stats import kstest, qmc
 from scenarios.campaign import plan
 from scenarios.campaign.plan import Case, load
 from scenarios.campaign.sensitivity import sobol
-from scenarios.document import Document, ScenarioError
+from scenarios.language.document import Document, ScenarioError
 
 SCENARIO = """\
 name: short
@@ -179,6 +179,8 @@ def test_a_hundred_thousand_runs_are_planned_without_being_held(campaign: Any) -
         ({"plant": FRICTION, "times": {"distribution": "nrm"}}, "did you mean 'norm'"),
         ({"plant": FRICTION, "times": {"distribution": "norm", "with": {"scale": -1}}}, "norm"),
         ({"plant": FRICTION, "times": {"between": [2, 1]}}, "nothing"),
+        ({"seed": True, "is": {"between": [1, float("inf")], "whole": True}}, "inf is no number"),
+        ({"seed": True, "is": {"distribution": "norm", "with": {"scale": float("nan")}}}, "nan is no number"),
         ({"plant": FRICTION}, "`is` or `times`"),
         ({"seed": True, "times": [2]}, "use `is`"),
         ({"field": "steps.9.wait", "is": [1]}, "no field"),
@@ -195,8 +197,8 @@ def test_what_cannot_be_is_one_line_with_the_place(campaign: Any, given: dict[st
 
 
 def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) -> None:
-    from scenarios.load import convert
-    from scenarios.session import start_steps
+    from scenarios.lab.wiring import start_steps
+    from scenarios.language.load import convert
 
     path = campaign([{"start": "hour_angle", "is": [-30, 0, 30]}], sample="grid")
     starts = [start_steps(convert(Document(path, case.document, {})))["ra"] for case in cases(path)]

@@ -10,8 +10,8 @@ from scipy.stats import binomtest, rankdata
 
 from scenarios.campaign import figures, sensitivity, table
 from scenarios.campaign.sensitivity import influence, share
-from scenarios.document import ScenarioError
-from scenarios.report.style import COLOURS
+from scenarios.language.document import ScenarioError
+from scenarios.run.report.style import COLOURS
 
 
 def row(key: str, index: int = 0, **more: object) -> dict[str, object]:
@@ -32,6 +32,26 @@ def test_a_torn_line_and_a_lost_run_are_made_again(tmp_path: Path) -> None:
     again.close()
     found = table.read(table.write(tmp_path))
     assert dict(zip(found["key"], found["value"], strict=True)) == {"a": 1.0, "b": 2.0, "c": 3.0}
+
+
+@pytest.mark.parametrize("line", [b"{}", b'{"key": 3}', b'{"key": "d", "index": "e"}', b"[]", b"\xff"])
+def test_a_line_that_is_no_run_is_left_out(line: bytes, tmp_path: Path) -> None:
+    (tmp_path / table.JOURNAL).write_bytes(line + b"\n")
+    journal = table.Journal(tmp_path, resume=True)
+    assert journal.done == set()
+    journal.add(row("a", value=1.0))
+    journal.close()
+    assert table.read(table.write(tmp_path))["key"] == ["a"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
+def test_a_full_disk_names_the_journal(tmp_path: Path) -> None:
+    journal = table.Journal(tmp_path, resume=False)
+    journal.close()
+    journal._file = Path("/dev/full").open("a")  # noqa: SIM115 - closed below
+    with pytest.raises(ValueError, match=r"runs\.jsonl: No space left on device; --resume"):
+        journal.add(row("a"))
+    journal.close()
 
 
 def test_a_folder_with_runs_is_not_gone_on_with_by_accident(tmp_path: Path) -> None:

@@ -53,6 +53,10 @@ def test_a_library_fits_the_files_it_was_made_of_and_no_others(tree: Path) -> No
     (tree / "boards" / "new.py").touch()
     assert stamp.difference(made, tree) == "was built before boards/new.py came"
     (tree / "boards" / "new.py").unlink()
+    (tree / stamp.CHOICE).parent.mkdir()
+    (tree / stamp.CHOICE).write_text("PLAIN = ()\n")
+    assert stamp.difference(made, tree) == f"was built before {stamp.CHOICE} changed"
+    (tree / stamp.CHOICE).unlink()
     (tree / "bus" / "can" / "wire.py").unlink()
     assert stamp.difference(made, tree) == "was built before bus/can/wire.py changed"
     assert "another Python" in str(stamp.difference({**made, "suffix": ".cpython-38.so"}, tree))
@@ -148,7 +152,9 @@ def test_a_module_that_mypyc_refuses_stays_plain_and_the_others_are_compiled(tre
     """`in` with a starred tuple ends mypyc 2.4 in the middle; the rest must not suffer."""
     if not build.compiler():
         pytest.skip("there is no C compiler")
-    (tree / "scenarios" / "probe.py").write_text("print('the same')\n")
+    (tree / "scenarios" / "run").mkdir()
+    (tree / "scenarios" / "run" / "__init__.py").touch()
+    (tree / "scenarios" / "run" / "probe.py").write_text("print('the same')\n")
     (tree / "scenarios" / "native").mkdir()
     for file in (ROOT / "scenarios" / "native").glob("*.py"):
         (tree / "scenarios" / "native" / file.name).write_text(file.read_text())

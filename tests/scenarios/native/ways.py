@@ -1,15 +1,13 @@
 """`python -m tests.scenarios.native.ways`: digests of what must not depend on the way the source is run, as
 JSON."""
 
-from __future__ import annotations
-
 import json
 import tempfile
 from pathlib import Path
 
+from scenarios.lab.prepare import prepare
+from scenarios.lab.session import Session
 from scenarios.native import compiled
-from scenarios.run import prepare
-from scenarios.session import Session
 
 SCENARIOS = Path(__file__).parents[3] / "scenarios"
 RUNS = {"observing-night": 60, "frame-loss": 30, "node-off": 25}
@@ -36,7 +34,7 @@ def fuzz(seed: int) -> str:
     from bus.can.candump import CandumpWriter
     from plant.model import load
     from plant.plant import Plant
-    from scenarios.network import build
+    from scenarios.lab.network import build
 
     random = Random(seed)
     network = build(None, Plant(load(), seed), seed)

@@ -1,0 +1,114 @@
+import pytest
+
+from boards.chips.ecan import Ecan, EcanError
+from boards.chips.ecan.registers import LIKE, OWN
+from bus.can import Frame, Wire
+from bus.time import EventQueue
+
+NORMAL, CONFIG = 0x00, 0x80
+
+
+class Bench:
+    def __init__(self) -> None:
+        self.queue = EventQueue()
+        self.wire = Wire(self.queue)
+        self.can = Ecan(self.queue, self.wire.attach("ecan"))
+        self.partner = self.wire.attach("partner")
+        self.heard: list[Frame] = []
+        self.partner.on_receive = lambda _t, frame: self.heard.append(frame)
+        self.requests: list[bool] = []
+        self.can.interrupt = lambda _t, on: self.requests.append(on)
+
+    def start(self) -> "Bench":
+        """40 MHz, BRP 1: TQ 100 ns, 1 + 2 + 4 + 3 = 10 TQ: 1 Mbit/s."""
+        for name, value in {"BRGCON1": 0x01, "BRGCON2": 0x99, "BRGCON3": 0x02, "RXB0CON": 0x60}.items():
+            self.can.set(name, value)
+        self.can.set("CANCON", NORMAL)
+        assert self.can.get("CANSTAT") == NORMAL
+        return self
+
+    def run(self, ns: int = 1_000_000) -> None:
+        self.queue.run_until(self.queue.now_ns + ns)
+
+    def partner_sends(self, frame: Frame) -> None:
+        self.partner.send(frame, self.queue.now_ns)
+        self.run()
+
+
+def test_it_wakes_in_configuration_mode_at_its_rate() -> None:
+    bench = Bench()
+    assert bench.can.get("CANSTAT") == CONFIG
+    bench.start()
+    assert (bench.can.times.bitrate, bench.can.times.problems) == (1_000_000, ())
+
+
+def test_it_sends_what_its_registers_say() -> None:
+    bench = Bench().start()
+    for name, value in {"SIDH": 0x24, "SIDL": 0x60, "DLC": 2, "D0": 7, "D1": 8}.items():
+        bench.can.set(f"TXB1{name}", value)
+    bench.can.set("PIE3", 0x08)
+    bench.can.set("TXB1CON", 0x08)
+    bench.run()
+    assert bench.heard == [Frame(0x123, b"\x07\x08")]
+    assert bench.can.get("PIR3") == 0x08
+    assert bench.requests == [True]
+    bench.can.set("PIR3", 0)
+    assert bench.requests == [True, False]
+    assert bench.can.get("TXB1CON") == 0
+
+
+def test_a_receive_buffer_is_freed_by_rxful_not_by_its_flag() -> None:
+    bench = Bench().start()
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    assert bench.can.get("RXB0CON") == 0x80 | 0x60
+    assert bench.can.get("PIR3") == 0x01
+    bench.can.set("PIR3", 0)
+    assert bench.can.get("RXB0CON") & 0x80
+    bench.partner_sends(Frame(0x346, b"\x02"))
+    assert bench.can.get("RXB0D0") == 1
+    assert bench.can.get("COMSTAT") == 0x80
+    assert bench.can.get("PIR3") == 0x20
+    bench.can.set("RXB0CON", 0x60)
+    bench.can.set("COMSTAT", 0)
+    bench.partner_sends(Frame(0x347, b"\x03"))
+    assert bench.can.get("RXB0D0") == 3
+    assert bench.can.get("COMSTAT") == 0
+
+
+def test_double_buffering() -> None:
+    bench = Bench()
+    bench.can.set("RXB0CON", 0x04)
+    bench.can.set("RXM0SIDH", 0xFF)
+    bench.can.set("RXF0SIDH", 0x345 >> 3)
+    bench.start()
+    bench.can.set("RXB0CON", 0x04)
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    bench.partner_sends(Frame(0x345, b"\x02"))
+    assert bench.can.get("RXB0CON") == 0x86
+    assert bench.can.get("RXB1CON") & 0x87 == 0x86
+    assert bench.can.get("RXB1D0") == 2
+
+
+def test_error_state() -> None:
+    bench = Bench().start()
+    bench.partner.online = False
+    bench.can.set("TXB0CON", 0x08)
+    bench.run(20_000_000)
+    assert bench.can.get("COMSTAT") == 0x15
+    assert bench.can.get("TXERRCNT") == 128
+    bench.can.set("CANCON", 0x10)
+    bench.run()
+    assert bench.can.get("TXB0CON") & 0x48 == 0x40
+    assert bench.can.get("CANCON") == 0x10
+
+
+def test_registers_it_has_not_got_are_refused() -> None:
+    bench = Bench()
+    for name in (*LIKE, *OWN):
+        assert 0 <= bench.can.get(name) <= 0xFF
+        bench.can.set(name, 0)
+    for name in ("ECANCON", "CANCTRL", "RXF15SIDH"):
+        with pytest.raises(EcanError, match="no register"):
+            bench.can.get(name)
+        with pytest.raises(EcanError, match="no register"):
+            bench.can.set(name, 0)

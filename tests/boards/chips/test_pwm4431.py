@@ -1,0 +1,132 @@
+"""Power control PWM of the PIC18F4431 by its registers (DS39616D section 18), on arithmetic by hand."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boards.chips.pic18f4431 import Pwm4431
+from boards.chips.pic18f4431.pwmregisters import ENABLED, PTMIF
+
+
+def running(period: int = 99, **registers: int) -> Pwm4431:
+    """All outputs on, (period + 1) cycles of four Q clocks."""
+    pwm = Pwm4431()
+    pwm["PTPER"] = period
+    for name, value in registers.items():
+        pwm[name] = value
+    pwm.put("PTEN", 1)
+    return pwm
+
+
+def highs(pwm: Pwm4431, channel: int, periods: int = 3) -> list[int]:
+    """Q clocks in which an output is on, period by period."""
+    found = []
+    for _ in range(periods):
+        level, since, total, start = pwm.outputs[channel], 0, 0, None
+        length = pwm.period
+        edges = pwm.run()
+        start = pwm._start - length
+        for at, which, on in edges:
+            if which == channel:
+                total += (at - start - since) if level else 0
+                level, since = on, at - start
+        found.append(total + (length - since if level else 0))
+    return found
+
+
+@given(st.integers(0, 0x3FFF), st.integers(0, 0xFFF))
+def test_a_duty_is_fourteen_bits_of_q_clocks_and_the_other_output_is_the_rest(duty: int, period: int) -> None:
+    pwm = running(period, PDC1=duty)
+    length = 4 * (period + 1)
+    assert pwm.period == length
+    wanted = min(duty, length)
+    assert highs(pwm, 3) == [wanted] * 3
+    assert highs(pwm, 2) == [length - wanted] * 3
+    assert pwm.duty(1) == wanted / length
+
+
+def test_20_khz_at_40_mhz_has_eleven_bits() -> None:
+    """Fosc 40 MHz, PTPER = 40 MHz / 4 / 20 kHz - 1 = 499: 2000 steps of duty."""
+    pwm = running(499)
+    assert 40e6 / pwm.period == 20_000
+
+
+def test_with_a_prescaler_the_two_lowest_bits_do_nothing() -> None:
+    pwm = running(99, PTCON0=0b0100, PDC0=0b111)
+    assert pwm.period == 4 * 100 * 4
+    assert highs(pwm, 1, 1) == [0b100 * 4]
+
+
+def test_what_is_written_counts_from_the_next_period_on_and_udis_holds_it_back() -> None:
+    pwm = running(99, PDC0=40)
+    pwm["PDC0"] = 80
+    assert highs(pwm, 1, 2) == [40, 80]
+    pwm.put("UDIS", 1)
+    pwm["PDC0"] = 120
+    assert highs(pwm, 1, 2) == [80, 80]
+    pwm.put("UDIS", 0)
+    assert highs(pwm, 1, 2) == [80, 120]
+
+
+@given(st.integers(0, 400), st.integers(0, 63), st.integers(0, 3))
+def test_complementary_outputs_are_never_on_together_and_dead_time_lies_between(
+    duty: int, dead: int, scale: int
+) -> None:
+    pwm = running(99, PDC0=duty, DTCON=scale << 6 | dead)
+    clocks = dead * (2, 4, 8, 16)[scale]
+    edges = [edge for _ in range(3) for edge in pwm.run() if edge.channel < 2]
+    levels = [False, False]
+    off_at = [-clocks, -clocks]
+    for at, channel, on in edges:
+        levels[channel] = on
+        assert not all(levels)
+        if on:
+            assert at - off_at[1 - channel] >= clocks or at == 0
+        else:
+            off_at[channel] = at
+
+
+def test_independent_outputs_follow_the_same_duty_without_dead_time() -> None:
+    pwm = running(99, PDC0=100, PWMCON0=0x5F, DTCON=0x3F)
+    assert highs(pwm, 0, 1) == [100]
+    pwm = running(99, PDC0=100, PWMCON0=0x5F, DTCON=0x3F)
+    assert highs(pwm, 1, 1) == [100]
+
+
+def test_an_overridden_output_is_what_ovdcons_says() -> None:
+    pwm = running(99, PDC0=100, OVDCOND=0b11111100, OVDCONS=0b01)
+    assert highs(pwm, 0, 1) == [400]
+    assert highs(pwm, 1, 1) == [0]
+
+
+@pytest.mark.parametrize("enabled", range(8))
+def test_channels_that_are_not_enabled_stay_low(enabled: int) -> None:
+    pwm = running(99, PDC0=200, PDC1=200, PDC2=200, PDC3=200, PWMCON0=enabled << 4)
+    on = {edge.channel for _ in range(2) for edge in pwm.run() if edge.on}
+    assert on == set(ENABLED[enabled])
+
+
+def test_special_event_and_time_base_interrupt_by_their_postscalers() -> None:
+    pwm = running(99, SEVTCMP=25, PWMCON1=0x10, PTCON0=0x20)
+    heard: list[int] = []
+    pwm.special_event = heard.append
+    flags = []
+    for _ in range(6):
+        pwm.run()
+        flags.append(pwm.pir3)
+        pwm.pir3 = 0
+    assert heard == [400 + 100, 1200 + 100, 2000 + 100]  # every second period, 25 cycles of four clocks in
+    assert flags == [0, 0, PTMIF, 0, 0, PTMIF]
+
+
+def test_what_is_not_built_and_what_does_not_fit_is_said() -> None:
+    pwm = running(PTCON0=2)
+    with pytest.raises(ValueError, match="free running"):
+        pwm.run()
+    with pytest.raises(ValueError, match="does not fit"):
+        pwm.put("DT", 64)
+    pwm["PTPER"] = 0x1FFF
+    assert pwm["PTPER"] == 0xFFF
+    with pytest.raises(KeyError):
+        pwm["PDC4"] = 1
+    assert Pwm4431().run() == []

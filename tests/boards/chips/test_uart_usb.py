@@ -1,0 +1,189 @@
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boards.chips.uartline import FIFO_PIC18, Received, UartLine
+from boards.chips.usb import HidDevice, Stall
+from boards.chips.usb import descriptors as usb
+from boards.silicon.uart import Uart
+from bus.time import EventQueue
+
+
+def pair(
+    baud: int = 115_200, other: int | None = None, depth: int = 4
+) -> tuple[EventQueue, UartLine, UartLine]:
+    queue = EventQueue()
+    one, two = UartLine(queue, baud), UartLine(queue, other or baud, depth)
+    one.peer, two.peer = two, one
+    return queue, one, two
+
+
+@given(st.binary(max_size=4), st.binary(max_size=4))
+def test_bytes_go_both_ways(there: bytes, back: bytes) -> None:
+    queue, one, two = pair()
+    one.send(there)
+    two.send(back)
+    queue.run_until(10**9)
+    assert [two.read() for _ in there] == [Received(byte, False) for byte in there]
+    assert [one.read() for _ in back] == [Received(byte, False) for byte in back]
+    assert one.read() is None
+
+
+def test_a_byte_takes_ten_bits_as_in_the_packets_of_the_boards() -> None:
+    queue, one, two = pair()
+    heard: list[int] = []
+    two.interrupt = heard.append
+    one.send(b"ab")
+    queue.run_until(10**9)
+    assert heard == [Uart(queue).duration_ns(1), 2 * Uart(queue).duration_ns(1)]
+
+
+@pytest.mark.parametrize("depth", [4, FIFO_PIC18])
+def test_an_overrun_loses_bytes_until_it_is_cleared(depth: int) -> None:
+    queue, one, two = pair(depth=depth)
+    one.send(bytes(range(depth + 2)))
+    queue.run_until(10**9)
+    assert two.overrun
+    assert two.available == depth
+    assert two.read() == Received(0, False)
+    one.send(b"x")
+    queue.run_until(2 * 10**9)
+    assert two.available == depth - 1  # nothing comes in while OERR stands
+    two.clear_overrun()
+    assert two.available == 0
+    one.send(b"y")
+    queue.run_until(3 * 10**9)
+    assert two.read() == Received(ord("y"), False)
+
+
+@pytest.mark.parametrize(
+    ("baud", "byte", "good"),
+    [
+        (115_200, 0x55, True),
+        (111_000, 0x55, True),
+        (120_000, 0x55, True),
+        (57_600, 0x55, False),
+        (230_400, 0x00, False),
+    ],
+)
+def test_baud_rates_within_4_percent_work_others_do_not(baud: int, byte: int, good: bool) -> None:
+    queue, one, two = pair(115_200, baud)
+    one.send(bytes((byte,)))
+    queue.run_until(10**9)
+    assert (two.read() == Received(byte, False)) == good
+
+
+def test_framing_error() -> None:
+    _, one, two = pair()
+    one.send_break(5)
+    assert two.read() == Received(0, True)
+    queue, fast, slow = pair(115_200, 230_400)
+    fast.send(b"\x00")
+    queue.run_until(10**9)
+    assert slow.read() == Received(0, True)  # half way through it looks for the stop bit
+    lone = UartLine(queue, 9600)
+    lone.send(b"x")
+    lone.send_break(0)
+    queue.run_until(2 * 10**9)
+    assert lone.available == 0
+
+
+# --- USB ------------------------------------------------------------------------------------------------
+def get(device: HidDevice, kind: int, index: int = 0, length: int = 255, recipient: int = 0x80) -> bytes:
+    return device.control(struct.pack("<BBHHH", recipient, 6, kind << 8 | index, 0, length))
+
+
+def test_a_host_enumerates_the_device() -> None:
+    device = HidDevice()
+    assert get(device, usb.DEVICE_TYPE, length=8) == usb.DEVICE[:8]
+    assert device.control(struct.pack("<BBHHH", 0, 5, 7, 0, 0)) == b""
+    assert device.address == 7
+    told = get(device, usb.DEVICE_TYPE)
+    length, kind, version, *_ = struct.unpack("<BBHBBBBHHHBBBB", told)
+    assert (len(told), length, kind, version) == (18, 18, 1, 0x0200)
+    configuration = get(device, usb.CONFIGURATION_TYPE)
+    assert struct.unpack_from("<H", configuration, 2)[0] == len(configuration)
+    parts, at = [], 0
+    while at < len(configuration):
+        parts.append(configuration[at : at + configuration[at]])
+        at += configuration[at]
+    assert at == len(configuration)
+    assert [part[1] for part in parts] == [2, 4, 0x21, 5, 5]
+    assert parts[1][4] == 2 and parts[1][5] == 3  # two endpoints, class HID
+    assert struct.unpack_from("<H", parts[2], 7)[0] == len(get(device, usb.REPORT_TYPE, recipient=0x81))
+    for part, address in ((parts[3], 0x81), (parts[4], 0x01)):
+        assert struct.unpack("<BBBBHB", part) == (7, 5, address, 3, 64, 1)
+    assert device.control(struct.pack("<BBHHH", 0, 9, 1, 0, 0)) == b""
+    assert device.control(struct.pack("<BBHHH", 0x80, 8, 0, 0, 1)) == b"\x01"
+    assert device.control(struct.pack("<BBHHH", 0x80, 0, 0, 0, 2)) == bytes(2)
+    assert device.control(struct.pack("<BBHHH", 0x21, 0x0A, 0, 0, 0)) == b""
+    assert get(device, usb.STRING_TYPE, 2)[2:].decode("utf-16-le") == "Schmidt gateway"
+
+
+def test_the_report_descriptor_says_64_bytes_each_way() -> None:
+    at, size, count, bits = 0, 0, 0, {}
+    while at < len(usb.REPORT):  # HID 1.11, 6.2.2.2: short items
+        prefix = usb.REPORT[at]
+        data = usb.REPORT[at + 1 : at + 1 + (0, 1, 2, 4)[prefix & 3]]
+        value = int.from_bytes(data, "little")
+        if prefix & 0xFC == 0x74:
+            size = value
+        elif prefix & 0xFC == 0x94:
+            count = value
+        elif prefix & 0xFC in (0x80, 0x90):
+            bits[prefix & 0xFC] = size * count
+        at += 1 + len(data)
+    assert bits == {0x80: 512, 0x90: 512}
+
+
+@pytest.mark.parametrize(
+    "setup",
+    [
+        b"",
+        bytes(7),
+        struct.pack("<BBHHH", 0x80, 6, 0x0300 | 9, 0, 255),
+        struct.pack("<BBHHH", 0x80, 6, 0x0600, 0, 255),
+        struct.pack("<BBHHH", 0x80, 6, 0x0101, 0, 255),
+        struct.pack("<BBHHH", 0, 9, 2, 0, 0),
+        struct.pack("<BBHHH", 0, 5, 128, 0, 0),
+        struct.pack("<BBHHH", 0x40, 6, 0x0100, 0, 255),
+    ],
+)
+def test_what_it_does_not_know_it_stalls(setup: bytes) -> None:
+    device = HidDevice()
+    with pytest.raises(Stall):
+        device.control(setup)
+    assert (device.address, device.configuration) == (0, 0)
+
+
+def test_reports_wait_for_the_host_to_poll_once_a_frame() -> None:
+    device = HidDevice()
+    one, two = bytes([1]) * 64, bytes([2]) * 64
+    assert device.put(one)
+    assert device.put(two)
+    assert not device.put(one)
+    assert device.poll(0) is None  # not configured
+    device.configuration = 1
+    assert device.poll(5_000_000) == one
+    assert device.poll(5_999_999) is None
+    assert device.poll(6_000_000) == two
+    assert device.poll(7_000_000) is None
+    for wrong in (63, 65):
+        with pytest.raises(ValueError, match="64 bytes"):
+            device.put(bytes(wrong))
+
+
+def test_output_reports_have_64_bytes_too() -> None:
+    device = HidDevice()
+    got: list[tuple[int, bytes]] = []
+    with pytest.raises(Stall, match="not configured"):
+        device.out(0, bytes(64))
+    device.configuration = 1
+    device.out(1, bytes(64))
+    device.from_host = lambda t_ns, report: got.append((t_ns, report))
+    device.out(2, bytes(64))
+    assert got == [(2, bytes(64))]
+    with pytest.raises(Stall, match="not 65"):
+        device.out(3, bytes(65))

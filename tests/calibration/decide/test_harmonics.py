@@ -1,0 +1,33 @@
+"""A stage's harmonics that were one candidate, each with its own size."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from calibration.decide.parameters import findings_of
+from calibration.decide.select import select
+from tests.calibration.decide.made import line, problem
+
+ROWS, ORDER = 4000, 3.0
+
+
+@pytest.mark.parametrize("first", [0.0, 0.013])
+@pytest.mark.parametrize("files", [1, 2])
+def test_every_harmonic_has_its_own_amplitude_wherever_the_first_row_stands(first: float, files: int) -> None:
+    """At position zero every sine of the first row is exactly zero."""
+    turns = first + 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
+    noise = np.random.default_rng(4).standard_normal(ROWS)
+    p = problem(2.0 * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + 0.3 * noise)
+    label = np.arange(ROWS) * files // ROWS
+    p.session = label
+    own = [line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2, 3)]
+    columns = np.hstack([c * (label == k)[:, None] for c in own for k in range(files)])
+    whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
+    s = select(p, [replace(whole, per_run=files > 1)], np.random.default_rng(1))
+    found = findings_of(s, 0)
+    assert sorted(f.harmonic or 0 for f in found) == [1, 2, 3]
+    assert found[0].harmonic == 2
+    assert found[0].order == pytest.approx(2 * ORDER)
+    assert found[0].parameters["amplitude"].value == pytest.approx(2.0, abs=0.05)
+    assert all(f.parameters["amplitude"].value < 0.1 for f in found[1:])

@@ -1,0 +1,121 @@
+"""Repairs: what was broken on purpose comes back, and what is sound stays as it is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from calibration.inputs.repair import repair
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.run import Run, signal_of
+
+ROWS, PERIOD_S = 3000, 0.01
+RIG = """rig: made up
+turn: 360
+columns:
+  time: {column: t, unit: s}
+  position: {column: q, unit: deg}
+  effort: {column: u, unit: N m}
+response: {channel: effort, unit: N m}
+"""
+
+
+def rig(folder: Path):  # type: ignore[no-untyped-def]
+    path = folder / "rig.yaml"
+    path.write_text(RIG, encoding="utf-8")
+    return load_rig(path)
+
+
+def made(seed: int, rate: float = 20.0) -> Run:
+    """A drive that goes to and fro by up to 40 degrees, its effort smooth, both with sensor noise."""
+    rng = np.random.default_rng(seed)
+    t = PERIOD_S * np.arange(ROWS)
+    q = 40 * np.sin(rate / 40 * t) + 0.001 * rng.standard_normal(ROWS)
+    u = 2 * np.cos(rate / 40 * t) + 0.02 * rng.standard_normal(ROWS)
+    return recorded(q, u, t)
+
+
+def recorded(q: np.ndarray, u: np.ndarray, t: np.ndarray) -> Run:
+    r = Run("a", Path("a"), "a", {"t": t, "position": q, "effort": u}, period_s=PERIOD_S)
+    r.signals = {c: signal_of(c, c, "", x, 0) for c, x in r.columns.items()}
+    return r
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_sound_record_is_left_as_it_is(tmp_path: Path, seed: int) -> None:
+    r = made(seed)
+    before = {c: x.copy() for c, x in r.columns.items()}
+    repair(r, rig(tmp_path))
+    assert not r.repairs
+    for c, x in before.items():
+        assert np.array_equal(r.columns[c], x), c
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_spikes_are_left_out_and_nothing_else(tmp_path: Path, seed: int) -> None:
+    r = made(seed)
+    at = np.random.default_rng(seed).choice(np.arange(10, ROWS - 10), 6, replace=False)
+    r.columns["effort"][at] += 30.0
+    repair(r, rig(tmp_path))
+    assert set(np.flatnonzero(np.isnan(r.columns["effort"]))) == set(at.tolist())
+    assert [(x.kind, x.channel, x.rows) for x in r.repairs] == [("spike", "effort", 6)]
+
+
+@pytest.mark.parametrize("start", [0.0, 100.0, 359.0])
+def test_a_circle_that_nobody_declared_is_joined(tmp_path: Path, start: float) -> None:
+    t = PERIOD_S * np.arange(ROWS)
+    true = start + 100.0 * t
+    r = recorded(true % 360.0, 2 + 0.02 * np.random.default_rng(1).standard_normal(ROWS), t)
+    repair(r, rig(tmp_path))
+    assert np.diff(r.columns["position"]) == pytest.approx(np.diff(true))
+    (found,) = r.repairs
+    assert (found.kind, found.size) == ("wrap", 360.0)
+    assert found.rows == int(true[-1] // 360.0) - int(true[0] // 360.0)
+
+
+@settings(max_examples=15, deadline=None)
+@given(at=st.integers(300, ROWS - 300), size=st.floats(5.0, 200.0), sign=st.sampled_from([-1.0, 1.0]))
+def test_a_counter_that_lost_its_zero_is_joined(
+    tmp_path_factory: pytest.TempPathFactory, at: int, size: float, sign: float
+) -> None:
+    r = made(3)
+    true = r.columns["position"].copy()
+    r.columns["position"][at:] += sign * size
+    repair(r, rig(tmp_path_factory.mktemp("rig")))
+    assert np.diff(r.columns["position"]) == pytest.approx(np.diff(true), abs=0.5)
+    (found,) = r.repairs
+    assert found.kind == "leap"
+    assert found.size == pytest.approx(sign * size, abs=0.5)
+
+
+def test_an_effort_at_the_end_of_its_range_says_nothing_there(tmp_path: Path) -> None:
+    r = made(4, rate=80.0)
+    clipped = np.clip(r.columns["effort"], -1.5, 1.5)
+    r.columns["effort"] = clipped.copy()
+    repair(r, rig(tmp_path))
+    assert np.array_equal(np.isnan(r.columns["effort"]), np.abs(clipped) == 1.5)
+    assert [x.kind for x in r.repairs] == ["saturation"] * 2
+
+
+def test_frames_that_were_lost_repeat_the_row_before_and_are_left_out(tmp_path: Path) -> None:
+    r = made(5)
+    at = np.array([400, 900, 1500, 2200])  # quick motion there
+    at = at[np.abs(np.gradient(r.columns["position"]))[at] > 0.05]
+    for c in ("position", "effort"):
+        r.columns[c][at] = r.columns[c][at - 1]
+    repair(r, rig(tmp_path))
+    if len(at) >= 3:
+        assert set(np.flatnonzero(np.isnan(r.columns["position"]))) == set(at.tolist())
+        assert "repeat" in [x.kind for x in r.repairs]
+
+
+def test_rows_missing_here_and_there_are_counted(tmp_path: Path) -> None:
+    r = made(6)
+    keep = np.ones(ROWS, dtype=bool)
+    keep[np.arange(100, ROWS, 100)] = False
+    r.columns = {c: x[keep] for c, x in r.columns.items()}
+    repair(r, rig(tmp_path))
+    (found,) = r.repairs
+    assert (found.kind, found.rows) == ("lost", int((~keep).sum()))

@@ -1,0 +1,221 @@
+"""Logs that are no table of numbers, and channels that no column holds as they are."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.balances.balance import problem_of
+from calibration.balances.view import view_of
+from calibration.errors import CalibrationInputError
+from calibration.inputs.logs import read_drive
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.run import Run
+from calibration.look.search import scene_of
+from calibration.names.lines import line, of_stage
+
+STEP_S = 0.01
+ROWS = 300
+T = STEP_S * np.arange(ROWS)
+X = np.sin(T)
+U = np.cos(3.0 * T)
+COLUMNS = """  time: {column: t, unit: s}
+  position: {column: x, unit: rad}
+  effort: {column: u, unit: V}
+"""
+TAIL = "response: {channel: effort, unit: V}\nestimate: [viscous, offset]\n"
+
+
+def read(folder: Path, text: str, columns: str = COLUMNS, more: str = "", name: str = "a.csv") -> Run:
+    (folder / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{TAIL}{more}", encoding="utf-8")
+    (folder / name).write_text(text, encoding="utf-8")
+    return read_drive([folder / name], load_rig(folder / "rig.yaml")).records[0]
+
+
+def rows(*columns: object, head: str = "t,x,u") -> str:
+    return "\n".join([head, *(",".join(map(str, row)) for row in zip(*columns, strict=True))]) + "\n"  # type: ignore[call-overload]
+
+
+@pytest.mark.parametrize(
+    ("form", "stamp"),
+    [
+        ("iso", lambda s: f"2024-10-27T00:59:{s:06.3f}Z"),
+        ("iso", lambda s: f"2024-10-27 02:59:{s:06.3f}+02:00"),
+        ("iso", lambda s: f'"2024-10-27T00:59:{s:06.3f}"'),
+        ("'%d.%m.%Y %H:%M:%S.%f'", lambda s: f"27.10.2024 00:59:{s:06.3f}"),
+    ],
+)
+def test_stamps_in_words_are_seconds(tmp_path: Path, form: str, stamp: object) -> None:
+    columns = COLUMNS.replace("unit: s}", f"unit: s, format: {form}}}")
+    text = rows([stamp(s) for s in T], X, U)  # type: ignore[operator]
+    run = read(tmp_path, text, columns, "wall_time: {from: time}\n")
+    assert run.columns["t"] == pytest.approx(T, abs=1e-6)  # a double since 1970 holds a quarter of a us
+    assert run.raw["t"][0] == 1729990740.0  # date -u -d '2024-10-27 00:59' +%s
+    assert run.columns["position"].tolist() == X.tolist()
+
+
+def test_a_word_that_is_no_stamp_names_its_line(tmp_path: Path) -> None:
+    columns = COLUMNS.replace("unit: s}", "unit: s, format: iso}")
+    with pytest.raises(CalibrationInputError, match=r"a.csv:2: column 't': 'noon' is no stamp of format"):
+        read(tmp_path, rows(["noon", "2024-01-01"], [0, 1], [0, 1]), columns)
+    with pytest.raises(CalibrationInputError, match="is not a number: a stamp"):
+        read(tmp_path, rows(["2024-01-01T00:00:00Z"], [0], [0]))
+    columns = COLUMNS.replace("unit: rad", "unit: rad, format: iso")
+    with pytest.raises(CalibrationInputError, match=r"position\.format: is for time"):
+        read(tmp_path, "", columns)
+
+
+OBJECTS = [{"t": t, "axis": {"x": x}, "u": [0, u], "on": True} for t, x, u in zip(T, X, U, strict=True)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\n".join(json.dumps(o) for o in OBJECTS) + '\n{"t": 3.0, "ax',  # a run that was cut off
+        json.dumps(OBJECTS, indent=1),
+        json.dumps({"t": T.tolist(), "axis.x": X.tolist(), "u.1": U.tolist()}),
+    ],
+    ids=["lines", "list", "lists"],
+)
+def test_json_is_a_table_with_a_column_per_key(tmp_path: Path, text: str) -> None:
+    columns = COLUMNS.replace("column: x", "column: axis.x").replace("column: u", "column: u.1")
+    run = read(tmp_path, text, columns, name="a.jsonl")
+    assert run.columns["position"].tolist() == X.tolist()
+    assert run.columns["effort"].tolist() == U.tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('{"t": 0}\n{"t": \n{"t": 2}\n', r"a.json:2: is not JSON"),
+        ('{"t": [0, 1], "x": [0]}', "lists have different lengths"),
+        ("[]", "no data rows"),
+        ("[1, 2]", "no such column"),
+    ],
+)
+def test_json_that_is_no_table_is_one_clear_line(tmp_path: Path, text: str, says: str) -> None:
+    with pytest.raises(CalibrationInputError, match=says):
+        read(tmp_path, text, name="a.json")
+
+
+LONG = "long: {name: signal, value: value}\n"
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_a_long_table_has_a_clock_per_signal(tmp_path: Path, as_json: bool) -> None:
+    """The position's stamps are kept; the effort, logged 4 ms later at half the rate, is a straight line
+    between its own."""
+    late = T[::2] + 0.004
+    found = [(t, "x", x) for t, x in zip(T, X, strict=True)]
+    found += [(t, "u", 2.0 * t) for t in late if not 1.0 < t < 1.2]
+    found += [(t, "other", 1.0) for t in T[::50]]
+    found.sort()
+    keys = ("t", "signal", "value")
+    text = "\n".join(
+        [json.dumps(dict(zip(keys, row, strict=True))) for row in found]
+        if as_json
+        else [",".join(keys), *(f"{float(t)!r},{name},{float(x)!r}" for t, name, x in found)]
+    )
+    run = read(tmp_path, text, COLUMNS, LONG)
+    assert run.columns["position"].tolist() == X.tolist()
+    inside = (late[0] <= T) & (late[-1] >= T) & ~((T > 0.984) & (T < 1.204))
+    assert run.columns["effort"][inside] == pytest.approx(2.0 * T[inside])
+    assert np.isnan(run.columns["effort"][[0, 110]]).all()  # before its first row, and in its gap
+
+
+def test_a_signal_that_a_long_table_has_not_is_told(tmp_path: Path) -> None:
+    with pytest.raises(CalibrationInputError, match=r"column 'x': has 0 rows; the table has y"):
+        read(tmp_path, "t,signal,value\n0,y,1\n1,y,2\n", COLUMNS, LONG)
+
+
+def test_sign_magnitude_words_are_signed(tmp_path: Path) -> None:
+    size = np.round(200 * U)
+    words = np.where(size < 0, 1024 - size, size).astype(int)
+    columns = COLUMNS.replace("unit: V", "unit: V, scale: 0.5, sign_bit: 10")
+    run = read(tmp_path, rows(T, X, words), columns)
+    assert run.columns["effort"] == pytest.approx(0.5 * size)
+    with pytest.raises(CalibrationInputError, match="is signed already"):
+        read(tmp_path, rows(T, X, size), columns)
+
+
+def test_a_gain_per_file_and_a_load_per_file(tmp_path: Path) -> None:
+    """The effort of a law with a gain per file, and gravity in proportion to what is carried."""
+    columns = COLUMNS.replace("unit: V", "unit: V, files: {low*: 100, high: 250}", 1)
+    columns += "  load: {files: {low*: 0.5, high: 2}, unit: kg}\n"
+    (tmp_path / "rig.yaml").write_text(
+        f"rig: r\ncolumns:\n{columns}{TAIL.replace('viscous', 'gravity')}", encoding="utf-8"
+    )
+    rig = load_rig(tmp_path / "rig.yaml")
+    for name in ("low1", "high", "other"):
+        (tmp_path / f"{name}.csv").write_text(rows(T, X, U), encoding="utf-8")
+    drive = read_drive([tmp_path / "low1.csv", tmp_path / "high.csv"], rig)
+    assert [r.columns["effort"][7] / U[7] for r in drive.records] == pytest.approx([100, 250])
+    view = view_of(drive.records, rig, rig.responses[0])
+    p = problem_of(view, drive.records, [])
+    gravity = p.base[:, p.place("gravity_cos")]
+    assert gravity == pytest.approx(np.where(p.session == 0, 0.5, 2.0) * np.cos(view.x[view.rows]), abs=1e-3)
+    with pytest.raises(CalibrationInputError, match="'files' has no number for other"):
+        read_drive([tmp_path / "other.csv"], rig)
+
+
+def test_another_joints_angle_turns_gravity(tmp_path: Path) -> None:
+    columns = COLUMNS + "  joint: {column: q2, unit: rad}\n"
+    more = TAIL.replace("viscous", "gravity")
+    (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{more}", encoding="utf-8")
+    other = 0.7 * np.sin(2.3 * T)
+    effort = 5.0 * np.sin(X + other) + 2.0 * np.cos(X) + 0.1
+    (tmp_path / "a.csv").write_text(rows(T, X, effort, other, head="t,x,u,q2"), encoding="utf-8")
+    rig = load_rig(tmp_path / "rig.yaml")
+    records = read_drive([tmp_path / "a.csv"], rig).records
+    p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
+    found, left = p.plain_fit(p.train)
+    sizes = [found[k] for k in ("gravity_sin_joint", "gravity_cos", "gravity_cos_joint", "gravity_sin")]
+    assert sizes == pytest.approx([5.0, 2.0, 0.0, 0.0], abs=0.05)  # what the filter takes off the sines
+    assert np.std(left[p.train]) < 0.01
+
+
+def test_a_speed_alone_has_a_position_and_a_torque_alone_one_of_a_known_speed(tmp_path: Path) -> None:
+    columns = COLUMNS.replace("column: x, unit: rad", "column: x, unit: turn, scale: 0.5, integrated: true")
+    run = read(tmp_path, rows(T, np.cos(T), U), columns)
+    assert run.columns["position"] == pytest.approx(0.5 * np.sin(T), abs=1e-5)  # trapezoids: step^2 / 12
+    columns = COLUMNS.replace("column: x, unit: rad", "steps: [[0, 3.0]], unit: turn, integrated: true")
+    run = read(tmp_path, rows(T, U, head="t,u"), columns)
+    assert run.columns["position"] == pytest.approx(3.0 * T)
+
+
+def test_a_step_that_no_column_holds_is_an_input(tmp_path: Path) -> None:
+    columns = COLUMNS + "  reference: {steps: [[0.5, 2.0], [1.0, -1.0]], unit: rad}\n"
+    run = read(tmp_path, rows(T, X, U), columns)
+    assert run.columns["reference"][[0, 49, 50, 99, 100, -1]].tolist() == [0.0, 0.0, 2.0, 2.0, -1.0, -1.0]
+    with pytest.raises(CalibrationInputError, match="must be in the order of their times"):
+        read(tmp_path, rows(T, X, U), columns.replace("0.5", "1.5"))
+
+
+def test_only_the_harmonics_of_a_list_are_looked_for(tmp_path: Path) -> None:
+    stages = "stages:\n- {name: a, period: 1, harmonics: [2, 24, 60]}\n- {name: b, period: 2, harmonics: 3}\n"
+    turning = np.arange(4000) * STEP_S
+    text = rows(turning, 0.5 * turning, np.random.default_rng(1).standard_normal(4000))
+    run = read(tmp_path, text, more=stages)
+    rig = load_rig(tmp_path / "rig.yaml")
+    view = view_of([run], rig, rig.responses[0])
+    scene = scene_of(view, problem_of(view, [run], []))
+    a, b = (
+        {c.harmonic for c in of_stage(scene, stage, line(scene, "gear_mesh", 0.0))} for stage in rig.stages
+    )
+    assert (a, b) == ({2, 24, 60}, {1, 2, 3})
+
+
+@pytest.mark.parametrize(
+    ("columns", "says"),
+    [
+        (
+            COLUMNS.replace("column: x, ", ""),
+            "position: 'column' is missing; without one give files",
+        ),
+        (COLUMNS + "  load: {column: m, unit: kg}\n", "act through gravity; add it to estimate"),
+    ],
+)
+def test_what_a_column_lacks_is_one_line(tmp_path: Path, columns: str, says: str) -> None:
+    with pytest.raises(CalibrationInputError, match=says):
+        read(tmp_path, rows(T, X, U), columns)

@@ -1,0 +1,80 @@
+"""What is said of a balance, whatever drive it is of."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from calibration.decide.residual import Place
+from calibration.decide.select import select
+from calibration.decide.selection import Selection
+from calibration.finding import Finding, Parameter
+from calibration.look.looked import Balance, Looked, Missing, calibrated, missing_over, unnamed_where_missing
+from tests.calibration.decide import made
+
+ROWS = 4000
+TURNS = np.linspace(0.0, 37.0, ROWS) % 1.0
+
+
+def selection(y: np.ndarray) -> Selection:
+    """Of a constant and a term that the log has nothing of; nothing is offered."""
+    base = np.column_stack([np.ones(ROWS), np.zeros(ROWS)])
+    return select(made.problem(y, base), [], np.random.default_rng(0))
+
+
+@pytest.fixture(scope="module")
+def quiet() -> Selection:
+    return selection(np.random.default_rng(1).standard_normal(ROWS))
+
+
+@pytest.fixture(scope="module")
+def turning() -> Selection:
+    """Something once a turn, eight times the noise."""
+    noise = np.random.default_rng(1).standard_normal(ROWS)
+    return selection(noise + 8.0 * np.sign(TURNS - 0.3))
+
+
+def balance(s: Selection, floor: float | None = 1.0, **more: object) -> Balance:
+    return Balance(key="T", row="torque", selection=s, floor=floor, **more)  # type: ignore[arg-type]
+
+
+def test_what_is_above_its_floor_lives_where_one_domain_shows_it(
+    quiet: Selection, turning: Selection
+) -> None:
+    places = [Place("the turn of a wheel", "axis_angle", TURNS), Place("time", "time", turning.problem.t)]
+    assert missing_over(balance(quiet), places) is None
+    assert missing_over(balance(turning, floor=None), places) is None
+    found = missing_over(balance(turning), places)
+    assert found is not None and found.effect and found.domain == "axis_angle"
+    assert found.times > 5.0 and "over the turn of a wheel" in found.text
+    nowhere = missing_over(balance(turning), [])
+    assert nowhere is not None and nowhere.domain is None and nowhere.where == "not looked for"
+
+
+def missing(times: float, domain: str | None, effect: bool = True) -> Missing:
+    return Missing(channel="T", row="torque", times=times, where="somewhere", domain=domain, effect=effect)
+
+
+def test_a_large_residual_without_a_name_is_unknown_or_a_need(quiet: Selection) -> None:
+    somewhere = [replace(balance(quiet), missing=missing(9.0, "time"))]
+    effects, needs = unnamed_where_missing([], [], somewhere)
+    assert [(f.name, f.domain) for f in effects] == [("unknown", "time")] and len(needs) == 1
+    assert unnamed_where_missing([], ["a longer log"], somewhere)[0] == []
+    named = [Finding("brake_drag", "T", "time")]
+    assert unnamed_where_missing(named, [], somewhere)[0] == named
+    small = [replace(balance(quiet), missing=missing(3.0, "time", effect=False))]
+    assert unnamed_where_missing([], [], small) == ([], [])
+
+
+def test_a_number_that_the_log_has_nothing_of_is_not_calibrated(quiet: Selection) -> None:
+    assert list(calibrated(quiet)) == ["term_0"] and calibrated(quiet, ("term_0",)) == {}
+
+
+def test_a_drive_says_what_its_balances_say(quiet: Selection) -> None:
+    one = balance(quiet, numbers={"coulomb": Parameter(1.0, "N m")}, remarks=["the offset wanders"])
+    two = replace(
+        one, key="E", row="electrical", numbers={}, remarks=[], missing=missing(3.0, None, effect=False)
+    )
+    found = Looked(title="a drive", balances=[one, two], remarks=["a leap"], not_identifiable=["sigma_1"])
+    assert list(found.calibrated) == ["coulomb"] and found.unsure == ["sigma_1"]
+    assert found.said[:2] == ["a leap", "the offset wanders"] and "still missing in torque" in found.said[2]

@@ -1,0 +1,85 @@
+"""Logs at one speed, speeds that are explained, responses of few values, rests between runs, late sensors."""
+
+from pathlib import Path
+
+import numpy as np
+
+from tests.calibration.test_drives import answer, found
+
+MOTOR = """rig: motor at one speed
+columns:
+  time: {column: t, unit: s}
+  position: {column: x, unit: turn}
+  CHANNEL: {column: u, unit: UNIT}
+response: {channel: CHANNEL, unit: UNIT}
+estimate: [offset]
+stages:
+  - {name: motor, period: 1, harmonics: 12, kind: motor_cogging}
+"""
+TORQUE = MOTOR.replace("CHANNEL", "force").replace("UNIT", "N m")
+SPEED = MOTOR.replace("CHANNEL", "velocity").replace("UNIT", "rpm")
+LATE = """rig: encoder against its command
+columns:
+  time: {column: t, unit: s}
+  position: {column: x, unit: rad}
+  position2: {column: u, unit: rad}
+response: {channel: position2, unit: rad}
+"""
+
+
+def steady(wobble: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """t s, turns at 1 turn/s with a slow wobble of the speed, and noise."""
+    t = np.arange(0, 20, 0.002)
+    x = t + wobble * np.sin(2 * np.pi * t / 7.3)
+    return t, x, 0.05 * np.random.default_rng(3).standard_normal(len(t))
+
+
+def test_at_one_speed_a_stage_is_first_and_the_clock_is_in_its_class(tmp_path: Path) -> None:
+    t, x, e = steady()
+    data = answer(tmp_path, TORQUE, (t, x, e + np.sin(2 * np.pi * 6 * x)))
+    first = data["effects"][0]
+    assert (first["name"], first["harmonic"]) == ("motor_cogging", 6)
+    assert "command_disturbance" in first["equivalent"] and data["verdict"] == "ambiguous"
+
+
+def test_at_two_speeds_each_of_the_two_is_alone(tmp_path: Path) -> None:
+    t, x, e = steady(0.6)
+    place = answer(tmp_path, TORQUE, (t, x, e + np.sin(2 * np.pi * 6 * x)))
+    assert (place["effects"][0]["name"], place["effects"][0]["equivalent"]) == ("motor_cogging", [])
+    clock = answer(tmp_path, TORQUE, (t, x, e + np.sin(2 * np.pi * 6 * t)))
+    assert clock["effects"][0]["name"] == "command_disturbance"
+
+
+def test_a_speed_is_explained_by_lines_and_by_nothing_else(tmp_path: Path) -> None:
+    t, x, e = steady(0.1)
+    data = answer(tmp_path, SPEED, (t, x, 60.0 + e + 2 * np.sin(2 * np.pi * 6 * x)))
+    assert {(f["name"], f["harmonic"]) for f in data["effects"]} == {("motor_cogging", 6)}
+
+
+def test_an_effort_of_two_values_is_no_balance(tmp_path: Path) -> None:
+    t, x, _ = steady(0.6)
+    rig = TORQUE.replace("[offset]", "[inertia, viscous, coulomb, offset]")
+    data = answer(tmp_path, rig, (t, x, np.where(t > 10, -0.04, -0.03)))
+    assert data["verdict"] == "cannot tell" and found(data) == []
+    assert "holds 2 values" in data["separating_experiment"]
+
+
+def test_a_sensor_that_is_late_by_many_rows_is_late_by_that(tmp_path: Path) -> None:
+    t = np.arange(0, 60, 0.02)
+    x = np.sin(0.9 * t) + 0.4 * np.sin(2.3 * t + 1)
+    late = np.sin(0.9 * (t - 0.14)) + 0.4 * np.sin(2.3 * (t - 0.14) + 1)
+    noise = 1e-3 * np.random.default_rng(5).standard_normal(len(t))
+    data = answer(tmp_path, LATE, (t, x, 0.8 * late + noise))
+    (one,) = data["effects"]
+    assert one["name"] == "channel_delay"
+    assert abs(one["parameters"]["delay"]["value"] - 0.14) < 0.005
+
+
+def test_a_rest_between_two_runs_is_no_lost_row(tmp_path: Path) -> None:
+    t = np.concatenate([k * 12.0 + np.arange(0, 6, 0.02) for k in range(10)])
+    x = np.sin(0.9 * t) + 0.4 * np.sin(2.3 * t + 1)
+    noise = 1e-3 * np.random.default_rng(6).standard_normal(len(t))
+    rig = LATE.replace("response:", "runs: {by: column, column: run}\nresponse:")
+    run = np.repeat(np.arange(10), 300)
+    data = answer(tmp_path, rig, (t, x, 0.8 * x + noise, run), header="t,x,u,run")
+    assert found(data) == []

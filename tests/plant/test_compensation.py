@@ -1,0 +1,125 @@
+"""compensation.yaml: the wave that cancels a wave, from the drive's arithmetic by hand; and what reads it."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boards.axis.compensator import Compensator
+from bus.protocol import HARMONICS
+from plant import compensation as written
+from plant.gears import ORDERS, RATIO
+from plant.model import Number, load, with_effects
+from plant.parts import EffectModel, PlantModel
+from plant.units import ARCSEC
+from scenarios.language import compensation as read
+from scenarios.language.document import ScenarioError
+from scenarios.language.firmware import COUNTER_BIAS
+
+HEAD = "format: schmidt-compensation 1\naxis: ra\nfriction: {steps: 1, travel_arcsec: 1}\n"
+
+
+@pytest.fixture(scope="module")
+def low() -> PlantModel:
+    return load("low_preload_motor_units")
+
+
+def per_step(model: PlantModel) -> float:
+    """N m at the axis that one PWM step of effort gives, with the counter torque taken off, by hand."""
+    motor = model.axes.ra.motor
+    ohm = motor.resistance.si + 0.085 + 0.1
+    return 24.0 / 3000 / ohm * motor.torque_constant.si * (113 / 27 * 123 / 21 * 250 / 17) * 0.9
+
+
+def test_both_sides_agree_on_what_they_cannot_share() -> None:
+    assert written.FORMAT == read.FORMAT
+    assert written.LINES == HARMONICS
+    assert written.BIAS_STEPS == COUNTER_BIAS
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.7, -2.1])
+def test_the_board_pushes_against_the_torque(low: PlantModel, tmp_path: Path, phase: float) -> None:
+    parameters = {"amplitude": Number(5.0, "N m", ""), "phase": Number(phase, "rad", "")}
+    model = with_effects(low, "ra", (EffectModel("gear_mesh", "mesh2", 1, parameters),))
+    written.write(tmp_path / "c.yaml", model, "ra")
+    board = Compensator()
+    table = read.load(tmp_path / "c.yaml")
+    for k, line in enumerate(table.lines):
+        board.orders_q16[k] = round(line.order * 65536)
+        board.cosines_q8[k], board.sines_q8[k] = round(line.cosine * 256), round(line.sine * 256)
+    board.refresh()
+    for position in range(1 << 27, 1 << 28, 12_345_679):
+        torque = 5.0 * math.sin(ORDERS["mesh2"] * position / 2**29 * 2 * math.pi + phase)
+        push = board.effort_q16(position, 0, 0) / 65536 * per_step(model)
+        assert push == pytest.approx(-torque, abs=0.05)  # 1 % of the wave
+
+
+def test_cogging_of_both_motors_is_one_wave_of_the_axis(low: PlantModel) -> None:
+    parameters = {"cycles": Number(20.0, "1", ""), "amplitude": Number(0.02, "N m", "")}
+    model = with_effects(low, "ra", (EffectModel("motor_cogging", parameters=parameters),))
+    (row,), _ = written.lines(model, "ra")
+    assert row["order"] == pytest.approx(20 * RATIO)
+    drive = written.drive_of(model, model.axes.ra)
+    # two equal waves, apart by the angle between the motors: 2 A cos(half of it)
+    apart = 20 * RATIO * (drive.motors[0] - drive.motors[1])
+    assert row["torque_Nm"] == pytest.approx(2 * 0.02 * RATIO * abs(math.cos(apart / 2)), abs=1e-3)
+
+
+def test_the_drive_turns_friction_within_the_bristles_travel(low: PlantModel) -> None:
+    f = low.axes.ra.friction
+    rate = 15.041 * ARCSEC
+    level = f.coulomb.si + (f.stiction.si - f.coulomb.si) * math.exp(
+        -((rate / f.stribeck_rate.si) ** f.stribeck_exponent.si)
+    )
+    drive = written.drive_of(low, low.axes.ra)
+    assert drive.per_step == pytest.approx(per_step(low), rel=1e-6)
+    assert drive.friction == pytest.approx(level + f.viscous.si * rate, rel=1e-6)
+    assert drive.travel == pytest.approx(level / f.bristle_stiffness.si, rel=1e-6)
+
+
+def test_what_is_no_wave_is_said(low: PlantModel, tmp_path: Path) -> None:
+    model = with_effects(low, "ra", (EffectModel("wind_torque"), EffectModel("damaged_tooth", "mesh1")))
+    left = written.write(tmp_path / "c.yaml", model, "ra")
+    assert len(left) == 2
+    assert left[0].startswith("wind_torque")
+    assert read.load(tmp_path / "c.yaml").lines == ()
+
+
+def test_a_wrong_table_is_wrong_by_what_was_asked(low: PlantModel, tmp_path: Path) -> None:
+    written.write(tmp_path / "c.yaml", low, "ra")
+    table = read.load(tmp_path / "c.yaml")
+    for line, wrong in zip(table.lines, table.wrong(0.8, 0.2).lines, strict=True):
+        before, after = complex(line.cosine, -line.sine), complex(wrong.cosine, -wrong.sine)
+        assert abs(after / before) == pytest.approx(0.8)
+        assert abs(np.angle(after / before)) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("format: other", "format"),
+        ("format: schmidt-compensation 1\naxis: ra", "field 'friction' is missing"),
+        (HEAD.replace("ra", "x"), "axis: 'x' is not known"),
+        (HEAD.replace("travel", "way"), "friction: field 'travel_arcsec' is missing"),
+        (HEAD + "lines: [{order: 1}]", "lines.0: field 'cosine_steps' is missing"),
+        (HEAD + "lines: [{order: -1, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: -1 is out of range"),
+        (HEAD + "lines: [{order: .nan, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: nan"),
+        ("[", "not YAML"),
+    ],
+)  # fmt: skip
+def test_a_bad_file_is_one_clear_line(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "c.yaml"
+    file.write_text(text)
+    with pytest.raises(ScenarioError, match=message) as caught:
+        read.load(file)
+    assert "\n" not in str(caught.value)
+    assert str(file) in str(caught.value)
+
+
+def test_a_table_that_is_half_loaded_never_acts(low: PlantModel, tmp_path: Path) -> None:
+    written.write(tmp_path / "c.yaml", low, "ra")
+    rows = read.load(tmp_path / "c.yaml").parameters()
+    assert rows[0] == (13, 0)
+    assert rows[-1] == (13, 1)
+    assert len(rows) == len(set(rows)) == 28

@@ -1,0 +1,176 @@
+"""Recordings for other tools: a run's frames in their formats, a run as MCAP, columns back from both."""
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import can
+import numpy as np
+import pytest
+from pyarrow import parquet
+
+from calibration.errors import CalibrationInputError
+from calibration.inputs.recordings import read_mcap, read_mf4
+from scenarios.commands import exporting, parts
+from scenarios.lab.prepare import prepare
+from scenarios.run import run as runner
+from scenarios.run.mcapfile import export
+from scenarios.run.sources import Entry, Source, _of_summary
+
+SCENARIO = """name: recorded
+plant: low-preload
+start_utc: 2026-02-10T14:00:00Z
+steps:
+  - power_on: {}
+  - set_rate: {axis: ra, rate: 100 arcsec/s, for: 1 s}
+faults:
+  - node_off: {node: MOTOR_DEC_A}
+    at: 1.5 s
+    until: 2 s
+"""
+START_S = 1770732000.0
+"""2026-02-10T14:00:00Z in seconds since 1970: `date -d 2026-02-10T14:00:00Z +%s`."""
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The same run with each kind of log."""
+    found = {}
+    for kind in ("text", "candump", "zstd", "mf4", "blf", "asc"):
+        folder = tmp_path_factory.mktemp(kind)
+        (folder / "s.yaml").write_text(SCENARIO + f"logs: {{can: {kind}}}\n")
+        result = runner.run(
+            *prepare(folder / "s.yaml"), folder / "out", lambda *_: None, runner.Way(report=False)
+        )
+        assert result.passed
+        found[kind] = folder / "out"
+    return found
+
+
+def digest(folder: Path) -> str:
+    return str(json.loads((folder / "summary.json").read_text())["trace_digest"])
+
+
+@pytest.mark.parametrize("kind", ["mf4", "blf", "asc"])
+def test_the_frames_are_those_of_the_text_log(folders: dict[str, Path], kind: str) -> None:
+    with can.LogReader(str(folders["text"] / "can.log")) as log:
+        plain = list(log)
+    with can.LogReader(str(folders[kind] / f"can.{kind}")) as log:
+        other = list(log)
+    assert [(m.arbitration_id, bytes(m.data)) for m in other] == [
+        (m.arbitration_id, bytes(m.data)) for m in plain
+    ]
+    late = np.array([m.timestamp for m in other]) - [m.timestamp for m in plain]
+    # asc counts from its first frame, whose own time its head gives in whole milliseconds of local time
+    assert np.ptp(late) < 1.1e-5 if kind == "blf" else np.ptp(late) < 2e-6
+    if kind == "mf4":
+        assert abs(late[0] - START_S) < 1e-3
+    assert (folders[kind] / "can.log").read_bytes() == (folders["text"] / "can.log").read_bytes()
+
+
+def test_the_digest_is_the_same_whatever_the_format(folders: dict[str, Path]) -> None:
+    assert len({digest(folder) for folder in folders.values()}) == 1
+
+
+def messages(file: Path) -> dict[str, list[tuple[int, dict[str, Any]]]]:
+    from mcap.reader import make_reader
+
+    found: dict[str, list[tuple[int, dict[str, Any]]]] = {}
+    with file.open("rb") as stream:
+        for schema, channel, message in make_reader(stream).iter_messages():
+            assert schema is not None
+            assert schema.encoding == "jsonschema"
+            content = json.loads(message.data)
+            assert set(content) <= set(json.loads(schema.data)["properties"]), channel.topic
+            found.setdefault(channel.topic, []).append((message.log_time, content))
+    return found
+
+
+def test_a_run_is_one_mcap_file(folders: dict[str, Path], tmp_path: Path) -> None:
+    file = tmp_path / "night.mcap"
+    count = export(folders["text"], file)
+    found = messages(file)
+    assert sum(map(len, found.values())) == count
+    frames = Counter(m.arbitration_id for m in can.LogReader(str(folders["text"] / "can.log")))
+    assert len(found["/can/AXIS_RA/MOTION"]) == frames[0x211]
+    assert sum(len(each) for topic, each in found.items() if topic.startswith("/can/")) == sum(
+        frames.values()
+    )
+    truth = parquet.read_table(folders["text"] / "truth-ra.parquet")
+    assert [row["angle"] for _, row in found["/truth/ra"]] == truth["angle"].to_pylist()
+    first = found["/truth/ra"][0]
+    assert first[0] == round(START_S) * 1_000_000_000 + round(truth["t_s"][0].as_py() * 1e9)
+    log = (folders["text"] / "axis-ra.csv").read_text().splitlines()
+    assert len(found["/axis/ra"]) == sum(line[0].isdigit() for line in log)
+    summary = json.loads((folders["text"] / "summary.json").read_text())
+    assert [row for _, row in found["/verdicts"]] == summary["expectations"]
+    assert [row["action"] for _, row in found["/steps"]] == ["power_on", "set_rate"]
+    assert found["/commands"][0][1]["command"] == "PING"
+    packed = tmp_path / "packed.mcap"
+    assert export(folders["zstd"], packed) == count
+
+
+def test_a_fault_stands_where_it_first_acted() -> None:
+    acted = {"name": "node_off", "at_s": 1.0, "first_s": 1.5, "on": "frame 334#34"}
+    never = {"name": "node_off", "at_s": 2.0, "first_s": None, "on": ""}
+    summary = {"simulated_s": 3.0, "steps": [], "expectations": [], "faults": [never, acted]}
+    faults = list(_of_summary(summary)[1])
+    source = Source("/faults", {word: {} for word in acted})
+    assert [(each.t_ns, each.values) for each in faults] == [(1_500_000_000, acted), (2_000_000_000, never)]
+    assert faults[0] == Entry(1_500_000_000, source, acted)
+
+
+def test_columns_come_back_from_mcap(folders: dict[str, Path], tmp_path: Path) -> None:
+    file = tmp_path / "night.mcap"
+    export(folders["text"], file)
+    wanted = ["time", "/axis/ra.position", "/axis/ra.t", "/can/AXIS_RA/MOTION.Velocity"]
+    (got,) = read_mcap(file, wanted)
+    rows = [line.split(",") for line in (folders["text"] / "axis-ra.csv").read_text().splitlines()]
+    numbers = np.array([[float(row[0]), float(row[3])] for row in rows if row[0][0].isdigit()])
+    np.testing.assert_array_equal(got["/axis/ra.position"], numbers[:, 1])
+    np.testing.assert_allclose(got["time"], numbers[:, 0] - numbers[0, 0], atol=1e-9)
+    found = messages(file)
+    motion = [(at, row["Velocity"]) for at, row in found["/can/AXIS_RA/MOTION"]]
+    held = [[v for at, v in motion if at <= row_at][-1:] or [np.nan] for row_at, _ in found["/axis/ra"]]
+    assert len({v for (v,) in held}) > 10
+    np.testing.assert_array_equal(got["/can/AXIS_RA/MOTION.Velocity"], np.ravel(held))
+    with pytest.raises(CalibrationInputError, match=r"/axis/ra.speed.*is not in the file"):
+        read_mcap(file, ["/axis/ra.speed"])
+    (tmp_path / "none.mcap").write_bytes(b"not one")
+    with pytest.raises(CalibrationInputError, match="no MCAP file"):
+        read_mcap(tmp_path / "none.mcap", wanted)
+
+
+def test_columns_come_back_from_mf4(tmp_path: Path) -> None:
+    from asammdf import MDF, Signal
+
+    t = np.arange(0.0, 2.0, 0.01)
+    fast = Signal(np.sin(t), t, name="angle")
+    slow = Signal(np.arange(20.0), np.arange(20) * 0.1 + 0.005, name="torque")
+    with MDF() as made:
+        made.append([fast])
+        made.append([slow])
+        made.save(tmp_path / "rig.mf4")
+    (got,) = read_mf4(tmp_path / "rig.mf4", ["time", "angle", "torque"])
+    np.testing.assert_array_equal(got["time"], t)
+    np.testing.assert_array_equal(got["angle"], np.sin(t))
+    assert np.isnan(got["torque"][0])
+    assert got["torque"][[1, 10, 11]].tolist() == [0.0, 0.0, 1.0]
+    with pytest.raises(CalibrationInputError, match=r"speed.*is not in the file, which has angle, torque"):
+        read_mf4(tmp_path / "rig.mf4", ["speed"])
+    (tmp_path / "none.mf4").write_bytes(b"not one")
+    with pytest.raises(CalibrationInputError, match="no MDF file"):
+        read_mf4(tmp_path / "none.mf4", ["angle"])
+
+
+def test_a_part_that_is_missing_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    real = parts.find_spec
+    monkeypatch.setattr(parts, "find_spec", lambda name: None if name in ("mcap", "llvmlite") else real(name))
+    for command, arguments, extra in (
+        (exporting.export, [str(tmp_path), "--mcap", "x.mcap"], "recordings"),
+        (exporting.fmu, ["--axis", "ra", "--out", "x.fmu"], "fmu"),
+    ):
+        with pytest.raises(parts.MissingPart, match=rf"extra {extra}\); .* -m pip install"):
+            command.main(arguments, standalone_mode=False)
+    assert "(extra recordings)" in parts.advice("asammdf")  # calibrate's reader imports it when it is asked

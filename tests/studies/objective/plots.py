@@ -1,0 +1,75 @@
+"""The figures of docs/results/one-arcsecond.md: `python -m tests.studies.objective.plots`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plant.model import load, with_effects
+from plant.parts import EffectModel, PlantModel
+from scenarios.language.firmware import FIRMWARES
+from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
+from scenarios.studies.objective.bench import hold
+from scenarios.studies.objective.cases import EFFECTS, starts
+from tests.studies.objective import observer
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HERE = Path(__file__).parents[3] / "docs" / "results" / "one-arcsecond"
+_SECONDS = 60.0
+_START = starts(0.0)[2]
+_FINE = list(FIRMWARES["fine"].items())
+
+
+def _with(model: PlantModel, *names: str) -> PlantModel:
+    return with_effects(model, "ra", model.axes.ra.effects + tuple(EffectModel(name) for name in names))
+
+
+def low() -> Figure:
+    """The velocity loop at 15.041 arcsec/s: the paper's firmware and the proposed one, two plants."""
+    declared = load("low_preload_motor_units")
+    rows: tuple[tuple[str, PlantModel, list[tuple[int, int]]], ...] = (
+        ("declared plant, the paper's firmware", declared, []),
+        ("declared plant, spread duty alone", declared, _FINE[:1]),
+        ("declared plant, spread duty, lock, blend, bias", declared, _FINE),
+        ("cogging and dead band, spread duty alone", _with(declared, *EFFECTS[::2]), _FINE[:1]),
+        ("all four effects, spread duty, lock, blend, bias", _with(declared, *EFFECTS), _FINE),
+    )
+    figure = new_figure(9.0)
+    for row, (name, model, parameters) in enumerate(rows, 1):
+        held = hold(model, _START, 1, "RATE", parameters, _SECONDS)
+        last = row == len(rows)
+        view = axes(figure, len(rows), 1, row, "time, s" if last else "", "arcsec/s")
+        colour = COLOURS["bad"] if held.peak > 1.0 else COLOURS["ok"]
+        view.plot(*thin(held.t_s - held.t_s[0], held.rate), color=colour, lw=0.6)
+        view.axhspan(-1, 1, color=COLOURS["ok"], alpha=0.08, lw=0)
+        reach = 1.15 * max(1.0, held.peak)
+        view.set_ylim(-reach, reach)
+        title(view, f"{name}: peak {held.peak:.2f} arcsec/s")
+    return figure
+
+
+def high() -> Figure:
+    """High preload: the fine firmware's PI, and the observer."""
+    model = load("high_preload_motor_units")
+    pi = hold(model, _START, 1, "TRACK", _FINE, _SECONDS)
+    errors = observer.hold(model, observer.design(model), observer.DESIGN_DELAY_S, _SECONDS, _START)
+    figure = new_figure(4.2)
+    time_s = np.arange(len(errors)) * observer.TICK_S
+    for row, (name, t_s, rate) in enumerate(
+        (("PI with the fine firmware", pi.t_s - pi.t_s[0], pi.rate), ("state observer", time_s, errors)), 1
+    ):
+        view = axes(figure, 2, 1, row, "time, s" if row == 2 else "", "arcsec/s")
+        peak = float(np.abs(rate).max())
+        view.plot(*thin(t_s, rate), color=COLOURS["ok" if peak <= 1.0 else "bad"], lw=0.6)
+        title(view, f"high preload, {name}: peak {peak:.2f} arcsec/s")
+    return figure
+
+
+if __name__ == "__main__":
+    HERE.mkdir(parents=True, exist_ok=True)
+    for name, draw in (("low", low), ("high", high)):
+        draw().savefig(HERE / f"{name}.png")

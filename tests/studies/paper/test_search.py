@@ -1,0 +1,240 @@
+import numpy as np
+import pytest
+
+from plant.model import load
+from scenarios.studies.paper.experiments import Limit
+from scenarios.studies.paper.published import INERTIA, TABLE_2
+from scenarios.studies.paper.scales import GEAR_RATIO
+from scenarios.studies.paper.starts import QUICK, Benches
+from tests.studies.paper.compiled import CompiledBench
+from tests.studies.paper.cost import Term, cost, worst
+from tests.studies.paper.objective import WORSE, Objective
+from tests.studies.paper.search import BATCH, POPULATION, population, search
+from tests.studies.paper.space import SPACE, bounds, models, values, vector
+from tests.studies.paper.statics import (
+    linear_effort,
+    low_speed_margin,
+    shortfalls,
+    shortfalls_of,
+    stribeck_slope,
+)
+from tests.studies.paper.together import Point, price, pricer
+
+BASES = {"low": load("low_preload"), "high": load("high_preload")}
+DRIVE = {
+    "bristle_stiffness": 8e6,
+    "stiffness_ratio": 3.0,
+    "bristle_damping": 0.5,
+    "exponent": 1.0,
+    "torque_constant": 0.65,
+    "resistance": 1.6,
+    "electrical_time": 1e-3,
+    "rotor_inertia": 4e-4,
+    "gear_damping": 9e3,
+    "kp": 0.3,
+    "ki": 0.02,
+    "twice": 10.0,
+    "once": 2.0,
+    "mesh": 3.0,
+    "imbalance": 30.0,
+}
+
+
+def test_a_vector_and_its_values_are_each_others_inverse():
+    assert values(vector(DRIVE)) == pytest.approx(DRIVE)
+
+
+def test_both_preloads_share_the_drive_and_the_controller_and_keep_table_2():
+    found = models(BASES, DRIVE, "test")
+    low, high = found["low"], found["high"]
+    assert low.controller == high.controller
+    assert low.axes.ra.motor == high.axes.ra.motor
+    assert low.axes.ra.effects == high.axes.ra.effects
+    for preload, model in found.items():
+        friction = model.axes.ra.friction
+        assert friction.coulomb.si == TABLE_2[preload]["coulomb"]
+        assert friction.stiction.si == TABLE_2[preload]["stiction"]
+        assert friction.viscous.si == TABLE_2[preload]["viscous"]
+        total = model.axes.ra.inertia.si + 2.0 * model.axes.ra.motor.rotor_inertia.si * GEAR_RATIO**2
+        assert total == pytest.approx(INERTIA, abs=0.1)
+
+
+def test_every_fitted_number_says_where_it_comes_from():
+    model = models(BASES, DRIVE, "fitted by a test")["low"]
+    assert model.axes.ra.motor.torque_constant.source == "fitted by a test"
+    assert model.axes.ra.friction.coulomb.source != "fitted by a test"
+
+
+def test_stribeck_slope_is_the_derivative_of_the_curve():
+    for exponent in (0.5, 1.0, 2.0):
+        w, h = 3e-4, 1e-9
+        drop = [392.0 * np.exp(-((v / 4e-4) ** exponent)) for v in (w - h, w + h)]
+        assert stribeck_slope(w, exponent, 392.0, 4e-4) == pytest.approx(
+            (drop[0] - drop[1]) / (2 * h), rel=1e-3
+        )
+
+
+def test_E6_a_steady_100_arcsec_per_s_wants_more_damping_than_friction_falls():
+    strong = DRIVE | {"torque_constant": 1.2, "resistance": 0.4}
+    assert low_speed_margin(DRIVE, 1.0) < 1.0 < low_speed_margin(strong, 1.0 / 2.774)
+
+
+def _feasible(scale, diode):
+    """A hundred thousand points of the space, those that pass the statics."""
+    low, high = np.array(bounds()).T
+    x = np.exp(low + (high - low) * np.random.default_rng(1).random((100_000, low.size)))
+    points = {free.name: x[:, k] for k, free in enumerate(SPACE)}
+    keep = shortfalls_of(points, scale, diode) == 0.0
+    return {name: column[keep] for name, column in points.items()}
+
+
+def _six_ampere(points):
+    return np.abs(24.0 / points["resistance"] - 6.0) <= 0.6
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.0 / 2.774], ids=["printed", "motor"])
+def test_E14_a_drive_of_6_A_cannot_have_freewheel_diodes_and_reach_3_degrees_per_second(scale):
+    assert not _six_ampere(_feasible(scale, diode=True)).any()
+
+
+def test_E14_and_E6_exclude_each_other_without_diodes_too():
+    assert not _six_ampere(_feasible(1.0, diode=False)).any()
+    points = _feasible(1.0 / 2.774, diode=False)
+    six = _six_ampere(points)
+    assert six.sum() > 100
+    assert low_speed_margin(points, 1.0 / 2.774)[six].max() < 0.7  # row E6 wants 1
+
+
+def test_E6_cannot_be_met_as_printed_with_diodes():
+    assert low_speed_margin(_feasible(1.0, diode=True), 1.0).max() < 0.9
+
+
+def test_E9_the_settled_effort_cannot_be_met_with_diodes_and_hardly_without():
+    assert linear_effort(_feasible(1.0, diode=True), 1.0).min() > 1.5
+    assert linear_effort(_feasible(1.0, diode=False), 1.0).min() > 1.2
+    assert linear_effort(_feasible(1.0 / 2.774, diode=True), 1.0 / 2.774).min() > 1.25
+    assert linear_effort(_feasible(1.0 / 2.774, diode=False), 1.0 / 2.774).min() < 1.2
+
+
+def test_statics_know_a_drive_that_cannot_reach_3_degrees_per_second():
+    assert shortfalls(DRIVE)["reaches 3 deg/s at 24 V"] == 0.0
+    assert shortfalls(DRIVE | {"torque_constant": 1.24})["reaches 3 deg/s at 24 V"] > 0.0
+
+
+def test_a_freewheel_diode_takes_the_voltage_of_both_motors():
+    assert shortfalls(DRIVE, diode=True)["reaches 3 deg/s at 24 V"] > 0.0
+    assert (
+        shortfalls(DRIVE | {"torque_constant": 0.5, "resistance": 0.4}, diode=True)["reaches 3 deg/s at 24 V"]
+        == 0.0
+    )
+    plants = models(BASES, DRIVE, "test", diode=True)
+    assert [effect.name for effect in plants["low"].axes.ra.effects][-1] == "diode_braking"
+
+
+def test_a_missed_row_costs_one_and_up_to_as_much_again():
+    assert Term("E1", "peak", 20.0, -1.0, 0.0).cost == 0.0
+    assert Term("E1", "peak", 25.1, 0.01, 0.003).cost == pytest.approx(1.003)
+    assert Term("E1", "peak", 1e6, 1e6, 1.0).cost == 2.0
+
+
+def test_every_limit_and_every_start_counts_for_what_a_missed_row_costs():
+    class Twice:
+        """Misses one limit of two by 1.5 scales, half of what counts at most, at every second bench."""
+
+        id, limits = (
+            "X",
+            (
+                Limit(figure="a", unit="1", low=0.0, high=1.0, words="a", scale=2.0),
+                Limit(figure="b", unit="1", low=0.0, high=1.0, words="b", scale=2.0),
+            ),
+        )
+
+        def __init__(self):
+            self.calls = 0
+
+        def measure(self, bench):
+            self.calls += 1
+            return {"a": 0.5, "b": 4.0 if self.calls % 2 else 0.5}
+
+    found = worst(Twice(), [None] * 4)
+    assert (found.figure, found.value, found.excess) == ("b", 4.0, 1.5)
+    assert found.cost == pytest.approx(1.0 + 0.5 * 0.5 * 0.5)
+
+
+def test_a_point_that_is_hopeless_is_left_early():
+    plants = models(BASES, DRIVE | {"kp": 9.0, "ki": 1.0}, "test")
+    benches = [Benches(CompiledBench, plants, QUICK[0])]
+    total, found = cost(benches, stop_at=1.0)
+    assert total > 90.0
+    assert len(found) < 12
+
+
+def test_a_first_population_passes_the_statics_and_keeps_to_the_bounds():
+    objective = Objective("motor", True, QUICK, 10, lambda text: None)
+    low, high = np.array(bounds()).T
+    first = population(objective, 3)
+    assert len(first) >= 5
+    assert (first >= low - 1e-12).all() and (first <= high + 1e-12).all()
+    assert all(objective.shortfall(x) == 0.0 for x in first)
+
+
+def test_short_steps_go_downhill_within_the_bounds_and_end_with_their_points(monkeypatch):
+    """The way to a known point of the space, every logarithm counting the same."""
+    goal, begin = vector(DRIVE), np.log([0.5 * (free.low + free.high) for free in SPACE])
+    monkeypatch.setattr("tests.studies.paper.objective.CompiledBench", None)
+    objective = Objective("motor", True, QUICK, 600, lambda text: None)
+    monkeypatch.setattr(objective, "shortfall", lambda x: 0.0)
+    monkeypatch.setattr(objective, "plants", lambda x: x)
+    monkeypatch.setattr(
+        "tests.studies.paper.objective.Benches", lambda _make, x, _start: float(np.sum((x - goal) ** 2))
+    )
+    monkeypatch.setattr("tests.studies.paper.objective.cost", lambda found, *_: (found[0], []))
+    search(objective, (1,), begin)
+    low, high = np.array(bounds()).T
+    assert objective.tried == 600
+    assert objective.best < 0.1 * np.sum((begin - goal) ** 2)
+    assert (objective.best_x >= low).all() and (objective.best_x <= high).all()
+
+
+def distance(point):
+    """What `together.price` would make of a point, if its cost were how far it is from DRIVE."""
+    return float(np.sum((point.plants - vector(DRIVE)) ** 2)), []
+
+
+def test_points_run_together_go_downhill_too_whoever_runs_them(monkeypatch):
+    begin = np.log([0.5 * (free.low + free.high) for free in SPACE])
+    found = []
+    for known in (begin, begin, None):
+        batches = []
+
+        def run(points, batches=batches):
+            batches.append(len(points))
+            return [distance(point) for point in points]
+
+        objective = Objective("motor", True, QUICK, 600, lambda text: None, together=run)
+        monkeypatch.setattr(objective, "shortfall", lambda x: 0.0)
+        monkeypatch.setattr(objective, "plants", lambda x: x)
+        objective.best, objective.best_x = (WORSE, None) if known is None else (distance_of(begin), begin)
+        search(objective, (1,), known)
+        assert objective.tried == 600 == sum(batches)
+        assert objective.best < 0.5 * distance_of(begin)
+        found.append((objective.best, tuple(objective.best_x), max(batches)))
+    assert found[0] == found[1], "seeded"
+    assert found[0][2] == BATCH and found[2][2] == POPULATION
+
+
+def distance_of(x):
+    return float(np.sum((x - vector(DRIVE)) ** 2))
+
+
+def test_a_batch_gives_costs_in_its_order_and_says_which_point_failed():
+    plants = models(BASES, DRIVE | {"kp": 9.0, "ki": 1.0}, "test")
+    points = [Point(plants, QUICK[:1], stop_at, ()) for stop_at in (0.5, 1.0)]
+    assert [total for total, _ in pricer(2, None)(points)] == [price(point)[0] for point in points]
+    broken = Point({}, QUICK[:1], 1.0, ())
+    with pytest.raises(RuntimeError, match="point 0 of 1: KeyError"):
+        pricer(1, None)([broken])
+
+
+def test_every_free_number_has_bounds_and_a_reason():
+    assert all(0.0 < free.low < free.high and free.why and free.unit for free in SPACE)
