@@ -5,8 +5,6 @@ repeated, with page.py after it, whenever the plant file low_preload changes: th
 takes as declared.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

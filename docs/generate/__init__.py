@@ -1,0 +1,1 @@
+"""Pages of docs/reference that are made from code: each module here makes one."""

@@ -1,0 +1,42 @@
+"""`python -m docs.generate [--check]`: write the pages made from code, or say which differ from it."""
+
+import sys
+from pathlib import Path
+
+from docs.generate import api, commands, effects, fields, parameters
+
+REFERENCE = Path(__file__).parents[1] / "reference"
+PAGES = {
+    "api.md": api.page,
+    "commands.md": commands.page,
+    "effects.md": effects.page,
+    "parameters.md": parameters.page,
+    "rig-fields.md": fields.rig_page,
+    "scenario-fields.md": fields.scenario_page,
+}
+
+
+def stale() -> dict[Path, str]:
+    """File to the text it should have, for those that have another."""
+    made = {REFERENCE / name: page() for name, page in PAGES.items()}
+    return {
+        file: text
+        for file, text in made.items()
+        if not file.exists() or file.read_text(encoding="utf-8") != text
+    }
+
+
+def main(arguments: list[str]) -> int:
+    """Write what has changed, or with --check say what would and return 1."""
+    changed = stale()
+    if "--check" in arguments:
+        for file in changed:
+            print(f"{file}: not what the code says; run python -m docs.generate", file=sys.stderr)
+        return 1 if changed else 0
+    for file, text in changed.items():
+        file.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
