@@ -3,7 +3,6 @@
 import os
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -15,6 +14,7 @@ import pytest
 from tests.docs.guides import GUIDES, Step, run, text_of
 from tests.doors.process import PROGRAM, ROOT
 from tests.host.lx200 import test_indi
+from tests.ports import free_ports
 
 NC = f"""#!{sys.executable}
 # What `nc -w SECONDS HOST PORT` does, for a machine without it.
@@ -36,12 +36,6 @@ def lines(page: str, program: str) -> list[str]:
     return [line.strip() for line in re.findall(rf"^    (.*\b{program} .*)$", text_of(page), re.MULTILINE)]
 
 
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 @pytest.mark.parametrize("page", sorted(path.name for path in GUIDES.glob("*.md")))
 def test_every_guide_is_named_by_a_test(page: str) -> None:
     others = [path for path in (ROOT / "tests").rglob("*.py") if path != Path(__file__)]
@@ -55,7 +49,7 @@ def test_the_line_with_nc_asks_where_the_telescope_points(tmp_path: Path) -> Non
         (tmp_path / "nc").write_text(NC)
         (tmp_path / "nc").chmod(0o755)
     path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
-    port = free_port()
+    port = free_ports()
     served = [sys.executable, "-c", PROGRAM, "serve", "--lx200", str(port), "--duration", "120"]
     here = os.environ | {"PYTHONPATH": str(ROOT), "PATH": path}
     with subprocess.Popen(served, cwd=tmp_path, env=here, stdout=subprocess.PIPE, text=True) as server:

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from tests.docs.guides import text_of, write_files
-from tests.doors.process import PROGRAM, ROOT, free_port
-from tests.doors.test_serial import free_ports
+from tests.doors.process import PROGRAM, ROOT
+from tests.ports import free_ports
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
 
@@ -20,7 +20,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_the_page_does_what_it_says(tmp_path: Path) -> None:
     write_files("stepped-host.md", tmp_path)
-    control, line = free_port(), free_ports(5)
+    control, line = free_ports(), free_ports(5)
     text = text_of("stepped-host.md").replace("7411", str(control)).replace("7501", str(line))
     serve, step, alone, both = re.findall(r"^    ((?:schmidt|cc|JOIN).*)$", text, re.MULTILINE)
     (tmp_path / "bin").mkdir()

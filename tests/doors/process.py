@@ -11,24 +11,19 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from tests.ports import free_ports
+
 ROOT = Path(__file__).parents[2]
 PROGRAM = "from scenarios.cli import main; main()"
 _START_S = 180.0
 """Far beyond what a busy machine needs to compile and start; only a broken server takes as long."""
 
 
-def free_port() -> int:
-    """A TCP port nobody listens on."""
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return int(s.getsockname()[1])
-
-
 class Serving:
     """The process. said: what it printed, whole once it has ended."""
 
     def __init__(self, folder: Path, *words: str) -> None:
-        self.control = free_port()
+        self.control = free_ports()
         self._file = folder / "said.txt"
         self._said = self._file.open("w")
         self.process = subprocess.Popen(
@@ -43,7 +38,10 @@ class Serving:
                 self.ask("status")
                 return self
             except OSError:
-                assert self.process.poll() is None and time.monotonic() < end, self.said
+                if self.process.poll() is not None or time.monotonic() >= end:
+                    self.process.kill()
+                    self.process.wait()
+                    raise AssertionError(self.end()) from None
                 time.sleep(0.1)
 
     def __exit__(
@@ -81,8 +79,11 @@ class Serving:
 
     def end(self) -> str:
         """Stop it; what it said."""
-        if self.process.poll() is None:
-            self.ask("stop")
-        self.process.wait(120)
-        self._said.close()
+        try:
+            if self.process.poll() is None:
+                self.ask("stop")
+            self.process.wait(120)
+        finally:
+            self.process.kill()
+            self._said.close()
         return self.said

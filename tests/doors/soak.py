@@ -21,7 +21,8 @@ from threading import Thread
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE, Device, Opcode, Result
 from bus.protocol.reply import Reply, unpack_reply
 from bus.protocol.report import SLOTS, pack_report
-from tests.doors.process import Serving, free_port
+from tests.doors.process import Serving
+from tests.ports import free_ports
 
 AXES = (Device.AXIS_RA, Device.AXIS_DEC)
 TABLE = [16 + 3 * line + part for line in range(8) for part in (1, 2)]
@@ -290,7 +291,7 @@ def _axis_rows(folder: Path) -> int:
 
 def soak(folder: Path, minutes: float, speed: float, seed: int = 1) -> tuple[Soak, str]:
     """Serve, command, end, check; the client and a line of figures."""
-    port = free_port()
+    port = free_ports()
     words = ("--hid", f"unix:{folder}/gateway", "--lx200", str(port), "--speed", str(speed),
              "--record", str(folder / "record"), "--logs", str(folder / "logs"))  # fmt: skip
     start_s = time.monotonic()

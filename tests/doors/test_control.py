@@ -9,7 +9,7 @@ import pytest
 from scenarios.doors.address import AddressError, address, is_local
 from scenarios.doors.control import ControlDoor
 from tests.doors.conftest import Bench
-from tests.doors.test_serial import free_ports
+from tests.ports import free_ports
 
 
 class Caller:
@@ -34,7 +34,7 @@ class Caller:
 
 @pytest.fixture
 def door(bench: Bench) -> ControlDoor:
-    door = ControlDoor(str(free_ports(1)), None, bench.served)
+    door = ControlDoor(str(free_ports()), None, bench.served)
     bench.open(door)
     return door
 

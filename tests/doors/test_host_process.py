@@ -18,7 +18,8 @@ from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
 from scenarios.lab.prepare import chosen
-from tests.doors.process import Serving, free_port
+from tests.doors.process import Serving
+from tests.ports import free_ports
 
 PATIENCE_S = 120.0
 
@@ -93,7 +94,7 @@ def answered(port: int) -> bytes:
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_host_that_dies_or_hangs_is_reported_and_comes_back(tmp_path: Path, number: int) -> None:
-    port = free_port()
+    port = free_ports()
     with Serving(tmp_path, "--lx200", str(port)) as served:
         assert answered(port).endswith(b"#")
         before = served.status()
@@ -112,7 +113,7 @@ def test_a_host_that_dies_or_hangs_is_reported_and_comes_back(tmp_path: Path, nu
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_an_emulator_that_is_killed_takes_its_host_along(tmp_path: Path) -> None:
-    served = Serving(tmp_path, "--lx200", str(free_port()))
+    served = Serving(tmp_path, "--lx200", str(free_ports()))
     with served:
         host = host_of(served.process.pid)
         served.process.kill()
@@ -126,7 +127,7 @@ def test_an_emulator_that_is_killed_takes_its_host_along(tmp_path: Path) -> None
 def test_a_host_whose_emulator_has_gone_ends_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
     """Ctrl-C while it starts: nobody reads what it says."""
     served = LiveNetwork(*chosen())
-    options = ServeOptions(asked={"lx200": (f"127.0.0.1:{free_port()}",)})
+    options = ServeOptions(asked={"lx200": (f"127.0.0.1:{free_ports()}",)})
     ours, theirs = Pipe()
     ours.send(Settings(dated(served.scenario), options, [], (), {}, []))
     ours.close()

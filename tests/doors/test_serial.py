@@ -13,21 +13,9 @@ from scenarios.doors.lines import Feed
 from scenarios.doors.serial_pty import PtyDoor
 from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
 from tests.doors.conftest import MS, Bench
+from tests.ports import free_ports
 
 BOARDS = ["AXIS_RA", "POSITION_RA", "AXIS_DEC", "POSITION_DEC", "FOCUS"]
-
-
-def free_ports(count: int) -> int:
-    """First of `count` free ports in a row."""
-    for base in range(21000, 40000, 97):
-        try:
-            for port in range(base, base + count):
-                with socket.socket() as probe:
-                    probe.bind(("127.0.0.1", port))
-        except OSError:
-            continue
-        return base
-    raise AssertionError("no free ports")
 
 
 def test_bytes_come_at_the_pace_of_the_line(bench: Bench) -> None:

@@ -29,8 +29,9 @@ from scenarios.lab.snapshot.run import Order
 from scenarios.native.finder import compiled
 from scenarios.run.run import Way, run
 from tests.doors.conftest import MS, Bench
-from tests.doors.process import PROGRAM, ROOT, Serving, free_port
+from tests.doors.process import PROGRAM, ROOT, Serving
 from tests.fuzz import inputs
+from tests.ports import free_ports
 from tests.scenarios.conftest import SHORT
 
 pytestmark = pytest.mark.skipif(compiled(), reason="snapshots need the plain source")
@@ -245,7 +246,7 @@ def test_the_commands(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_gone_on_from_is_one_line(words: list[str], reason: str) -> None:
-    done = schmidt("serve", "--control", str(free_port()), *words)
+    done = schmidt("serve", "--control", str(free_ports()), *words)
     assert done.returncode == 2
     assert reason in done.stderr
     assert done.stderr.count("\n") == 1

@@ -17,7 +17,7 @@ from scenarios.doors.steps import Steps
 from tests.docs.guides import write_files
 from tests.doors.conftest import Bench
 from tests.doors.process import ROOT, Serving
-from tests.doors.test_serial import free_ports
+from tests.ports import free_ports
 
 STEPS = 1000
 BUSY = "while True: pass"
@@ -143,7 +143,7 @@ def test_a_line_that_cannot_be_meant_is_one_line_of_error(bench: Bench, line: st
     from tests.doors.test_control import Caller
 
     bench.served.steps = Steps(bench.served)
-    door = ControlDoor(str(free_ports(1)), None, bench.served)
+    door = ControlDoor(str(free_ports()), None, bench.served)
     bench.open(door)
     ask = Caller(bench, door.port)
     answer = ask(line)
@@ -154,7 +154,7 @@ def test_a_line_that_cannot_be_meant_is_one_line_of_error(bench: Bench, line: st
 def test_who_does_not_serve_steps_says_so(bench: Bench) -> None:
     from tests.doors.test_control import Caller
 
-    door = ControlDoor(str(free_ports(1)), None, bench.served)
+    door = ControlDoor(str(free_ports()), None, bench.served)
     bench.open(door)
     ask = Caller(bench, door.port)
     assert ask("step 5ms") == "error: step: time is paced here (schmidt serve --clock)"
@@ -166,7 +166,7 @@ def test_who_does_not_serve_steps_says_so(bench: Bench) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_a_client_from_python_and_one_that_hangs_up(tmp_path: Path) -> None:
-    with Serving(tmp_path, "--clock", "steps", "--lx200", str(free_ports(1))) as serving:
+    with Serving(tmp_path, "--clock", "steps", "--lx200", str(free_ports())) as serving:
         with Stepped(str(serving.control), name="a") as clock, Stepped(str(serving.control), name="b"):
             assert clock.ask("status").startswith("{")  # b stands, and has not stepped
         with Stepped(str(serving.control)) as clock:

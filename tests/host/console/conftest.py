@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.doors.process import ROOT, Serving, free_port
+from tests.doors.process import ROOT, Serving
+from tests.ports import free_ports
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [
@@ -39,7 +40,7 @@ class Consoles(Serving):
 
     def __init__(self, folder: Path, speed: float, scenario: str = NIGHT, *words: str) -> None:
         self.folder = folder
-        self.port = free_port()
+        self.port = free_ports()
         self.url = f"http://127.0.0.1:{self.port}"
         super().__init__(
             folder, scenario, "--console", str(self.port), "--speed", str(speed),

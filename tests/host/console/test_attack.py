@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.doors.process import free_port
 from tests.host.console.conftest import Consoles, opened
+from tests.ports import free_ports
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
@@ -38,7 +38,7 @@ Promise.all(tried).then(() => window.found = found);
 
 @pytest.fixture
 def doors(tmp_path: Path) -> Iterator[dict[str, Any]]:
-    lx200, alpaca = free_port(), free_port()
+    lx200, alpaca = free_ports(), free_ports()
     words = ("--lx200", str(lx200), "--alpaca", str(alpaca))
     with Consoles(tmp_path, 1.0, "scenarios/observing-night.yaml", *words) as made:
         yield {"made": made, "LX200": lx200, "ALPACA": alpaca, "CONSOLE": made.port, "CONTROL": made.control}

@@ -19,9 +19,10 @@ from host.console.heard import HeardBus
 from host.link import HidLink
 from host.logs.journal import Journal
 from scenarios.doors.runs import RecordedRuns
-from tests.doors.process import PROGRAM, ROOT, Serving, free_port
+from tests.doors.process import PROGRAM, ROOT, Serving
 from tests.host.console.conftest import opened, press
 from tests.host.telescope.conftest import Rig
+from tests.ports import free_ports
 
 WAIT_S = 60.0
 
@@ -93,7 +94,7 @@ def test_without_an_axis_line_there_is_nothing_to_record(tmp_path: Path) -> None
 @pytest.fixture
 def program(tmp_path: Path) -> Iterator[Any]:
     """The boards in one process, the host program in another on two of their cables, as on real ones."""
-    socket, first, port = tmp_path / "gateway.sock", free_port(), free_port()
+    socket, first, port = tmp_path / "gateway.sock", free_ports(), free_ports()
     with Serving(tmp_path, "--hid", f"unix:{socket}", "--serial", f"tcp:{first}"):
         words = [
             *("--usb", f"unix:{socket}", "--serial", f"AXIS_RA=socket://localhost:{first}"),

@@ -7,7 +7,6 @@ import contextlib
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -15,6 +14,8 @@ from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
+
+from tests.ports import free_ports
 
 DRIVERS = {
     "indi_lx200basic": "LX200 Basic",
@@ -31,12 +32,6 @@ pytestmark = [
         reason="indi-bin is not installed (apt-get install indi-bin)",
     ),
 ]
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @contextlib.contextmanager
@@ -114,7 +109,7 @@ class Indi:
 def door(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, Path, Path]]:
     """TCP port, pseudo-terminal and logs of a served telescope, at night under today's sky."""
     folder = tmp_path_factory.mktemp("indi")
-    port, pty = free_port(), folder / "lx200"
+    port, pty = free_ports(), folder / "lx200"
     serve = [sys.executable, "-c", "from scenarios.cli import main; main()", "serve"]
     doors = ["--lx200", port, "--lx200", f"pty:{pty}", "--logs", folder, "--speed", SPEED]
     with running(*serve, *doors, ready="serving", log=folder / "serve.txt"):
@@ -124,7 +119,7 @@ def door(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, Path, 
 @pytest.fixture
 def indi(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Indi]:
     """A driver of its own for each test: what one run leaves in it must not help or hurt the next."""
-    port, driver = free_port(), str(request.param)
+    port, driver = free_ports(), str(request.param)
     log = tmp_path / "indiserver.txt"
     # a socket name of its own: two servers with the default one (this file in two workers) end each other
     server = ("indiserver", "-p", port, "-u", f"schmidt-test-{port}", driver)
