@@ -46,6 +46,17 @@ def told(said: io.TextIOWrapper) -> str:
     return said.read()
 
 
+def inputs(logs: Path) -> list[str]:
+    """What the finder is called with: axis logs, or whatever tables there are and their rig file."""
+    axis = sorted(str(path) for path in logs.glob("*.log"))
+    if axis:
+        return axis
+    rig = logs / "rig.yaml"
+    skip = ("SEAL", rig.name)
+    tables = sorted(str(path) for path in logs.iterdir() if path.is_file() and path.name not in skip)
+    return [*tables, *(("--rig", str(rig)) if rig.exists() else ())]
+
+
 def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     """Answer for one case: {"status", "seconds", "failure"}; report.json is in `out` when status is 0.
 
@@ -56,7 +67,6 @@ def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
         answer: dict[str, Any] = json.loads(done.read_text())
         return answer
     out.mkdir(parents=True, exist_ok=True)
-    files = sorted(str(path) for path in logs.glob("*.log"))
     begin = time.perf_counter()
     said = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)  # errors come as bytes
     failure = None
@@ -65,7 +75,7 @@ def find(logs: Path, out: Path, command: str = COMMAND) -> dict[str, Any]:
     signal.alarm(LIMIT_S)
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            status = call(command, ["calibrate", *files, "--out", str(out)])
+            status = call(command, ["calibrate", *inputs(logs), "--out", str(out)])
     except Exception:  # whatever the finder throws is its answer to this case
         failure = traceback.format_exc()[-2000:]
     finally:

@@ -1,5 +1,6 @@
 """Score one answer about another drive against its truth."""
 
+import json
 from typing import Any
 
 from tests.blind.score import held_out, worse
@@ -7,6 +8,8 @@ from tests.blind.score import held_out, worse
 BAD_ROWS = {"spikes": {"log_wrap", "sample_loss"}, "gaps": {"sample_loss"}}
 """Names that tell what was done to the rows of a log: no effect of the drive, and right."""
 SURE = 0.9
+SIZES = ("amplitude", "torque", "gap", "compliance", "stiffness", "delay", "error")
+"""Parameters of the report that are an effect's size; zero is no effect."""
 
 
 def said(effect: dict[str, Any]) -> set[str]:
@@ -15,13 +18,31 @@ def said(effect: dict[str, Any]) -> set[str]:
 
 
 def fits(effect: dict[str, Any], truth: dict[str, Any]) -> bool:
-    """Whether a stated effect is the hidden one: its name, or a class that holds it and only its like."""
+    """Whether a stated effect is the hidden one: its name, or a class that holds it and only its like.
+
+    What the truth calls confounded, this log cannot tell from it: a class may hold that, no lone name be it.
+    """
     allowed = set(truth["class"])
+    beside = allowed | {"unknown", *truth.get("confounded", [])}
     return (
         effect["name"] == truth["name"]
-        or (truth["name"] in said(effect) and said(effect) <= allowed | {"unknown"})
+        or (truth["name"] in said(effect) and said(effect) <= beside)
         or (effect["name"] in allowed)
     )
+
+
+def holds_zero(effect: dict[str, Any]) -> bool:
+    """Whether a named effect's size has an interval that zero is in."""
+    sizes = (v for k, v in effect.get("parameters", {}).items() if k in SIZES)
+    return any(v.get("low") is not None and v["low"] <= 0.0 <= v["high"] for v in sizes)
+
+
+def short(report: dict[str, Any], top: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
+    """A log too short to be sure: the name, or `cannot tell` with the candidate among what is told of it."""
+    if top is not None:
+        return fits(top, wanted)
+    told = json.dumps([report.get("separating_experiment"), report.get("refused")])
+    return report["verdict"] == "cannot tell" and any(name in told for name in wanted["class"])
 
 
 def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str, Any]) -> dict[str, Any]:
@@ -42,8 +63,13 @@ def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str
         "sure_and_wrong": sum((e.get("probability") or 0.0) > SURE for e in wrong),
     }  # fmt: skip
     top = effects[0] if effects else None
+    staged = bool(wanted and wanted.get("stage"))
+    row["stage_right"] = bool(top and wanted and top.get("stage") == wanted.get("stage")) if staged else None
+    row["empty"] = sum(map(holds_zero, effects))
     if truth["cell"] == "nothing":
         row["right"] = report is not None and not effects
+    elif truth["cell"] == "short":
+        row["right"] = bool(wanted and report and short(report, top, wanted))
     elif inside:
         row["right"] = bool(top and wanted and fits(top, wanted))
     else:

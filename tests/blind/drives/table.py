@@ -10,7 +10,8 @@ LEAST = 1.8  # ratio that a measured effect must have come to, of 2 asked for: s
 
 def markdown(rows: list[Row], seed: int) -> str:
     """The table as Markdown."""
-    nothing, single, outside = ([r for r in rows if r["cell"] == c] for c in ("nothing", "single", "outside"))
+    cells = ("nothing", "single", "outside", "short")
+    nothing, single, outside, brief = ([r for r in rows if r["cell"] == c] for c in cells)
     single, small = [r for r in single if r["reached"] >= LEAST], [r for r in single if r["reached"] < LEAST]
     figures = [
         (
@@ -40,6 +41,21 @@ def markdown(rows: list[Row], seed: int) -> str:
         ),
         ("cases without an answer", "0", share(rows, lambda r: not r["answered"])),
     ]
+    staged = [r for r in single if r.get("stage_right") is not None]
+    if staged:
+        figures.append(
+            ("one effect, its stage is the first answer's", "", share(staged, lambda r: r["stage_right"]))
+        )
+        figures.append(
+            ("an effect named whose interval holds zero", "", share(rows, lambda r: bool(r["empty"])))
+        )
+    if brief:
+        figures.append(
+            ("short logs: named, or `cannot tell` with the name", "", share(brief, lambda r: r["right"]))
+        )
+        figures.append(
+            ("short logs: a bare `nothing`", "", share(brief, lambda r: r["verdict"] == "nothing"))
+        )
     out = ["| figure | must | measured (95 % interval) |", "|---|---|---|"]
     out += [f"| {name} | {must} | {text_of(measured)} |" for name, must, measured in figures]
     left = quotient(single, "after", "floor")
