@@ -7,7 +7,7 @@ import pytest
 
 from plant.model import load
 from plant.plant import Plant
-from tests.benchmarks import dither, history, named, network, night, serving, show
+from tests.benchmarks import checkouts, dither, history, named, network, night, serving, show
 from tests.benchmarks.bare import BareLoop
 
 
@@ -149,3 +149,19 @@ def test_a_turn_runs_the_paper_s_and_the_proposed_firmware() -> None:
     found = dither.measure(1, None)
     assert set(found) == {"off", "spread", "fine"}
     assert all(len(turns) == 1 and turns[0] > 0.0 for turns in found.values())
+
+
+@pytest.mark.slow
+def test_two_checkouts_are_timed_in_turn_and_do_the_same_work() -> None:
+    roots = {"before": checkouts.ROOT, "now": checkouts.ROOT}
+    told: list[str] = []
+    look = {"a look": ["run", "scenarios/quick-look.yaml", "--no-report"]}
+    found = checkouts.measure(roots, look, 1, True, told.append)
+    assert {which: len(each) for which, each in found["a look"].items()} == {"before": 1, "now": 1}
+    digests = {line.split(" s ")[1] for line in told}
+    assert len(told) == 4 and len(digests) == 1 and len(digests.pop()) == 16
+
+
+def test_a_command_that_ends_badly_is_said_in_one_line() -> None:
+    with pytest.raises(checkouts.CommandFailed, match="no-such"):
+        checkouts.run(checkouts.ROOT, ["run", "no-such.yaml"], True)
