@@ -166,10 +166,10 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
     random = np.random.default_rng(seed)
     if way == "random":
         return random.random((runs, width))
-    if way == "latin hypercube":
-        return latin_hypercube(runs, width, random)
     from scipy.stats import qmc  # a second of imports
 
+    if way == "latin hypercube":
+        return np.asarray(qmc.LatinHypercube(width, rng=random).random(runs))
     if way == "saltelli":
         base = 1 << max(0, (runs // (width + 2)).bit_length() - 1)
         both = qmc.Sobol(2 * width, rng=random).random(base)
@@ -178,20 +178,6 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
         max(0, (runs - 1).bit_length())
     )
     return drawn[:runs]
-
-
-def latin_hypercube(runs: int, width: int, random: np.random.Generator) -> npt.NDArray[np.float64]:
-    """A share in every one of `runs` stripes of each column, the stripes in an order of its own (McKay et al.
-    1979, Technometrics 21, 239); the points that scipy.stats.qmc draws from the same generator, whose import
-    takes a second."""
-    (random,) = random.spawn(1)
-    inside = random.uniform(size=(runs, width))
-    stripes = np.empty((runs, width))
-    for column in range(width):
-        order = np.arange(1, runs + 1)
-        random.shuffle(order)
-        stripes[:, column] = order
-    return (stripes - inside) / runs
 
 
 def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

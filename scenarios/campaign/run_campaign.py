@@ -12,29 +12,24 @@ from typing import NoReturn
 from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
 from scenarios.campaign.job import Job, Row, run
+from scenarios.campaign.options import CampaignOptions
 from scenarios.language.document import ScenarioError
 from scenarios.progress import shown
 
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
 
 
-def campaign(
-    file: Path,
-    out: Path,
-    jobs: int | None,
-    scheduler: str | None,
-    resume: bool,
-    task: Callable[[Job], Row] = run,
-) -> int:
-    """Run a campaign into a folder; exit 0 when every planned run is there, 130 when it was interrupted.
+def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
+    """Run a campaign into its folder; exit 0 when every planned run is there, 130 when it was interrupted.
 
     task: what makes a row of a planned run; the bench has one that does nothing.
     """
     from scenarios.campaign.report_page import write
     from scenarios.run.probe import digest
 
-    planned = plan.load(file)
-    journal = table.Journal(out, resume)
+    out = options.folder
+    planned = plan.load(options.file)
+    journal = table.Journal(out, options.resume)
     ours = digest()  # also fills the cache of compiled kernels before the workers ask for it
     begun = time.perf_counter()
     late = False
@@ -53,7 +48,7 @@ def campaign(
     status = COMPLETE
     with _interruptible(), shown("runs", planned.count, before) as advance:
         try:
-            for done in each(task, waiting(), jobs=jobs, scheduler=scheduler):
+            for done in each(task, waiting(), jobs=options.jobs, scheduler=options.scheduler):
                 if done.value is None:
                     journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
                     status = INCOMPLETE

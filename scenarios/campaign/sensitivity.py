@@ -1,16 +1,14 @@
 """Which input moves which metric: Spearman's rank correlation, bootstrap intervals; Wilson's for shares.
 
-Ranks and Wilson's interval are written out: importing scipy.stats takes a second, once a campaign.
-
 A hundred thousand runs must fit, too: nothing here makes an array of resamples times runs.
 """
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.stats import binomtest, rankdata, sobol_indices
 
 Array = npt.NDArray[np.float64]
 RESAMPLES = 1000
@@ -38,33 +36,20 @@ class Influence(NamedTuple):
     runs: int
 
 
-def ranks(values: Array) -> Array:
-    """Ranks along each row of (n, m), from 1 on; equal values share the mean of theirs."""
-    order = np.argsort(values, axis=1, kind="stable")
-    sorted_ = np.take_along_axis(values, order, axis=1)
-    places = np.arange(values.shape[1])
-    new = np.ones(values.shape, dtype=bool)
-    new[:, 1:] = sorted_[:, 1:] != sorted_[:, :-1]
-    first = np.maximum.accumulate(np.where(new, places, 0), axis=1)
-    ends = np.roll(new, -1, axis=1)
-    ends[:, -1] = True
-    last = np.minimum.accumulate(np.where(ends, places, values.shape[1])[:, ::-1], axis=1)[:, ::-1]
-    found = np.empty(values.shape)
-    np.put_along_axis(found, order, 0.5 * (first + last) + 1.0, axis=1)
-    return found
-
-
 def influence(name: str, x: Array, metric: str, y: Array, seed: int = 1) -> Influence | None:
     """None where there are too few runs with both, or one of them never changes."""
     good = np.isfinite(x) & np.isfinite(y)
     x, y = x[good], y[good]
     if len(x) < _FEWEST or np.ptp(x) == 0.0 or np.ptp(y) == 0.0:
         return None
-    value = float(_correlation(ranks(x[None]), ranks(y[None]))[0])
+    value = float(_correlation(rankdata(x[None], axis=1), rankdata(y[None], axis=1))[0])
     if len(x) > _MANY:
         return Influence(name, metric, value, *asymptotic(value, len(x)), len(x))
     found = np.concatenate(
-        [_correlation(ranks(x[picked]), ranks(y[picked])) for picked in _resamples(len(x), len(x), seed)]
+        [
+            _correlation(rankdata(x[picked], axis=1), rankdata(y[picked], axis=1))
+            for picked in _resamples(len(x), len(x), seed)
+        ]
     )
     low, high = np.nanquantile(found, _ENDS)
     return Influence(name, metric, value, float(low), float(high), len(x))
@@ -109,8 +94,6 @@ def sobol(metric: str, y: Array, inputs: int, seed: int = 1) -> Indices | None:
     n = len(y) // (inputs + 2)
     if n < 2 or n * (inputs + 2) != len(y) or not np.isfinite(y).all() or np.ptp(y) == 0.0:
         return None
-    from scipy.stats import sobol_indices
-
     y = (y - y.mean()) / y.std()  # the estimators lose figures to a large mean
     blocks = y.reshape(inputs + 2, 1, n)
     given = {"f_A": blocks[0], "f_B": blocks[1], "f_AB": blocks[2:]}
@@ -137,7 +120,5 @@ def share(hits: int, runs: int) -> tuple[float, float, float]:
     """Share of hits and its 95 % interval by Wilson (1927, JASA 22, 209); (nan, 0, 1) without runs."""
     if not runs:
         return float("nan"), 0.0, 1.0
-    value, z2 = hits / runs, _NORMAL**2
-    middle = (hits + 0.5 * z2) / (runs + z2)
-    half = _NORMAL / (runs + z2) * math.sqrt(runs * value * (1.0 - value) + 0.25 * z2)
-    return value, max(0.0, middle - half), min(1.0, middle + half)
+    wilson = binomtest(hits, runs).proportion_ci(LEVEL, method="wilson")
+    return hits / runs, float(wilson.low), float(wilson.high)

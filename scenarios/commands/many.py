@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from scenarios.campaign.options import CampaignOptions
 from scenarios.commands.options import PATH, Number, filled, jobs
 from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
@@ -16,12 +17,13 @@ from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster).")
 @click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
-def campaign(file: Path, out: Path | None, jobs: int | None, scheduler: str | None, resume: bool) -> None:
+@filled(CampaignOptions)
+def campaign(options: CampaignOptions) -> None:
     """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
-    need("calibrate", *(("cluster",) if scheduler else ()))
+    need("calibrate", *(("cluster",) if options.scheduler else ()))
     from scenarios.campaign.run_campaign import campaign as command
 
-    sys.exit(command(file, out if out is not None else Path("out") / file.stem, jobs, scheduler, resume))
+    sys.exit(command(options))
 
 
 @click.command(short_help="Repeat the paper's experiments.")

@@ -1,6 +1,6 @@
 """`python -m scenarios.run.publish [--check]`: what is published from the tables of faults and expectations.
 
-The schema's part on each, the page of faults, and the table of expectations in docs/reference/scenarios.md.
+The schema's part on each, the tables of docs/reference/faults.md, and that of expectations in scenarios.md.
 """
 
 import json
@@ -70,12 +70,13 @@ def published() -> dict[Path, str]:
     """File to the text it should have."""
     language = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
     language["$defs"] |= {"fault": catalogue.definition(), "expectation": definition()}
-    scenarios = DOCS / "reference" / "scenarios.md"
+    faults, scenarios = (DOCS / "reference" / name for name in ("faults.md", "scenarios.md"))
+    tables = catalogue.tables()
     before, _, rest = scenarios.read_text(encoding="utf-8").partition(_HEAD)
     rows = "".join(_row(name, kind) for name, kind in KINDS.items())
     return {
         SCHEMA_FILE: json.dumps(language, indent=1, ensure_ascii=False) + "\n",
-        DOCS / "reference" / "faults.md": catalogue.page(),
+        faults: faults.read_text(encoding="utf-8").partition(tables[: tables.index("\n") + 1])[0] + tables,
         scenarios: before + _HEAD + rows + "\n" + rest.partition("\n\n")[2],
     }
 

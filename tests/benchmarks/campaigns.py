@@ -63,11 +63,13 @@ def nothing(job: Job) -> Row:
 
 def planned(folder: Path, runs: int, jobs: int) -> dict[str, float]:
     """A campaign of `runs` that do nothing, in this process; its peak memory, MiB, and time."""
+    from scenarios.campaign.options import CampaignOptions
     from scenarios.campaign.run_campaign import campaign
 
     _write(folder, runs, 1)
     begin, cpu = time.perf_counter(), time.process_time()
-    status = campaign(folder / "bench.yaml", folder / "out", jobs, None, False, nothing)
+    options = CampaignOptions(file=folder / "bench.yaml", out=folder / "out", jobs=jobs)
+    status = campaign(options, nothing)
     if status:
         raise RuntimeError(f"the campaign ended with {status}")
     return {

@@ -1,4 +1,4 @@
-"""docs/reference/faults.md and the faults of the scenario schema, both from the table."""
+"""Tables of docs/reference/faults.md and the faults of the scenario schema, both from the table of faults."""
 
 from typing import Any
 
@@ -23,44 +23,6 @@ _WORDS: dict[str, dict[str, Any]] = {
     "axis": {"enum": list(AXES)},
     "motor": {"enum": ["a", "b"]},
 }
-_HEAD = """# Faults
-
-Made from the table of faults (`scenarios/lab/faults/table.py`) by `python -m scenarios.run.publish`; do not edit. The same table is the schema, the live call and the code.
-
-A fault acts from a start until an end. In a scenario:
-
-```yaml
-faults:
-  - stuck_dominant: {}
-    at: 20 s
-    until: 20.5 s
-  - sensor_noise: {sensor: ra.absolute, deviation: 40}
-    name: a noisy encoder       # for the reader
-    at: 1 min                   # default: the start; until: default: the end
-```
-
-**Whether it acted.** A fault records when it first acted, and on what: a frame, a sample, an interrupt, a duty. `summary.json` (`faults`) and the report show it.
-A fault of a scenario that never acted fails the run. It may have begun too late, or met nothing, such as `frame_loss` of a board that is off.
-`may_not_act: true` beside it allows that. A campaign counts such faults of each run (`silent_faults`).
-
-From Python, on a network that runs (`scenarios.lab.faults.Faults`; numbers in base units, or text with a unit):
-
-```python
-faults = Faults(network, seed=1)
-number = faults.start("wrong_bitrate", node="DISPLAY", bitrate="125 kbit/s")
-network.run_until(...)
-faults.clear(number)  # faults.running: what is on; faults.kinds(): this table
-```
-
-On a served network: `served.start_fault(name, **arguments)` and `served.clear_fault(number)`, or the control plane, `schmidt control fault start babbler load=50%`, `fault clear 0`, `fault list`.
-There they enter like everything else: a recorded session replays with them.
-
-**What clearing means.** A fault that is over leaves nothing of its machinery in the network. Pins, receivers, parameters and the queue are those of a network that never had it. What it has
-moved stays moved, and is listed as "left" below. Where it says "nothing", the bus carries the same bits as in an undisturbed run. That holds once what was sampled under the fault has been sent. Tests show
-both for every fault of the table: from the state at clearing, a network without the machinery goes on bit by bit alike. (`tests/scenarios/lab/faults/`.)
-
-Several faults may act on the same thing; they may be cleared in any order.
-"""  # noqa: E501 - a page's lines
 
 
 def _values(each: Parameter) -> str:
@@ -85,9 +47,9 @@ def _argument(each: Parameter) -> str:
     return f"`{each.name}`:{optional} {each.text} ({_values(each)}{default})"
 
 
-def page() -> str:
-    """The documentation."""
-    lines = [_HEAD]
+def tables() -> str:
+    """The page from its first heading of a level on; what stands before is written by hand."""
+    lines: list[str] = []
     for level, text in _LEVELS.items():
         lines += [f"## {level.capitalize()}", text, ""]
         lines += ["| fault | arguments | what happens | left when cleared |", "|---|---|---|---|"]

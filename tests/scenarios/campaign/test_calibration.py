@@ -1,11 +1,13 @@
 """A campaign over a calibration, from logs to table: what is found depends on what is declared."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
 
 from scenarios.campaign import table
+from scenarios.campaign.options import CampaignOptions
 from scenarios.campaign.run_campaign import campaign
 from tests.calibration.logs import effect, write_logs
 
@@ -29,7 +31,8 @@ def test_two_declared_plants_against_the_same_logs(tmp_path: Path) -> None:
         )
     )
     out = tmp_path / "out"
-    assert campaign(file, out, 1, None, False) == 0
+    options = CampaignOptions(file=file, out=out, jobs=1)
+    assert campaign(options) == 0
     rows = {row["index"]: row for row in table.rows(out / table.JOURNAL)}
     assert [rows[k]["failure"] for k in (0, 1)] == ["", ""]
     assert rows[1]["input: viscous"] == pytest.approx(2.0 * rows[0]["input: viscous"])
@@ -42,5 +45,5 @@ def test_two_declared_plants_against_the_same_logs(tmp_path: Path) -> None:
     columns = table.read(out / table.TABLE)
     assert sorted(columns["index"]) == [0, 1]
     assert "schmidt calibrate" in (out / "report.html").read_text()
-    assert campaign(file, out, 1, None, True) == 0, "nothing is left to do"
+    assert campaign(replace(options, resume=True)) == 0, "nothing is left to do"
     assert len(list(table.rows(out / table.JOURNAL))) == 2

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from scipy.stats import kstest, qmc
+from scipy.stats import kstest
 
-from scenarios.campaign import plan
 from scenarios.campaign.plan import Case, load
 from scenarios.campaign.sensitivity import sobol
 from scenarios.language.document import Document, ScenarioError
@@ -99,11 +98,6 @@ def test_a_latin_hypercube_has_one_run_in_every_stripe(campaign: Any) -> None:
     inputs = [{"plant": FRICTION, "times": {"between": [0.0, 1.0]}}]
     found = cases(campaign(inputs, budget={"runs": 40}))
     assert sorted(int(case.values[FRICTION] * 40) for case in found) == list(range(40))
-
-
-def test_a_latin_hypercube_is_scipys_from_the_same_seed() -> None:
-    drawn = plan.sample("latin hypercube", 50, 3, 7)
-    assert (drawn == qmc.LatinHypercube(3, rng=np.random.default_rng(7)).random(50)).all()
 
 
 def test_between_is_scipys_uniform_distribution(campaign: Any) -> None:

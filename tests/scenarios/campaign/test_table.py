@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from scipy.stats import binomtest, rankdata
 
 from scenarios.campaign import figures, sensitivity, table
 from scenarios.campaign.sensitivity import influence, share
@@ -92,15 +91,6 @@ def test_too_little_to_say_is_nothing_said() -> None:
     assert influence("x", x, "y", np.ones(20)) is None
     assert influence("x", x[:5], "y", x[:5]) is None
     assert influence("x", x, "y", np.full(20, np.nan)) is None
-
-
-def test_ranks_and_wilsons_interval_are_scipys() -> None:
-    random = np.random.default_rng(4)
-    for values in (random.random((20, 31)), np.floor(8.0 * random.random((20, 31))), np.ones((1, 5))):
-        assert np.array_equal(sensitivity.ranks(values), rankdata(values, axis=1))
-    for hits, runs in ((0, 7), (3, 7), (7, 7), (41, 1000)):
-        wilson = binomtest(hits, runs).proportion_ci(0.95, method="wilson")
-        assert share(hits, runs)[1:] == pytest.approx((wilson.low, wilson.high), abs=1e-6)
 
 
 def test_shares_have_wilsons_interval() -> None:
