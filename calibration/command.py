@@ -12,7 +12,6 @@ from calibration.inputs.draft import draft
 from calibration.inputs.logs import Drive, read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run
-from calibration.jsonreport import report_of
 from calibration.look.axis import look_at_axis
 from calibration.look.drift import look_at_drift
 from calibration.look.looked import Looked
@@ -20,6 +19,7 @@ from calibration.look.options import Options
 from calibration.look.response import look_at_response
 from calibration.replay.corrected import correct_and_replay
 from calibration.report.htmlpage import page
+from calibration.report.jsonreport import report_of
 from calibration.report.pictures import Picture, pictures
 from calibration.report.rigview import show_rig
 from calibration.report.terminal import show

@@ -6,9 +6,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from calibration.inputs.run import Array
-from calibration.statistics.tails import median_reach
-
 #: the name of an effect that has none
 UNKNOWN = "unknown"
 # standard errors of a normal law's 95 % interval. arithmetic
@@ -33,13 +30,6 @@ class Parameter:
     def half(self) -> float:
         """Upper half of the interval; zero where there is none."""
         return 0.0 if self.high is None else self.high - self.value
-
-
-def middle(x: Array, unit: str) -> Parameter:
-    """The median of several measurements (n,) of one size; without an interval where there is only one."""
-    value = float(np.median(x))
-    reach = median_reach(x) if len(x) > 1 else None
-    return Parameter(value, unit) if reach is None else Parameter(value, unit, value - reach, value + reach)
 
 
 def normal(value: float, error: float, unit: str, reach: float = NORMAL) -> Parameter:

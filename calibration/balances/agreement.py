@@ -5,14 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array, Mask
 from calibration.balances.filters import smooth
 from calibration.balances.thresholds import FEWEST_FILES, FEWEST_FOR_A_SCATTER, FEWEST_ROWS, LEAST_SCALE
 from calibration.balances.view import View
-from calibration.inputs.run import Array
 from calibration.statistics.regression import gls
 from calibration.statistics.tails import rms
 from calibration.statistics.thresholds import SURE_Z
-from calibration.statistics.whitening import Mask
 
 # of the scale: less is how either rate was smoothed. ASSUMPTION
 SCALED = 0.01

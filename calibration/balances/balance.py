@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from calibration.arrays import Array, Mask
 from calibration.balances.friction import sliding_of
 from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.slowoffset import with_slow_offset
 from calibration.balances.thresholds import FEWEST_FILES
 from calibration.balances.view import View
-from calibration.inputs.run import Array, Run
-from calibration.statistics.whitening import Mask
+from calibration.inputs.run import Run
 
 # of the median divisor: below, the ratio says nothing. ASSUMPTION
 LOADED = 0.5

@@ -12,11 +12,11 @@ for a supply that gives way.
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.filters import boxcar
 from calibration.balances.frame import Frame
 from calibration.balances.problem import Problem
 from calibration.balances.volts import Windings
-from calibration.inputs.run import Array
 from calibration.statistics.regression import Fit, under
 from calibration.statistics.thresholds import SURE_Z
 from plant.compiled import entry

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array
 
 
 def turning_points(angle: Array, run: NDArray[np.int64], travel: float) -> NDArray[np.bool_]:

@@ -8,9 +8,9 @@ gap.
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array
 from calibration.balances.context import direction_of
 from calibration.balances.kinematic import APART_ARCSEC
-from calibration.inputs.run import Array
 from plant.units import ARCSEC
 
 # of the reading's noise per row, rms: two rows differ by so much once in 1e8, so it has moved. arithmetic

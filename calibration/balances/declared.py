@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.friction import path_of
 from calibration.balances.motion import Motion
 from calibration.inputs.declaration import FrictionLaw
-from calibration.inputs.run import Array
 from calibration.statistics.regression import solve
-from calibration.statistics.whitening import Mask
 
 # What is fitted by iteration: the logs of Ts/Tc, of the Stribeck speed in rad/s, of sigma_0/Tc in 1/rad. The
 # numbers below are ASSUMPTIONS, wide about both axes of the paper, and go by these three.

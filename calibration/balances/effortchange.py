@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from calibration.arrays import Array, Mask
 from calibration.balances import thresholds as limits
 from calibration.balances.frame import Frame
 from calibration.balances.law import Law, Rate
 from calibration.balances.problem import Problem
-from calibration.finding import UNKNOWN, Finding, middle
-from calibration.inputs.run import Array
-from calibration.statistics.tails import share_log10
-from calibration.statistics.whitening import Mask
+from calibration.finding import UNKNOWN, Finding
+from calibration.statistics.tails import middle, share_log10
 from plant.units import ARCSEC
 
 # arcsec/s: three units of the set point's Q16; what a position loop adds is more. ASSUMPTION

@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from calibration.arrays import Array, Mask
 from calibration.balances.bridge import add_bridge, add_sampling, adopt, duties, shares
 from calibration.balances.frame import Frame
 from calibration.balances.motion import Motion
 from calibration.balances.torque import STEP
 from calibration.balances.volts import Counter, Volts, Windings
 from calibration.inputs.declaredplant import Declared
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 
 # counts of the tachometer per row, five times what rounding leaves after the means (0.15). ASSUMPTION
 APART = 0.75

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
+from calibration.arrays import Array
 from calibration.balances.thresholds import UNSEEN_CYCLES
-from calibration.inputs.run import Array
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.balance import response_of
 from calibration.balances.filters import Filter, smooth
 from calibration.balances.motion import Motion
@@ -11,8 +12,6 @@ from calibration.balances.recursions import stop_operator
 from calibration.balances.repeats import repeat_lag, stroke_scatter
 from calibration.balances.torque import Transmission
 from calibration.balances.view import View
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 from plant.units import ARCSEC
 
 # rows that have a partner. ASSUMPTION

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array, Mask
 from calibration.balances.filters import pieces
 from calibration.balances.thresholds import COLUMN_PRESENT
 from calibration.inputs.declaration import Rig
 from calibration.inputs.rigfile import telescope
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.inputs.stampjumps import jumps_of_clock
 from calibration.inputs.train import Train, train_of
-from calibration.statistics.whitening import Mask
 
 SENSORS = ("effort", "position", "velocity", "current_a", "current_b", "motor_a", "motor_b", "aux")
 # "unseen" is 1 where the position is not measured but carried on from the motors; no log has it

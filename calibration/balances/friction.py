@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.filters import smooth
 from calibration.balances.motion import Motion
 from calibration.balances.view import View
 from calibration.inputs.declaration import FrictionLaw
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 from plant.compiled import entry
 from plant.kernels.friction import relax
 

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
+from calibration.arrays import Array, Mask
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FOR_A_DRIFT
 from calibration.errors import CalibrationInputError
-from calibration.inputs.run import Array, Run
-from calibration.statistics.whitening import Mask
+from calibration.inputs.run import Run
 
 # of the longest section: shorter ones only add an offset and a drift each. ASSUMPTION
 LEAST_PART = 0.25

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame
 from calibration.balances.motion import Motion
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FOR_A_LEVEL, FEWEST_FOR_A_SCATTER
 from calibration.balances.torque import declared_lines
 from calibration.inputs.declaredplant import Declared
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 from plant.units import ARCSEC, ARCSEC_PER_TURN
 
 # without a count: the rounding of a motor's place is one error then, not one per row. ASSUMPTION

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
+from calibration.arrays import Array
 from calibration.balances.filters import by_piece
 from calibration.balances.problem import Estimate, Problem
 from calibration.balances.thresholds import FEWEST_MOVING
 from calibration.balances.view import View
 from calibration.inputs.declaration import Controller
-from calibration.inputs.run import Array
 from calibration.statistics.regression import block_covariance, solve
 
 # of the command's rms: less is rounding. ASSUMPTION; EMPS, whose law is published, is left with 0.0003

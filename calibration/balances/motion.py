@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter1d
 
+from calibration.arrays import Array, Mask
 from calibration.balances.filters import Filter, boxcar
 from calibration.balances.frame import Frame
 from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.thresholds import UNTOUCHED
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 
 # rows after a start or a gap that are not analysed. ASSUMPTION
 START_ROWS = 10

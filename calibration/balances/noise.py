@@ -8,8 +8,9 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array
 from calibration.balances.frame import Frame
-from calibration.inputs.run import Array, quantum
+from calibration.inputs.run import quantum
 from calibration.statistics.regression import solve
 from plant.units import ARCSEC
 

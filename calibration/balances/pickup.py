@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from calibration.arrays import Array
 from calibration.balances.filters import pieces, smooth
 from calibration.balances.view import View
-from calibration.inputs.run import Array
 from calibration.statistics.orders import around
 
 # cycles per standard deviation of the filter, which passes half of such a line: arithmetic

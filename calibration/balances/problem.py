@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array, Mask
 from calibration.balances.candidate import Candidate
-from calibration.inputs.run import Array
 from calibration.statistics.regression import Fit, gls, told
-from calibration.statistics.whitening import Mask
 
 Term = tuple[str, str, Array]
 """Name and unit of a coefficient, and its column (n,); of a nuisance that has several, (n, k)."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array
 from plant.compiled import entry
 
 # s without a row: ASSUMPTION, far longer than a lost packet, shorter than a rest between runs

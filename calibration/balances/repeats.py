@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances import thresholds as limits
 from calibration.balances.filters import pieces
 from calibration.balances.view import View
-from calibration.inputs.run import Array
 from calibration.statistics.tails import rms
 
 # of the autocorrelation of the position, at the lag of a repetition. ASSUMPTION

@@ -8,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.candidate import sine_columns
 from calibration.balances.filters import pieces
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
-from calibration.inputs.run import Array
 from calibration.statistics.regression import solve
-from calibration.statistics.whitening import Mask
 
 SLOW = "slow_offset"  # label of these columns: nuisances, in no report's table
 # half periods of a file at most: a twentieth of a walk is left. ASSUMPTION

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.declared import Friction, fit_friction
 from calibration.balances.frame import Frame
 from calibration.balances.motion import Motion, motion_of
 from calibration.balances.problem import Problem, Term
 from calibration.inputs.declaredplant import Declared
-from calibration.inputs.run import Array
-from calibration.statistics.whitening import Mask
 
 # rows per analysis sample, 30 ms: wide enough for the encoder, enough for mesh 2 at 1.5 deg/s. ASSUMPTION
 WIDTH = 3

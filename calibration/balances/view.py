@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
+from calibration.arrays import Array, Mask
 from calibration.balances.context import direction_of, since_reversal, turning_points
 from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.run import Array, Run, quantum
+from calibration.inputs.run import Run, quantum
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z
-from calibration.statistics.whitening import Mask
 
 # of the usual top speed: slower, friction may have any size up to break-away. ASSUMPTION
 SLOWEST = 0.01

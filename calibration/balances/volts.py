@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.floors import floor_of, passed
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import View
-from calibration.inputs.run import Array
 
 # of the volts' rms, that meters and rounding are sure to. ASSUMPTION: dividers have 0.1 to 1 % of full scale
 LEAST = 0.002

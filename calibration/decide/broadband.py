@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame, fill
 from calibration.balances.problem import Problem
 from calibration.decide.thresholds import FEWEST_BLOCKS, FEWEST_VALIDATED
 from calibration.finding import UNKNOWN, Finding, Parameter, deviation
-from calibration.finding import middle as middle_of
-from calibration.inputs.run import Array
+from calibration.statistics.tails import middle as middle_of
 from calibration.statistics.tails import rms_interval, variance_log10
-from calibration.statistics.whitening import Mask, autocovariance, white_noise
+from calibration.statistics.whitening import autocovariance, white_noise
 
 MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
 EVEN = 0.17  # that quotient in white noise, see WIND

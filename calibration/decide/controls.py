@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, sine_columns
 from calibration.decide.heldout import Model
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_HELD, REVERSIBLE, ROUNDING, TOOTH_TURNS
-from calibration.inputs.run import Array
 from calibration.names import NAMES
 from calibration.names.scene import Scene
 from calibration.statistics.regression import under

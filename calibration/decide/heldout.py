@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array, Mask
 from calibration.balances.candidate import pairs_by_section
 from calibration.balances.frame import Frame, fill
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FILES
 from calibration.decide import thresholds as limits
-from calibration.inputs.run import Array
 from calibration.statistics.regression import leverage, solve, solve_without
 from calibration.statistics.tails import rms
-from calibration.statistics.whitening import Mask, Whitener
+from calibration.statistics.whitening import Whitener
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import chndtrix
 
+from calibration.arrays import Array
 from calibration.balances.candidate import pairs_by_section
 from calibration.decide import thresholds as limits
 from calibration.decide.refine import slopes, unseen
 from calibration.decide.scan import Contender
 from calibration.decide.selection import Selection
 from calibration.finding import Finding, Parameter
-from calibration.inputs.run import Array
 from calibration.statistics.tails import student_reach
 
 

@@ -4,13 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.heldout import Model, compare
-from calibration.inputs.run import Array
 from calibration.statistics.regression import Fit
-from calibration.statistics.whitening import Mask, Whitener
+from calibration.statistics.whitening import Whitener
 
 Shape = Callable[[Array], Array]
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.pickup import pick_up
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
@@ -15,11 +16,9 @@ from calibration.decide.rules import clear, displaced, leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
-from calibration.inputs.run import Array
 from calibration.names.scene import Scene
 from calibration.names.unknown import domains, smooth_functions
 from calibration.statistics.tails import rms
-from calibration.statistics.whitening import Mask
 
 # of the mean square above the floor: names, or a gap, that leave more than they take are not what the log
 # mostly holds. ASSUMPTION by that reasoning; looked at on development seeds and the opened seed 20261122

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
 from calibration.balances.slowoffset import slowness, with_slow_offset
 from calibration.balances.view import View
@@ -23,7 +24,6 @@ from calibration.names.name import WORTH
 from calibration.names.structural_mode import MOST_DAMPED
 from calibration.statistics.regression import under
 from calibration.statistics.thresholds import SURE_Z
-from calibration.statistics.whitening import Mask
 
 Rule = Callable[[Selection], tuple[int, str] | None]
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.heldout import HeldOut
 from calibration.decide.refine import refine
 from calibration.finding import UNKNOWN
-from calibration.inputs.run import Array
 from calibration.statistics.regression import Fit, under
 from calibration.statistics.surrogate import taken_away
 from calibration.statistics.tails import wald_log10

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.decide.heldout import HeldOut, Model, compare
 from calibration.decide.scan import Contender
-from calibration.inputs.run import Array
 from calibration.statistics.regression import Fit
 from calibration.statistics.surrogate import Scores
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.declared import Friction
 from calibration.balances.problem import Estimate, Problem
 from calibration.balances.torque import Torque
@@ -16,7 +17,6 @@ from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_BLOCKS, FEWEST_VALIDATED, MARGIN
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
-from calibration.inputs.run import Array
 from calibration.names import NAMES
 from calibration.names.name import TOLERANCE
 from calibration.statistics.regression import Fit

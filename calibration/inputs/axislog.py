@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
 from calibration.inputs.counters import unwrap
 from calibration.inputs.header import parse_header
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.inputs.stuck import check_counted
 from calibration.inputs.text import check_width, load_utf8, read_numbers, split
-from calibration.statistics.whitening import Mask
 from plant.units import ARCSEC
 
 Scales = dict[str, float]

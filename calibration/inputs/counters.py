@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.inputs.declaration import Rig
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 
 
 def unwrap(counts: Array, length: float) -> Array:

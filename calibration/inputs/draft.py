@@ -8,11 +8,12 @@ import numpy as np
 import yaml
 from scipy.ndimage import gaussian_filter1d
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.headers import Said, said
 from calibration.inputs.loose import Loose, read_loose
 from calibration.inputs.repair import counter_length
-from calibration.inputs.run import Array, quantum
+from calibration.inputs.run import quantum
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import PER_TURN, units_per_turn
 

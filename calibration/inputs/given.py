@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Column
-from calibration.inputs.run import Array
 
 
 def signed(path: Path, words: Array, bit: int, label: str) -> Array:

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.axislog import is_axis_log
 from calibration.inputs.guidelog import is_guide_log
 from calibration.inputs.matlab import columns_of, read_matlab
 from calibration.inputs.recordings import RECORDINGS
-from calibration.inputs.run import Array
 from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
 from calibration.inputs.text import Heading, heading, load_utf8, plain, read_columns, read_long, split
 

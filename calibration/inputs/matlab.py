@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
-from calibration.inputs.run import Array
 
 TOKEN = re.compile(r"\.?([A-Za-z]\w*)|\{(\d+|\*)\}|\(([^()]*)\)")
 

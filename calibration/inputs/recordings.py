@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
-from calibration.inputs.run import Array
 
 TIME: Final = "time"
 """The column that every recording has: seconds since its first row."""

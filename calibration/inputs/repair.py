@@ -5,11 +5,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.rows import lost_rows, repeated_rows
-from calibration.inputs.run import Array, Repair, Run
-from calibration.statistics.whitening import Mask
+from calibration.inputs.run import Repair, Run
 from plant.units import ARCSEC_PER_TURN
 
 WORDS = tuple(2.0**k for k in range(8, 33))

@@ -3,10 +3,10 @@ samples are taken on time: the position says which of the two it was."""
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
-from calibration.inputs.run import Array, Repair, Run, quantum
-from calibration.statistics.whitening import Mask
+from calibration.inputs.run import Repair, Run, quantum
 
 STILL = ("time", "temperature", "supply", "reference")  # slow, or computed: they do not come with the frame
 

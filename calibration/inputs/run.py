@@ -5,11 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calibration.arrays import Array
 from calibration.inputs import thresholds as limits
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

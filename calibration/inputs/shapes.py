@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
-from calibration.inputs.run import Array
 
 #: `format` of a time column whose stamps are ISO 8601; another one is strptime's
 ISO = "iso"

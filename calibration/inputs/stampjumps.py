@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array, Mask
 from calibration.inputs.thresholds import BESIDE_A_GAP
-from calibration.statistics.whitening import Mask
 
 
 def jumps_of_clock(x: Array, steps: NDArray[np.int64]) -> Mask:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
-from calibration.inputs.run import Array, Run
-from calibration.statistics.whitening import Mask
+from calibration.inputs.run import Run
 
 
 def check_counted(run: Run, factors: dict[str, float], first: int) -> None:

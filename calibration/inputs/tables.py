@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.counters import count_wraps, unwrap
 from calibration.inputs.declaration import Rig
@@ -14,7 +15,7 @@ from calibration.inputs.matlab import read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
-from calibration.inputs.run import Array, Run, signal_of
+from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import load_utf8, read_columns, read_long
 
 #: files that are no text, by the ending of their name

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
-from calibration.inputs.run import Array
 from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, with_seconds
 
 # characters that a blank line may hold, but for the delimiter

@@ -4,10 +4,11 @@ from math import pi
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Rig
 from calibration.inputs.rigchecks import ANGLES
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.inputs.stuck import converter_end
 from calibration.inputs.thresholds import FINEST, WHOLE
 from calibration.inputs.train import train_of

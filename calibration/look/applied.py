@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.coupling import carried_on, driven_side
 from calibration.balances.frame import fill
 from calibration.balances.noise import column_noise
@@ -14,7 +15,7 @@ from calibration.decide.heldout import declared_residual
 from calibration.decide.residual import MOST_LEFT, part_left
 from calibration.decide.selection import Refusal
 from calibration.finding import Finding
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.look.axis_result import AxisResult
 from calibration.names.channel_delay import COLUMNS
 from calibration.names.channel_delay import NAME as DELAY

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import LEAST_TRAVEL
 from calibration.decide.controls import controls, tooth_more_or_less
@@ -18,7 +19,7 @@ from calibration.decide.tolerance import CHANGES, ELECTRICAL_ERROR, held_numbers
 from calibration.decide.withdraw import against_nature, failed_controls, withdraw
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Rig
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.look.axis_channels import analyse
 from calibration.look.axis_result import SENSORS, AxisResult
 from calibration.look.lacks import absent_columns, lacks, not_identifiable

@@ -4,6 +4,7 @@ from copy import deepcopy
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.floors import floors_of_pair
 from calibration.balances.frame import build_frame
 from calibration.balances.motion import motion_of
@@ -15,7 +16,7 @@ from calibration.decide.heldout import choose_held_out
 from calibration.decide.merge import merge
 from calibration.inputs.declaration import Rig
 from calibration.inputs.declaredplant import declared_numbers
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.look import applied
 from calibration.look.axis_result import AxisResult
 from calibration.look.controllerlaw import command_channel

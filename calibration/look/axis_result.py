@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from calibration.arrays import Mask
 from calibration.balances.frame import Frame
 from calibration.balances.kinematic import Kinematic
 from calibration.balances.motion import Motion
@@ -16,7 +17,6 @@ from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
 from calibration.names.scene import Scene
-from calibration.statistics.whitening import Mask
 
 #: row of the report's error table, by channel
 SENSORS = {**ROWS, "U": "command"}

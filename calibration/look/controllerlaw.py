@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.effortchange import incremental_law, pulses
 from calibration.balances.law import Command, Law, command_of, declared_terms
@@ -16,7 +17,6 @@ from calibration.decide.parameters import findings_of, interval
 from calibration.decide.select import select
 from calibration.decide.thresholds import NOISE_SHARE
 from calibration.finding import UNKNOWN, Finding, Parameter
-from calibration.inputs.run import Array
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
 from calibration.names.candidates import tried

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.balance import problem_of, response_of
 from calibration.balances.candidate import Candidate
 from calibration.balances.floors import floor_of, passed, resolved_rows
@@ -21,7 +22,7 @@ from calibration.decide.verdict import ROWS
 from calibration.decide.withdraw import unnamed
 from calibration.finding import UNKNOWN
 from calibration.inputs.declaration import Response
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, left_by_the_declared, timed
 from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Spectrum, calibrated, missing_of

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances import thresholds as limits
 from calibration.decide.tolerance import unsettled_reading
-from calibration.inputs.run import Array
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
 

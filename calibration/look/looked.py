@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.slowoffset import SLOW
 from calibration.decide.accept import SHORT, least_share
@@ -17,7 +18,6 @@ from calibration.decide.selection import Selection
 from calibration.decide.thresholds import STILL_MISSING, Earned
 from calibration.decide.withdraw import Refused
 from calibration.finding import UNKNOWN, Finding, Parameter
-from calibration.inputs.run import Array
 from calibration.look.axis_result import AxisResult
 
 # floors that are left before they are an effect without a name, or a reason not to say "nothing": the

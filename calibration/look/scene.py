@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.context import direction_of, since_reversal
 from calibration.balances.frame import Frame, fill
 from calibration.balances.friction import Sliding, path_of
@@ -12,7 +13,6 @@ from calibration.balances.problem import Problem
 from calibration.balances.torque import Torque
 from calibration.balances.view import View
 from calibration.inputs.declaration import Response, Rig, Stage
-from calibration.inputs.run import Array
 from calibration.inputs.train import SHAFT, Train
 from calibration.look.axis_result import AxisResult
 from calibration.names.pair import Pair

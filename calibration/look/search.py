@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
@@ -11,7 +12,6 @@ from calibration.decide import rules
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import NOISE_SHARE
-from calibration.inputs.run import Array
 from calibration.names import NAMES
 from calibration.names.freelines import free_lines
 from calibration.names.scene import Scene

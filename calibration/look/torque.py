@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import FEWEST_MOVING
 from calibration.balances.torque import Torque, Transmission, torque_problem
@@ -19,7 +20,7 @@ from calibration.look.scene import scene_of_pair
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
 from calibration.statistics.tails import rms
-from calibration.statistics.whitening import Mask, white_noise
+from calibration.statistics.whitening import white_noise
 from plant.effects import REGISTRY
 
 # rad/s, 3 arcsec/s: slower, the torque is the bristles' history. ASSUMPTION

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.bridge import mean_currents, undo_sampling
 from calibration.balances.candidate import Candidate
 from calibration.balances.electrical import electrical_problem
@@ -18,7 +19,6 @@ from calibration.decide.residual import beyond_names, left_over, settle
 from calibration.decide.rules import leave_out, signed, worth_little
 from calibration.decide.select import select
 from calibration.inputs.declaration import Response
-from calibration.inputs.run import Array
 from calibration.look.axis_result import AxisResult
 from calibration.look.forces import lacking_names
 from calibration.look.looked import Balance, calibrated, missing_of

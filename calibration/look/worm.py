@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.guide import SLOWEST_S
 from calibration.balances.mounts import SIDEREAL_DAY_S, Part
@@ -16,7 +17,6 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
 from calibration.finding import UNKNOWN, Finding
-from calibration.inputs.run import Array
 from calibration.inputs.train import SHAFT
 from calibration.names.candidates import candidate
 

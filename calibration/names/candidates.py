@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
-from calibration.inputs.run import Array
 from plant.effects import REGISTRY
 
 # of a value that is tried, a small change for its refinement. ASSUMPTION

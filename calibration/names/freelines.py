@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
-from calibration.inputs.run import Array
 from calibration.names.lines import OWN, cell, movable, peaks_over_place, seen
 from calibration.names.scene import Scene
 from calibration.statistics.orders import order_spectrum, peaks

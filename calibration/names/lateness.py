@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.finding import NORMAL, Finding
-from calibration.inputs.run import Array
 from calibration.names import stribeck_change
 from calibration.names.channel_delay import NAME as DELAY
 from calibration.names.channel_delay import against_position, late_column

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.finding import Finding
 from calibration.inputs.declaration import Stage
-from calibration.inputs.run import Array
 from calibration.names.candidates import Size, candidate
 from calibration.names.inplant import SIDES, Facts, Made, motor_of, value
 from calibration.names.scene import MOTOR, Scene

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.frame import Frame
 from calibration.finding import UNKNOWN, Finding
-from calibration.inputs.run import Array
 from calibration.names.candidates import candidate, tried
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, ramp
-from calibration.inputs.run import Array
 from calibration.names.candidates import tried
 from calibration.names.scene import Scene
 

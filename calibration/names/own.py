@@ -6,9 +6,9 @@ from math import pi
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.inputs.declaration import Stage
-from calibration.inputs.run import Array
 from calibration.names.candidates import STEP
 from calibration.names.candidates import tried as first_value
 from calibration.names.name import FORCE, Name

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.frame import Frame
 from calibration.balances.friction import Sliding
 from calibration.balances.motion import Motion
-from calibration.inputs.run import Array
 from calibration.inputs.train import Train
 
 

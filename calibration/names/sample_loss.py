@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from calibration.arrays import Mask
 from calibration.balances.frame import Frame
 from calibration.finding import NORMAL, Parameter, of_columns
 from calibration.names.name import Array, Beside, Finding, Name
 from calibration.statistics.tails import share_log10
-from calibration.statistics.whitening import Mask
 
 # rad per row, 0.8 arcsec/s. ASSUMPTION
 MOVING = 4e-8

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.arrays import Array
 from calibration.balances.friction import Sliding, sliding_of
 from calibration.balances.motion import acceleration_of, rate_of
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.balances.volts import Windings
-from calibration.inputs.run import Array
 from calibration.names.pair import Pair
 from calibration.statistics.regression import solve
 

@@ -8,12 +8,13 @@ import numpy as np
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
-from calibration.finding import UNKNOWN, Finding, middle, of_columns
+from calibration.finding import UNKNOWN, Finding, of_columns
 from calibration.names.gravity_imbalance import gravity
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene, candidate
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import order_spectrum, peaks
+from calibration.statistics.tails import middle
 
 KNOTS = 8
 SLOW = 4  # knots over time of a scale that moves

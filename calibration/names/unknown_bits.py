@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.finding import UNKNOWN, Finding, Parameter
-from calibration.inputs.run import Array, Run
+from calibration.inputs.run import Run
 from plant.units import ARCSEC
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.finding import Finding
-from calibration.inputs.run import Array
 from calibration.names.inplant import SIDES, Facts, Knots, Made, motor_of, value
 from plant.effects.unknown import KNOTS
 

@@ -2,11 +2,10 @@
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame
-from calibration.inputs.run import Array
 from calibration.replay import thresholds as limits
 from calibration.replay.trace import Trace
-from calibration.statistics.whitening import Mask
 from plant.units import ARCSEC
 
 UNITS = {"torque": "N m", "velocity": "arcsec/s", "position": "arcsec"}

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.view import View
 from calibration.decide.selection import Selection
 from calibration.finding import Curve
-from calibration.inputs.run import Array
 from calibration.statistics.tails import student_reach
 from plant.evaluate import evaluate_function
 

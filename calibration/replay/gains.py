@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame, fill
-from calibration.inputs.run import Array
 from calibration.replay.thresholds import AGREE, FULL, LAG_S, LARGEST_GAIN, LEAST_LOOP_ROWS, ROBUST_ROUNDS
 from calibration.statistics.regression import solve
-from calibration.statistics.whitening import Mask
 from plant.units import ARCSEC
 
 

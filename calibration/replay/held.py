@@ -5,14 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame
-from calibration.inputs.run import Array
 from calibration.replay.compare import UNITS, breaking, comparable, errors, residual
 from calibration.replay.gains import Gains, identify
 from calibration.replay.stretches import drive
 from calibration.replay.thresholds import CHAOS_SHARE, LEAST_ROWS, NEAR, WORSE
 from calibration.replay.trace import Loop, Trace, repeats
-from calibration.statistics.whitening import Mask
 from plant.model import PlantModel
 
 Compared = tuple[Trace, Trace, Mask]  # log, replay, rows of the run

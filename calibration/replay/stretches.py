@@ -6,11 +6,10 @@ phase. The set point of the transient takes that offset out; the offset is a fig
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.filters import pieces
-from calibration.inputs.run import Array
 from calibration.replay import thresholds as limits
 from calibration.replay.trace import Loop, Trace
-from calibration.statistics.whitening import Mask
 from plant.model import PlantModel
 
 

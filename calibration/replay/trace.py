@@ -4,12 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame, fill
-from calibration.inputs.run import Array
 from calibration.names import NAMES
 from calibration.replay.gains import Gains
 from calibration.replay.thresholds import AT_REST, LEAD_ROWS, LEAST_RATE
-from calibration.statistics.whitening import Mask
 from plant.effects.signals import ANGLE, CURRENT, MOTOR, RATE, TIME
 from plant.evaluate import signals
 from plant.model import PlantModel, with_effects, with_value

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
-from calibration.inputs.run import Array
 from calibration.look.looked import Spectrum
 from calibration.report.thresholds import BINS, BINS_OF_A_PULSE, FEWEST_DRAWN, FEWEST_OF_A_TRACE, MOST_MARKED
 from calibration.statistics.orders import order_spectrum

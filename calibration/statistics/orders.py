@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array
 
 # times the spectrum's power around it. ASSUMPTION: a line is offered by it, and judged elsewhere
 STANDS_OUT = 12.0

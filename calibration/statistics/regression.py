@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array, Mask
 from calibration.statistics.thresholds import SINGULAR
-from calibration.statistics.whitening import Mask, Whitener, fit_ar
+from calibration.statistics.whitening import Whitener, fit_ar
 
 
 @dataclass(frozen=True)

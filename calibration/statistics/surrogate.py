@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array
 from calibration.statistics.tails import wald_log10
 from calibration.statistics.thresholds import APART, KEPT
 

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 
-from calibration.inputs.run import Array
+from calibration.arrays import Array, Mask
 from calibration.statistics.thresholds import LOADING, MEDIAN, ROWS_PER_ORDER, SECOND
-
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.frame import Frame
 from calibration.balances.motion import motion_of
 from calibration.balances.problem import Problem
 from calibration.inputs.rigfile import telescope
-from calibration.inputs.run import Array
 from calibration.look.scene import scene_of_balance
 from calibration.names.pair import Pair
 from calibration.names.scene import Scene

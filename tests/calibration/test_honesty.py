@@ -10,12 +10,13 @@ from calibration.decide.heldout import HeldOut
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import effect_as_dict, judge, kind_of, probability
 from calibration.decide.withdraw import against_nature, failed_controls, withdraw
-from calibration.finding import Finding, Parameter, middle
+from calibration.finding import Finding, Parameter
 from calibration.look.lacks import motion_lacks
 from calibration.look.looked import Balance
 from calibration.names.command_disturbance import _phase
 from calibration.names.freelines import between
 from calibration.names.play import lag_in_gap
+from calibration.statistics.tails import middle
 
 
 def row(after: float, floor: float | None) -> dict[str, dict[str, Any]]:

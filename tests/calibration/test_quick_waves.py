@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from calibration.arrays import Array
 from calibration.balances.view import view_of
 from calibration.command import calibrate
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.run import Array
 from calibration.inputs.tables import read_table
 
 RIG = """rig: a brushless motor

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.balance import problem_of
 from calibration.balances.guide import guide_problem, usable
 from calibration.balances.mounts import parts
@@ -12,7 +13,6 @@ from calibration.balances.view import View, view_of
 from calibration.inputs.counters import align_counters
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.run import Array
 
 Terms = Callable[[View], list[Array]]
 """Columns (n,) at full rate beside the declared terms."""

@@ -13,7 +13,8 @@ from calibration.decide.select import select
 from calibration.decide.thresholds import MODEL_ERROR, STILL_MISSING, Earned
 from calibration.decide.verdict import judge, kind_of, probability
 from calibration.decide.withdraw import failed_controls, unnamed, withdraw
-from calibration.finding import Finding, Parameter, middle
+from calibration.finding import Finding, Parameter
+from calibration.statistics.tails import middle
 from tests.calibration.decide.made import problem, term
 
 
