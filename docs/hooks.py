@@ -23,6 +23,7 @@ OUTSIDE = {
         ("ARCHITECTURE", "concepts/"),
         ("CHANGELOG", ""),
         ("CONTRIBUTING", "guides/"),
+        ("SECURITY", "reference/"),
     )
 }
 """Pages at the root of the repository and their place on the site."""

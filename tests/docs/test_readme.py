@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,20 @@ def test_a_picture_stands_before_the_first_heading() -> None:
 def test_the_two_set_up_commands_come_first() -> None:
     commands = re.findall(r"^    (\w+ \w+)", TEXT, re.MULTILINE)
     assert commands[:2] == ["make run", "make test"]
+
+
+def test_the_extras_of_a_user_are_named() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "optional-dependencies"
+    ]
+    workshop = {"all", "test", "kit", "bench", "compiled", "wheels", "docs", "coverage"}
+    listed = re.search(r"Extras: (.*?)\.\n", TEXT, re.DOTALL)
+    assert listed and set(re.findall(r"`(\w+)`", listed[1])) == set(extras) - workshop
+
+
+def test_the_pictures_are_those_of_the_drive_and_of_the_console() -> None:
+    shown = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", TEXT)
+    assert {Path(name).name for name in shown} >= {"overview.svg", "main.png", "residual.png"}
 
 
 @pytest.mark.slow

@@ -82,3 +82,14 @@ def test_coverage_names_the_lowest_room_first() -> None:
     lines = table({"good": (10, 1), "bad": (10, 9)}, most=1).splitlines()
     assert lines[0].split()[0] == "10.0%" and lines[0].endswith("bad")
     assert lines[1].split()[0] == "50.0%"
+
+
+def test_version_and_day_are_the_same_wherever_they_stand() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    newest = re.search(
+        r"^## (\S+) - (\S+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert newest and newest.groups() == (cited["version"], str(cited["date-released"]))
+    assert cited["version"] == project["version"]
+    assert [paper["doi"] for paper in cited["references"]] == ["10.1117/1.OE.52.8.081607"]
