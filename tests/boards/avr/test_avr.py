@@ -1,73 +1,23 @@
 """A program for an ATmega328P under simavr, its pins on our MCP2515: alone, and as a node of the lab."""
 
-import shutil
-import subprocess
-import time
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from boards.avr import AvrBoard, core
-from boards.avr.core import library
+from boards.avr import core
 from boards.c.library import FirmwareError
 from boards.core.declared import BoardError
-from boards.core.place import Place
-from bus.can import Frame, Wire
+from bus.can import Frame
 from bus.protocol import Opcode, pack_command, unpack_reply
-from bus.time import EventQueue, Oscillator
-from scenarios.lab.prepare import prepare
-from scenarios.run import run as runner
+from tests.boards.avr.rig import DEVICE, SECOND, Rig, built, in_the_lab
 
-DEVICE = 0x31
 NODE = Path(__file__).parent / "node.c"
-SECOND = 1_000_000_000
-
-
-def built(folder: Path, text: str) -> Path:
-    """An ELF file; skips the test where the packages are missing."""
-    if shutil.which("avr-gcc") is None:
-        pytest.skip("no avr-gcc: apt install gcc-avr avr-libc")
-    try:
-        library(Path("node.elf"))
-    except FirmwareError as error:
-        if "not installed" not in str(error):
-            raise
-        pytest.skip(str(error))
-    (folder / "node.c").write_text(text)
-    flags = ["-mmcu=atmega328p", "-Os", "-Wall", "-Wextra", "-Werror", "-std=gnu11"]
-    made = folder / "node.elf"
-    done = subprocess.run(
-        ["avr-gcc", *flags, "node.c", "-o", str(made)], cwd=folder, capture_output=True, text=True
-    )
-    if "avr/io.h" in done.stderr:
-        pytest.skip("no avr-libc: apt install avr-libc")
-    assert done.returncode == 0, done.stderr
-    return made
 
 
 @pytest.fixture(scope="module")
 def elf(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return built(tmp_path_factory.mktemp("avr"), NODE.read_text())
-
-
-class Rig:
-    """The board on a wire, and a partner that hears all."""
-
-    def __init__(self, elf: Path, ppm: float = 0.0) -> None:
-        self.queue = EventQueue()
-        self.wire = Wire(self.queue, 1_000_000)
-        place = Place(
-            name="AVR", device_type=DEVICE, queue=self.queue, wire=self.wire, oscillator=Oscillator(ppm, 0)
-        )
-        self.board = AvrBoard(place, elf)
-        self.partner = self.wire.attach("partner")
-        self.heard: list[tuple[int, Frame]] = []
-        self.partner.on_receive = lambda t, frame: self.heard.append((t, frame))
-        self.board.begin()
-
-    def of(self, base: int) -> list[tuple[int, Frame]]:
-        return [(t, frame) for t, frame in self.heard if frame.identifier == base + DEVICE]
+    return built(tmp_path_factory.mktemp("avr"), NODE)
 
 
 def test_frames_come_by_the_processors_own_timer(elf: Path) -> None:
@@ -130,9 +80,10 @@ def test_two_runs_are_the_same(elf: Path) -> None:
 
 
 def test_a_program_that_ends_is_one_line(tmp_path: Path) -> None:
-    text = "#include <avr/sleep.h>\nint main(void) { sleep_enable(); sleep_cpu(); return 0; }\n"
+    source = tmp_path / "node.c"
+    source.write_text("#include <avr/sleep.h>\nint main(void) { sleep_enable(); sleep_cpu(); return 0; }\n")
     with pytest.raises(BoardError, match=r"node\.elf: halts: it sleeps with interrupts off: board AVR at 0"):
-        Rig(built(tmp_path, text)).queue.run_until(SECOND)
+        Rig(built(tmp_path, source)).queue.run_until(SECOND)
     (tmp_path / "no.elf").write_text("none")
     for name, what in (("no.elf", "no ELF file for an AVR"), ("gone.elf", "no such file")):
         with pytest.raises(FirmwareError, match=what):
@@ -140,27 +91,11 @@ def test_a_program_that_ends_is_one_line(tmp_path: Path) -> None:
 
 
 def test_it_is_a_node_of_the_lab(elf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shutil.copy(elf, tmp_path / "tach.elf")
-    (tmp_path / "avr.yaml").write_text(
-        "name: avr\nstart_utc: 2026-02-10T14:00:00Z\n"
-        "network: {nodes: {MOTOR_RA_A: {firmware: tach.elf}}}\nsteps: [power_on: {}, wait: {for: 5 s}]\n"
-    )
-    digests = []
-    for _ in range(2):
-        begun = time.perf_counter()
-        result = runner.run(
-            *prepare(tmp_path / "avr.yaml"), tmp_path / "out", lambda *_: None, runner.Way(report=False)
-        )
-        taken = time.perf_counter() - begun
-        assert result.passed
-        digests.append(result.summary["trace_digest"])
-    assert digests[0] == digests[1]
-    log = (tmp_path / "out" / "can.log").read_text()
+    log, factor = in_the_lab(elf, tmp_path)
     assert log.count(" 231#") > 500
     assert log.count(" 131#") >= 1
     with capsys.disabled():
-        factor = result.summary["simulated_s"] / result.summary["wall_s"]
-        print(f"\nlab with an AVR: {factor:.1f} times real time, {taken:.1f} s in all")
+        print(f"\nlab with an AVR: {factor:.1f} times real time")
 
 
 def test_without_simavr_one_line_says_what_to_install(

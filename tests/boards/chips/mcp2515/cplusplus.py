@@ -3,8 +3,6 @@
 import ctypes
 import shutil
 import subprocess
-import sys
-import zipfile
 from collections.abc import Callable
 from ctypes import c_bool, c_size_t, c_uint8, c_uint32
 from pathlib import Path
@@ -15,6 +13,7 @@ import pytest
 from boards.chips.mcp2515 import Mcp2515
 from bus.can import Frame, Wire
 from bus.time import EventQueue
+from tests.boards.esphome import unpacked
 
 WHEEL = "esphome==2026.6.5 --hash=sha256:4edcebb876c160aea2376cf32453a9b32b64afbb65d49cb4bdd66e2538edba51"
 PARTS = ("mcp2515", "canbus")
@@ -39,16 +38,7 @@ def built(folder: Path) -> ctypes.CDLL:
     compiler = shutil.which("c++") or shutil.which("g++")
     if compiler is None:
         pytest.skip("no C++ compiler: the C++ driver cannot be built")
-    (folder / "wanted.txt").write_text(WHEEL + "\n")
-    words = ["-m", "pip", "download", "-q", "--no-deps", "--require-hashes", "-d", str(folder)]
-    asked = subprocess.run([sys.executable, *words, "-r", str(folder / "wanted.txt")], capture_output=True)
-    wheels = list(folder.glob("*.whl"))
-    if not wheels:
-        pytest.skip(f"the driver's package cannot be had: {asked.stderr.decode().strip()[-200:]}")
-    with zipfile.ZipFile(wheels[0]) as package:
-        for name in package.namelist():
-            if name.startswith(tuple(f"esphome/components/{part}/" for part in PARTS)):
-                package.extract(name, folder)
+    unpacked(folder, WHEEL, PARTS)
     sources = [SHIM / "probe.cpp", *(folder / f"esphome/components/{part}/{part}.cpp" for part in PARTS)]
     made = folder / "driver.so"
     subprocess.run(
