@@ -54,6 +54,12 @@ class IsolatedMemory(Memory):
         self._line.send(data)
 
 
+def unbuilt(isolated: bool) -> Memory:
+    """A memory as a snapshot begins it; its state builds it."""
+    kind = IsolatedMemory if isolated else Memory
+    return kind.__new__(kind)
+
+
 def _end(line: Connection, process: subprocess.Popen[bytes]) -> None:
     line.close()
     process.wait()

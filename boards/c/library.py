@@ -116,9 +116,13 @@ class Memory:
     def bytes(self, data: bytes) -> None:
         self._module.ffi.buffer(self._block, self.row.memory_bytes)[:] = data
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __reduce__(self) -> tuple[Callable[[bool], "Memory"], tuple[bool], dict[str, Any]]:
+        from boards.c.isolated import IsolatedMemory, unbuilt
+
+        # a snapshot does not name the class: called with flags, it would run the compiler with them
         state = {"file": self.file, "flags": self.flags, "ask": self.ask}
-        return state | {"digest": self.digest, "bytes": self.bytes}
+        state |= {"digest": self.digest, "bytes": self.bytes}
+        return unbuilt, (isinstance(self, IsolatedMemory),), state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # a restored library is loaded anew: its block and callbacks are the C compiler's, not pickle's

@@ -15,12 +15,13 @@ _OURS: Final = (
     "scenarios.lab.supply", "scenarios.doors.usb", "scenarios.language.model", MODULE,
 )  # fmt: skip
 """Modules whose classes may be in one. MODULE: boards of a user's own, which the scenario loads first."""
-_NOT: Final = ("boards.avr.",)
-"""Firmware for an AVR begins programs. A file of C is built anew, as a user's own board in Python is run."""
+_NOT: Final = ("boards.avr.", "boards.c.library", "boards.c.isolated", "plant.fmu.")
+"""These begin programs. A file of C is built anew, as a user's own board in Python is run."""
 _INNER: Final = ("boards.", "bus.can.", "plant.", "scenarios.lab.faults.", "scenarios.doors.lines", MODULE)
 """Modules whose functions inside functions may be."""
 _LIBRARIES: Final = ("canopen.", "numpy.random.", "cantools.")
 _HELPERS: Final = {
+    "boards.c.isolated": {"unbuilt"},
     "boards.core.interrupts": {"_no_routine"},
     "boards.core.parameters": {"_nothing"},
     "boards.silicon.hid": {"_nobody", "_always"},

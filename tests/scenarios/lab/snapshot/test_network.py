@@ -10,6 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from boards.c.isolated import IsolatedMemory, unbuilt
+from boards.c.library import Memory
 from bus.can import Frame
 from bus.can.candump import CandumpWriter
 from bus.can.length import frame_bits
@@ -24,6 +26,7 @@ from scenarios.lab.snapshot import SnapshotError, restore, take
 from tests.bus.can.test_wire import network as bare
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 
+AXIS_C = Path(__file__).parents[4] / "boards" / "axis" / "axis.c"
 AHEAD_NS = 300_000_000
 INSTANTS = st.integers(0, 700_000_000)
 
@@ -203,6 +206,9 @@ def test_what_no_snapshot_can_hold_is_said() -> None:
         ("scenarios.lab.recorder", "Recorder"),
         ("scenarios.native.build", "build"),
         ("boards.avr.core", "Core"),
+        ("boards.c.library", "Memory"),
+        ("boards.c.isolated", "IsolatedMemory"),
+        ("plant.fmu.library", "build"),
         ("bus.protocol.page", "main"),
     ],
 )
@@ -211,6 +217,29 @@ def test_what_a_module_imports_is_not_in_a_snapshot(module: str, name: str) -> N
     head, digest, _ = take(None).split(b"\n", 2)
     with pytest.raises(SnapshotError, match="no business"):
         restore(b"\n".join((head, digest, body + b"\x93.")))
+
+
+@pytest.mark.parametrize("flags", [("-wrapper", "sh,-c,touch {file}"), ()])
+@pytest.mark.parametrize("kind", [Memory, IsolatedMemory])
+def test_a_compiler_is_not_told_to_run_a_program(kind: type, flags: tuple[str, ...], tmp_path: Path) -> None:
+    """Neither by the constructor's arguments nor by the state that follows it."""
+    file = tmp_path / "ran"
+    words = tuple(word.format(file=file) for word in flags)
+
+    class Constructed:
+        def __reduce__(self) -> Any:
+            return kind, (AXIS_C, words)
+
+    class Filled:
+        def __reduce__(self) -> Any:
+            state = {"file": AXIS_C, "flags": words or ("-v",), "ask": None}
+            return unbuilt, (kind is IsolatedMemory,), state
+
+    head, digest, _ = take(None).split(b"\n", 2)
+    for wrong, reason in ((Constructed, "no business"), (Filled, "no flags for the compiler")):
+        with pytest.raises(SnapshotError, match=reason):
+            restore(b"\n".join((head, digest, pickle.dumps(wrong()))))
+    assert not file.exists()
 
 
 def test_a_module_is_not_reached_through_a_method() -> None:
