@@ -35,6 +35,7 @@ enum { COMMAND = 0x080, REPLY = 0x100, MEASUREMENT = 0x200, SUMMARY = 0x300, HEA
 enum { PING = 1, GET_PARAMETER, SET_PARAMETER };
 enum { POWER = 0x10, STOP_NOW, SET_RATE, SET_CLASS, MOVE_TO, TRACK_RATE, OPEN_LOOP_EFFORT, NUDGE };
 enum { OK, UNKNOWN_OPCODE, WRONG_LENGTH, OUT_OF_RANGE, NOT_ALLOWED, WRONG_DEVICE_TYPE };
+enum { ALARM = 1, WRONG_CRC = 4, LIMIT_LOW = 8, LIMIT_HIGH = 16 }; /* POSITION's flags */
 enum { OFF, STOP, RATE, CLASS, MOVE, TRACK, OPEN_LOOP };
 enum { READY = 1, ACTIVE, FAULT };
 enum { MOVING = 0x10, SOFT_LIMIT = 0x20, FAULTY = 0x40, POWERED = 0x80 }; /* above the mode, in MOTION's status */
@@ -77,7 +78,7 @@ struct board {
     uint8_t fault, fixed, reached, watching, blending;      /* fixed: the effort is commanded */
     uint8_t first, waiting, late, late_reply[8];            /* inbox and a reply that found no buffer */
     uint8_t inbox[INBOX][9];                                /* length, data */
-    uint8_t sequence, samples, clip_packet;
+    uint8_t sequence, samples, clip_packet, ends;           /* ends: limit bits of the last POSITION */
     uint8_t packet[PACKET_BYTES];
 };
 
@@ -336,8 +337,9 @@ static int64_t measured(const struct board *b, int64_t now_ns) {
 }
 
 static void take_position(struct board *b, const uint8_t *data) {
-    if (data[1] & 5) /* alarm, wrong CRC */ return;
+    if (data[1] & (ALARM | WRONG_CRC)) return;
     b->good_ns = time_ns();
+    b->ends = data[1] & (LIMIT_LOW | LIMIT_HIGH);
     b->position = i32(data + 2) & STEPS_MASK;
     b->latch_ns = b->good_ns - data[6] * INT32_C(4000) - b->settings[FRAME_NS];
 }
@@ -464,11 +466,13 @@ static uint8_t limit_hit(struct board *b) {
     int64_t braking;
     uint8_t outward;
     b->reached = 0;
-    if (b->near_low < b->position && b->position < b->near_high) return 0;
+    if (b->near_low < b->position && b->position < b->near_high && !b->ends) return 0;
     braking = pointing(b) ? 0 : braking_steps(b, b->velocity);
     outward = (b->velocity > 0 && b->position + braking >= b->p[HIGH])
-              || (b->velocity < 0 && b->position - braking <= b->p[LOW]);
-    b->reached = outward || b->position > b->p[HIGH] || b->position < b->p[LOW];
+              || (b->velocity < 0 && b->position - braking <= b->p[LOW])
+              || (b->velocity > 0 && b->setpoint_q16 >= 0 && b->ends & LIMIT_HIGH)
+              || (b->velocity < 0 && b->setpoint_q16 <= 0 && b->ends & LIMIT_LOW);
+    b->reached = outward || b->ends || b->position > b->p[HIGH] || b->position < b->p[LOW];
     return outward && b->mode != OFF && b->mode != STOP;
 }
 

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from boards.axis.commands import RATE_LIMIT
 from boards.c import library
 from boards.c.board import FirmwareBoard
 from boards.c.isolated import IsolatedMemory
 from boards.c.library import FirmwareError, Memory, load, members
 from boards.core.declared import BoardError
+from bus.can import Frame
+from bus.protocol import COMMAND_BASE, AxisMode, Device, Opcode, pack_command
 from scenarios.lab.network import Network
 from scenarios.lab.prepare import Changes, prepare
 from scenarios.lab.snapshot import restore, take
@@ -53,6 +56,25 @@ def network(folder: Path, wrong: str = "", isolated: bool = False) -> Network:
 
 def test_the_header_is_short() -> None:
     assert len(HEADER.read_text(encoding="utf-8").splitlines()) <= 150
+
+
+@pytest.mark.parametrize(("parameter", "way"), [(4, -1), (5, 1)])
+def test_both_heed_the_encoder_boards_limits(parameter: int, way: int) -> None:
+    """Far inside their own: out they stop, at rest beyond it they say so, back they may."""
+    duel = Duel(1)
+    duel.both(0.1)
+    duel.command(Opcode.POWER, 1)
+    duel.command(Opcode.SET_RATE, way * RATE_LIMIT // 18)
+    duel.both(1.0)
+    here = duel.sides[0].network.boards["AXIS_RA"].motion.position
+    for side in duel.sides:
+        data = pack_command(Device.POSITION_RA, Opcode.SET_PARAMETER, parameter, here - way * 1000)
+        side.node.arrive(Frame(COMMAND_BASE + Device.POSITION_RA, data))
+    duel.both(3.0)
+    assert duel.sides[1].state()["mode"] == AxisMode.STOP and duel.sides[1].state()["reached"]
+    duel.command(Opcode.SET_RATE, -way * RATE_LIMIT // 18)
+    duel.both(0.5)
+    assert duel.sides[1].state()["mode"] == AxisMode.RATE
 
 
 @pytest.mark.parametrize("duel", ["lab:2", "final:4"])
