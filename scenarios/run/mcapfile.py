@@ -46,9 +46,10 @@ def _channel(writer: Any, source: Source) -> int:
 
 
 def _json(values: dict[str, Any]) -> bytes:
-    """What is no number (an open loop has no set point) is null: JSON knows no nan."""
+    """What is no number (an open loop has no set point) is left out: neither JSON nor Foxglove knows nan."""
     plain = {
-        name: None if isinstance(value, float) and not isfinite(value) else value
+        name: value
         for name, value in values.items()
+        if value is not None and not (isinstance(value, float) and not isfinite(value))
     }
     return json.dumps(plain, separators=(",", ":")).encode()

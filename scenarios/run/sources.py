@@ -19,6 +19,7 @@ _LINE_LOGS = {
 }
 NUMBER = {"type": "number"}
 TEXT = {"type": "string"}
+_KINDS = {bool: "boolean", int: "number", float: "number", str: "string", dict: "object", list: "array"}
 
 
 class Source(NamedTuple):
@@ -133,11 +134,36 @@ def _of_summary(summary: dict[str, Any]) -> list[Iterator[Entry]]:
     }
     found = []
     for name, (each, when) in groups.items():
-        source = Source(f"/{name}", {word: {} for one in each for word in one})
+        schema = _schema(each)
+        source = Source(f"/{name}", schema.get("properties", {}))
         timed = [(end_s if when(one) is None else when(one), one) for one in each]
-        entries = [Entry(round(t_s * 1e9), source, one) for t_s, one in timed]
+        entries = [Entry(round(t_s * 1e9), source, _fitted(one, schema)) for t_s, one in timed]
         found.append(iter(sorted(entries, key=lambda entry: entry.t_ns)))
     return found
+
+
+def _schema(values: list[Any]) -> dict[str, Any]:
+    """The JSON schema of all these values; text where they are of several kinds.
+
+    Foxglove wants one type for each property, and knows no null.
+    """
+    there = [value for value in values if value is not None]
+    kinds = {_KINDS[type(value)] for value in there} or {"number"}
+    if kinds == {"object"}:
+        names = {name: None for value in there for name in value}
+        fields = {name: _schema([value.get(name) for value in there]) for name in names}
+        return {"type": "object", "properties": fields}
+    if kinds == {"array"}:
+        return {"type": "array", "items": _schema([one for value in there for one in value])}
+    return {"type": kinds.pop()} if len(kinds) == 1 else TEXT
+
+
+def _fitted(value: Any, schema: dict[str, Any]) -> Any:
+    """The value as its schema has it: what is None is left out."""
+    if schema["type"] == "object":
+        fields = schema["properties"]
+        return {name: _fitted(one, fields[name]) for name, one in value.items() if one is not None}
+    return json.dumps(value) if schema is TEXT and not isinstance(value, str) else value
 
 
 def summary_of(folder: Path) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 import can
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from pyarrow import parquet
 
 from calibration.errors import CalibrationInputError
@@ -73,16 +74,35 @@ def test_the_digest_is_the_same_whatever_the_format(folders: dict[str, Path]) ->
     assert len({digest(folder) for folder in folders.values()}) == 1
 
 
+def foxglove_takes(properties: dict[str, Any]) -> dict[str, Any]:
+    """As its parser of JSON schemas reads them: one known type each, with what is in objects and arrays."""
+    for name, one in properties.items():
+        kind = one.get("type")
+        if kind == "object":
+            foxglove_takes(one["properties"])
+        elif kind == "array":
+            foxglove_takes({name: one["items"]})
+            assert one["items"]["type"] != "array", name
+        else:
+            assert kind in ("boolean", "string", "number", "integer"), f"{name}: unsupported type {kind}"
+    return properties
+
+
 def messages(file: Path) -> dict[str, list[tuple[int, dict[str, Any]]]]:
     from mcap.reader import make_reader
 
     found: dict[str, list[tuple[int, dict[str, Any]]]] = {}
+    checks: dict[int, Draft202012Validator] = {}
     with file.open("rb") as stream:
         for schema, channel, message in make_reader(stream).iter_messages():
             assert schema is not None
             assert schema.encoding == "jsonschema"
             content = json.loads(message.data)
-            assert set(content) <= set(json.loads(schema.data)["properties"]), channel.topic
+            if schema.id not in checks:
+                whole = json.loads(schema.data)
+                foxglove_takes(whole["properties"])
+                checks[schema.id] = Draft202012Validator(whole | {"additionalProperties": False})
+            checks[schema.id].validate(content)
             found.setdefault(channel.topic, []).append((message.log_time, content))
     return found
 
@@ -116,9 +136,27 @@ def test_a_fault_stands_where_it_first_acted() -> None:
     never = {"name": "node_off", "at_s": 2.0, "first_s": None, "on": ""}
     summary = {"simulated_s": 3.0, "steps": [], "expectations": [], "faults": [never, acted]}
     faults = list(_of_summary(summary)[1])
-    source = Source("/faults", {word: {} for word in acted})
-    assert [(each.t_ns, each.values) for each in faults] == [(1_500_000_000, acted), (2_000_000_000, never)]
-    assert faults[0] == Entry(1_500_000_000, source, acted)
+    text, number = {"type": "string"}, {"type": "number"}
+    source = Source("/faults", {"name": text, "at_s": number, "first_s": number, "on": text})
+    del never["first_s"]  # no null: Foxglove knows none
+    assert faults == [Entry(1_500_000_000, source, acted), Entry(2_000_000_000, source, never)]
+
+
+def test_values_of_several_kinds_are_text() -> None:
+    each = [
+        {"name": "a", "arguments": {"node": "FOCUS", "level": 2, "on": True, "nodes": ["A"]}},
+        {"name": "b", "arguments": {"node": ["FOCUS", "TEMP"], "level": 0.5, "on": None}},
+    ]
+    summary = {"simulated_s": 3.0, "steps": [], "expectations": [], "faults": each}
+    for one in each:
+        one |= {"at_s": 0, "first_s": None}
+    first, second = _of_summary(summary)[1]
+    properties = foxglove_takes(first.source.properties)["arguments"]["properties"]
+    assert {name: one["type"] for name, one in properties.items()} == {
+        "node": "string", "level": "number", "on": "boolean", "nodes": "array"
+    }  # fmt: skip
+    assert first.values["arguments"] == each[0]["arguments"]
+    assert second.values["arguments"] == {"node": '["FOCUS", "TEMP"]', "level": 0.5}
 
 
 def test_columns_come_back_from_mcap(folders: dict[str, Path], tmp_path: Path) -> None:
