@@ -14,11 +14,13 @@ UTC_OFFSET_H = -5.5
 class Handbox:
     """Clock and site of the hand box.
 
-    A client may set the time. It is kept and read back, running on; the sky stays the telescope's own
+    A client may set the time. It is kept and read back, running on. The sky stays the telescope's own
     (its clock is the emulation's, or the PC's), and so does where it points.
     """
 
     def __init__(self, clock: Clock, site_name: str) -> None:
+        self.precise = True
+        """As the last `:U#` of any client left it: what the next one begins with."""
         self.utc_offset_h = UTC_OFFSET_H
         self.frequency_hz = FREQUENCIES[DriveRate.SIDEREAL]
         self.site_names = [site_name, "Site 2", "Site 3", "Site 4"]

@@ -27,6 +27,20 @@ async def slew(session: Session, _: str) -> str:
     return "0"
 
 
+async def slew_ground(session: Session, _: str) -> str:
+    """`:MA#`: to `:Sz` and `:Sa` over the ground, and stand there; `0`, or `1` for whatever is in the way."""
+    azimuth, altitude = session.target_az_rad, session.target_alt_rad
+    if azimuth is None or altitude is None:
+        session.say("no azimuth and altitude have been set")
+        return "1"
+    try:
+        await session.desk.do(lambda t: t.drive.goto_altaz(azimuth, altitude, wake=True))
+    except Refused as refusal:
+        session.say(str(refusal))
+        return "1"
+    return "0"
+
+
 async def sync(session: Session, _: str) -> str:
     """`:CM#`: the telescope points at the target."""
     try:
@@ -58,7 +72,7 @@ async def stop(session: Session, _: str) -> str:
 
 async def precision(session: Session, _: str) -> str:
     """`:U#` toggles between seconds and tenths of a minute."""
-    session.precise = not session.precise
+    session.precise = session.box.precise = not session.precise
     return ""
 
 
@@ -154,7 +168,7 @@ def _focus_speed(slow: bool) -> Handler:
 
 
 MOVING: dict[str, Handler] = {
-    "MS": slew, "CM": sync, "Q": stop, "U": precision, "hP": park, "hW": wake,
+    "MS": slew, "MA": slew_ground, "CM": sync, "Q": stop, "U": precision, "hP": park, "hW": wake,
     "AP": wake, "AL": land, "AA": nothing, "TM": nothing,
     **{f"M{letter}": _key(letter) for letter in "nsew"},
     "Qn": _release("dec"), "Qs": _release("dec"), "Qe": _release("ra"), "Qw": _release("ra"),

@@ -30,11 +30,13 @@ class Session:
         self.desk = desk
         self.box = box
         self.name = name
-        self.precise = True
+        self.precise = box.precise
         self.speed = SpeedClass.SLEW
         self.focus_slow = False
         self.target_ra_rad: float | None = None
         self.target_dec_rad: float | None = None
+        self.target_az_rad: float | None = None
+        self.target_alt_rad: float | None = None
         self.unknown = 0
         self._plain = plain
         self._taking = taking

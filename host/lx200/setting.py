@@ -45,6 +45,22 @@ def declination(session: Session, argument: str) -> None:
     session.target_dec_rad = math.radians(degrees)
 
 
+def azimuth(session: Session, argument: str) -> None:
+    """`:SzDDD*MM#`, from north through east."""
+    degrees = angles.parse(argument)
+    if not 0 <= degrees <= 360:
+        raise ValueError(f"azimuth {argument!r} is outside 0 to 360")
+    session.target_az_rad = math.radians(degrees)
+
+
+def altitude(session: Session, argument: str) -> None:
+    """`:SasDD*MM#`, with refraction, as the tube stands."""
+    degrees = angles.parse(argument)
+    if abs(degrees) > 90:
+        raise ValueError(f"altitude {argument!r} is outside -90 to 90")
+    session.target_alt_rad = math.radians(degrees)
+
+
 def longitude(session: Session, argument: str) -> None:
     """`:Sg`, west positive, 0 to 360 or signed; the telescope stands where it stands."""
     west = angles.parse(argument)
@@ -111,7 +127,8 @@ def _taken(_session: Session, argument: str) -> None:
 
 
 SETTING: dict[str, Handler] = {
-    "Sr": _answering(right_ascension), "Sd": _answering(declination), "Sg": _answering(longitude),
+    "Sr": _answering(right_ascension), "Sd": _answering(declination), "Sz": _answering(azimuth),
+    "Sa": _answering(altitude), "Sg": _answering(longitude),
     "St": _answering(latitude), "SG": _answering(utc_offset), "SL": _answering(local_time),
     "SC": local_date, "ST": frequency, "SM": _name(0), "SN": _name(1), "SO": _name(2), "SP": _name(3),
     "So": _answering(_taken), "Sh": _answering(_taken), "Sw": _answering(_taken),

@@ -5,7 +5,9 @@ import contextlib
 import os
 import re
 import select
+import shutil
 import socket
+import subprocess
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -144,9 +146,12 @@ def test_precision_toggles_silently_and_for_this_client_only(door: Door, client:
     assert re.fullmatch(r"\d\d:\d\d\.\d", client.ask("GR"))
     assert re.fullmatch(r"[+-]\d\d\xdf\d\d", client.ask("GD"))
     assert re.fullmatch(r"\d\d:\d\d:\d\d", other.ask("GR"))
+    later = Client(door.port)  # the hand box keeps what it was left at
+    assert re.fullmatch(r"\d\d:\d\d\.\d", later.ask("GR"))
     client.send(b":U#")
     assert re.fullmatch(r"\d\d:\d\d:\d\d", client.ask("GR"))
-    other.socket.close()
+    for each in (other, later):
+        each.socket.close()
 
 
 @pytest.mark.parametrize(
@@ -156,7 +161,8 @@ def test_precision_toggles_silently_and_for_this_client_only(door: Door, client:
         ("Sr-1:00:00", "0"), ("Sd+12*34:56", "1"), ("Sd +12\xdf34:56", "1"), ("Sd-12:34:56", "1"),
         ("Sd+12*34", "1"), ("Sd+91*00:00", "0"), ("Sd", "0"), ("Sg-79*27", "1"), ("Sg280*32", "1"),
         ("Sg10*00", "0"), ("St+29*22", "1"), ("St-29*22", "0"), ("SG-5.5", "1"), ("SG-05.5", "1"),
-        ("SGx", "0"), ("SL22:00:00", "1"), ("SL25:00:00", "0"), ("ST60.1", "1"), ("ST10.0", "0"),
+        ("Sz 120*30", "1"), ("Sz361*00", "0"), ("Sa+45*00", "1"), ("Sa+91*00", "0"), ("SGx", "0"),
+        ("SL22:00:00", "1"), ("SL25:00:00", "0"), ("ST60.1", "1"), ("ST10.0", "0"),
         ("SMARIES", "1"), ("So10", "1"), ("Sh10", "1"), ("Sw3", "1"),
     ],
 )  # fmt: skip
@@ -247,6 +253,39 @@ def test_refusals_come_in_one_piece(door: Door, client: Client) -> None:
     fresh.send(b":MS#")
     assert re.fullmatch(rb"2[ -~]+#", fresh.rest())
     fresh.socket.close()
+
+
+def test_a_slew_over_the_ground_stands_there_or_says_no(door: Door, client: Client) -> None:
+    assert client.set("MA") == "1"
+    for azimuth, altitude, answer in (("200*30", "+60*15", "0"), ("200*30", "+05*00", "1")):
+        assert client.set(f"Sz {azimuth}") == "1" and client.set(f"Sa{altitude}") == "1"
+        assert client.set("MA") == answer
+    client.wait()
+    assert angles.parse(client.ask("GZ").replace("'", ":")) == pytest.approx(200.5, abs=0.01)
+    assert angles.parse(client.ask("GA").replace("'", ":")) == pytest.approx(60.25, abs=0.005)
+    assert client.ask("GW") == "PN1"
+
+
+@pytest.mark.skipif(shutil.which("rotctl") is None, reason="rotctl is not installed (libhamlib-utils)")
+def test_hamlibs_rotctl_slews(door: Door, client: Client) -> None:
+    """Its Meade rotator, number 1801, as Debian packages it; it reads back in low precision only."""
+    client.send(b":U#")
+    command = ["rotctl", "-m", "1801", "-r", f"127.0.0.1:{door.port}"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="latin-1") as made:
+        assert made.stdin is not None and made.stdout is not None
+        made.stdin.write("P 120 55.5\n")
+        made.stdin.flush()
+        limit = monotonic() + 20
+        while not door.telescope.snapshot.slewing:
+            assert monotonic() < limit, "rotctl moves nothing"
+            sleep(0.02)
+        client.wait()
+        said, _ = made.communicate("p\nq\n", 30)
+    client.send(b":U#")
+    azimuth, altitude = (
+        float(re.findall(rf"{each}: ([\d.]+)", said)[0]) for each in ("Azimuth", "Elevation")
+    )
+    assert azimuth == pytest.approx(120, abs=0.02) and altitude == pytest.approx(55.5, abs=0.02), said
 
 
 def test_keys_pulses_and_rates(door: Door, client: Client) -> None:
