@@ -4,7 +4,7 @@ import signal
 
 import click
 
-from scenarios.commands import calibrating, describing, exporting, many, running, serving
+from scenarios.commands import calibrating, describing, exporting, live, many, running
 from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
 from scenarios.commands.parts import advice
 from scenarios.commands.sections import Section, Sections
@@ -13,12 +13,12 @@ SECTIONS: dict[str, Section] = {
     "Run a night": (
         (running.run, "schmidt run quick-look"),
         (many.campaign, "schmidt campaign campaign.yaml --out out/many"),
-        (serving.replay, "schmidt replay out/session"),
+        (live.replay, "schmidt replay out/session"),
     ),
     "Attach your host": (
-        (serving.serve, "schmidt serve --lx200 4030 --control 7411"),
-        (serving.control, "schmidt control status"),
-        (serving.host, "schmidt host --usb /dev/hidraw0 --console 8080"),
+        (live.serve, "schmidt serve --lx200 4030 --control 7411"),
+        (live.control, "schmidt control status"),
+        (live.host, "schmidt host --usb /dev/hidraw0 --console 8080"),
     ),
     "Check a board": (
         (describing.conformance, "schmidt conformance --can socketcan:can0 --board axis:0x11"),

@@ -1,56 +1,49 @@
-"""How one attaches to each door: the words or the URL that `schmidt serve` prints."""
+"""How one attaches to each door: the words that `schmidt serve` prints, and the TCP ports it takes."""
 
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 from scenarios.doors.address import AddressError, address
 from scenarios.doors.options import OptionError
+from scenarios.doors.table import ON_HOST, ON_NETWORK, DoorKind
 
-_WEB = {"--console": "open {url}", "--alpaca": "ASCOM Alpaca at {url}"}
+
+class Attached(NamedTuple):
+    """words: what to do to attach. host, ports: of a door on TCP."""
+
+    words: str
+    host: str = ""
+    ports: range = range(0)
 
 
-def ports(name: str, lines: int) -> tuple[str, range]:
-    """Host and TCP ports of a door by its name, such as `--serial tcp:7000`. lines: RS232 lines there are."""
+def attached(name: str, boards: Sequence[str]) -> Attached:
+    """By a door's name, such as `--serial tcp:7000`. boards: those with an RS232 line, in their order."""
     option, _, spec = name.partition(" ")
-    kind, _, rest = spec.partition(":")
-    several = option == "--serial" and kind in ("tcp", "rfc2217")
-    if not several and option not in (*_WEB, "--lx200", "--control"):
-        return "", range(0)
-    count = lines if several else 1
+    word, _, rest = spec.partition(":")
+    kinds: tuple[DoorKind[Any], ...] = (*ON_NETWORK, *ON_HOST)
+    forms = next(kind.attach for kind in kinds if f"--{kind.name}" == option)
+    form = forms.get(word, forms.get("", "{spec}"))
+    given = {"spec": spec, "word": word, "rest": rest}
+    if "{at}" not in form:
+        return Attached(form.format(**given, lines=", ".join(f"{rest}/{board}" for board in boards)))
+    several = "{last}" in form
+    count = len(boards) if several else 1
     try:
         host, port = address(rest if several else spec, option, count)
-    except AddressError:  # a pseudo-terminal, or reported by the door itself
-        return "", range(0)
-    return host, range(port, port + count)
+    except AddressError:  # reported by the door itself
+        return Attached(spec)
+    at = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+    last = f"port {port + count - 1}, {boards[-1]}"
+    return Attached(form.format(**given, at=at, first=boards[0], last=last), host, range(port, port + count))
 
 
-def words(name: str, boards: Sequence[str]) -> str:
-    """What to do to attach. boards: those with an RS232 line, in their order."""
-    option, _, spec = name.partition(" ")
-    kind, _, rest = spec.partition(":")
-    host, taken = ports(name, len(boards))
-    if not taken:
-        lines = {"--can": f"python-can: interface={kind}, channel={rest}", "--debug": f"slcan in {spec}"}
-        if option == "--serial":
-            return ", ".join(f"{rest}/{board}" for board in boards)
-        return lines.get(option, spec)
-    where = f"[{host}]:{taken[0]}" if ":" in host else f"{host}:{taken[0]}"
-    if option in _WEB:
-        return _WEB[option].format(url=f"http://{where}/")
-    if option == "--control":
-        return f"schmidt control status --at {where}"
-    if option == "--lx200":
-        return f"LX200 over TCP, {where}"
-    scheme = "socket" if kind == "tcp" else kind
-    return f"{scheme}://{where} is {boards[0]}, and so on to port {taken[-1]}, {boards[-1]}"
-
-
-def check_ports(names: Sequence[str], lines: int) -> None:
+def check_ports(names: Sequence[str], boards: Sequence[str]) -> None:
     """Raise OptionError for two doors that want one TCP port."""
     taken: dict[tuple[str, int], str] = {}
     for name in names:
-        host, wanted = ports(name, lines)
-        for port in wanted:
+        _, host, ports = attached(name, boards)
+        for port in ports:
             other = taken.setdefault((host, port), name)
             if other != name:
-                last = ports(other, lines)[1][-1]
+                last = attached(other, boards).ports[-1]
                 raise OptionError(f"{name}: {other} takes the ports up to {last}; give one of them another")

@@ -8,7 +8,7 @@ from typing import Any
 
 from host.console.decoded import seen
 from host.console.views import FaultKind, Node, SeenFrame
-from scenarios.doors.hostmessages import BusState, Done, Wish
+from scenarios.doors.pipe_messages import BusState, Done, Wish
 
 _LOOKED_S = 1.0
 """Pages refresh four times a second; when nobody has asked for so long, nobody looks."""

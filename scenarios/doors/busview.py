@@ -6,8 +6,8 @@ from typing import Any
 
 from bus.can.frame import Frame
 from host.console.views import FaultKind, Node
-from scenarios.doors.hostmessages import BusState
 from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.pipe_messages import BusState
 from scenarios.lab.faults import FaultError, Kind, Parameter
 
 KEPT = 25

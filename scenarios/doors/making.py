@@ -5,7 +5,7 @@ from collections.abc import Callable
 from scenarios.doors.address import address
 from scenarios.doors.attach import check_ports
 from scenarios.doors.door import Door
-from scenarios.doors.hostprocess import HostedDoor, HostProcess
+from scenarios.doors.host_door import HostedDoor, HostProcess
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import DoorOptions, OptionError, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, asked, doors_on, named
@@ -29,7 +29,7 @@ def make_doors(options: DoorOptions, live: LiveNetwork, say: Callable[[str], Non
     """
     doors = doors_on(ON_NETWORK, options, live)
     names = [f"--{kind.name} {each.spec}" for kind, each in asked(ON_HOST, options)]
-    check_ports([*(door.name for door in doors), *names], len(live.lines.uarts))
+    check_ports([*(door.name for door in doors), *names], list(live.lines.uarts))
     wanted = [(f"--{kind.name}", each.spec) for kind, each in asked(ON_HOST, options)]
     if not wanted:
         return doors

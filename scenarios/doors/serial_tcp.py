@@ -82,28 +82,6 @@ class TcpDoor:
         )
 
 
-class _Port:
-    """What pyserial's PortManager wants to see of a serial port: settings that are kept and do nothing."""
-
-    def __init__(self) -> None:
-        self.baudrate = 115_200
-        self.bytesize = 8
-        self.parity = "N"
-        self.stopbits: float = 1
-        self.xonxoff = self.rtscts = self.dsrdtr = False
-        self.break_condition = False
-        self.rts = self.dtr = True
-        self.cts = self.dsr = self.cd = True
-        self.ri = False
-        self.in_waiting = 0
-
-    def reset_input_buffer(self) -> None:
-        """Nothing is kept here."""
-
-    def reset_output_buffer(self) -> None:
-        """Nothing is kept here."""
-
-
 class _Wire:
     """Where PortManager writes its Telnet words."""
 
@@ -122,9 +100,11 @@ class Rfc2217Door(TcpDoor):
 
     def greet(self, client: Client) -> None:
         """Offer Telnet's options."""
+        from serial import serial_for_url
         from serial.rfc2217 import PortManager
 
-        self._managers[client] = PortManager(_Port(), _Wire(client))
+        settings = serial_for_url("loop://", baudrate=115_200)  # kept; nothing is sent or read through it
+        self._managers[client] = PortManager(settings, _Wire(client))
 
     def take(self, client: Client, data: bytes) -> None:
         """Telnet commands are answered; the rest goes nowhere. Who breaks the protocol is hung up on."""

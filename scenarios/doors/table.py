@@ -7,8 +7,8 @@ for, as the command line needs the rows alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from scenarios.doors.options import DoorOptions, OptionError
@@ -34,6 +34,8 @@ class Asked(NamedTuple):
 class DoorKind(Generic[Place]):
     """A row: the option `--name` with its value's form, what `-h` says of it, what makes the door.
 
+    attach: what `schmidt serve` prints, by the word before the value's colon ("": any other). {at}: it is on
+    TCP, here; with {last}: a port for each RS232 line, from that of {first} on; {lines}: a file for each.
     extra: of pyproject.toml, with the packages it imports beyond those of every installation.
     """
 
@@ -41,6 +43,7 @@ class DoorKind(Generic[Place]):
     form: str
     help: str
     make: Callable[[Asked, Place], Door]
+    attach: Mapping[str, str] = field(default_factory=lambda: {"": "{spec}"})
     repeatable: bool = True
     extra: str | None = None
 
@@ -112,12 +115,18 @@ ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
         form="INTERFACE:CHANNEL",
         help="The CAN bus, such as socketcan:vcan0; repeatable.",
         make=_can,
+        attach={"": "python-can: interface={word}, channel={rest}"},
     ),
     DoorKind(
         name="serial",
         form="pty:DIR|tcp:PORT|rfc2217:PORT",
         help="The RS232 lines: pseudo-terminals in DIR, or TCP ports from PORT on (five; final: twelve).",
         make=_serial,
+        attach={
+            "pty": "{lines}",
+            "tcp": "socket://{at} is {first}, and so on to {last}",
+            "rfc2217": "rfc2217://{at} is {first}, and so on to {last}",
+        },
     ),
     DoorKind(
         name="hid", form="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket.", make=_hid
@@ -127,6 +136,7 @@ ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
         form="DIR",
         help="Every board's debug port as a pseudo-terminal in DIR (slcan).",
         make=_debug,
+        attach={"": "slcan in {spec}"},
         repeatable=False,
     ),
     DoorKind(
@@ -134,6 +144,7 @@ ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
         form="[HOST:]PORT",
         help="Speed, pause, status, stop (see schmidt control).",
         make=_control,
+        attach={"": "schmidt control status --at {at}"},
         repeatable=False,
     ),
 )
@@ -144,12 +155,14 @@ ON_HOST: tuple[DoorKind[Host], ...] = (
         form="[HOST:]PORT|pty:NAME",
         help="LX200, for Stellarium and INDI; repeatable.",
         make=_lx200,
+        attach={"pty": "{spec}", "": "LX200 over TCP, {at}"},
     ),
     DoorKind(
         name="alpaca",
         form="[HOST:]PORT",
         help="ASCOM Alpaca telescope and focuser, with discovery.",
         make=_alpaca,
+        attach={"": "ASCOM Alpaca at http://{at}/"},
         extra="alpaca",
         repeatable=False,
     ),
@@ -158,6 +171,7 @@ ON_HOST: tuple[DoorKind[Host], ...] = (
         form="[HOST:]PORT",
         help="The consoles, for a browser.",
         make=_console,
+        attach={"": "open http://{at}/"},
         extra="consoles",
         repeatable=False,
     ),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenarios.doors.attach import check_ports, words
+from scenarios.doors.attach import attached, check_ports
 from scenarios.doors.options import OptionError
 
 BOARDS = ("AXIS_RA", "POSITION_RA", "FOCUS")
@@ -17,14 +17,18 @@ BOARDS = ("AXIS_RA", "POSITION_RA", "FOCUS")
         ("--control 7411", "schmidt control status --at 127.0.0.1:7411"),
         ("--can socketcan:vcan0", "python-can: interface=socketcan, channel=vcan0"),
         ("--serial tcp:7000", "socket://127.0.0.1:7000 is AXIS_RA, and so on to port 7002, FOCUS"),
+        ("--serial rfc2217:[::1]:7000", "rfc2217://[::1]:7000 is AXIS_RA, and so on to port 7002, FOCUS"),
+        ("--lx200 pty:handbox", "pty:handbox"),
+        ("--hid unix:gateway", "unix:gateway"),
+        ("--debug ports", "slcan in ports"),
         ("--serial pty:lines", "lines/AXIS_RA, lines/POSITION_RA, lines/FOCUS"),
     ],
 )
 def test_a_door_says_how_to_attach(name: str, said: str) -> None:
-    assert words(name, BOARDS) == said
+    assert attached(name, BOARDS).words == said
 
 
 def test_two_doors_do_not_want_one_port() -> None:
-    check_ports(["--serial tcp:7000", "--control 7003"], 3)
+    check_ports(["--serial tcp:7000", "--control 7003"], BOARDS)
     with pytest.raises(OptionError, match="--control 7002: --serial tcp:7000 takes the ports up to 7002"):
-        check_ports(["--serial tcp:7000", "--control 7002"], 3)
+        check_ports(["--serial tcp:7000", "--control 7002"], BOARDS)

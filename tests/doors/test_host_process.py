@@ -12,11 +12,11 @@ import pytest
 from bus.protocol import Device
 from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.busview import EmulatedBus
-from scenarios.doors.hostmain import main
-from scenarios.doors.hostmessages import Done, Settings, Wish
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
+from scenarios.doors.pipe_messages import Done, Settings, Wish
+from scenarios.doors.piped_host import main
 from scenarios.lab.prepare import chosen
 from tests.doors.process import Serving
 from tests.ports import free_ports

@@ -31,6 +31,7 @@ table.ON_NETWORK += (
         form="FILE",
         help="Simulated time.",
         make=lambda asked, live: TimeFile(asked.spec, live),
+        attach={"": "cat {spec}"},
     ),
 )
 from scenarios.cli import main
@@ -54,5 +55,5 @@ def test_a_door_is_a_file_and_a_row(tmp_path: Path) -> None:
     (tmp_path / "timefile.py").write_text(FILE)
     assert "--timefile FILE" in schmidt(tmp_path, "serve", "-h")
     said = schmidt(tmp_path, "serve", "--timefile", str(tmp_path / "now"), "--duration", "0.5")
-    assert "--timefile" in said and "written" in said
+    assert "--timefile" in said and "written" in said and f"cat {tmp_path / 'now'}" in said
     assert int((tmp_path / "now").read_text()) > 100_000_000

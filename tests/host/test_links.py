@@ -15,8 +15,8 @@ from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
 from host.links.ports import CanPort
 from host.links.task import LinkTask, Port
+from scenarios.doors.cabled_host import CabledHost, expected
 from scenarios.doors.hid_unix import UnixDoor
-from scenarios.doors.hostprogram import HostProgram, expected
 from scenarios.doors.options import HostOptions
 from scenarios.lab.prepare import chosen
 from tests.host.telescope.conftest import Rig
@@ -117,7 +117,7 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
     text = StringIO()
     missing = f"AXIS_RA={tmp_path / 'missing'}"
     options = HostOptions(usb=f"unix:{served}", serial=(missing,), logs=tmp_path / "logs")
-    program = HostProgram(options, Console(file=text))
+    program = CabledHost(options, Console(file=text))
     for task in program.tasks:
         task.start()
     telescope = program.pc.telescope

@@ -79,9 +79,9 @@ def host(options: HostOptions) -> None:
     need(*_extras(options))
     from rich.console import Console
 
-    from scenarios.doors.hostprogram import HostProgram
+    from scenarios.doors.cabled_host import CabledHost
 
-    HostProgram(options, Console()).run(options.duration)
+    CabledHost(options, Console()).run(options.duration)
 
 
 @click.command(short_help="Repeat a session that serve --record has left.")

@@ -6,9 +6,9 @@ from threading import Lock
 
 from host.outside import Outside
 from scenarios.doors.busmirror import BusMirror
-from scenarios.doors.hostmessages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
 from scenarios.doors.keeper import Keeper
 from scenarios.doors.pc import TelescopePc
+from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
 from scenarios.doors.runs import RecordedRuns
 from scenarios.doors.table import ON_HOST, doors_on
 
@@ -16,7 +16,7 @@ _LOOK_S = 0.02
 """Wall time without a slice after which the host looks for itself, for a stop while time stands still."""
 
 
-class HostMain:
+class PipedHost:
     """What the pipe brings goes to the telescope client; what it and the pages want goes back."""
 
     def __init__(self, pipe: Connection, settings: Settings) -> None:
@@ -96,7 +96,7 @@ def main(number: int) -> None:
         except EOFError:
             return
         try:
-            side = HostMain(pipe, settings)
+            side = PipedHost(pipe, settings)
         except (OSError, ValueError) as error:
             with suppress(ConnectionError):
                 pipe.send(Opened([], str(error)))

@@ -12,7 +12,11 @@ from time import monotonic
 from host.client import TICK_NS
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.door import DoorError
-from scenarios.doors.hostmessages import (
+from scenarios.doors.lines import Feed
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.options import DoorOptions
+from scenarios.doors.pc import dated
+from scenarios.doors.pipe_messages import (
     BusState,
     Close,
     Done,
@@ -25,10 +29,6 @@ from scenarios.doors.hostmessages import (
     Wish,
     program,
 )
-from scenarios.doors.lines import Feed
-from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.options import DoorOptions
-from scenarios.doors.pc import dated
 from scenarios.doors.usb import UsbFull, UsbPlug
 from scenarios.lab.session import log_headers
 

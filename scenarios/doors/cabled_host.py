@@ -27,7 +27,7 @@ SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
 _SERIAL = "serial "
 
 
-class HostProgram:
+class CabledHost:
     """Links, telescope and doors on the PC's own clock."""
 
     def __init__(self, options: HostOptions, console: Console) -> None:

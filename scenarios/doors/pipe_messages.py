@@ -1,8 +1,8 @@
 """What `schmidt serve` and the host program beside it tell each other, over a pipe.
 
 The host has a process of its own, as it has on the telescope: browsers and HTTP would otherwise hold Python's
-lock when a tick is due. Nothing but these values crosses; the emulator's side is `hostprocess`, the host's
-`hostmain`.
+lock when a tick is due. Nothing but these values crosses; the emulator's side is `host_door`, the host's
+`piped_host`.
 """
 
 from pathlib import Path
@@ -97,5 +97,5 @@ class Close(NamedTuple):
 def program() -> str:
     """The host's side as Python is told to run it; the pipe's number is its argument."""
     return f"import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r});" + (
-        " from scenarios.doors.hostmain import main; main(int(sys.argv[1]))"
+        " from scenarios.doors.piped_host import main; main(int(sys.argv[1]))"
     )
