@@ -1,6 +1,6 @@
 """The protocol. `schmidt.dbc` is the source; the codecs beside it are held to it by tests."""
 
-from bus.protocol.command import CommandError, layout_of, opcodes, pack_command, unpack_command
+from bus.protocol.command_layouts import CommandError, layout_of, opcodes, pack_command, unpack_command
 from bus.protocol.focus import Focus, FocusFlag, pack_focus, unpack_focus
 from bus.protocol.heartbeat import Heartbeat, pack_heartbeat, unpack_heartbeat
 from bus.protocol.motion import Motion, MotionFlag, pack_motion, unpack_motion

@@ -24,7 +24,7 @@ FILES = (
 )
 """And these: what is called for every tick and frame."""
 PLAIN = (
-    "bus/protocol/command.py",
+    "bus/protocol/command_layouts.py",
     "bus/protocol/nodes/",
     "boards/chips/",
     "boards/c/",
