@@ -31,7 +31,11 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
 @network
 @muting
-@click.option("--realtime", is_flag=True, help="Ask the system to run the ticks before all other programs.")
+@click.option(
+    "--realtime/--no-realtime",
+    default=None,
+    help="Run the ticks before all other programs (default: up to speed 1, where the system grants it).",
+)
 @click.option("--record", type=PATH, help="Record the session in this folder.")
 @click.option(
     "--snapshots",

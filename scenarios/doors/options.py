@@ -27,7 +27,7 @@ class ServeOptions(DoorOptions):
     clock: `wall`, or `steps`: time goes on when clients step it. duration: seconds of wall time.
     record: folder for the session. muted: a board that sends nothing and the
     candump log that its frames come from, times from the start on. realtime: ask the system to run the ticks
-    before all other programs. snapshots: the folder for those that are asked for on the way. begun: one to go
+    before all other programs; None: where it grants that, at the pace of the wall. snapshots: the folder for those that are asked for on the way. begun: one to go
     on from; scenario, seed, plant and network are what is in it.
     """
 
@@ -39,7 +39,7 @@ class ServeOptions(DoorOptions):
     duration: float | None = None
     network: str | None = None
     muted: tuple[str, Path] | None = None
-    realtime: bool = False
+    realtime: bool | None = None
     record: Path | None = None
     snapshots: Path | None = None
     begun: Path | None = None

@@ -1,7 +1,7 @@
 """`schmidt serve [SCENARIO] [doors]`: the network in real time, for others to join."""
 
 from collections.abc import Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from io import BytesIO
 from pathlib import Path
@@ -79,7 +79,9 @@ def serve(options: ServeOptions) -> int:
             _say_hello(console, served, doors)
             show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
             loop = Loop(served, keepers, console, show, options.duration, recording)
-            with interrupts(served.stop), first() if options.realtime else nullcontext():
+            with interrupts(served.stop), _ahead(options) as said:
+                if said is not None:
+                    console.print(said, soft_wrap=True)
                 loop.run()
         finally:
             for keeper in keepers:
@@ -93,6 +95,13 @@ def serve(options: ServeOptions) -> int:
     if recording is not None:
         console.print(f"recorded in {record}, digest {digest[:16]}; schmidt replay {record} repeats it")
     return 0
+
+
+def _ahead(options: ServeOptions) -> AbstractContextManager[str | None]:
+    """Real-time priority, where it is meant; quicker than the wall, ticks would leave others no processor."""
+    if options.realtime is None and (options.clock == "steps" or options.speed > 1):
+        return nullcontext()
+    return nullcontext() if options.realtime is False else first(asked=options.realtime is True)
 
 
 def _warm_up(scenario: Scenario, model: PlantModel) -> None:

@@ -145,7 +145,7 @@ def _measure(seconds: int, pure: bool, realtime: bool = False) -> dict[str, floa
 def _doors(folder: str, realtime: bool) -> list[str]:
     """Those that a host needs: CAN, HID, LX200."""
     doors = ["--can", "virtual:bench", "--hid", f"unix:{folder}/gateway", "--lx200", f"pty:{folder}/lx200"]
-    return [*doors, *(["--realtime"] if realtime else [])]
+    return [*doors, "--realtime" if realtime else "--no-realtime"]
 
 
 def ask(port: int, line: str) -> dict[str, Any]:

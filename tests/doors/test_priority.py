@@ -1,15 +1,18 @@
-"""`serve --realtime`: ticks before ordinary programs, their children not, and what is not granted."""
+"""Real-time priority of `serve`: ticks before ordinary programs, their children not, and what is not granted."""
 
 import os
 import subprocess
 import sys
 import threading
+from pathlib import Path
 from typing import NoReturn
 
 import pytest
 
 from scenarios.doors.door import DoorError
 from scenarios.doors.priority import first
+from tests.doors.process import PROGRAM
+from tests.ports import free_ports
 
 ASK = "import os; print(os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK)"
 
@@ -55,3 +58,30 @@ def test_what_the_system_does_not_grant_is_one_line(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(os, "sched_setscheduler", refuse)
     with pytest.raises(DoorError, match="not granted; run as root"), first():
         pass
+    with first(asked=False) as said:
+        assert said.startswith("ticks run among other programs") and "ulimit -r 1" in said
+        assert "\n" not in said
+
+
+def test_a_system_without_the_class_runs_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "sched_setscheduler")
+    with pytest.raises(DoorError, match="has no real-time scheduling"), first():
+        pass
+    with first(asked=False) as said:
+        assert "among other programs" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ((), "ticks run"),
+        (("--no-realtime",), None), (("--speed", "2"), None), (("--clock", "steps", "--control", "{port}"), None),
+    ],
+)  # fmt: skip
+def test_serve_takes_it_by_itself_at_the_walls_pace_and_says_so(
+    tmp_path: Path, words: tuple[str, ...], expected: str | None
+) -> None:
+    given = [word.format(port=free_ports()) for word in words]
+    line = [sys.executable, "-c", PROGRAM, "serve", "--can", "virtual:priority", "--duration", "0.2", *given]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=120)
+    assert ("ticks run" in done.stdout) == (expected is not None), done.stdout

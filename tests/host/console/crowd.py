@@ -44,7 +44,7 @@ def crowd(folder: Path, count: int, seconds: float, realtime: bool = False, apar
     from playwright.sync_api import sync_playwright
 
     cores(apart, server=True)
-    with Consoles(folder, 1.0, NIGHT, *(["--realtime"] if realtime else [])) as served:
+    with Consoles(folder, 1.0, NIGHT, "--realtime" if realtime else "--no-realtime") as served:
         cores(apart, server=False)
         core = max(os.sched_getaffinity(served.process.pid))
         if realtime:
