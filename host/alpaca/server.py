@@ -9,9 +9,12 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
+from bus.protocol.nodes import DOME, WEATHER
 from host.alpaca.device import Device
+from host.alpaca.dome import DomeDevice
 from host.alpaca.errors import AlpacaError, Malformed
 from host.alpaca.focuser import FocuserDevice
+from host.alpaca.observing import ObservingConditionsDevice, SafetyMonitorDevice
 from host.alpaca.parameters import Parameters
 from host.alpaca.telescope import TelescopeDevice
 from host.guard import Guard
@@ -22,11 +25,15 @@ _BODY_BYTES = 1 << 16
 
 
 class Alpaca:
-    """Telescope 0 and focuser 0."""
+    """Telescope 0 and focuser 0; dome 0 and what the weather stations tell, where the network has them."""
 
     def __init__(self, telescope: Telescope) -> None:
         desk = AsyncDesk(telescope)
-        devices: tuple[Device, ...] = (TelescopeDevice(desk), FocuserDevice(desk))
+        devices: list[Device] = [TelescopeDevice(desk), FocuserDevice(desk)]
+        if telescope.house.expected(DOME):
+            devices.append(DomeDevice(desk))
+        if telescope.house.expected(WEATHER):
+            devices += [ObservingConditionsDevice(desk), SafetyMonitorDevice(desk)]
         self.devices = {device.kind: device for device in devices}
         self.requests = 0
         self._numbers = itertools.count(1)
@@ -106,7 +113,7 @@ class Alpaca:
         value = [
             {
                 "DeviceName": f"Schmidt {device.kind}",
-                "DeviceType": device.kind.capitalize(),
+                "DeviceType": type(device).__name__.removesuffix("Device"),
                 "DeviceNumber": 0,
                 "UniqueID": device.unique_id,
             }

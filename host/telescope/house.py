@@ -1,29 +1,74 @@
 """Dome, weather and power (H7): what their boards say, and the few things they can be told."""
 
-from collections.abc import Generator
+import math
+from collections.abc import Callable, Generator
 from functools import cache
+from typing import Final
 
 from bus.protocol import Device
-from bus.protocol.nodes import DOME, KINDS, POWER, FrameCodec, Kind, arguments_of, messages_of
-from host.client import Client
+from bus.protocol.nodes import DOME, KINDS, POWER, WEATHER, FrameCodec, Kind, arguments_of, messages_of
+from host.client import TICK_NS, Client
+from host.sky.observed import Observed
 from host.telescope.jobs import Activity, Job, Side
 from host.telescope.refused import Reason, Refused
+from host.telescope.state import MISSED
 
 DOME_BOARD = DOME.device("DOME")
+_FOLLOW_NS: Final = 1_000_000_000
+_FOLLOW_DEG: Final = 2.0
+"""A slit this far from the beam is moved: the board stops within 0.5°. ASSUMPTION: the slit is wider."""
+_ZENITH_RAD: Final = math.radians(88.0)
+"""Above this azimuth turns faster than a dome, and the slit is over the tube anyway. ASSUMPTION."""
 
 
 class House:
-    """Commands are jobs beside the others; they are refused where there is no such board."""
+    """Commands are jobs beside the others; they are refused where there is no such board.
 
-    def __init__(self, client: Client, side: Side) -> None:
+    aim: where the telescope points or is going to; None: nobody knows. slaved: the slit follows it, as if
+    the mount's axes crossed in the middle of the dome (ASSUMPTION: the paper gives no offsets).
+    """
+
+    def __init__(self, client: Client, side: Side, aim: Callable[[], Observed | None]) -> None:
         self._client = client
         self._side = side
+        self._aim = aim
+        self._follow_ns = 0
+        self.slaved = False
+        self.opening = False
+        """The last command to the shutter was to open."""
 
     def reading(self, board: str) -> dict[str, float] | None:
         """Signals of a declared board's last measurement frame in their units; None: none has come."""
         codec = _codecs().get(board)
         data = None if codec is None else self._client.link.measurements.get(codec.identifier & 0x7F)
         return None if codec is None or data is None else codec.unpack(data)
+
+    def heard_s(self, board: str) -> float:
+        """When its last measurement came; before all times when none has."""
+        codec = _codecs().get(board)
+        heard_ns = None if codec is None else self._client.link.measured_ns.get(codec.identifier & 0x7F)
+        return -math.inf if heard_ns is None else heard_ns * 1e-9
+
+    def stale(self, board: str) -> bool:
+        """Whether its measurement is older than it may be."""
+        oldest_ns = MISSED * _codecs()[board].period_ns + TICK_NS
+        return self._client.now_ns * 1e-9 - self.heard_s(board) > oldest_ns * 1e-9
+
+    def expected(self, kind: Kind) -> list[str]:
+        """Names of the boards of a kind that this network should have."""
+        return [device.name for device in kind.devices() if device in self._client.devices]
+
+    def unsafe(self) -> list[str]:
+        """What speaks against an open dome, station by station; empty: nothing, or there is no station."""
+        found = []
+        for name in self.expected(WEATHER):
+            reading = self.reading(name)
+            if reading is None or self.stale(name):
+                found.append(f"{name} is silent")
+            elif reading["Unsafe"]:
+                causes = [word.lower() for word in ("Rain", "Windy", "Humid") if reading[word]]
+                found.append(f"{name}: {', '.join(causes) or 'bad a moment ago'}")
+        return found
 
     def boards(self, kind: Kind) -> list[str]:
         """Names of the boards of a kind that have been heard."""
@@ -33,14 +78,39 @@ class House:
         """Turn the slit to an azimuth, 0 up to 360°."""
         if not 0 <= azimuth_deg < 360:
             raise Refused(Reason.VALUE, f"azimuth {azimuth_deg:g}° is not within 0..360°")
+        if self.slaved:
+            raise Refused(Reason.SLAVED, "the dome follows the telescope; end that first")
+        return self._turn(azimuth_deg)
+
+    def slave(self, on: bool) -> None:
+        """Have the slit follow the telescope, or stay where it is."""
+        self._there()
+        self.slaved = on
+
+    def tick(self) -> None:
+        """Follow the telescope."""
+        aim = self._aim() if self.slaved and self._client.now_ns >= self._follow_ns else None
+        now = self.reading(DOME_BOARD.name)
+        if aim is None or now is None or aim.altitude_rad > _ZENITH_RAD:
+            return
+        self._follow_ns = self._client.now_ns + _FOLLOW_NS
+        wanted = math.degrees(aim.azimuth_rad) % 360
+        slit = now["Target"] if now["Moving"] else now["Azimuth"]
+        if abs(math.remainder(wanted - slit, 360)) > _FOLLOW_DEG:
+            self._turn(wanted)
+
+    def _turn(self, azimuth_deg: float) -> Job[None]:
         return self._tell(DOME, DOME_BOARD, "DOME_GOTO", round(azimuth_deg * 100) % 36000)
 
     def shutter(self, opened: bool) -> Job[None]:
         """Open or close; the board refuses to open in bad weather."""
+        self.opening = opened
         return self._tell(DOME, DOME_BOARD, "DOME_SHUTTER", int(opened))
 
     def stop(self) -> Job[None]:
-        """Stop dome and shutter; commands that still wait are given up, as a stop is not queued."""
+        """Stop dome and shutter, and following; commands that still wait are given up, as a stop is not
+        queued."""
+        self.slaved = False
         self._client.forget(DOME_BOARD)
         return self._tell(DOME, DOME_BOARD, "DOME_STOP")
 
@@ -51,14 +121,17 @@ class House:
         return self._tell(POWER, POWER.device(board), "RELAY", channel, int(on))
 
     def _tell(self, kind: Kind, device: Device, opcode: str, *arguments: int) -> Job[None]:
-        if device not in self._client.link.measurements:
-            raise Refused(Reason.SILENT, f"{device.name} is not on this network, or silent")
+        self._there(device)
         number = next(each for each in arguments_of(kind) if each.name == opcode)
 
         def procedure() -> Generator[None, None, None]:
             yield from self._client.ask(device, number, *arguments)
 
         return self._side.start(Job(f"{device.name} {opcode}", procedure(), Activity.IDLE))
+
+    def _there(self, device: Device = DOME_BOARD) -> None:
+        if device not in self._client.link.measurements:
+            raise Refused(Reason.SILENT, f"{device.name} is not on this network, or silent")
 
 
 @cache

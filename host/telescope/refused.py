@@ -10,6 +10,7 @@ class Reason(Enum):
     LIMIT = "beyond a soft limit"
     PARKED = "parked"
     STATE = "not possible in this state"
+    SLAVED = "the dome follows the telescope"
     VALUE = "out of range"
     LOCKED = "the console is locked"
     SILENT = "no answer"

@@ -14,7 +14,7 @@ from bus.protocol import (
     unpack_target,
 )
 from host.auxiliary import Auxiliary, auxiliary
-from host.client import SILENCE_NS, Client
+from host.client import SILENCE_NS, TICK_NS, Client
 from host.rates import CURRENT_A_PER_COUNT, EFFORT_FULL, rate_arcsec_s
 from host.sky.mount import STEP_ARCSEC
 
@@ -22,10 +22,8 @@ _TACH_PERIOD_S = 0.01
 _TACH_COUNTS = 4096
 _PERIOD_NS = {"POSITION": 5_000_000, "AXIS": 10_000_000, "MOTOR": 10_000_000, "FOCUS": 50_000_000}
 """Of their measurement frames (docs/reference/protocol.md)."""
-_MISSED = 5
+MISSED = 5
 """Frames in a row that may be late or lost before a value is called old. ASSUMPTION."""
-_TICK_NS = 50_000_000
-"""Of the host: what comes is looked at then."""
 AXES = {
     "ra": (Device.AXIS_RA, Device.POSITION_RA, Device.MOTOR_RA_A, Device.MOTOR_RA_B),
     "dec": (Device.AXIS_DEC, Device.POSITION_DEC, Device.MOTOR_DEC_A, Device.MOTOR_DEC_B),
@@ -175,7 +173,7 @@ def board_states(client: Client) -> tuple[BoardState, ...]:
 
 
 def stale_boards(client: Client) -> frozenset[Device]:
-    """Boards whose measurement has not come for `_MISSED` of its periods, and a tick."""
+    """Boards whose measurement has not come for `MISSED` of its periods, and a tick."""
     oldest = {
         device: client.now_ns - client.link.measured_ns.get(device, 0)
         for device in client.devices
@@ -184,7 +182,7 @@ def stale_boards(client: Client) -> frozenset[Device]:
     return frozenset(
         device
         for device, age_ns in oldest.items()
-        if age_ns > _MISSED * _PERIOD_NS[device.name.partition("_")[0]] + _TICK_NS
+        if age_ns > MISSED * _PERIOD_NS[device.name.partition("_")[0]] + TICK_NS
     )
 
 

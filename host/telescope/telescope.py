@@ -17,6 +17,7 @@ from bus.protocol.nodes import DOME
 from host.client import Client
 from host.logs.journal import Journal
 from host.procedures.manual import AXES
+from host.sky.observed import Observed
 from host.telescope.boards import Boards
 from host.telescope.drive import Drive
 from host.telescope.focuser import Focuser
@@ -46,7 +47,7 @@ class Telescope:
         self.paddle = Paddle(self.drive, self.side)
         self.focuser = Focuser(client, journal)
         self.boards = Boards(client, observatory, self.side)
-        self.house = House(client, self.side)
+        self.house = House(client, self.side, self.aim)
         self.locked = False
         self.urgent = False
         """Somebody asked for a stop: whoever ticks does it now instead of at the next one due."""
@@ -70,6 +71,22 @@ class Telescope:
         """Altitude below which nothing is gone to or tracked."""
         self.observatory.horizon_rad = altitude_rad
 
+    def target(self) -> Observed | None:
+        """Where it is going to, or what it follows; None: neither."""
+        track, now = self.drive.pointing.track, self.snapshot
+        if track is None or not (now.slewing or now.tracking):
+            return None
+        return self.observatory.observed(*track.steps(now.t_s))
+
+    def aim(self) -> Observed | None:
+        """Where the slit has to be: at the end of a slew, else where the tube points; None: not known."""
+        now = self.snapshot
+        if now.slewing and (target := self.target()) is not None:
+            return target
+        if now.ra.steps is None or now.dec.steps is None:
+            return None
+        return self.observatory.observed(now.ra.steps, now.dec.steps)
+
     def call(self, act: Callable[[Telescope], T], urgent: bool = False) -> Future[T]:
         """Have `act(telescope)` called at the next tick; from any thread. The future holds its value or
         what it raised, `Refused` above all. urgent: that tick does not wait until it is due."""
@@ -88,6 +105,7 @@ class Telescope:
         answers = self._let_in()
         self.drive.tick()
         self.focuser.tick()
+        self.house.tick()
         self.side.tick()
         self.client.tick(t_ns)
         self.snapshot = self._look()

@@ -11,8 +11,14 @@ from tests.host.telescope.conftest import START, Rig
 class Live(Rig):
     """The rig, run by a thread at `speed` times real time at most (faster machines wait)."""
 
-    def __init__(self, logs: Path | None = None, speed: float = 20.0, start: dt.datetime = START) -> None:
-        super().__init__(logs, start)
+    def __init__(
+        self,
+        logs: Path | None = None,
+        speed: float = 20.0,
+        start: dt.datetime = START,
+        network: str = "lab",
+    ) -> None:
+        super().__init__(logs, start, network)
         self.outside = self.host.outside
         self.speed = speed
         self._end = threading.Event()

@@ -15,8 +15,8 @@ DISCOVERY_PORT = 32227
 
 
 class AlpacaLive(Live):
-    def __init__(self, logs: Path) -> None:
-        super().__init__(logs, speed=30.0)
+    def __init__(self, logs: Path, network: str = "lab", speed: float = 30.0) -> None:
+        super().__init__(logs, speed, network=network)
         self.alpaca = Alpaca(self.telescope)
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
@@ -24,6 +24,14 @@ class AlpacaLive(Live):
         self.outside.keep(self.alpaca.serve(listen("127.0.0.1", self.port)))
         self.outside.keep(discovery.serve(self.port, local_only=True))
         self.address = f"127.0.0.1:{self.port}"
+
+
+@pytest.fixture(scope="module")
+def final(tmp_path_factory: pytest.TempPathFactory) -> Iterator[AlpacaLive]:
+    """The network that has dome and weather; slower, so that a client sees the shutter on its way."""
+    made = AlpacaLive(tmp_path_factory.mktemp("final"), "final", 5.0)
+    yield made
+    made.close()
 
 
 @pytest.fixture(scope="module")

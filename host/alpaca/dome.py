@@ -1,0 +1,99 @@
+"""IDomeV3: azimuth of the slit, shutter, and the slit following the telescope."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
+from host.alpaca.errors import within
+from host.alpaca.parameters import Parameters
+from host.telescope import Job, Telescope
+from host.telescope.house import DOME_BOARD
+
+_OPEN, _CLOSED, _OPENING, _CLOSING, _BETWEEN = range(5)
+"""ASCOM's ShutterState; a shutter that rests between its ends is its "error"."""
+_NEXT_S = 0.1
+"""The board's frames are this far apart: from the next one on it says that it moves."""
+_LOOK_S, _MOST_S = 0.02, 3.0
+"""Wall time between looks for that frame, and at most."""
+
+
+class DomeDevice(Device):
+    """Commands are taken by the board before they are answered: it refuses to open in bad weather."""
+
+    kind = "dome"
+    interface_version = 3
+    description = "Dome of the 50/80 cm Schmidt telescope"
+    unique_id = "8ad6c6f4-0b0e-4f0b-9c52-5c1d5f1d0003"
+    actions = {}  # noqa: RUF012
+
+    def reading(self) -> dict[str, float]:
+        """The board's last frame."""
+        found = self.desk.telescope.house.reading(DOME_BOARD.name)
+        if found is None or self.desk.telescope.house.stale(DOME_BOARD.name):
+            raise unknown()
+        return found
+
+    def shutter(self) -> int:
+        """ASCOM's number."""
+        now = self.reading()
+        if now["ShutterMoving"]:
+            return _OPENING if self.desk.telescope.house.opening and not now["BadWeather"] else _CLOSING
+        return _OPEN if now["Opened"] else _CLOSED if now["Closed"] else _BETWEEN
+
+    def slewing(self) -> bool:
+        """Dome or shutter move."""
+        now = self.reading()
+        return bool(now["Moving"] or now["ShutterMoving"])
+
+    def state(self) -> dict[str, object]:
+        """Operational properties."""
+        return {
+            "Azimuth": self.reading()["Azimuth"], "ShutterStatus": self.shutter(),
+            "Slewing": self.slewing(), "AtHome": False, "AtPark": False,
+        }  # fmt: skip
+
+    async def command(self, act: Callable[[Telescope], Job[None]]) -> None:
+        """Have the board do it; answered when its frames show it."""
+        await self.run(act)
+        taken_s, house = self.now.t_s, self.desk.telescope.house
+        for _ in range(round(_MOST_S / _LOOK_S)):
+            if house.heard_s(DOME_BOARD.name) > taken_s + _NEXT_S:
+                return
+            await asyncio.sleep(_LOOK_S)
+
+
+async def _slave(device: DomeDevice, given: Parameters) -> None:
+    on = given.truth("Slaved")
+    await device.do(lambda t: t.house.slave(on))
+
+
+async def _turn(device: DomeDevice, given: Parameters) -> None:
+    azimuth = within("Azimuth", given.number("Azimuth"), 0, 360)
+    await device.command(lambda t: t.house.turn(azimuth % 360))
+
+
+def _put(act: Callable[[Telescope], Job[None]]) -> Any:
+    async def put(device: DomeDevice, _: Parameters) -> None:
+        await device.command(act)
+
+    return put
+
+
+_CAN = ("SetAzimuth", "SetShutter", "Slave")
+_CANNOT = ("FindHome", "Park", "SetAltitude", "SetPark", "SyncAzimuth")
+DomeDevice.members = table(
+    *(Member(f"Can{what}", fixed(True)) for what in _CAN),
+    *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
+    *(Member(name, missing(name)) for name in ("Altitude", "AtHome", "AtPark")),
+    *(Member(name, put=missing_put(name)) for name in (
+        "FindHome", "Park", "SetPark", "SlewToAltitude", "SyncToAzimuth")),
+    Member("Azimuth", lambda device, _: device.reading()["Azimuth"]),
+    Member("ShutterStatus", lambda device, _: device.shutter()),
+    Member("Slaved", lambda device, _: device.desk.telescope.house.slaved, _slave),
+    Member("Slewing", lambda device, _: device.slewing()),
+    Member("AbortSlew", put=_put(lambda t: t.house.stop())),
+    Member("CloseShutter", put=_put(lambda t: t.house.shutter(False))),
+    Member("OpenShutter", put=_put(lambda t: t.house.shutter(True))),
+    Member("SlewToAzimuth", put=_turn),
+)  # fmt: skip
