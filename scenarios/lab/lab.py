@@ -14,7 +14,7 @@ from bus.can import Frame
 from bus.outside.node import OutsideNode
 from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Reply, pack_command, unpack_reply
 from plant.grid import TRUTH_COLUMNS
-from scenarios.lab.faults.place import SENSORS, Place
+from scenarios.lab.faults.place import SENSORS
 from scenarios.lab.prepare import chosen
 from scenarios.lab.wiring import wired
 from scenarios.language.units import parse
@@ -51,7 +51,6 @@ class Lab(AbstractContextManager["Lab"]):
         self.network, self.faults = wired(scenario, model)
         self.boards: dict[str, Board] = self.network.boards
         self.plant = self.network.plant
-        self._place = Place(self.network)
         self._node = OutsideNode(self.network.queue, self.network.wire, "you")
         self._frames: list[tuple[int, Frame, str]] = []
         self._truth: dict[str, list[npt.NDArray[np.float64]]] = {"ra": [], "dec": []}
@@ -102,7 +101,7 @@ class Lab(AbstractContextManager["Lab"]):
         """What a board reads of `ra.absolute` now: counts, A or V (docs/reference/faults.md lists them)."""
         if sensor not in SENSORS:
             raise LabError(f"no sensor {sensor!r}; use one of {', '.join(SENSORS)}")
-        owner, name, motor = self._place.pin(sensor)
+        owner, name, motor = self.faults.place.pin(sensor)
         read = owner[name] if isinstance(owner, dict) else getattr(owner, name)
         return read(self.network.queue.now_ns, *(() if motor is None else (motor,)))
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from bus.protocol import Device, Opcode
 from host.client import Client, ClientError, Procedure
@@ -17,7 +18,7 @@ from scenarios.language.model import Scenario, Step
 from scenarios.language.targets import target_of
 
 
-@dataclass
+@dataclass(frozen=True)
 class Record:
     """What became of a step. Times in seconds; None: not yet."""
 
@@ -91,8 +92,8 @@ class Programme:
         step = self.records[index].step
         if step.at_s is not None and t_s < step.at_s:
             return False
-        for record in reversed(self._before[index]):  # the last one is the likeliest not to have ended
-            if record.end_s is None:
+        for before in reversed(self._before[index]):  # the last one is the likeliest not to have ended
+            if self.records[before].end_s is None:
                 return False
         if t_s - self._ready_since_s.setdefault(index, t_s) < step.delay_s:
             return False
@@ -104,13 +105,14 @@ class Programme:
         timeout_s = self.records[index].step.timeout_s
         return timeout_s is not None and t_s - self._due_s.get(index, t_s) > timeout_s
 
-    def _predecessors(self, index: int) -> list[Record]:
+    def _predecessors(self, index: int) -> list[int]:
         """What has to end before a step may start."""
-        after = self.records[index].step.after
+        steps = [record.step for record in self.records]
+        after = steps[index].after
         if after is not None:
-            return [record for record in self.records[:index] if record.step.name == after]
+            return [before for before in range(index) if steps[before].name == after]
         # in line: everything before, except what runs beside the line because of its `after`
-        return [record for record in self.records[:index] if record.step.after is None]
+        return [before for before in range(index) if steps[before].after is None]
 
     def _holds(self, condition: str) -> bool:
         axes = [self._client.motion(axis) for axis in power.AXES]
@@ -122,54 +124,57 @@ class Programme:
         }
         return conditions[condition]()
 
+    def _note(self, index: int, **became: Any) -> None:
+        """Fields of a step's record."""
+        self.records[index] = replace(self.records[index], **became)
+
     def _start(self, index: int, t_s: float) -> None:
-        record = self.records[index]
-        record.start_s = t_s
-        self._logs.status(self._client.now_ns, "HOST", f"step {record.step.name!r} starts")
+        self._note(index, start_s=t_s)
+        self._logs.status(self._client.now_ns, "HOST", f"step {self.records[index].step.name!r} starts")
         try:
-            self._running[index] = self._procedure(record, t_s)
+            self._running[index] = self._procedure(index, t_s)
         except (ClientError, Unreachable) as error:
             self._fail(index, t_s, str(error))
 
     def _advance(self, index: int, t_ns: int) -> None:
-        record = self.records[index]
-        t_s = t_ns * 1e-9
+        step, t_s = self.records[index].step, t_ns * 1e-9
         try:
             next(self._running[index])
         except StopIteration:
             del self._running[index]
-            record.end_s = t_s
-            self._logs.status(t_ns, "HOST", f"step {record.step.name!r} is done")
+            self._note(index, end_s=t_s)
+            self._logs.status(t_ns, "HOST", f"step {step.name!r} is done")
         except (ClientError, Unreachable) as error:
             self._fail(index, t_s, str(error))
         else:
             if self._late(index, t_s):
-                self._fail(index, t_s, f"not done within {record.step.timeout_s:g} s")
+                self._fail(index, t_s, f"not done within {step.timeout_s:g} s")
 
     def _fail(self, index: int, t_s: float, reason: str) -> None:
-        record = self.records[index]
-        record.failed, record.end_s = reason, t_s
+        self._note(index, failed=reason, end_s=t_s)
         self.failed = True
         self._running.clear()
         self._waiting.clear()
-        for other in self.records:  # whatever ran beside it ends here as well
+        for place, other in enumerate(self.records):  # whatever ran beside it ends here as well
             if other.start_s is not None and other.end_s is None:
-                other.end_s, other.failed = t_s, "given up"
-        self._logs.error(self._client.now_ns, "HOST", f"step {record.step.name!r} failed: {reason}")
+                self._note(place, failed="given up", end_s=t_s)
+        step = self.records[index].step
+        self._logs.error(self._client.now_ns, "HOST", f"step {step.name!r} failed: {reason}")
 
-    def _procedure(self, record: Record, t_s: float) -> Procedure:
-        step, client, scenario = record.step, self._client, self._scenario
+    def _procedure(self, index: int, t_s: float) -> Procedure:
+        step, client, scenario = self.records[index].step, self._client, self._scenario
         given = step.arguments
         match step.action:
             case "power_on":
                 return power.power_on(client, given.get("health_check", True))
             case "goto":
-                record.star = target_of(given["target"], step.where)
-                check_reachable(record.star, scenario, t_s)
-                track = StarTrack(record.star, scenario.site, scenario.clock, scenario.mount)
+                star = target_of(given["target"], step.where)
+                self._note(index, star=star)
+                check_reachable(star, scenario, t_s)
+                track = StarTrack(star, scenario.site, scenario.clock, scenario.mount)
                 return self.pointing.goto(track, tuple(given.get("classes", CLASSES)))
             case "track":
-                record.star = self.pointing.track.star if self.pointing.track else None
+                self._note(index, star=self.pointing.track.star if self.pointing.track else None)
                 return self.pointing.follow(given["for"])
             case "move":
                 return manual.hold_button(
@@ -182,7 +187,9 @@ class Programme:
             case "stop":
                 return manual.stop(client, given.get("axis", "both"))
             case "focus":
-                return _focus(client, given, record)
+                goal, procedure = _focus(client, given)
+                self._note(index, focus_goal=goal)
+                return procedure
             case "park":
                 return self.pointing.park()
             case "wait":
@@ -203,14 +210,14 @@ def _device(client: Client, name: str) -> Device:
     return next(device for device in client.devices if device.name == name)
 
 
-def _focus(client: Client, given: dict[str, float | str | bool], record: Record) -> Procedure:
+def _focus(client: Client, given: dict[str, float | str | bool]) -> tuple[float | None, Procedure]:
+    """Where a focus step sends the housing, half steps, if anywhere; and how."""
     now = client.focus()
     if "to" in given:
-        record.focus_goal = float(given["to"])
-        return focus.move_to(client, float(given["to"]))
+        return float(given["to"]), focus.move_to(client, float(given["to"]))
     if "by" in given:
-        record.focus_goal = now.position + float(given["by"]) if now is not None else None
-        return focus.step_by(client, float(given["by"]))
+        by = float(given["by"])
+        return now.position + by if now is not None else None, focus.step_by(client, by)
     if "state" in given:
-        return focus.set_state(client, str(given["state"]))
-    return focus.reference(client)
+        return None, focus.set_state(client, str(given["state"]))
+    return None, focus.reference(client)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from bus.time import generator
+from scenarios.lab.faults.drives import Drives
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.lab.faults.kind import Active, Kind
 from scenarios.lab.faults.parameter import FaultError
@@ -38,7 +41,9 @@ class Faults:
     def __init__(self, network: Network, seed: int) -> None:
         self._network = network
         self._seed = seed
-        self._place = Place(network)
+        self.place = Place(
+            network=network, drives=Drives(network), random=np.random.default_rng(0), evidence=Evidence("")
+        )
         self._next = 0
         self._active: dict[int, tuple[Running, Active]] = {}
         self.evidence: list[Evidence] = []
@@ -59,7 +64,7 @@ class Faults:
         kind = BY_NAME.get(name)
         if kind is None:
             raise FaultError(f"no fault is called {name!r}; use one of {', '.join(BY_NAME)}")
-        return kind.arguments(arguments, self._place.known())
+        return kind.arguments(arguments, self.place.known())
 
     def start(self, name: str, **arguments: Any) -> int:
         """Start a fault now; numbers in base units, or text with a unit. Returns its number for `clear`.
@@ -74,8 +79,8 @@ class Faults:
 
     def _start(self, values: dict[str, Any], stream: str, evidence: Evidence) -> int:
         now_ns, name = self._network.queue.now_ns, evidence.name
-        self._place.random, self._place.evidence = generator(self._seed, stream), evidence
-        active = BY_NAME[name].make(self._place, values, now_ns)
+        place = replace(self.place, random=generator(self._seed, stream), evidence=evidence)
+        active = BY_NAME[name].make(place, values, now_ns)
         number, self._next = self._next, self._next + 1
         self._active[number] = Running(number, name, values, now_ns), active
         return number

@@ -163,7 +163,7 @@ class Dominant:
         self._place, self._evidence = place, place.evidence
         self._first = place.hold(_BUS)
         if self._first:
-            place.stuck = StuckDominant(place.network.wire, t_ns)
+            place.stuck.append(StuckDominant(place.network.wire, t_ns))
         ports = place.network.wire.ports
         self._errors = [Errors(place.layers, port, place.evidence, lambda: True) for port in ports]
 
@@ -171,11 +171,10 @@ class Dominant:
         """Released."""
         for each in self._errors:
             each.clear(t_ns)
-        if self._place.let_go(_BUS) and self._place.stuck is not None:
+        if self._place.let_go(_BUS):
             if not self._first:  # until now, as the others have long been over
                 self._evidence.act(t_ns, _BUS)
-            self._place.stuck.release(t_ns)
-            self._place.stuck = None
+            self._place.stuck.pop().release(t_ns)
 
 
 class BitErrors(Laid):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,22 +45,24 @@ WORDS = {"sensor": tuple(SENSORS), "axis": AXES, "motor": ("a", "b")}
 """What an argument of each type may be, in any network."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Place:
-    """network: where. random, evidence: of the fault that is being started. The rest is shared by all."""
+    """network: where. random, evidence: of the fault that is being started. The rest is shared by all.
 
-    def __init__(self, network: Network) -> None:
-        self.network = network
-        self.random = np.random.default_rng(0)
-        self.evidence = Evidence("")
-        self.layers = Stacks(chained)
-        self.values = Stacks(last)
-        self.dials = Stacks(turned)
-        self.stuck: StuckDominant | None = None
-        self.drives = Drives(network)
-        self.held: dict[str, int] = {}
-        """How many faults keep a board off, or something else from working, by name."""
-        self.halted: dict[str, tuple[Laid, Evidence]] = {}
-        """Processors that stand still, by their name in `held`, and of the fault that began it."""
+    held: how many faults keep a board off, or something else from working, by name. halted: processors that
+    stand still, by their name in `held`, and the evidence of the fault that began it. stuck: one at most.
+    """
+
+    network: Network
+    drives: Drives
+    random: np.random.Generator
+    evidence: Evidence
+    layers: Stacks = field(default_factory=lambda: Stacks(chained))
+    values: Stacks = field(default_factory=lambda: Stacks(last))
+    dials: Stacks = field(default_factory=lambda: Stacks(turned))
+    stuck: list[StuckDominant] = field(default_factory=list)
+    held: dict[str, int] = field(default_factory=dict)
+    halted: dict[str, tuple[Laid, Evidence]] = field(default_factory=dict)
 
     def board(self, name: str) -> Any:
         """A board of the network; raises FaultError."""

@@ -6,25 +6,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bus.can import Frame
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, pack_command, unpack_reply
+from bus.protocol import Opcode
 from bus.protocol.scales import STEPS_PER_TURN, rate_q16
 from plant.parts import PlantModel
-from plant.plant import Plant
 from plant.units import ARCSEC
-from scenarios.lab.network import build
-from scenarios.lab.networks import NetworkConfig
+from scenarios.lab.axisbench import AxisBench
 
 Floats = NDArray[np.float64]
 SIDEREAL = 15.041
 """arcsec/s, the issue's and the paper's tracking rate."""
 SETTLE_S = 30.0
 """After the command. The bristles need some 17 arcsec to load (hardware.md 2.4: discard the start-up)."""
-AXIS = Device.AXIS_RA
 _OPCODES = {"TRACK": Opcode.TRACK_RATE, "RATE": Opcode.SET_RATE}
 MODES = tuple(_OPCODES)
-_BOARDS = 2
-_ANSWER_S = 0.02
 
 
 class Held(NamedTuple):
@@ -52,31 +46,6 @@ class Held(NamedTuple):
         return float(np.ptp(self.angle) / 2)
 
 
-class _Bench:
-    def __init__(self, model: PlantModel, start_deg: float, seed: int) -> None:
-        self.plant = Plant(model, seed, {"ra": float(round(start_deg / 360.0 * STEPS_PER_TURN))})
-        self.network = build(NetworkConfig(size=_BOARDS), self.plant, seed)
-        self._port = self.network.wire.attach("bench")
-        self._port.accept([(0x7FF, REPLY_BASE + AXIS)])
-        self._port.on_receive = self._hear
-        self._results: list[int] = []
-        self._now_ns = 0
-
-    def _hear(self, _t_ns: int, frame: Frame) -> None:
-        self._results.append(unpack_reply(frame.data).result)
-
-    def wait(self, seconds: float) -> None:
-        self._now_ns += round(seconds * 1e9)
-        self.network.run_until(self._now_ns)
-
-    def command(self, opcode: Opcode, *arguments: int) -> None:
-        self._results.clear()
-        self._port.send(Frame(COMMAND_BASE + AXIS, pack_command(AXIS, opcode, *arguments)), self._now_ns)
-        self.wait(_ANSWER_S)
-        if self._results != [0]:
-            raise ValueError(f"axis board: {opcode.name} {arguments} was answered with {self._results}")
-
-
 def hold(
     model: PlantModel,
     start_deg: float,
@@ -89,8 +58,7 @@ def hold(
 
     parameters: of the axis board, in the order given. The first SETTLE_S are left out.
     """
-    bench = _Bench(model, start_deg, seed)
-    bench.wait(0.2)  # the EnDat board has to be heard before the motors may be switched on
+    bench = AxisBench(model, seed, float(round(start_deg / 360.0 * STEPS_PER_TURN)))
     for number, value in parameters:
         bench.command(Opcode.SET_PARAMETER, number, value)
     bench.command(Opcode.POWER, 1)

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from plant.model import load
-from scenarios.studies.paper.emulator import BenchError, EmulatorBench
+from scenarios.lab.axisbench import BenchError
+from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.runs import TRIALS, low_speed
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.synthetic import log_of

@@ -17,8 +17,8 @@ SPEEDS = (7200.0, 2400.0)
 def measure(benches: Benches) -> Figures:
     """Inertia of the plant and of two others, percent off what each has."""
     plant = benches.plants["low"]
-    noise = Noise(benches.start.seed, f"e8.{benches.start.angle_deg}")
-    noise.constant = 1.0  # an error of the torque constant is one of J, share for share: E7 has it
+    # an error of the torque constant is one of J, share for share: E7 has it
+    noise = Noise(benches.start.seed, f"e8.{benches.start.angle_deg}", constant_error=0.0)
     fit = friction_map(benches, "low", noise).fit
     if fit is None:
         return {}

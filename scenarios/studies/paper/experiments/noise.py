@@ -18,11 +18,11 @@ CONSTANT_ERROR = 0.05
 
 
 class Noise:
-    """Sensor noise by a seed, and one error of the torque constant that holds for all its logs."""
+    """Sensor noise by a seed, and one error of the torque constant, up to a share, for all its logs."""
 
-    def __init__(self, seed: int, name: str) -> None:
+    def __init__(self, seed: int, name: str, constant_error: float = CONSTANT_ERROR) -> None:
         self._random = generator(seed, f"paper.noise.{name}")
-        self.constant = 1.0 + CONSTANT_ERROR * (2.0 * float(self._random.random()) - 1.0)
+        self.constant = 1.0 + constant_error * (2.0 * float(self._random.random()) - 1.0)
 
     def log(self, log: Log) -> Log:
         """Return the log with noise on both currents, in whole counts."""
