@@ -75,6 +75,7 @@ fit: $(READY)
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 	@$(BIN)/python -m tests.docs.language
+	@$(BIN)/python -m tests.docs.wording
 	@echo "out/site/index.html; with search: $(BIN)/python -m http.server --directory out/site"
 
 coverage: $(VENV)/.coverage

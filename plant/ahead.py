@@ -1,7 +1,7 @@
 """The plant's kernel compiled before it is needed, into a library beside this file (`make compiled`).
 
 Numba's just-in-time compiler is the other way to the same machine code, to the bit. It takes seven seconds
-once per user, and loading what it has kept takes 0.8 s and 100 MiB in every process; the library needs
+once per user, and loading what it has kept takes 0.8 s and 100 MiB in every process. The library needs
 neither. Its name holds a hash of every compiled source, so a library never stands in for an edited file: the
 compiler does then.
 

@@ -1,6 +1,6 @@
 """Make the library of the plant's kernel (plant/ahead.py).
 
-numba.pycc, which makes it, is to move out of numba some day; without it, or without a C compiler, there is no
+numba.pycc, which makes it, is to move out of numba some day. Without it, or without a C compiler, there is no
 library, and nothing else changes.
 """
 

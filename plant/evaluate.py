@@ -66,7 +66,7 @@ def evaluate(
     """Return one value per row, in the unit of the term's hook.
 
     rows: (n, VECTOR) signal vectors in time order. numbers: what the effect's formulas name, SI units: all
-    parameters, order (cycles per axis turn) and constants, and a `seed` for noise; memory begins at zero.
+    parameters, order (cycles per axis turn) and constants, and a `seed` for noise. Memory begins at zero.
     Friction terms need the friction parameters in the vectors and give the change of the steady torque on the
     axis, N m.
     """

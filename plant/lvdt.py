@@ -1,6 +1,6 @@
 """The LVDT with its carrier: excitation, secondary voltage, synchronous rectifier, low pass (P12).
 
-`FocusPort.lvdt` gives the mean of the rectified signal at once; here it is made of the 2 kHz it comes from:
+`FocusPort.lvdt` gives the mean of the rectified signal at once. Here it is made of the 2 kHz it comes from:
 it lags, ripples at 4 kHz and loses the cosine of the transducer's phase error. Carrier: paper. The rest is an
 ASSUMPTION: a filter of 5 ms, two orders below the ripple and faster than the 50 ms of a FOCUS frame.
 """

@@ -1,6 +1,6 @@
 """Text files from outside, and YAML in them, before anything is built from it.
 
-An alias stands for a whole tree, so a few lines can name more values than a machine holds; brackets can be
+An alias stands for a whole tree, so a few lines can name more values than a machine holds. Brackets can be
 nested deeper than the parser's stack. Both are seen in the event stream, which costs neither.
 """
 

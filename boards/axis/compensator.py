@@ -21,8 +21,9 @@ _PART_MASK: Final = (1 << _PART_BITS) - 1
 _COS: Final = [round(32767 * cos(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
 _SIN: Final = [round(32767 * sin(2 * pi * k / _SIZE)) for k in range(_SIZE + 1)]
 _LEAD_Q16: Final = round(1.5 * STEPS_PER_TURN / COUNTS_PER_TURN * 65536)
-"""Steps per count, one and a half ticks: the mean age of a position frame (up to one tick, both boards run on
-their own crystals) and half the tick in which the effort will be in force. ASSUMPTION."""
+"""Steps per count, one and a half ticks. It is the mean age of a position frame and half the tick in which
+the effort will be in force. A frame is up to one tick old: both boards run on their own crystals.
+ASSUMPTION."""
 
 
 class Compensator:

@@ -7,7 +7,7 @@ the error comes every 2.6 s, and the position loop follows. The blend takes what
 constant from the incremental encoder, which was sampled in the same tick. It takes only the slow rest from
 the absolute encoder.
 
-Widths: the lock's sum is 32 bits, limited to 2 arcsec in a 64-bit register before it is stored; its product
+Widths: the lock's sum is 32 bits, limited to 2 arcsec in a 64-bit register before it is stored. Its product
 with the gain and the blend's position are 64 bits.
 """
 

@@ -2,8 +2,7 @@
 instruction counts.
 
 The PWM-triggered ADC and the UART FIFO take their cycles inside the figures below instead of rows of
-their own: 20 000 ADC interrupts a second would tell nothing that the last conversion before the tick
-does not.
+their own. 20 000 ADC interrupts a second would add nothing to the last conversion before the tick.
 """
 
 from typing import Final

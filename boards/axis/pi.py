@@ -2,7 +2,7 @@
 
 Gains in Q12, errors in Q16, the effort in Q16 PWM steps: with Ki = 0.037 plain integers would truncate
 the integral action to nothing (hardware.md 1.4). The effort is limited where it is accumulated, before
-the PWM register, so it cannot wind up; a change of set point enters through the difference of errors only, so
+the PWM register, so it cannot wind up. A change of set point enters through the difference of errors only, so
 it is bumpless.
 
 Widths: errors, their differences and the effort are 32 bit and saturate; gain times error is 64 bit (at most

@@ -1,7 +1,7 @@
 """The speed profile of a move: the reference that the position loop follows, in integers.
 
 Positions in Q18 counts, because one step of the absolute encoder is then exactly 55125 units
-(112 896 000 counts / 2^29 steps x 2^18); speeds in Q18 counts per tick. All are 64-bit integers (`long long`
+(112 896 000 counts / 2^29 steps x 2^18). Speeds in Q18 counts per tick. All are 64-bit integers (`long long`
 of the dsPIC30F's compiler), and so is every product. The square root is taken only where the speed it gives
 is below the top speed. So its radicand stays below (top + a)^2, 2^62, however far the target is.
 The target may itself move (tracking): the profile is the distance still to go, relative to it.

@@ -43,7 +43,7 @@ BITRATE: Final = 1_000_000
 def type_of(board: Board) -> tuple[str, int]:
     """Name and product code of a board's type, the same for all instances and no other type's.
 
-    ASSUMPTION: the upper half of the device type (1..6); for a declared board, whose numbers lie among
+    ASSUMPTION: the upper half of the device type (1..6). For a declared board, whose numbers lie among
     others', the first device type of its kind (from 0x10 on).
     """
     if isinstance(board, DeclaredBoard):

@@ -25,7 +25,7 @@ def answer(device_type: int, table: Mapping[int, Handler], t_ns: int, data: byte
 
 class Command:
     """Takes the arguments of one opcode apart as the protocol lays them out, then calls `method` with the
-    time and them; it returns an Answer, or None for OK.
+    time and them. It returns an Answer, or None for OK.
 
     bounds: (low, high) of each argument, beyond which the answer is "out of range"; none: the method looks.
     """

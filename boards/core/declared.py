@@ -1,7 +1,7 @@
 """A board made from its declaration: a class with its kind, interrupt table, pins and one routine.
 
 Identifiers, parameters, commands and their bounds, frames and their periods, heartbeat and RS232 packets
-follow from the kind's DBC (`bus/protocol/nodes/`); wiring and schema from the pins
+follow from the kind's DBC (`bus/protocol/nodes/`). Wiring and schema from the pins
 (`scenarios/lab/nodes.py`).
 """
 

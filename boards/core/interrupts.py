@@ -18,7 +18,7 @@ class Source:
     priority: higher interrupts lower.
     latency_cycles: from the request to the first instruction of the routine.
     cost_cycles: the routine, return included.
-    level: the request line stays up until served (an SPI chip's INT pin); otherwise it is a flag, and
+    level: the request line stays up until served (an SPI chip's INT pin). Otherwise it is a flag, and
         a second request before the routine starts is lost and counted.
     """
 

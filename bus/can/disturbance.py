@@ -7,10 +7,11 @@ from bus.can.frame import Frame
 
 ErrorKind = Literal["bit", "stuff", "form", "crc", "ack"]
 SenderCounts = Literal["transmits", "lost", "spared"]
-"""How an error counts at the node that had begun the frame (ISO 11898-1, fault confinement): as a
-transmitter's (TEC + 8); as a receiver's (REC + 1), because it had lost arbitration to the disturbance; not at
-all, because a stuff bit of the arbitration field, sent recessive, was monitored as dominant (second exception
-of the transmitter's rule)."""
+"""How an error counts at the node that had begun the frame (ISO 11898-1, fault confinement).
+
+As a transmitter's it is TEC + 8. As a receiver's it is REC + 1: the node had lost arbitration to the
+disturbance. It counts not at all where a recessive stuff bit of the arbitration field was monitored as
+dominant (second exception of the transmitter's rule)."""
 ERROR_FLAG_BITS = 6
 ERROR_DELIMITER_BITS = 8
 OVERLOAD_FLAG_BITS = ERROR_FLAG_BITS

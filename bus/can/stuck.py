@@ -20,7 +20,7 @@ class StuckDominant:
     """Holds `wire` dominant from the moment it is made until `release`.
 
     What was being sent stays in its buffer. After six bits everybody sees an error: REC + 1 (the sender
-    TEC + 8); at the first bit after the error flag receivers count 8 more; from fourteen bits after the
+    TEC + 8). At the first bit after the error flag receivers count 8 more. From fourteen bits after the
     flag's start on, each node counts 8 more for every eight bits. So a sender goes off the bus after some
     270 bits, and receivers end passive: REC alone takes nobody off.
     """

@@ -10,7 +10,7 @@ from bus.protocol import COMMAND_BASE, Health, Opcode, Result, pack_command
 
 _COMMANDS = 64
 _PACE_S = 0.0005
-"""A command and its answer take half of that at 1 Mbit/s; the other half is left to the boards' own frames,
+"""A command and its answer take half of that at 1 Mbit/s. The other half is left to the boards' own frames,
 which come after commands in arbitration."""
 _OPEN = 2
 """Commands on their way at a time: as many as a CAN controller of these boards has receive buffers. A door

@@ -29,8 +29,8 @@ class Pacer:
     """Paces `queue` at `speed` (1: real time), which may be changed while it runs.
 
     A slice is run when the middle of it is due, so that nothing is more than half a slice early or late.
-    paused: simulated time stands still. lateness_s: how late the last slice ended; worst_lateness_s: the
-    worst so far; slips: times the schedule was dropped because it was more than a quarter of a second behind;
+    paused: simulated time stands still. lateness_s: how late the last slice ended. worst_lateness_s: the
+    worst so far. slips: times the schedule was dropped because it was more than a quarter of a second behind.
     slipped_s: wall time given up that way (time was slowed by it).
     """
 

@@ -170,8 +170,10 @@ class AxisParameter(IntEnum):
     FRICTION_TRAVEL_COUNTS = 15
     """Travel over which friction turns after a reversal, counts of the roller encoder."""
     HARMONIC_FIRST = 16
-    """Line k of the table: 16 + 3k order, cycles per turn of the axis, Q16; 17 + 3k and 18 + 3k effort of its
-    cosine and sine over the absolute encoder's angle, PWM steps in Q8."""
+    """Line k of the table: 16 + 3k is its order, cycles per turn of the axis, Q16.
+
+    17 + 3k and 18 + 3k are the effort of its cosine and sine over the absolute encoder's angle, PWM steps in
+    Q8."""
 
     COUNTER_BIAS_Q8 = 40
     """Duty that both motors always get, PWM steps in Q8."""

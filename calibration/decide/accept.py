@@ -50,8 +50,8 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float) 
     times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)
     if times and held.share > limits.MARGIN:
         return (
-            f"{SHORT}: it takes {100 * held.share:.0f} % off the held-out mean square, by chance with"
-            f" -log10 p = {contender.evidence:.1f} of {least:.0f}, {times} times as long a log would tell"
+            f"{SHORT}: it lowers the held-out mean square by {100 * held.share:.0f} %, but -log10 p is"
+            f" {contender.evidence:.1f} of {least:.0f}. A log {times} times as long would decide."
         )
     return f"too little evidence (-log10 p = {contender.evidence:.1f})"
 

@@ -14,9 +14,9 @@ MOST = 3
 #: channel of an effect -> the row of the error table it is judged by
 ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}
 PHASES = (
-    "Phases here are those of the residual as a cosine: of the torque that the motors supply against the "
-    "effect, or of the difference of two encoders; plant.yaml, where one is written, has the effect's own"
-    " torque or error, a sine."
+    "Phases are those of the residual, as a cosine. The residual is the torque that the motors supply against"
+    " the effect, or the difference of two encoders. A plant.yaml has the effect's own torque or error, as a"
+    " sine."
 )
 PLACES = "The phase of a damaged tooth is its place on its part, in turns from where the position is zero."
 

@@ -109,8 +109,8 @@ def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
             raise CalibrationInputError(path, "is empty", 1)
     if rig is None or rig.format != "table":
         what = (
-            "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log; "
-            f"another drive's file needs --rig FILE, which schmidt rig --new {path.name} drafts"
+            "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log. "
+            f"Another drive's file needs --rig FILE; schmidt rig --new {path.name} drafts one"
             + (", of format: table" if rig is not None else "")
         )
         raise CalibrationInputError(path, what, 1)

@@ -29,8 +29,8 @@ WRONG_PERIODS = (0.9, 1.1)
 FEW = 4
 NEED = "guide one section for at least three turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
-    "whole sections are held out: the worm's phase is carried there by the clock, which a slew breaks;"
-    " without --hold-out the end of every section is held out"
+    "whole sections are held out, so the clock carries the worm's phase there, and a slew breaks it."
+    " Without --hold-out the end of every section is held out"
 )
 
 

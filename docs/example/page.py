@@ -39,7 +39,7 @@ It holds out `{held}`, calibrates the declared model again on the others, and an
 {again}{others}| not identifiable from these runs | {missing} |
 
 "Before" is the declared model with its own parameters calibrated again on the same runs. "Floor" is what the
-sensors leave. "Closed loop run again" drives the held-out run's set points once more through either plant,
+sensors leave. "Replayed closed loop" drives the held-out run's set points once more through either plant,
 and compares with the log. The residual, over the phase of the order that explains it, on rows that were
 fitted:
 
@@ -114,7 +114,7 @@ def page(report: dict[str, Any], plant: Path) -> str:
             for e in others
         ),
         again="".join(
-            f"| closed loop run again, {channel} | {row['before']:.3g} {row['unit']} before, "
+            f"| replayed closed loop, {channel} | {row['before']:.3g} {row['unit']} before, "
             f"**{row['after']:.3g}** after, floor {row['floor']:.3g} |\n"
             for channel, row in report["closed_loop"].items()
         ),

@@ -72,7 +72,7 @@ class Effect:
     """One effect of the catalogue.
 
     channel: T torque residual, E electrical, K difference of encoders, S sensor, log or clock.
-    stages: gear stages it may sit on (empty: it belongs to no stage); formulas then know the order, in cycles
+    stages: gear stages it may sit on (empty: it belongs to no stage). Formulas then know the order, in cycles
     per axis turn (stage order * harmonic).
     constants: constants of the plant that formulas know beside the parameters
     ("torque_constant" N m/A, "resistance" ohm, "winding" ohm, "ratio").
@@ -145,6 +145,6 @@ SHAFTS = ("axis", "aux", "shaft2", "roller", "shaft1", "motor")
 MESHES = ("mesh1", "mesh2", "mesh3")
 STAGES = (*SHAFTS, *MESHES)
 CATALOGUE = "effects.md, catalogue"
-ASSUMED = "ASSUMPTION (effects.md [A])"
+ASSUMED = "ASSUMPTION, docs/sources/effects.md"
 PHASE = Parameter("phase", "rad", -3.2, 3.2, 0.0, "free: unknown mounting angle")
 MOTOR_CHOICE = Parameter("motor", "1", 0.0, 2.0, 0.0, "choice: 0 both motors, 1 A, 2 B")

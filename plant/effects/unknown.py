@@ -1,9 +1,11 @@
 """An effect outside the catalogue: a smooth function of the domain it was found in, given by knots.
 
-Parameters are `domain` (the signal it depends on), `kind` (1 linear, 3 cubic, 5 a sum of stops), `period` (0:
-none; else the domain wraps, knots within one period), `motor` (of a target that belongs to a motor: 0 both,
-1 A, 2 B) and up to 32 knots x0, y0, x1, y1 … in SI units. A sum of stops is a hysteresis: every knot is
-(radius, height), and adds height * z / radius, z following the domain and held within +-radius; up to 12."""
+`domain` is the signal it depends on. `kind` is 1 (linear), 3 (cubic) or 5 (a sum of stops). `period` is 0, or
+the domain wraps and the knots lie within one period. `motor` is 0 (both), 1 (A) or 2 (B), of a target that
+belongs to a motor. Up to 32 knots x0, y0, x1, y1 … follow, in SI units.
+
+A sum of at most 12 stops is a hysteresis: every knot is (radius, height) and adds height * z / radius. z
+follows the domain and is held within +-radius."""
 
 from math import floor
 
@@ -106,6 +108,6 @@ EFFECT = Effect(
     domain="axis_angle",
     equation="y = f(domain) through the knots, linear or cubic (Hermite), or a sum of stops",
     parameters=(),
-    source="issue 3: an effect outside the catalogue enters as a smooth function",
+    source="docs/sources/effects.md: an effect outside the catalogue enters as a smooth function",
     terms=(Term("target", formula, update, lasting=True),),
 )

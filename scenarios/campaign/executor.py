@@ -3,7 +3,7 @@
     for done in each(task, {"name": input, ...}.items(), jobs=2):
         done.key, done.value or done.error
 
-A task is a function of a module and its input something that can be pickled; the same input gives the same
+A task is a function of a module and its input something that can be pickled. The same input gives the same
 result, so a run that is lost with its worker is simply made again.
 """
 

@@ -21,7 +21,7 @@ from scenarios.language.units import parse
 SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
 MOST = 1_000_000
 """Planned runs of one campaign. That many runs of five seconds are two months of one core, and its table and
-report take some 3 GB; beyond that there would be minutes of planning without a word."""
+report take some 3 GB. Beyond that there would be minutes of planning without a word."""
 
 
 @dataclass(frozen=True)

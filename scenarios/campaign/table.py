@@ -18,7 +18,7 @@ _FIELDS = {"key": str, "index": int, "failure": str}
 
 
 class Journal:
-    """`runs.jsonl`: every finished run is on disk before the next one counts; a torn last line is no run, and
+    """`runs.jsonl`: every finished run is on disk before the next one counts. A torn last line is no run, and
     a row that says `lost` (its worker died) is one to be made again."""
 
     def __init__(self, folder: Path, resume: bool) -> None:

@@ -20,7 +20,7 @@ DESCRIPTOR = bytes.fromhex(
 def out_report(data: bytes) -> bytes | None:
     """The 64 bytes of an OUT report as a program wrote them, or None when it is none.
 
-    A program that writes to hidraw puts report number 0 in front; uhid passes on all 65 bytes where usbhid
+    A program that writes to hidraw puts report number 0 in front. Uhid passes on all 65 bytes where usbhid
     strips the first (drivers/hid/uhid.c, hardware.md 3.6).
     """
     if len(data) == BYTES + 1 and data[0] == 0:

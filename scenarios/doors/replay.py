@@ -43,7 +43,7 @@ def replay(folder: Path, out: Path) -> tuple[str, str | None]:
 
 
 def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
-    """What entered the session in `folder` after a snapshot of it, again, on from that snapshot; returns the
+    """What entered the session in `folder` after a snapshot of it, again, on from that snapshot. Returns the
     digest of the rest both ways (None: that one was not taken in this session, or it was never closed)."""
     facts = _facts(folder)
     stood = standing(read(snapshot))

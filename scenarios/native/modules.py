@@ -37,9 +37,9 @@ PLAIN = (
 )
 """What takes an `Opcode` as an int and asks for its layout: mypyc unboxes it to a bare number.
 Declarations, which are read once: a frozen record of the library cannot be pickled.
-And what no night runs on: the chips at register level (mypyc refuses one of them);
-what derives from classes of a package that is not compiled; and what inherits the constructor of
-`DeclaredBoard`: mypyc calls it twice for such a class (two ports on the wire), plain Python once."""
+No night runs on the chips at register level, and mypyc refuses one of them.
+Classes that derive from those of a package that is not compiled stay plain, too. So do classes that inherit
+the constructor of `DeclaredBoard`. There mypyc calls it twice (two ports on the wire), plain Python once."""
 _PLACE = "__file__"
 """A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
 

@@ -1,7 +1,7 @@
 """Puts the rooms of a wheel below one package, `schmidt`, so that they collide with nobody's modules.
 
-Used by `setup.py`: in the checkout the rooms are top-level folders, which is how they import each other; a
-user may well have a `plant.py` or a `bus/` of their own, which an installed `schmidt` must neither take nor
+Used by `setup.py`. In the checkout the rooms are top-level folders, which is how they import each other. A
+user may have a `plant.py` or a `bus/` of their own, which an installed `schmidt` must neither take nor
 give way to.
 """
 
@@ -39,7 +39,7 @@ def relocate(folder: Path) -> Path:
 
 def rewritten(source: str, name: str = "<source>") -> str:
     """`source` with `from plant.model import …` as `from schmidt.plant.model import …`, and `import plant` as
-    `import schmidt.plant as plant`; raises RelocationError for `import plant.model`, which binds `plant`."""
+    `import schmidt.plant as plant`. Raises RelocationError for `import plant.model`, which binds `plant`."""
     lines = source.splitlines(keepends=True)
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level and _ours(node.module):

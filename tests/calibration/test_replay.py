@@ -142,7 +142,7 @@ def test_report_holds_the_closed_loop_and_may_leave_it_out(tmp_path: Path) -> No
         assert set(row) == {"unit", "before", "after", "floor"}
         assert row["after"] < 0.5 * row["before"], channel
     page = (tmp_path / "with" / "report.html").read_text()
-    assert "closed loop run again" in page.lower() and "measured, declared and corrected" in page
+    assert "replayed closed loop" in page.lower() and "measured, declared and corrected" in page
 
 
 def test_an_open_loop_run_is_driven_by_its_effort(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ def test_finder_names_what_was_sealed_and_nothing_else(answer: tuple[dict[str, A
 @pytest.mark.slow
 def test_held_out_error_falls_towards_the_floor(answer: tuple[dict[str, Any], Path]) -> None:
     torque = answer[0]["error"]["torque"]
-    assert torque["after"] <= 0.5 * torque["before"]  # what issue 3 asks for
+    assert torque["after"] <= 0.5 * torque["before"]  # what is asked for
     # beyond two floors the report itself says that something is still missing; the floor is measured apart
     # from the fit (it was the fit's own residual when this was 1.5)
     assert torque["floor"] <= torque["after"] <= 2.0 * torque["floor"]

@@ -58,7 +58,7 @@ def kind_of(device: Device) -> Kind | None:
 
 def check_kind(kind: Kind, beside: Iterable[Kind]) -> None:
     """Raises KindError for names and device types that cannot be, or that the lab's boards or another of
-    `beside` have; the same kind twice is one."""
+    `beside` have. The same kind twice is one."""
     if not kind.name.isalnum() or kind.name != kind.name.upper():
         raise KindError(f"board kind {kind.name!r}: a name is capitals and digits, without an underscore")
     others = [each for each in beside if each != kind]

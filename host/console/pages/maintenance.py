@@ -65,9 +65,9 @@ def _encoders(shell: Shell) -> None:
         fill = table(("axis", "shaft, ″", "auxiliary", "difference", "combined"))
         ui.label(
             "Combined: the mean weighted by inverse variances, the best linear unbiased estimate of two"
-            f" independent readings; σ {ABSOLUTE_ARCSEC:.2f}″ on the shaft,"
-            f" {AUXILIARY_ARCSEC:.2f}″ auxiliary at rest, more while moving: they are read milliseconds"
-            f" apart. Beyond {APART:g} σ of their difference the one on the shaft stands alone."
+            f" independent readings. σ is {ABSOLUTE_ARCSEC:.2f}″ on the shaft and"
+            f" {AUXILIARY_ARCSEC:.2f}″ auxiliary at rest. It is more while moving, as they are read"
+            f" milliseconds apart. Beyond {APART:g} σ of their difference the one on the shaft stands alone."
         ).classes("small")
 
     def refresh() -> None:

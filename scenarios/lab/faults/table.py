@@ -38,8 +38,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     _bus(
         "babbler",
-        "a node that is none of ours sends one identifier without end; the lower it is, the less gets "
-        "through",
+        "a foreign node sends one identifier without end; the lower it is, the less gets through",
         (
             Parameter("identifier", "what it sends", "identifier", default=0, low=0, high=0x7FF),
             Parameter(
@@ -80,7 +79,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     _bus(
         "forged_sender",
-        "a node that is none of ours sends a board's frame. CAN proves no sender, so it is believed. A false "
+        "a foreign node sends a board's frame. CAN proves no sender, so receivers accept it. A false "
         "POSITION drags a tracking axis, beyond its soft limits too",
         (
             Parameter("identifier", "what it sends", "identifier", low=0, high=0x7FF),

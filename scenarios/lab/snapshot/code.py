@@ -1,7 +1,7 @@
 """Functions made inside functions, by their place in their module's source.
 
 A plant's pin is a closure, a parameter's getter a lambda: pickle finds neither by name. Here a function is
-its module, the number of its code among the module's, and its cells; the source is the same by the digest
+its module, the number of its code among the module's, and its cells. The source is the same by the digest
 that a snapshot carries.
 """
 

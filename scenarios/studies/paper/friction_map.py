@@ -130,8 +130,8 @@ def break_away_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
 WINDOW = 15
 """Samples, 150 ms."""
 BREAK_AWAY_ERROR = 0.025
-"""Share. The rate, some 10 arcsec/s, doubles within the window and is read in counts of 2.3: it is known to a
-quarter, and there the torque falls by a tenth when the rate doubles (Table 2, any exponent near 0.5).
+"""Share. The rate, some 10 arcsec/s, doubles within the window and is read in counts of 2.3. So it is known
+to a quarter. There the torque falls by a tenth when the rate doubles (Table 2, any exponent near 0.5).
 ASSUMPTION."""
 
 

@@ -1,7 +1,7 @@
 """Moment of inertia from run-downs of several speeds, by least squares on the logged counts.
 
-Unknown are the inertia, what the trains damp, and when within a period of the log the command took effect;
-friction is the map's, the rest data sheets (coasting.py).
+Unknown are the inertia, what the trains damp, and when within a period of the log the command took effect.
+Friction is the map's, the rest data sheets (coasting.py).
 """
 
 from collections.abc import Sequence

@@ -96,8 +96,8 @@ def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 1
     place.
 
     Closed loop at 100 arcsec/s first. Then, for one effort after the other, from 140 arcsec/s into open loop
-    for `dwell` s after `settle` s: from the effort that the loop needed downwards in the smallest steps
-    until the axis stays put, or upwards until it keeps moving.
+    for `dwell` s after `settle` s. The first effort is the one that the loop needed. It falls in the smallest
+    steps until the axis stays put, or rises until it keeps moving.
     """
     closed = bench().closed_loop(LOW, settle + dwell).after(settle)
     effort = round(float(closed.effort.mean()))
