@@ -113,31 +113,31 @@ def _plant(path: Any, where: str, base: Document) -> Put:
 
 def _parameter(given: Any, where: str, base: Document) -> Put:
     """A firmware parameter of a board, by number."""
-
-    def put(document: Document, value: Any) -> None:
-        nodes = document.setdefault("network", {}).setdefault("nodes", {})
-        nodes.setdefault(given["node"], {}).setdefault("parameters", {})[str(given["number"])] = int(value)
-
-    return put, f"{given['node']} parameter {given['number']}", lambda: _none(where, "a firmware parameter")
+    node, number = given["node"], given["number"]
+    put = _at("network", "nodes", node, "parameters", str(number), read=int)
+    return put, f"{node} parameter {number}", lambda: _none(where, "a firmware parameter")
 
 
 def _seed(_given: Any, where: str, base: Document) -> Put:
     """The scenario's seed: crystals, encoders' fractions, noise, lost frames."""
-
-    def put(document: Document, value: Any) -> None:
-        document["seed"] = int(value)
-
-    return put, "seed", lambda: _none(where, "a seed")
+    return _at("seed", read=int), "seed", lambda: _none(where, "a seed")
 
 
 def _start(axis: Any, where: str, base: Document) -> Put:
     """Where an axis of the telescope stands at first, degrees."""
+    put = _at("start", axis, read=lambda value: f"{float(value)!r} deg")
+    return put, f"start, {str(axis).replace('_', ' ')}", lambda: _none(where, "a start")
+
+
+def _at(*path: str, read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
+    """Writes a value, as `read` makes it, at a path whose blocks need not be there."""
 
     def put(document: Document, value: Any) -> None:
-        start = document.setdefault("start", {})
-        start[axis] = f"{float(value)!r} deg"
+        for word in path[:-1]:
+            document = document.setdefault(word, {})
+        document[path[-1]] = read(value)
 
-    return put, f"start, {str(axis).replace('_', ' ')}", lambda: _none(where, "a start")
+    return put
 
 
 def _fault(_given: Any, where: str, base: Document) -> Put:

@@ -1,5 +1,6 @@
 """`report.html` of a campaign, its figures beside it, and the scenario of its worst run."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -169,11 +170,7 @@ def _summary(
 
 def _failures(columns: Columns) -> list[tuple[str, int]]:
     """Runs that ended in an error, by what they said."""
-    said: dict[str, int] = {}
-    for each in columns["failure"]:
-        if each:
-            said[each] = said.get(each, 0) + 1
-    return sorted(said.items(), key=lambda item: -item[1])[:20]
+    return Counter(filter(None, columns["failure"])).most_common(20)
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:

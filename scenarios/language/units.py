@@ -2,7 +2,20 @@
 
 import math
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """base: what `parse` returns it in. limit: largest magnitude, in the base unit. units: their sizes in it.
+
+    Limits are far beyond anything at a telescope (four months, 7700 turns, 10 km), near enough that no sum of
+    them overflows and nobody waits for it. ASSUMPTION.
+    """
+
+    base: str
+    limit: float
+    units: Mapping[str, float]
 
 
 class Unit(NamedTuple):
@@ -12,64 +25,33 @@ class Unit(NamedTuple):
     factor: float
 
 
-BASE = {
-    "time": "s",
-    "angle": "arcsec",
-    "rate": "arcsec/s",
-    "fraction": "1",
-    "focus": "half steps",
-    "pressure": "hPa",
-    "temperature": "°C",
-    "length": "m",
-    "bitrate": "bit/s",
+_UM = 1 / 6.25
+"""Half steps: 6.25 µm each (P11)."""
+QUANTITIES = {
+    "time": Quantity(
+        "s", 1e7, {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
+    ),
+    "angle": Quantity(
+        "arcsec",
+        1e10,
+        {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0},
+    ),
+    "rate": Quantity(
+        "arcsec/s", 1e10, {"arcsec/s": 1.0, "″/s": 1.0, "arcmin/s": 60.0, "deg/s": 3600.0, "°/s": 3600.0}
+    ),
+    "fraction": Quantity("1", 1e6, {"%": 0.01}),
+    "focus": Quantity("half steps", 1e6, {"half steps": 1.0, "half step": 1.0, "um": _UM, "µm": _UM}),
+    "pressure": Quantity("hPa", 1e4, {"hPa": 1.0}),
+    "temperature": Quantity("°C", 1e3, {"degC": 1.0, "°C": 1.0}),
+    "length": Quantity("m", 1e4, {"m": 1.0}),
+    "bitrate": Quantity("bit/s", 1e12, {"kbit/s": 1e3, "Mbit/s": 1e6}),
 }
-"""Base unit of every quantity: what `parse` returns."""
-
-UNITS: dict[str, Unit] = {
-    "ns": Unit("time", 1e-9),
-    "us": Unit("time", 1e-6),
-    "µs": Unit("time", 1e-6),
-    "ms": Unit("time", 1e-3),
-    "s": Unit("time", 1.0),
-    "min": Unit("time", 60.0),
-    "h": Unit("time", 3600.0),
-    "mas": Unit("angle", 1e-3),
-    "arcsec": Unit("angle", 1.0),
-    "″": Unit("angle", 1.0),
-    "arcmin": Unit("angle", 60.0),
-    "deg": Unit("angle", 3600.0),
-    "°": Unit("angle", 3600.0),
-    "arcsec/s": Unit("rate", 1.0),
-    "″/s": Unit("rate", 1.0),
-    "arcmin/s": Unit("rate", 60.0),
-    "deg/s": Unit("rate", 3600.0),
-    "°/s": Unit("rate", 3600.0),
-    "%": Unit("fraction", 0.01),
-    "half steps": Unit("focus", 1.0),
-    "half step": Unit("focus", 1.0),
-    "um": Unit("focus", 1 / 6.25),  # 6.25 µm per half step (P11)
-    "µm": Unit("focus", 1 / 6.25),
-    "hPa": Unit("pressure", 1.0),
-    "degC": Unit("temperature", 1.0),
-    "°C": Unit("temperature", 1.0),
-    "m": Unit("length", 1.0),
-    "kbit/s": Unit("bitrate", 1e3),
-    "Mbit/s": Unit("bitrate", 1e6),
+BASE = {name: quantity.base for name, quantity in QUANTITIES.items()}
+UNITS = {
+    word: Unit(name, factor)
+    for name, quantity in QUANTITIES.items()
+    for word, factor in quantity.units.items()
 }
-
-LIMITS = {
-    "time": 1e7,
-    "angle": 1e10,
-    "rate": 1e10,
-    "fraction": 1e6,
-    "focus": 1e6,
-    "pressure": 1e4,
-    "temperature": 1e3,
-    "length": 1e4,
-    "bitrate": 1e12,
-}
-"""Largest magnitude of every quantity, in its base unit: far beyond anything at a telescope (four
-months, 7700 turns, 10 km), near enough that no sum of them overflows and nobody waits for it. ASSUMPTION."""
 
 _FORM = re.compile(r"^\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?)\s*(\S.*?)?\s*$")
 
@@ -94,16 +76,16 @@ def parse(text: object, quantity: str) -> float:
     word = match.group(2)
     if word is None:
         if quantity in ("fraction", "focus"):
-            if abs(number) > LIMITS[quantity]:
-                raise UnitError(f"{text!r} is too large; at most {LIMITS[quantity]:g}")
+            if abs(number) > QUANTITIES[quantity].limit:
+                raise UnitError(f"{text!r} is too large; at most {QUANTITIES[quantity].limit:g}")
             return number
         raise UnitError(f"{text!r} has no unit; write it like {example(quantity)}")
     unit = UNITS.get(word)
     if unit is None or unit.quantity != quantity:
         raise UnitError(f"{text!r}: unit {word!r} does not fit; use one of {', '.join(units_of(quantity))}")
     value = number * unit.factor
-    if abs(value) > LIMITS[quantity]:
-        raise UnitError(f"{text!r} is too large; at most {LIMITS[quantity]:g} {BASE[quantity]}")
+    if abs(value) > QUANTITIES[quantity].limit:
+        raise UnitError(f"{text!r} is too large; at most {QUANTITIES[quantity].limit:g} {BASE[quantity]}")
     return value
 
 
@@ -115,7 +97,7 @@ def unit_of(text: object) -> str:
 
 def units_of(quantity: str) -> list[str]:
     """The unit words of a quantity."""
-    return [word for word, unit in UNITS.items() if unit.quantity == quantity]
+    return list(QUANTITIES[quantity].units)
 
 
 def example(quantity: str) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.logs.canformats import FORMATS, convert
-from host.logs.files import LogError
+from host.logs.files import LogError, write_file
 from scenarios.language.model import Scenario
 from scenarios.progress import shown
 
@@ -174,7 +174,8 @@ def _conclude(
     outcome = Outcome(recorder.folder, session.scenario, records, counters, bus, session.faults.evidence)
     verdicts = judge(outcome)
     summary = _summary(session, outcome, verdicts)
-    _write_json(recorder.folder / "summary.json", summary)
+    text = json.dumps(summary, indent=2, ensure_ascii=False)
+    write_file(recorder.folder / "summary.json", text + "\n")
     if report:
         from scenarios.run.report.html import write
 
@@ -207,13 +208,6 @@ def _summary(session: Session, outcome: Outcome, verdicts: list[Verdict]) -> dic
         ],
         "faults": [each.as_json() for each in outcome.faults],
     }
-
-
-def _write_json(path: Path, data: dict[str, Any]) -> None:
-    try:
-        path.write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise LogError(f"{path}: {(error.strerror or 'cannot be written').lower()}") from None
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.logs.files import LogError, write_file
+from host.logs.files import write_file
 from scenarios.run.evaluate import Verdict
 from scenarios.run.outcome import Outcome
 from scenarios.run.report.figures import FIGURES
@@ -51,10 +51,7 @@ def write(
         start=outcome.scenario.clock.iso(0.0),
         files=sorted(path.name for path in outcome.folder.iterdir() if path.is_file()),
     )
-    try:
-        write_file(outcome.folder / "report.html", text)
-    except OSError as error:
-        raise LogError(f"{outcome.folder / 'report.html'}: {(error.strerror or '').lower()}") from None
+    write_file(outcome.folder / "report.html", text)
 
 
 def _figure(value: float | None) -> str:

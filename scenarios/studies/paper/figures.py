@@ -1,10 +1,14 @@
 """Look-alikes of the paper's figures: velocity with the set point as a line, control effort dashed."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from scenarios.run.report.style import new_figure
 from scenarios.studies.paper.coasting import coast
 from scenarios.studies.paper.experiments.e08 import SPEEDS
 from scenarios.studies.paper.log import Log
@@ -12,33 +16,29 @@ from scenarios.studies.paper.record import Record
 from scenarios.studies.paper.runs import LOW, STEP_TO, TRACKING
 from scenarios.studies.paper.scales import ARCSEC, COUNT_RATE, LOG_PERIOD_S
 
-SIZE = (10.0, 4.2)
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH_IN, ROW_IN = 10.0, 4.2
 
 
 def draw_all(record: Record, folder: Path) -> list[Path]:
     """Draw every figure the record has data for; return the files."""
-    import matplotlib
-
-    matplotlib.use("Agg")
     folder.mkdir(parents=True, exist_ok=True)
-    makers = (_figure_6, _figure_7, _figure_8, _figure_9, _figure_11, _figure_12, _figure_13)
-    return [path for maker in makers if (path := maker(record, folder)) is not None]
+    files = []
+    for number, maker in _MAKERS.items():
+        figure = maker(record)
+        if figure is not None:
+            files.append(folder / f"figure-{number}.png")
+            figure.savefig(files[-1])
+    return files
 
 
-def _panels(count: int, title: str) -> tuple[Any, list[Any]]:
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, count, figsize=SIZE, layout="constrained")
+def _panels(title: str, rows: int = 1, alike: bool = False) -> tuple[Figure, list[Any]]:
+    """Two panels a row; alike: with one scale of velocity."""
+    figure = new_figure(ROW_IN * rows, WIDTH_IN)
     figure.suptitle(title)
-    return figure, list(np.atleast_1d(axes))
-
-
-def _save(figure: Any, path: Path) -> Path:
-    import matplotlib.pyplot as plt
-
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
-    return path
+    return figure, list(figure.subplots(rows, 2, sharey=alike).flat)
 
 
 def _velocity(axis: Any, log: Log, setpoint: float, title: str, seconds: float | None = None) -> None:
@@ -58,41 +58,31 @@ def _velocity(axis: Any, log: Log, setpoint: float, title: str, seconds: float |
     axis.legend(lines, [line.get_label() for line in lines], loc="lower right", fontsize=7)
 
 
-def _figure_6(record: Record, folder: Path) -> Path | None:
-    if not record.high:
-        return None
+def _figure_6(record: Record) -> Figure | None:
     opened = [(run, run.opened) for run in record.high if run.opened is not None]
     if not opened:
         return None
     worst, log = max(opened, key=lambda pair: float(np.max(np.abs(pair[1].rate / pair[0].setpoint - 1.0))))
-    figure, axes = _panels(2, "Fig. 6: high speed, low preload")
+    figure, axes = _panels("Fig. 6: high speed, low preload", alike=True)
     _velocity(axes[0], log, worst.setpoint, "(a) open loop")
     _velocity(axes[1], worst.closed, worst.setpoint, "(b) closed loop")
-    low = min(axis.get_ylim()[0] for axis in axes)
-    high = max(axis.get_ylim()[1] for axis in axes)
-    for axis in axes:
-        axis.set_ylim(low, high)
-    return _save(figure, folder / "figure-06.png")
+    return figure
 
 
-def _figure_7(record: Record, folder: Path) -> Path | None:
+def _figure_7(record: Record) -> Figure | None:
     if record.low.nearest is None:
         return None
-    figure, axes = _panels(2, "Fig. 7: 100″/s, low preload")
+    figure, axes = _panels("Fig. 7: 100″/s, low preload", alike=True)
     opened = record.low.nearest
     _velocity(axes[0], opened, float(opened.rate.mean()), "(a) open loop; line: mean")
     _velocity(axes[1], record.low.closed, LOW, "(b) closed loop")
-    low = min(axis.get_ylim()[0] for axis in axes)
-    high = max(axis.get_ylim()[1] for axis in axes)
-    for axis in axes:
-        axis.set_ylim(low, high)
-    return _save(figure, folder / "figure-07.png")
+    return figure
 
 
-def _figure_8(record: Record, folder: Path) -> Path | None:
+def _figure_8(record: Record) -> Figure | None:
     if not record.fits:
         return None
-    figure, axes = _panels(2, "Fig. 8: friction characteristics about the RA axis")
+    figure, axes = _panels("Fig. 8: friction characteristics about the RA axis")
     for axis, preload, letter in zip(axes, ("high", "low"), "ab", strict=True):
         if preload not in record.fits:
             axis.set_visible(False)
@@ -112,13 +102,13 @@ def _figure_8(record: Record, folder: Path) -> Path | None:
         axis.set(title=f"({letter}) {preload} bearing preload", xlabel="velocity, ″/s", ylabel="torque, N m")
         axis.set_ylim(bottom=0.0)
         axis.legend(loc="lower left", fontsize=7)
-    return _save(figure, folder / "figure-08.png")
+    return figure
 
 
-def _figure_9(record: Record, folder: Path) -> Path | None:
+def _figure_9(record: Record) -> Figure | None:
     if record.run_down is None:
         return None
-    figure, axes = _panels(2, "Fig. 9: run-down test, low preload")
+    figure, axes = _panels("Fig. 9: run-down test, low preload")
     fit, (log, down) = record.fits["low"], record.run_down
     points = record.points["low"]
     rate = np.linspace(0.5 * ARCSEC, max(p.rate for p in points), 400)
@@ -134,11 +124,11 @@ def _figure_9(record: Record, folder: Path) -> Path | None:
                  label=f"J = {down.inertia / 1e3:.3f}e6 N mm s²")  # fmt: skip
     axes[1].set(title="(b) deceleration", xlabel="time, s", ylabel="velocity, °/s")
     axes[1].legend(fontsize=8)
-    return _save(figure, folder / "figure-09.png")
+    return figure
 
 
-def _figure_11(record: Record, folder: Path) -> Path:
-    figure, axes = _panels(2, "Fig. 11: rest to 600″/s")
+def _figure_11(record: Record) -> Figure:
+    figure, axes = _panels("Fig. 11: rest to 600″/s")
     t, rate, effort = record.linear
     log = record.step
     span = 1.5
@@ -155,30 +145,33 @@ def _figure_11(record: Record, folder: Path) -> Path:
     axes[1].set(xlim=(0, span), title="control effort", xlabel="time, s", ylabel="% of 24 V")
     for axis in axes:
         axis.legend(fontsize=8)
-    return _save(figure, folder / "figure-11.png")
+    return figure
 
 
-def _figure_12(record: Record, folder: Path) -> Path | None:
+def _figure_12(record: Record) -> Figure | None:
     chosen = [(run.setpoint, run.closed) for run in record.high if run.setpoint in (600.0, 1000.0)]
     chosen += [(speed, log) for speed, log in record.slew if speed in (3600.0, 10800.0)]
     if not chosen:
         return None
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 2, figsize=(10.0, 7.5), layout="constrained")
-    figure.suptitle("Fig. 12: closed loop at high speeds, low preload")
-    for axis, (speed, log) in zip(axes.flat, chosen, strict=False):
+    figure, axes = _panels("Fig. 12: closed loop at high speeds, low preload", rows=2)
+    for axis, (speed, log) in zip(axes, chosen, strict=False):
         name = f"{speed / 3600:g}°/s" if speed >= 3600 else f"{speed:g}″/s"
         _velocity(axis, log, speed, name, 6.0)
         axis.set_ylim(0.85 * speed, 1.1 * speed)
-    return _save(figure, folder / "figure-12.png")
+    return figure
 
 
-def _figure_13(record: Record, folder: Path) -> Path | None:
+def _figure_13(record: Record) -> Figure | None:
     if not record.tracking:
         return None
-    figure, axes = _panels(2, "Fig. 13: tracking, 15″/s")
+    figure, axes = _panels("Fig. 13: tracking, 15″/s")
     for axis, preload, letter in zip(axes, ("high", "low"), "ab", strict=True):
         if preload in record.tracking:
             _velocity(axis, record.tracking[preload], TRACKING, f"({letter}) {preload} bearing preload", 20.0)
-    return _save(figure, folder / "figure-13.png")
+    return figure
+
+
+_MAKERS: dict[str, Callable[[Record], Figure | None]] = {
+    "06": _figure_6, "07": _figure_7, "08": _figure_8, "09": _figure_9, "11": _figure_11, "12": _figure_12,
+    "13": _figure_13,
+}  # fmt: skip

@@ -85,7 +85,7 @@ class Row:
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as the JSON file has it."""
-        said, first = self.experiment, self.decisive
+        said, first = self.experiment.said, self.decisive
         return {
             "id": self.id,
             "published": said.figure,
@@ -107,7 +107,7 @@ class Row:
                     "missed_at": self.misses(limit),
                     "met": self.holds(limit),
                 }
-                for limit in said.limits
+                for limit in self.experiment.limits
             ],
             "starts": [
                 {"angle_deg": start.angle_deg, "seed": start.seed}

@@ -27,8 +27,8 @@ def show(rows: Sequence[Row], console: Console) -> None:
         mark = "[green]met[/]" if row.passed else "[red]miss[/]"
         limit = row.decisive
         middle, far = figure(row, row.median(limit.figure)), figure(row, row.worst(limit))
-        title = row.experiment.title
-        table.add_row(row.id, title, row.experiment.figure, limit.words, middle, far, mark)
+        said = row.experiment.said
+        table.add_row(row.id, said.title, said.figure, limit.words, middle, far, mark)
     console.print(table)
     for row in rows:
         console.print(f"  [bold]{row.id}[/] {row.reason}", highlight=False)
@@ -48,7 +48,7 @@ to, and why not all can be met.
 
 
 def _line(row: Row) -> str:
-    said, limit = row.experiment, row.decisive
+    said, limit = row.experiment.said, row.decisive
     verdict = "met" if row.passed else "**miss**"
     middle, far = (figure(row, value) for value in (row.median(limit.figure), row.worst(limit)))
     decides = f"{limit.words} ({limit.bounds})"

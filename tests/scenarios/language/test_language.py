@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
 from scenarios.language.model import Scenario
-from scenarios.language.units import LIMITS, UNITS, UnitError, units_of
+from scenarios.language.units import QUANTITIES, UNITS, UnitError, units_of
 from scenarios.language.units import parse as parse_value
 from scenarios.language.validate import SCHEMA_FILE, schema
 
@@ -139,7 +139,7 @@ def test_the_published_schema_is_a_schema_and_ours_comply() -> None:
 @given(st.floats(-1e6, 1e6), st.sampled_from(sorted(UNITS)))
 def test_values_scale_with_their_unit(number: float, word: str) -> None:
     unit = UNITS[word]
-    assume(abs(number * unit.factor) <= LIMITS[unit.quantity])
+    assume(abs(number * unit.factor) <= QUANTITIES[unit.quantity].limit)
     assert parse_value(f"{number!r} {word}", unit.quantity) == pytest.approx(number * unit.factor)
 
 

@@ -46,9 +46,10 @@ def page() -> str:
     parts = [INTRODUCTION, FINDING.read_text(encoding="utf-8"), "## Row by row\n\n"]
     for row in EXPERIMENTS:
         limits = "\n".join(map(_limit, row.limits))
+        said = row.said
         parts.append(
-            f"### {row.id}: {row.title} ({row.where})\n\n> {row.quote}\n\nPublished: {row.figure}.\n\n"
-            f"{row.bound}\n\n| figure | limit |\n|---|---|\n{limits}\n\n"
+            f"### {row.id}: {said.title} ({said.where})\n\n> {said.quote}\n\nPublished: {said.figure}.\n\n"
+            f"{said.bound}\n\n| figure | limit |\n|---|---|\n{limits}\n\n"
         )
     rows = "\n".join(
         f"| {key} | {TABLE_2['low'][key]:g} | {TABLE_2['high'][key]:g} | ±{TABLE_2_TOLERANCE[key]:g} % |"

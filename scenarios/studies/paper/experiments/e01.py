@@ -23,12 +23,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E1", title="15″/s, low preload", where="Fig. 13(b)", figure="≤ 25 % peak",
-    quote="The performance improved when the bearing preload was carefully reduced ... and the peak error "
-    "comes down to 25%.",
-    bound="Low preload, 15″/s, 240 s (a motor turn) after 25 s of start-up. The figure is the largest "
-    "|velocity − set point| of the logged 5 ms counts. One count is 15.3 %, so a figure below the "
-    "lower limit would not be this encoder.",
+    id="E1",
     limits=(
         Limit(figure="peak", unit="%", low=10.0, high=25.0, words="peak of 5 ms counts", scale=8.0),
     ),

@@ -29,14 +29,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E2", title="15″/s, high preload", where="Fig. 13(a)", figure="very high, limit cycles",
-    quote="During excessive preload, the peak errors introduced by the jitters at tracking speeds under PI "
-    "control are very high. / Near the tracking speeds, the limit cycles exhibited by nonlinear friction "
-    "dynamics become more prominent and results in a jittery motion.",
-    bound="High preload, same controller, 60 s after 25 s. A cycle is a stick phase, 0.1 s within half a "
-    "count of zero, followed by an error above 100 %. A jitter that outruns the Stribeck velocity of "
-    "Table 2 has left the friction that makes it, so the peak has an upper limit. The same measure "
-    "finds no cycle at low preload, and none with viscous friction only.",
+    id="E2",
     limits=(
         Limit(figure="peak", unit="%", low=100.0, high=1000.0, words="peak of 5 ms counts", scale=300.0),
         Limit(figure="high", unit="1", low=3.0, high=EVER, words="stick-slip cycles", scale=2.0),

@@ -31,12 +31,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E3", title="closed loop, 600–1000″/s", where="Figs. 6(b), 12", figure="2–7 % peak",
-    quote="At higher speeds of 600 to 1000 arc sec/s, the peak errors are within the 2% to 7% range. / the "
-    "feedback control improves the performance and limits the peak error close to 7%.",
-    bound="Low preload, closed loop at five speeds, 12 s after 4 s. The feedback also improves: the rms of "
-    "the true rate about its trend is not above that of the open loop at the same speed. The open "
-    "loop runs for 12 s at the mean effort that the loop had needed.",
+    id="E3",
     limits=(
         *(
             Limit(figure=f"peak {v:g}", unit="%", low=1.5, high=7.0, words=f"peak at {v:g}″/s", scale=1.0)

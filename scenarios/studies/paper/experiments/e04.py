@@ -15,9 +15,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E4", title="closed loop, 1–3°/s", where="Fig. 12", figure="< 1 % peak",
-    quote="the peak errors are within 1% at slow speeds in the range of 1 to 3 deg/s.",
-    bound="Low preload, closed loop at three speeds, 6 s after 7 s.",
+    id="E4",
     limits=tuple(
         Limit(
             figure=f"peak {v / 3600:g}", unit="%", low=0.0, high=1.0, words=f"peak at {v / 3600:g}°/s",

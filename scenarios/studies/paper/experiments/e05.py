@@ -37,12 +37,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E5", title="open loop, 600–1000″/s", where="Fig. 6(a)", figure="up to 15 % peak",
-    quote="Without a feedback controller, the peak error reaches up to 15% and also limit cycles are more "
-    "prominent whereas the feedback control improves the performance and limits the peak error close to 7%.",
-    bound="Low preload. The loop is opened at the mean effort that it had needed. The figure is the "
-    "velocity of the 5 ms counts above 0.05 Hz over 60 s. Its peak is also above that of the closed "
-    "loop before.",
+    id="E5",
     limits=(
         *(
             Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=15.0, words=f"peak at {v:g}″/s", scale=2.0)

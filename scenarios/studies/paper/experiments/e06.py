@@ -47,15 +47,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E6", title="100″/s, open against closed", where="Fig. 7", figure="≈ 0.05 Hz",
-    quote="in absence of a feedback control, the errors are quite high and some low frequency oscillations "
-    "close to 0.05 Hz are riding on the velocity response whereas the feedback control filters out the low "
-    "frequency errors and also reduces the error band. / in the open loop ... it is not possible to reach "
-    "speeds below 100 arc sec/s.",
-    bound="Low preload, open loop, effort lowered in the smallest steps from 140″/s until the axis stays "
-    "put. The line is the strongest between 0.01 and 0.2 Hz of the run nearest to 100″/s. The closed "
-    "loop at 100″/s filters that line out and has the smaller peak error. One PWM step above, the "
-    "axis runs too, and its strongest line is the same order of the motor.",
+    id="E6",
     limits=(
         Limit(figure="lowest", unit="″/s", low=80.0, high=115.0, words="lowest open-loop speed", scale=15.0),
         Limit(figure="nearest", unit="″/s", low=0.0, high=15.0, words="off 100″/s", scale=10.0),

@@ -34,16 +34,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E7", title="torque–velocity map", where="Fig. 8, Table 2", figure="Table 2",
-    quote="The telescope friction parameters are determined at both actual and reduced preload conditions "
-    "by fitting the LuGre friction characteristics in the torque velocity map ... running the telescope at "
-    "different steady state velocities and measuring the corresponding motor armature current.",
-    bound="Both preloads, from logged velocity and ADC counts with sensor noise (1 count and 1 % rms). The "
-    "torque constant is up to 5 % off its data sheet. Four parameters and the exponent are fitted, δ "
-    "free within 0.5–2. Steady states are measured in closed loop, and with the loop opened where it "
-    "leaps. Efforts there and back are lowered in turn by one PWM step. There and back cover the same "
-    "stretch, in whole half turns of the motor, with currents within the converter's range. The "
-    "Stribeck region lies between vs/4 and 3 vs.",
+    id="E7",
     limits=(
         *(
             Limit(

@@ -35,16 +35,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E8", title="run-down, J", where="Fig. 9", figure="1.76e6 N mm s²",
-    quote="after reaching a steady state speed, the input torque is set to zero ... As the applied voltage "
-    "and electrical model of the motor are known, copper losses in the armature can be calculated. From the "
-    "deceleration curve and friction characteristics, the moment of inertia was determined to be J = 1.76 × "
-    "10⁶ N-mm sec².",
-    bound="Low preload, from 2°/s and 2400″/s both ways, with the friction of a map like E7's. A bridge "
-    "with diodes stops the axis in some 50 ms while its trains swing. So J, the trains' damping and "
-    "the moment of the command are fitted to the logged counts. Load and rotors swing on Table 1's "
-    "trains, with currents from the electrical model. The same holds for plants with less and with "
-    "more inertia.",
+    id="E8",
     limits=(
         Limit(figure="off 1", unit="%", low=-5.0, high=5.0, words="J of the plant", scale=5.0),
         Limit(figure="off 0.8", unit="%", low=-5.0, high=5.0, words="J of the plant with 0.8 J", scale=5.0),

@@ -30,10 +30,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E9", title="linear model at 600″/s", where="Figs. 10, 11", figure="similar responses",
-    quote="Since the friction is mostly linear at these speeds and the approximated linear model is valid, "
-    "the response of the actual telescope and simulated model are similar.",
-    bound="Low preload, rest to 600″/s, 3 s: emulator minus equation (6) with the same PI.",
+    id="E9",
     limits=(
         Limit(figure="difference", unit="%", low=0.0, high=5.0, words="rms of the difference", scale=1.5),
         Limit(figure="effort", unit="%", low=-20.0, high=20.0, words="settled effort off", scale=8.0),

@@ -29,18 +29,12 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E10", title="tuning rules", where="ref. 15", figure="O'Dwyer's handbook",
-    quote="The overall system can be represented using a second order system plus dead time model and "
-    "standard tuning rules of PI control can be applied.",
-    bound="Low preload: gain, lag and dead time are identified from open-loop steps about 600″/s. Seven "
-    "published rules give Kp and Ki for that model. A figure is the larger factor of the two against "
-    "the plant file's. Rules with a free time constant are used at their author's advice.",
+    id="E10",
     limits=(
         Limit(figure="nearest", unit="1", low=1.0, high=1.5, words="factor to the nearest rule", scale=0.4),
         Limit(figure="second", unit="1", low=1.0, high=2.0, words="factor to the second", scale=0.6),
     ),
-    measure=measure,
-    beside=(
+    measure=measure, beside=(
         ("gain", "counts/step"), ("lag", "ms"), ("dead time", "ms"), *((name, "factor") for name in RULES),
     ),
 )  # fmt: skip

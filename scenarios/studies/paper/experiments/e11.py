@@ -27,13 +27,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E11", title="low gains", where="section 4", figure="stick slip",
-    quote="our simulation results showed oscillations due to stiction which may be reduced by reducing the "
-    "PI gains. But at low gains, the actual system exhibits stick slip motion hence we preferred keeping "
-    "the gains high.",
-    bound="Low preload, 15″/s, 120 s after 40 s, both gains at a half, a quarter and a tenth. A cycle is a "
-    "stick phase followed by more than 1.5 set points. Cycles that the same axis shows without "
-    "Coulomb friction are taken off.",
+    id="E11",
     limits=(
         Limit(figure="most", unit="1", low=3.0, high=EVER, words="stick-slip cycles with low gains",
             scale=2.0),

@@ -22,11 +22,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E12", title="viscous branch", where="section 4", figure="linear viscous regime",
-    quote="At higher speeds of 600 to 1000 arc sec/s, the peak errors are within the 2% to 7% range as the "
-    "the telescope operates in the linear viscous friction regime.",
-    bound="Low preload, torque from currents at 600, 700, 800, 900 and 1000″/s, both ways. It rises from "
-    "end to end. The slope is that of a straight line, against Table 2's σ2.",
+    id="E12",
     limits=(
         Limit(figure="slope", unit="1", low=0.5, high=1.5, words="slope over σ2", scale=0.2),
         Limit(figure="rise", unit="%", low=0.0, high=EVER, words="rise of the torque", scale=2.0),

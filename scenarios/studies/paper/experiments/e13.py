@@ -31,11 +31,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E13", title="rms at all velocities", where="abstract", figure="negligible",
-    quote="This controller is able to maintain negligible rms errors at all velocities.",
-    bound="Low preload, closed loop at ten speeds from 15″/s to 3°/s. The figure is the rms error of one- "
-    "second means of the true rate. Allowed is the objective, 1″/s, or 1 % of the set point, "
-    "whichever is more.",
+    id="E13",
     limits=(
         Limit(figure="worst", unit="1", low=0.0, high=1.0, words="largest rms over what is allowed",
             scale=0.4),

@@ -23,12 +23,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E14", title="stall current", where="section 3.2", figure="6 A at 24 V",
-    quote="The motors operate at 24 V DC and are capable of continuously providing stalling current of 6 A.",
-    bound="High preload, effort rising until the axis breaks away. The figure is the current of the leading "
-    "motor per duty while it stands, carried on to full duty. ASSUMPTION: 10 %, as the tolerance of a "
-    "winding is not printed. Read as a thermal rating, the sentence bounds what a stalled motor may "
-    "draw: the current at break-away.",
+    id="E14",
     limits=(
         Limit(figure="stall", unit="A", low=0.9 * RATED_A, high=1.1 * RATED_A,
             words="stalled current at full duty", scale=3.0),

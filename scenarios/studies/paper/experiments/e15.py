@@ -18,11 +18,7 @@ def measure(benches: Benches) -> Figures:
 
 
 ROW = Experiment(
-    id="E15", title="one controller for both preloads", where="section 4", figure="same controller",
-    quote="the effect of nonlinear friction dynamics can be reduced by reducing the preload on the drive "
-    "bearings and the peak errors at fine speeds using a linear controller can be maintained within 25%.",
-    bound="High preload with the same gains at three speeds, 8 s after 8 s. The limit is the paper's own "
-    "bound for a linear controller. What high preload spoils are fine speeds (E2).",
+    id="E15",
     limits=tuple(
         Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=25.0, words=f"peak at {v:g}″/s", scale=5.0)
         for v in SPEEDS

@@ -3,11 +3,17 @@ to."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
 
 from scenarios.studies.paper.starts import Benches
 
 Figures = dict[str, float]
 EVER = 1e9
+ROWS = Path(__file__).with_name("rows.yaml")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,18 +52,33 @@ class Limit:
         return f"≥ {self.low:g}" if self.high >= EVER else f"{self.low:g}–{self.high:g}"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Experiment:
-    """One row. figure: published, in words; quote: the paper's text (Opt. Eng. 52(8) 081607); bound: how it
-    is measured and why held to these limits; beside: figures that are printed and decide nothing, with
-    unit."""
+class Said(NamedTuple):
+    """title; where: in the paper; figure: published, in words; quote: its text (Opt. Eng. 52(8) 081607);
+    bound: how it is measured and why held to these limits."""
 
-    id: str
     title: str
     where: str
     figure: str
     quote: str
     bound: str
+
+
+@cache
+def _rows() -> dict[str, dict[str, str]]:
+    found: dict[str, dict[str, str]] = yaml.safe_load(ROWS.read_text(encoding="utf-8"))
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Experiment:
+    """One row. beside: figures that are printed and decide nothing, with unit."""
+
+    id: str
     limits: tuple[Limit, ...]
     measure: Callable[[Benches], Figures]
     beside: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def said(self) -> Said:
+        """Its words, from rows.yaml."""
+        return Said(**_rows()[self.id])
