@@ -5,3 +5,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+# standard deviations, of a normal value's median size. By definition
+MEDIAN = 1.4826
+
+
+def by_median(x: Array) -> float:
+    """Standard deviation of normal values x (n,) about zero, by the median of their sizes; without NaN."""
+    return MEDIAN * float(np.nanmedian(np.abs(x)))

@@ -1,6 +1,7 @@
 """`schmidt calibrate`: logs in, report.json, report.html and plant.yaml out."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,7 @@ from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run
 from calibration.look.axis import look_at_axis
 from calibration.look.drift import look_at_drift
-from calibration.look.looked import Looked
-from calibration.look.options import Options
+from calibration.look.looked import Looked, Options
 from calibration.look.response import look_at_response
 from calibration.replay.corrected import correct_and_replay
 from calibration.report.htmlpage import page
@@ -36,13 +36,14 @@ def calibrate(
     plant: Path | None = None,
     plots: bool = True,
     replay: bool = True,
+    told: Callable[[str], None] | None = None,
 ) -> int:
     """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
 
     Returns 0 whenever there is an answer, "nothing" and UNKNOWN included. Raises CalibrationInputError (a
     ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
-    file; `plots=False` leaves the pictures out of the report. `replay=False` leaves out the closed loop
-    run again on an axis log's held-out rows.
+    file; `plots=False` leaves the pictures out of the report. `replay=False` leaves out the replayed closed
+    loop on an axis log's held-out rows. `told` hears each step as it begins.
     """
     if not logs:
         raise CalibrationInputError("calibrate", "give at least one log")
@@ -57,6 +58,8 @@ def calibrate(
 
         def tell(text: str) -> None:
             bar.update(task, description=text)
+            if told is not None:
+                told(text)
 
         drive = read_drive(logs, load_rig(rig) if rig is not None else None)
         if plant is not None and not drive.emulated:

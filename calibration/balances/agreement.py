@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
 from calibration.balances.filters import smooth
-from calibration.balances.thresholds import FEWEST_FILES, FEWEST_FOR_A_SCATTER, FEWEST_ROWS, LEAST_SCALE
+from calibration.balances.noise import row_to_row
+from calibration.balances.thresholds import FEWEST_FILES, FEWEST_ROWS, LEAST_SCALE
 from calibration.balances.view import View
 from calibration.statistics.regression import gls
 from calibration.statistics.tails import rms
@@ -82,7 +83,7 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     error = max(error, _scatter(view.file[rows], free, moved, train))
     last = gls(moved, free[:, :2], train, 0, block)
     b, c = rms(before.residual[test]), rms(last.residual[test])
-    floor = _noise(last.residual, test)
+    floor = row_to_row(last.residual, test)
     late = (
         abs(delay) > SURE_Z * error
         and SMALLEST * view.period_s < abs(delay) < LONGEST * view.period_s  # at an end it is none
@@ -100,11 +101,3 @@ def _scatter(files: NDArray[np.int64], x: Array, y: Array, train: Mask) -> float
     fits = [np.linalg.lstsq(x[m], y[m], rcond=None)[0] for m in each if m.sum() > FEWEST_ROWS]
     found = [float(beta[2]) for beta in fits]
     return float(np.std(found, ddof=1) / np.sqrt(len(found))) if len(found) >= FEWEST_FILES else 0.0
-
-
-def _noise(e: Array, rows: Mask) -> float:
-    """rms of what changes from row to row: fourth differences of white noise have 70 times its variance."""
-    x = np.where(rows, e, np.nan)
-    fourth = x[4:] - 4 * x[3:-1] + 6 * x[2:-2] - 4 * x[1:-3] + x[:-4]
-    fourth = fourth[np.isfinite(fourth)]
-    return float(np.sqrt(np.mean(fourth**2) / 70.0)) if len(fourth) > FEWEST_FOR_A_SCATTER else float("nan")

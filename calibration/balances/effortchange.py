@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
-from calibration.arrays import Array, Mask
+from calibration.arrays import Array, Mask, by_median
 from calibration.balances import thresholds as limits
 from calibration.balances.frame import Frame
 from calibration.balances.law import Law, Rate
@@ -134,7 +134,7 @@ def pulses(problem: Problem, e: Array) -> Finding | None:
     """Pulses at a fixed period in the residual e (n,), with -log10 p of gaps that regular; None without."""
     rows = problem.train
     x = np.where(rows, e, 0.0)
-    sigma = 1.4826 * float(np.median(np.abs(x[rows]))) or 1.0
+    sigma = by_median(x[rows]) or 1.0
     limit = 5.0 * sigma
     if (high := np.abs(x[np.abs(x) > limit])).size:  # between its edges a pulse moves the integrator, too
         limit = max(limit, EDGE * float(np.quantile(high, 0.9)))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from calibration.arrays import Array
+from calibration.arrays import Array, Mask
 from calibration.balances.thresholds import UNSEEN_CYCLES
 
 
@@ -59,6 +59,12 @@ def pieces(label: NDArray[np.int64]) -> list[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(label)) + 1
     marks = [0, *edges.tolist(), len(label)]
     return list(itertools.pairwise(marks)) if len(label) else []
+
+
+def since(mark: Mask, before: int = 10**9) -> NDArray[np.int64]:
+    """Rows (n,) since the last that is marked; the one before the first row lies `before` rows back."""
+    rows = np.arange(len(mark))
+    return np.asarray(rows - np.maximum.accumulate(np.where(mark, rows, -before)))
 
 
 def by_piece(full: Array, label: NDArray[np.int64], what: Callable[[Array], Array], least: int = 1) -> Array:

@@ -7,19 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
-from calibration.balances.filters import pieces
+from calibration.balances.filters import pieces, since
 from calibration.balances.thresholds import COLUMN_PRESENT
 from calibration.inputs.declaration import Rig
 from calibration.inputs.rigfile import telescope
+from calibration.inputs.rows import jumps_of_clock
 from calibration.inputs.run import Run
-from calibration.inputs.stampjumps import jumps_of_clock
 from calibration.inputs.train import Train, train_of
 
 SENSORS = ("effort", "position", "velocity", "current_a", "current_b", "motor_a", "motor_b", "aux")
 # "unseen" is 1 where the position is not measured but carried on from the motors; no log has it
 COLUMNS = (*SENSORS, "setpoint", "supply", "temperature", "unseen")
 
-# of the logged time: runs that far apart are not one session
+# times the logged time: runs that far apart are not one session. ASSUMPTION
 FAR_APART = 50
 # share of full effort within one row: a transient that the rigid balance does not hold. ASSUMPTION
 JUMP = 0.02
@@ -87,8 +87,7 @@ class Frame:
         effort, _ = self.filled("effort")
         jump = np.zeros(len(effort), dtype=bool)
         jump[1:] = (np.abs(np.diff(effort)) > JUMP) & (self.run[1:] == self.run[:-1])
-        last = np.maximum.accumulate(np.where(jump, np.arange(len(jump)), -(10**9)))
-        near = np.arange(len(jump)) - last <= round(SETTLE_S / self.period_s)
+        near = since(jump) <= round(SETTLE_S / self.period_s)
         near[:-1] |= jump[1:]
         near[:-2] |= jump[2:]
         return np.asarray(near)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
-from calibration.arrays import Array, Mask
+from calibration.arrays import Array, Mask, by_median
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FOR_A_DRIFT
 from calibration.errors import CalibrationInputError
@@ -94,7 +94,7 @@ def guide_problem(
     bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
     bent = bent[np.isfinite(bent)]
     if len(bent):
-        problem.floor = float(np.median(np.abs(bent - np.median(bent))) * 1.4826 / np.sqrt(6))
+        problem.floor = by_median(bent - np.median(bent)) / float(np.sqrt(6))
     return problem, names
 
 

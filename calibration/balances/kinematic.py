@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from calibration.arrays import Array, Mask
+from calibration.balances.filters import since
 from calibration.balances.frame import Frame
 from calibration.balances.motion import Motion
 from calibration.balances.problem import Problem
@@ -96,11 +97,9 @@ def kinematic_problem(
 
 def standing(spin: Array, run: NDArray[Any], rows: int) -> Mask:
     """Rows before which the motor's encoder has shown no count for more than `rows` rows."""
-    index = np.arange(len(spin))
     moves = np.abs(spin) > 0
     moves[1:] |= run[1:] != run[:-1]
-    last = np.maximum.accumulate(np.where(moves, index, -rows))
-    return np.asarray(index - last > rows)
+    return since(moves, before=rows) > rows
 
 
 def _off_face(y: Array, torque: Array, segment: NDArray[Any], rows: Mask) -> tuple[Array, Mask]:

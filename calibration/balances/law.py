@@ -16,7 +16,7 @@ from scipy.signal import lfilter
 from calibration.arrays import Array
 from calibration.balances.filters import by_piece
 from calibration.balances.problem import Estimate, Problem
-from calibration.balances.thresholds import FEWEST_MOVING
+from calibration.balances.thresholds import FEWEST_MOVING, STRAY
 from calibration.balances.view import View
 from calibration.inputs.declaration import Controller
 from calibration.statistics.regression import block_covariance, solve
@@ -27,8 +27,6 @@ LEAST = 0.003
 CLEARLY = 0.5
 # of the limit: noise is on it. ASSUMPTION
 AT_LIMIT = 0.97
-# share of a row's filter that may lie at the limit. ASSUMPTION
-STRAY = 1e-3
 # of the moving rows, below whose speed gains may be others (development seeds 1055, 1056 and 1062)
 PARTS = (0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.35, 0.5, 0.75)
 # rows of the lags that the reference is seen through: loops answer in three to a thousand. ASSUMPTION

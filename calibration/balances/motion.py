@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter1d
 
 from calibration.arrays import Array, Mask
-from calibration.balances.filters import Filter, boxcar
+from calibration.balances.filters import Filter, boxcar, since
 from calibration.balances.frame import Frame
 from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.thresholds import UNTOUCHED
@@ -82,8 +82,7 @@ def motion_of(frame: Frame, width: int) -> Motion:
     one_run = _shift(frame.run, d) == _shift(frame.run, -d)
     usable = minimum_filter1d(trusted, 2 * d + 1) & one_run
     usable[:d] = usable[len(usable) - d :] = False
-    last = np.maximum.accumulate(np.where(fresh, np.arange(len(theta)), -(10**9)))
-    usable &= np.arange(len(theta)) - last >= START_ROWS  # the bristles and the first step of the effort
+    usable &= since(fresh) >= START_ROWS  # the bristles and the first step of the effort
     return Motion(
         frame=frame,
         width=d,

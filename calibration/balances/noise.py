@@ -8,10 +8,12 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.arrays import Array
+from calibration.arrays import Array, Mask, by_median
 from calibration.balances.frame import Frame
+from calibration.balances.thresholds import FEWEST_FOR_A_SCATTER
 from calibration.inputs.run import quantum
 from calibration.statistics.regression import solve
+from calibration.statistics.tails import rms
 from plant.units import ARCSEC
 
 # rms of a rounding error, of a quantum
@@ -34,10 +36,17 @@ def rough(x: Array, order: int) -> float:
     return float(np.sqrt(np.median(blocks) / gain)) if len(blocks) >= LEAST_BLOCKS else float("nan")
 
 
+def row_to_row(x: Array, rows: Mask) -> float:
+    """rms of white noise in x (n,) on `rows`, from its fourth differences; NaN of too few."""
+    fourth = np.diff(np.where(rows, x, np.nan), 4)
+    fourth = fourth[np.isfinite(fourth)]
+    return rms(fourth) / float(np.sqrt(comb(8, 4))) if len(fourth) > FEWEST_FOR_A_SCATTER else float("nan")
+
+
 def position_noise(x: Array, file: NDArray[np.int64]) -> float:
     """rms of the position's white noise, from its fourth differences, and of its rounding."""
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
-    noise = 1.4826 * float(np.median(np.abs(fourth))) / np.sqrt(comb(8, 4))
+    noise = by_median(fourth) / np.sqrt(comb(8, 4))
     step = quantum(x)
     if step is None:
         steps = np.abs(np.diff(x))

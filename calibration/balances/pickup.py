@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
-from calibration.arrays import Array
+from calibration.arrays import Array, by_median
 from calibration.balances.filters import pieces, smooth
 from calibration.balances.view import View
-from calibration.statistics.orders import around
+from calibration.statistics.orders import around, power_of_two
 
 # cycles per standard deviation of the filter, which passes half of such a line: arithmetic
 QUICK = 0.19
@@ -44,7 +44,7 @@ def pick_up(view: View) -> tuple[float, float] | None:
     spans = [(a, b) for a, b in pieces(view.file) if b - a >= FEWEST]
     if not spans:
         return None
-    size = 1 << int(np.ceil(np.log2(max(b - a for a, b in spans))))
+    size = power_of_two(max(b - a for a, b in spans))
     power = np.zeros(size // 2 + 1)
     for a, b in spans:
         power += np.abs(np.fft.rfft(quick[a:b] * np.hanning(b - a), size)) ** 2 / (b - a)
@@ -60,7 +60,7 @@ def pick_up(view: View) -> tuple[float, float] | None:
         return None
     line = _finest(quick, spans, at / size, size)
     whole = _sizes(quick, spans, line, calm)
-    noise = 1.4826 * float(np.median(np.abs(quick[view.ok])))
+    noise = by_median(quick[view.ok])
     if whole / np.sqrt(2.0) < MATTERS * noise or not _at_every_speed(view, quick, spans, line, whole):
         return None
     taken_away = 1.0 - float(view.filter.gain(line))

@@ -9,6 +9,7 @@ from calibration.balances import thresholds as limits
 from calibration.balances.filters import pieces
 from calibration.balances.view import View
 from calibration.statistics.tails import rms
+from calibration.statistics.whitening import autocovariance
 
 # of the autocorrelation of the position, at the lag of a repetition. ASSUMPTION
 ALIKE = 0.93
@@ -36,8 +37,7 @@ def repeat_lag(view: View) -> int:
     n = len(x)
     if n < limits.FEWEST_MOVING or not np.any(x):
         return 0
-    size = 1 << (2 * n - 1).bit_length()
-    r = np.fft.irfft(np.abs(np.fft.rfft(x, size)) ** 2, size)[:n]
+    r = n * autocovariance(x, np.ones(n, dtype=bool), n - 1)
     power = np.concatenate([[0.0], np.cumsum(x**2)])
     lags = np.arange(n)
     both = np.sqrt(np.maximum((power[n - lags]) * (power[n] - power[lags]), 1e-300))

@@ -92,3 +92,5 @@ OFF_PERIOD = 0.05
 AS_QUICK = 0.99
 # turns within a section, by which two periods are apart. ASSUMPTION: a resolution cell is one
 APART_TURNS = 0.4
+# share of a row's filter that may lie on rows of which nothing is known. ASSUMPTION
+STRAY = 1e-3

@@ -13,19 +13,59 @@ from calibration.statistics.tails import middle as middle_of
 from calibration.statistics.tails import rms_interval, variance_log10
 from calibration.statistics.whitening import autocovariance, white_noise
 
-MEAN_S = 1.0  # means over this long: far slower than the sensors' noise, faster than friction's history
-EVEN = 0.17  # that quotient in white noise, see WIND
-WIND = 0.9  # rms of those means over the rms of the sensors' noise per sample; white noise gives 0.17
-PEAK = 400.0  # periodogram peak over its median: in noise, 60 000 rows reach about 16
-LONGEST_S = 20.0  # over which half of the variance is looked for
-# reversals, and the correlation of a second before with the second after: friction has -1, slow wind is
-# positive, and quick wind scatters by 1 / sqrt(reversals) about zero
-FEWEST_TURNS, OVER, LUCK = 3, 0.6, 3.0
+# s, of a mean: far slower than the sensors' noise, faster than friction's history. ASSUMPTION
+MEAN_S = 1.0
+# share of such a mean's rows that must be usable. ASSUMPTION
+WHOLE = 0.9
+# times the sensors' noise per row that the means of white noise have, rms. arithmetic
+EVEN = 0.17
+# times that noise that the means of a wind have, rms: five times EVEN. ASSUMPTION
+WIND = 0.9
+# s over which half of the variance is looked for. ASSUMPTION: longer, it is a slow change
+LONGEST_S = 20.0
+# turns of the motion, fewest, that tell whether a torque turns over with it. ASSUMPTION
+FEWEST_TURNS = 3
+# correlation, part of 1, of a second before a turn with the one after: friction has -1, wind none. ASSUMPTION
+OVER = 0.6
+# deviations of that correlation, which scatters by 1 / sqrt(turns) in a quick wind. ASSUMPTION
+LUCK = 3.0
+# part of 1, that the correlation must reach at most. ASSUMPTION
+SURELY = 0.95
 # cycles of a wind at its correlation time, that its deviation is known by at least. ASSUMPTION
 FEWEST_CYCLES = 4.0
-SLIDING = 1e-4  # rad/s: faster than this the bristles are saturated and their history cannot look like wind
-# amplitude of a line on a current, in converter counts, below which it is a beat of quantised columns
+# rad/s: quicker, the bristles are saturated, and their history cannot look like wind. ASSUMPTION
+SLIDING = 1e-4
+# means of held-out rows, fewest, that must show the same. ASSUMPTION
+FEWEST_HELD = 8
+# times a balance's step that a wind must have, rms. ASSUMPTION: two converters' rounding averages out slowly
+STEPS = 2.0
+# times the variance squared, a kurtosis: a few hundred gusts of Gaussian wind have 3 +- 0.3. arithmetic
+BURSTS = 5.0
+# times the quiet noise that the volts have, rms. ASSUMPTION
+VOLTS = 2.0
+# share: deviation of the power over a turn, of its mean; one sector of sixteen alone has 3.9. ASSUMPTION
+SECTOR = 0.6
+# bins of a motor's turn. ASSUMPTION: narrower than a brush
+BINS = 16
+# rows of a bin, fewest, for its mean. ASSUMPTION
+FEWEST_IN_BIN = 20
+
+# --- a line on the currents
+
+# times the median power: noise of 60 000 rows reaches 16 by arithmetic, a motor's harmonics more. ASSUMPTION
+PEAK = 400.0
+# counts of the converter, amplitude: a smaller line is a beat of quantised columns. ASSUMPTION
 COUNTS = 0.8
+# Hz: slower, it is within the analysis band, or a motor's. ASSUMPTION
+FASTEST_BAND_HZ = 15.0
+# Hz within which the runs' lines are the same one. ASSUMPTION: the bins of a run of seven seconds
+SAME_HZ = 0.15
+# A per row: a current that changes faster is a transient. ASSUMPTION
+CALM_A = 0.1
+# A: a smaller current is cut off at zero. ASSUMPTION: eight counts
+FLOWS_A = 0.05
+# rows of a run, fewest, for a spectrum. ASSUMPTION
+FEWEST_ROWS = 1000
 
 
 def rate_of(torque: Problem) -> Array:
@@ -38,17 +78,9 @@ def slow_ratio(e: Array, problem: Problem, white: float, rows: Mask, fewest: int
     rows = rows & (np.abs(rate_of(problem)) > SLIDING)
     size = max(round(MEAN_S / problem.period_s), 2)
     n = len(e) // size * size
-    ok = rows[:n].reshape(-1, size).mean(axis=1) > 0.9
+    ok = rows[:n].reshape(-1, size).mean(axis=1) > WHOLE
     means = np.where(rows, e, 0.0)[:n].reshape(-1, size).mean(axis=1)[ok]
     return float(np.sqrt(np.mean(means**2)) / max(white, 1e-12)) if len(means) >= fewest else None
-
-
-FEWEST_HELD = 8  # means of held-out rows that must show the same
-STEPS = 2.0  # of problem.step
-BURSTS = 5.0  # kurtosis; a few hundred gusts of Gaussian wind scatter by 0.3 about 3
-VOLTS = 2.0  # rms of the volts left over the quiet noise
-SECTOR = 0.6  # contrast over the motor's turn; one sector of sixteen alone gives 3.9
-BINS = 16  # of a motor's turn
 
 
 def kurtosis(e: Array) -> float:
@@ -78,9 +110,9 @@ def _contrast(power: Array, turns: Array) -> float:
     power = np.minimum(power, 100 * float(np.median(power)))
     place = ((turns % 1.0) * BINS).astype(np.int64)
     count = np.bincount(place, minlength=BINS)
-    if (count > 20).sum() < BINS // 2:
+    if (count > FEWEST_IN_BIN).sum() < BINS // 2:
         return 0.0
-    means = (np.bincount(place, power, BINS) / np.maximum(count, 1))[count > 20]
+    means = (np.bincount(place, power, BINS) / np.maximum(count, 1))[count > FEWEST_IN_BIN]
     return float(np.std(means) / max(float(np.mean(means)), 1e-300))
 
 
@@ -131,7 +163,7 @@ def follows_direction(e: Array, problem: Problem) -> bool:
     if len(pairs) < FEWEST_TURNS:
         return False
     a, b = np.array(pairs).T
-    over = min(max(OVER, LUCK / np.sqrt(len(pairs))), 0.95)
+    over = min(max(OVER, LUCK / np.sqrt(len(pairs))), SURELY)
     return bool(float(a @ b) < -over * np.sqrt(float(a @ a) * float(b @ b)))
 
 
@@ -147,7 +179,7 @@ def pick_up(frame: Frame) -> Finding | None:
         if len(strong) < max(3, len(found) // 2):
             continue
         middle = float(np.median([b[0] for b in strong]))
-        near = [b for b in strong if abs(b[0] - middle) < 0.15]
+        near = [b for b in strong if abs(b[0] - middle) < SAME_HZ]
         if len(near) >= 0.7 * len(strong) and len(near) > len(same):
             same = near
     if not same:
@@ -180,18 +212,18 @@ def _lines(frame: Frame, name: str) -> list[Line]:
     for k in np.unique(frame.run):
         rows = frame.run == k
         part = x[rows] - np.convolve(np.pad(x[rows], 4, mode="edge"), np.ones(9) / 9, "valid")
-        busy = np.abs(np.gradient(x[rows])) < 0.1
-        part = np.where(ok[rows] & busy & (x[rows] > 0.05), part, 0.0)
+        busy = np.abs(np.gradient(x[rows])) < CALM_A
+        part = np.where(ok[rows] & busy & (x[rows] > FLOWS_A), part, 0.0)
         used = int(np.count_nonzero(part))
-        if used < 1000:
+        if used < FEWEST_ROWS:
             continue
         power = np.abs(np.fft.rfft(part)) ** 2
         hertz = np.fft.rfftfreq(len(part), dt)
-        power[hertz < 15.0] = 0.0
+        power[hertz < FASTEST_BAND_HZ] = 0.0
         j = int(np.argmax(power))
-        level = float(np.median(power[hertz > 15.0])) or 1e-30
+        level = float(np.median(power[hertz > FASTEST_BAND_HZ])) or 1e-30
         amplitude = 2 * float(np.sqrt(power[j])) / used
         share = amplitude**2 / 2 / max(float(np.sum(part**2)) / used, 1e-300)
-        bins = int(np.sum(hertz > 15.0))
+        bins = int(np.sum(hertz > FASTEST_BAND_HZ))
         out.append((float(hertz[j]), float(power[j] / level), amplitude, min(share, 1.0), bins))
     return out

@@ -14,9 +14,12 @@ from calibration.decide.thresholds import FEWEST_HELD, REVERSIBLE, ROUNDING, TOO
 from calibration.names import NAMES
 from calibration.names.scene import Scene
 from calibration.statistics.regression import under
+from plant.gears import ROLLER, TRAIN
 
-# of the larger gear on each shaft (hardware.md); a mesh has its pinion's
-TEETH = {"shaft1": 113, "shaft2": 123, "motor": 27, "mesh1": 27, "mesh2": 21, "mesh3": 250, "roller": 30}
+(_MOTOR, _SHAFT1), (_MESH2, _SHAFT2), (_, _BULL) = TRAIN
+#: teeth of the larger gear on each shaft, and of a mesh's pinion, but of the bull gear
+TEETH = {"shaft1": _SHAFT1, "shaft2": _SHAFT2, "motor": _MOTOR, "roller": ROLLER[1]}
+TEETH |= {"mesh1": _MOTOR, "mesh2": _MESH2, "mesh3": _BULL}
 # resolution cells (1 / travel) by which a line's order is made wrong: beyond one they are apart (ASSUMPTION)
 CELLS = 1.5
 # effects of a drive whose order is made wrong: the weaker ones are close to nothing anyway (ASSUMPTION)

@@ -25,8 +25,6 @@ from calibration.statistics.tails import rms
 MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: sound drives stay below 1.4 (seeds 1036 and 1038)
 TELLING = 1.6
-# rows that are not fitted, where the position is resolved. ASSUMPTION: fewer are a few moves
-FEWEST = 60
 # smooth functions at most: of a force one; of two sensors one over the place, one of a flank of teeth
 MOST = {True: 1, False: 2}
 
@@ -60,7 +58,7 @@ def left_over(s: Selection, scene: Scene, floor: float | None) -> Left | None:
     if scene.force and p.resolved is not None:
         rows, noise = p.resolved
         test = p.test & rows
-        if test.sum() >= FEWEST:
+        if test.sum() >= limits.FEWEST_TOLD:
             before, after = (rms(m.left_out(p)[rows[p.test]]) for m in (s.bare, s.model))
             if after > limits.STILL_MISSING * noise:
                 return _where(s, scene, rows, Left(after / noise, part_left(before, after, noise)))

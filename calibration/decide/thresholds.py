@@ -86,6 +86,8 @@ QUICK_SHARE = 0.9
 FITTED_SHARE = 0.7
 # rows to compare two models on, held out. ASSUMPTION: the mean square of fewer scatters by a third
 FEWEST_HELD = 20
+# held-out rows that one figure is told of: a floor, a law's gains. ASSUMPTION: fewer are a few moves
+FEWEST_TOLD = 60
 # rows to cross-validate on, all folds together. ASSUMPTION: twenty to a fold
 FEWEST_VALIDATED = 100
 # folds of the cross-validation, the usual five (Hastie 2009, 7.10)

@@ -22,22 +22,29 @@ from calibration.names.name import TOLERANCE
 from calibration.statistics.regression import Fit
 from plant.effects import REGISTRY
 
-# of a calibrated number, standard error beyond noise, mechanical and electrical: from the opened seeds
-# 20261129 to 20261202, where 0.0025 held 97.4 % (99.4 % electrical)
-MODEL_ERROR, ELECTRICAL_ERROR = 0.0015, 0.0005
-# likewise of the inertia: gear trains and rotors beyond a rigid balance
+# share of a mechanical number, standard error beyond noise (opened seeds 20261129 to 20261202: 0.0025 held
+# 97.4 %). Smaller than an effect's MODEL_ERROR (decide/thresholds.py): an effect is small beside the numbers
+NUMBER_ERROR = 0.0015
+# share of an electrical number, likewise (the same seeds: 0.0025 held 99.4 %)
+ELECTRICAL_ERROR = 0.0005
+# share of the inertia, likewise: gear trains and rotors beyond a rigid balance (the same seeds)
 INERTIA_ERROR = 0.006
-# of a variance by the other columns (1 / (1 - R squared)): beyond, the motion does not hold numbers apart
+# times a variance by the other columns (1 / (1 - R squared)): beyond, the motion does not hold numbers apart.
+# ASSUMPTION. A rig says from 30 on that two terms move together (look/forces.py): there it is only a remark
 INFLATION = 100.0
-# of a logarithm: only keeps the number finite where INFLATION refuses it anyway
+# part of 1 of a logarithm: keeps the number finite where INFLATION refuses it anyway. arithmetic
 LARGEST_CORRECTION = 3.0
 # standard errors from the declared number. ASSUMPTION: errors of coloured residuals are estimates, too
 SURE = 5.0
-# (speed / Stribeck speed)^exponent: where the dip is seen, and where it is over (e^-6)
-SLOW, QUICK = (0.0025, 0.64), 6.25
-# of the rows used, at such speeds, before the log can tell
-SEEN = (0.004, 0.02)
-# of the speeds beyond the dip, before Coulomb and viscous friction come apart
+# part of 1, (speed / Stribeck speed)^exponent, between which the dip is seen. ASSUMPTION
+DIP = (0.0025, 0.64)
+# times, likewise: where the dip is over, e^-6 of it is left. arithmetic
+QUICK = 6.25
+# share of the rows used that must be in the dip. ASSUMPTION
+SEEN_IN_DIP = 0.004
+# share of the rows used that must be beyond it. ASSUMPTION
+SEEN_BEYOND = 0.02
+# times: the quick speeds over the slow ones, before Coulomb and viscous friction come apart. ASSUMPTION
 SPREAD = 3.0
 
 
@@ -79,12 +86,12 @@ def seen_speeds(rate: Array, d: Declared) -> set[str]:
     w = np.abs(rate)
     part = (w / d.stribeck_rate) ** d.stribeck_exponent
     quick = part > QUICK
-    if np.mean(quick) <= SEEN[1]:
+    if np.mean(quick) <= SEEN_BEYOND:
         return {"moved"}
     out = {"moved", "sliding"}
     if np.quantile(w[quick], 0.95) > SPREAD * np.quantile(w[quick], 0.05):
         out.add("spread")
-    if np.mean((part > SLOW[0]) & (part < SLOW[1])) > SEEN[0]:
+    if np.mean((part > DIP[0]) & (part < DIP[1])) > SEEN_IN_DIP:
         out.add("dip")
     return out
 
@@ -119,7 +126,7 @@ def calibrated_numbers(
 
 def _span(name: str, one: Estimate, scale_error: float, blocks: float) -> Parameter:
     """With its 95 % interval, of independent `blocks` of rows."""
-    model = float(np.hypot(INERTIA_ERROR if name == "inertia" else MODEL_ERROR, scale_error)) * one.value
+    model = float(np.hypot(INERTIA_ERROR if name == "inertia" else NUMBER_ERROR, scale_error)) * one.value
     return Parameter(one.value, UNITS[name], *interval(one.value, one.error, int(blocks), model))
 
 

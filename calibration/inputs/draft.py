@@ -10,8 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
-from calibration.inputs.headers import Said, said
-from calibration.inputs.loose import Loose, read_loose
+from calibration.inputs.loose import Loose, Said, read_loose, said
 from calibration.inputs.repair import counter_length
 from calibration.inputs.run import quantum
 from calibration.inputs.thresholds import GAP

@@ -44,7 +44,7 @@ def read_drive(logs: list[Path], rig: Rig | None) -> Drive:
     runs: list[Run] = []
     formats: dict[str, Path] = {}
     for k, path in enumerate(logs):
-        if path.resolve() in [p.resolve() for p in logs[:k]]:
+        if realpath(path) in map(realpath, logs[:k]):  # Path.resolve raises at a loop of links
             raise CalibrationInputError(path, "is given twice: a copy cannot be held out against itself")
         found, more = _read(path, rig)
         formats[found] = path
@@ -93,9 +93,7 @@ def _only(found: dict[str, Path], called: Callable[[str], str], what: str) -> st
 
 def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
     """Format of one file, by what it looks like, and its runs."""
-    if path.exists() and not path.is_file():  # a pipe may never begin, a device never end
-        what = "Is a directory" if path.is_dir() else "no regular file"
-        raise CalibrationInputError(path, f"cannot be read ({what})")
+    check_file(path)
     text = None
     if path.suffix.lower() not in READERS:
         text, bad = load_text(path)

@@ -1,11 +1,15 @@
-"""Every column of a file that no rig file describes, and what a rig file must say of the file."""
+"""Every column of a file that no rig file describes: what it holds, what its name says of channel and unit,
+and what a rig file must say of the file."""
 
+import re
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import yaml
 
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
@@ -14,8 +18,14 @@ from calibration.inputs.guidelog import is_guide_log
 from calibration.inputs.matlab import columns_of, read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
-from calibration.inputs.text import Heading, heading, load_utf8, plain, read_columns, read_long, split
+from calibration.inputs.text import Heading, check_file, heading, load_utf8, plain, read_columns, read_long, split
 
+_UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+_PART = re.compile(r"[^\W\d_]+")
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
+
+# characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
+SHORT = 2
 # rows that are enough to say what a column holds. ASSUMPTION
 LOOKED_AT = 200
 # words that name the signals of a long table. ASSUMPTION
@@ -40,6 +50,7 @@ class Loose:
 
 def read_loose(path: Path) -> Loose:
     """Raises CalibrationInputError for a file that is no table, or that needs no rig file."""
+    check_file(path)
     if path.suffix.lower() == ".mat":
         names = columns_of(path)
         return Loose(dict(read_matlab(path, names)[0].items()) if names else {})
@@ -101,3 +112,37 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
 
 def _is_stamp(word: str) -> bool:
     return plain(word) is None and is_stamp(word)
+
+
+class Said(NamedTuple):
+    """Channel ("" where the name says none), its unit and the factor to it; `asked`: not measured;
+    `angle`: of something that turns."""
+
+    channel: str = ""
+    unit: str = ""
+    scale: float = 1.0
+    asked: bool = False
+    angle: bool = False
+
+
+@cache
+def _table() -> dict[str, dict[str, Any]]:
+    return dict(yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8")))
+
+
+def said(name: str) -> Said:
+    """What a header says: "Position [mm]", "torque_Nm", "goalPos (deg)"."""
+    words, units = _table()["words"], _table()["units"]
+    bracket = _UNIT.search(name)
+    inside = "" if not bracket or bracket[1][:1].isdigit() or bracket[1].startswith(":") else bracket[1]
+    parts = [p.lower() for p in _PART.findall(_HUMP.sub("_", _UNIT.sub("", name)))]
+    ends = [p.lower() for p in _PART.findall(name)]
+    last = ends[-1] if ends and (len(ends) > 1 or len(ends[0]) > SHORT) else ""
+    last = "" if last in words["asked"] else last
+    hint, unit, scale = units.get(inside.lower() or last, ("", inside, 1.0))
+    told = [channel for channel, known in words.items() if set(parts) & set(known)]
+    told = [channel for channel in told if channel not in ("count", "label") or len(parts) == 1]
+    channel = next((c for c in told if c not in ("asked", "angle")), "")
+    alike = {hint, channel} <= {"current", "force", "effort", "normal"}
+    channel = channel if not hint or alike else hint
+    return Said(channel, unit, float(scale), "asked" in told, "angle" in told)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from calibration.arrays import Array, Mask
+from calibration.arrays import Array, Mask, by_median
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.rows import lost_rows, repeated_rows
@@ -134,7 +134,7 @@ def _far_off(x: Array, width: int) -> Mask:
     finite = np.isfinite(off)
     if finite.sum() < limits.FEWEST_SAMPLES:
         return np.zeros(len(x), dtype=bool)
-    noise = max(1.4826 * float(np.nanmedian(off)), float(np.nanquantile(off, 0.95)) / 2)
+    noise = max(by_median(off), float(np.nanquantile(off, 0.95)) / 2)
     found = finite & (off > limits.SPIKE * noise) & (off > 4 * np.maximum(near, calm)) & (noise > 0)
     return np.asarray(found & (off > _clear_of_tails(np.nan_to_num(off))))
 

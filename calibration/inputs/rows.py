@@ -2,6 +2,7 @@
 samples are taken on time: the position says which of the two it was."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
 from calibration.inputs import thresholds as limits
@@ -119,3 +120,21 @@ def _quick(place: Array, x: Array) -> Mask:
     if not whole.any():
         return whole
     return np.asarray(whole & (speed > np.quantile(speed[whole], limits.QUICK_SHARE)))
+
+
+def jumps_of_clock(x: Array, steps: NDArray[np.int64]) -> Mask:
+    """Which of the steps (n - 1,), in periods, between rows at positions x (n,) are the clock's alone: the
+    position went on by one row's motion, and not by theirs.
+
+    The motion is that of limits.BESIDE_A_GAP rows on either side, which go one way; at rest nothing tells.
+    """
+    travel = np.diff(x)
+    out = np.zeros(len(steps), dtype=bool)
+    for at in map(int, np.flatnonzero(steps > 1)):
+        first = max(at - limits.BESIDE_A_GAP, 0)
+        near = np.delete((travel / steps)[first : at + 1 + limits.BESIDE_A_GAP], at - first)
+        near = near[np.isfinite(near)]
+        if len(near) > limits.BESIDE_A_GAP and abs(np.sign(near).sum()) == len(near):
+            usual = float(np.median(near))
+            out[at] = abs(travel[at] - usual) < abs(travel[at] - usual * steps[at])
+    return out

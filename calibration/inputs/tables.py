@@ -2,6 +2,7 @@
 
 import itertools
 from datetime import datetime
+from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.counters import count_wraps, unwrap
-from calibration.inputs.declaration import Rig
-from calibration.inputs.given import of_file, over_time, signed
+from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
@@ -53,6 +53,9 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
             raise CalibrationInputError(path, "holds no number in any row", None, label)
         if np.isinf(values).any():
             what = f"is infinite in data row {int(np.argmax(np.isinf(values))) + 1}"
+            raise CalibrationInputError(path, what, None, label)
+        if (big := np.abs(values) > LARGEST_FIELD).any():
+            what = f"is beyond {LARGEST_FIELD:g} in data row {int(np.argmax(big)) + 1}"
             raise CalibrationInputError(path, what, None, label)
         if where.sign_bit is not None:
             values = signed(path, values, where.sign_bit, label)
@@ -130,3 +133,34 @@ def set_starts(runs: list[Run], rig: Rig) -> str:
         r.start_s = at
         at += r.duration_s + r.period_s + float(rig.wall_time.get("gap_s", 0.0))
     return "the order of the files, end to end"
+
+
+def signed(path: Path, words: Array, bit: int, label: str) -> Array:
+    """Sign-magnitude words (n,) as numbers: `bit`, from 0, is the sign."""
+    if (words < 0).any():
+        raise CalibrationInputError(path, "is signed already: leave sign_bit out", None, label)
+    negative = np.floor(words / 2.0**bit) % 2 == 1
+    return np.where(negative, -1.0, 1.0) * np.where(np.isfinite(words), words % 2.0**bit, np.nan)
+
+
+def of_file(path: Path, where: Column, label: str) -> float:
+    """The number of this file, by its name without the ending; 1 where no file has one."""
+    if not where.files:
+        return 1.0
+    number = next((x for name, x in where.files.items() if fnmatch(path.stem, name)), None)
+    if number is None:
+        raise CalibrationInputError(path, f"'files' has no number for {path.stem}", None, label)
+    return number
+
+
+def over_time(where: Column, t: Array, values: Array) -> Array:
+    """`values` (n,), rig units, times the steps declared, integrated where that is declared; t in s from the
+    file's first row."""
+    if where.steps:
+        starts, sizes = np.array(where.steps).T
+        values = values * np.where(t < starts[0], 0.0, sizes[np.searchsorted(starts[1:], t, side="right")])
+    if where.integrated:
+        good = np.isfinite(values)
+        rate = np.interp(t, t[good], values[good])
+        values = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))])
+    return values

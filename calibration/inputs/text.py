@@ -23,6 +23,13 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", 
 """What a field may hold: Python's `float` also takes 1_0 and digits of other scripts."""
 
 
+def check_file(path: Path) -> None:
+    """Raise CalibrationInputError for what is no regular file: a pipe may never begin, a device never end."""
+    if path.exists() and not path.is_file():
+        what = "Is a directory" if path.is_dir() else "no regular file"
+        raise CalibrationInputError(path, f"cannot be read ({what})")
+
+
 def load_text(path: Path) -> tuple[str, int | None]:
     """The file's text, with or without a byte order mark and with any line ends, and the first line that is
     not UTF-8: names in a guide log may be in the computer's code page, its numbers are ASCII."""

@@ -23,8 +23,15 @@ from calibration.inputs.run import Run
 from calibration.look.axis_channels import analyse
 from calibration.look.axis_result import SENSORS, AxisResult
 from calibration.look.lacks import absent_columns, lacks, not_identifiable
-from calibration.look.looked import Balance, Looked, Spectrum, calibrated, missing_over, unnamed_where_missing
-from calibration.look.options import Options
+from calibration.look.looked import (
+    Balance,
+    Looked,
+    Options,
+    Spectrum,
+    calibrated,
+    missing_over,
+    unnamed_where_missing,
+)
 from calibration.names.name import TOLERANCE
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC

@@ -21,7 +21,7 @@ from calibration.look import applied
 from calibration.look.axis_result import AxisResult
 from calibration.look.controllerlaw import command_channel
 from calibration.look.encoders import encoder_channels, full_rate
-from calibration.look.options import Options
+from calibration.look.looked import Options
 from calibration.look.torque import torque_channel
 from calibration.look.volts import electrical_channel
 from calibration.names import NAMES

@@ -15,7 +15,7 @@ from calibration.balances.thresholds import QUICKEST_LINE, SLOWEST_LINE_HZ
 from calibration.balances.view import View
 from calibration.decide.parameters import findings_of, interval
 from calibration.decide.select import select
-from calibration.decide.thresholds import NOISE_SHARE
+from calibration.decide.thresholds import FEWEST_TOLD, NOISE_SHARE
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
@@ -23,6 +23,7 @@ from calibration.names.candidates import tried
 from calibration.names.command_disturbance import NAME as DISTURBANCE
 from calibration.names.command_disturbance import lines
 from calibration.names.scene import Scene
+from calibration.statistics.orders import power_of_two
 from calibration.statistics.regression import solve
 
 # of a declared gain: less is calibration, as for the axis' declared numbers. ASSUMPTION
@@ -30,8 +31,6 @@ ANOTHER = 0.2
 # of the mean square that the declared gains leave of held-out rows, at least, by which others must be better:
 # where both leave the same, the log does not tell them apart (ASSUMPTION)
 BETTER = 0.1
-# held-out rows, to judge on them. ASSUMPTION
-FEWEST = 60
 # share of a declared gain: less is not reported. ASSUMPTION
 REPORTED = 0.02
 # standard errors likewise. ASSUMPTION
@@ -82,7 +81,7 @@ def _others(c: Command, declared: dict[str, float]) -> tuple[list[str], list[Fin
     """Gains other than declared, where held-out rows have them: in words, beyond ANOTHER as findings, too.
     Offsets are fitted anew for the declared and for the fitted ones."""
     p, said, found = c.problem, [], []
-    test = p.test if p.test.sum() >= FEWEST else p.train
+    test = p.test if p.test.sum() >= FEWEST_TOLD else p.train
     plain = p.y + c.terms @ (c.gains - np.array(list(declared.values())))
     left = [e - p.base @ solve(p.base[p.valid], e[p.valid]) for e in (plain, p.y)]
     was, now = (float(np.mean(e[test] ** 2)) for e in left)
@@ -131,7 +130,7 @@ def _lines_of_steps(p: Problem) -> list[Candidate]:
     """Row-to-row changes of the strongest sines; every run has a phase, its start is known to a second."""
     rows, dt = p.train, p.period_s
     e = p.fit().residual
-    size = 1 << int(np.bincount(p.run - p.run.min()).max() - 1).bit_length()
+    size = power_of_two(int(np.bincount(p.run - p.run.min()).max()))
     hertz = np.fft.rfftfreq(size, dt)
     score = np.zeros(len(hertz))
     for k in np.unique(p.run[rows]):

@@ -15,8 +15,15 @@ from calibration.decide.residual import Place
 from calibration.decide.withdraw import failed_controls, withdraw
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
-from calibration.look.looked import Balance, Looked, Spectrum, calibrated, missing_over, unnamed_where_missing
-from calibration.look.options import Options
+from calibration.look.looked import (
+    Balance,
+    Looked,
+    Options,
+    Spectrum,
+    calibrated,
+    missing_over,
+    unnamed_where_missing,
+)
 from calibration.look.worm import LEAST_TURNS, Mount, findings_of_worms, harmonics, longest_span, worms
 
 # frames to fit. ASSUMPTION

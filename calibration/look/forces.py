@@ -25,8 +25,7 @@ from calibration.inputs.declaration import Response
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, left_by_the_declared, timed
 from calibration.look.gap import crossed_first, where_known
-from calibration.look.looked import Balance, Spectrum, calibrated, missing_of
-from calibration.look.options import Options
+from calibration.look.looked import Balance, Options, Spectrum, calibrated, missing_of
 from calibration.look.search import find, scene_of
 from calibration.names import NAMES
 from calibration.names.scene import Scene

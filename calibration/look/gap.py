@@ -8,14 +8,12 @@ import numpy as np
 from calibration.balances.candidate import Candidate
 from calibration.balances.filters import by_piece
 from calibration.balances.problem import Problem
+from calibration.balances.thresholds import STRAY
 from calibration.balances.view import View
 from calibration.decide.selection import Selection
 from calibration.look.delay import Found
 from calibration.names.play import columns, travel_of
 from calibration.names.scene import Scene
-
-# of a row's filter that may lie where the gap's place is not known. ASSUMPTION
-STRAY = 1e-3
 
 
 def known(p: Problem, view: View, gap: float) -> Problem:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,17 @@ WEAK = 0.5
 # of what is left, over one domain: fewer floors are an effect, too. The same sound logs have 0.29 at most, a
 # drag with the square of the speed 0.49 (development seed 1061)
 MOST = 0.4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Files to hold out, folder to write into, declared plant file, whether to replay, whom to tell."""
+
+    hold_out: list[str] = field(default_factory=list)
+    out: Path = Path(".")
+    plant: Path | None = None
+    replay: bool = True
+    tell: Callable[[str], None] = lambda _: None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,8 +19,7 @@ from calibration.inputs.logs import Drive
 from calibration.inputs.run import Run
 from calibration.look.controllerlaw import look_at_law
 from calibration.look.forces import look_at_forces
-from calibration.look.looked import Balance, Looked, unnamed_where_missing
-from calibration.look.options import Options
+from calibration.look.looked import Balance, Looked, Options, unnamed_where_missing
 from calibration.look.volts import look_at_volts
 from calibration.names.channel_delay import against_position, late_column
 from calibration.names.columns import repairs_found

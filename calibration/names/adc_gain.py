@@ -6,7 +6,7 @@ from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, candidate
 from calibration.names.scene import MOTOR, Scene
 
-# of a gain: one motor's torque is most of the torque, and would explain itself
+# share of a current: one motor's torque is most of the torque, and would explain itself. ASSUMPTION
 LARGEST = 0.5
 
 

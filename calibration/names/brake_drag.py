@@ -7,7 +7,7 @@ from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import FORCE, Beside, Candidate, Finding, Name, Scene
 from calibration.names.onsets import Begins, steps
 
-# s: longer than any log
+# s: longer than any log. ASSUMPTION
 FOREVER_S = 1e6
 
 

@@ -8,7 +8,8 @@ from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, both_ways
 
-TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)  # of a turn, in which the loop closes, as on the telescope's axis
+# of a turn, in which the loop closes: the plant's widths are among them. ASSUMPTION
+TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)
 # of a turn, the narrowest loop. ASSUMPTION
 NARROWEST = 1e-4
 # of a loop whose travel is not known. ASSUMPTION
@@ -59,6 +60,7 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="cable_wrap",
+    observed={"neutral_torque": "at the mean of the position column"},
     channels=(FORCE,),
     columns=columns,
     to_plant=to_plant,

@@ -18,11 +18,14 @@ from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve
 
 PASSED = "bearing_pass"  # at an order of no stage
-TURNS = 6.0  # cycles within a file before a frequency is a frequency
-ODD = (1, 3, 5, 7, 9)  # of a square wave
-# repeats of the motion in a file, below which no frequency lies between two of its multiples; then only those
-# that a repeated motion makes large are left out. ASSUMPTION: friction's corners fall off with the multiple
-FEWEST_REPEATS, STRONG = 2.5, 50
+# cycles within a file before a frequency is a frequency. ASSUMPTION
+TURNS = 6.0
+# harmonics of a square wave. definition
+ODD = (1, 3, 5, 7, 9)
+# times that a file repeats its motion: with fewer no frequency lies between two of its multiples. ASSUMPTION
+FEWEST_REPEATS = 2.5
+# harmonics of such a motion that are left out: friction's corners fall off with the multiple. ASSUMPTION
+STRONG = 50
 # Hz, from which on volts are searched. ASSUMPTION
 SLOWEST_HZ = 0.05
 # rows, half a minute, that volts are searched in. ASSUMPTION
@@ -33,7 +36,8 @@ LINES = 3
 STEP_CELLS = 0.05
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
 PHASES = 17
-FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine
+# files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
+FEW = 4
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
-from calibration.names.lines import line, over_place, stage_lines
+from calibration.names.lines import SAME, line, over_place, stage_lines
 from calibration.names.name import RATES, SENSORS, Beside, Candidate, Finding, Name, Scene, candidate
 
 # of a turn of the position, before a line of its own turn is looked for. ASSUMPTION
 LEAST_TURN = 0.4
-# orders that are one. arithmetic
-SAME = 1e-6
 
 
 def columns(s: Scene) -> list[Candidate]:

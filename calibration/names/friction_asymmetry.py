@@ -4,7 +4,7 @@ import numpy as np
 
 from calibration.names.name import FORCE, Beside, Candidate, Name, Scene, both_ways, candidate
 
-# standard deviation of |direction|: below, nothing stands still
+# part of 1, standard deviation of |direction|: below, nothing stands still. ASSUMPTION
 STANDS = 0.02
 COULOMB, VISCOUS = "coulomb_asymmetry", "viscous_asymmetry"
 

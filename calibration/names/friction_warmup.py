@@ -6,8 +6,10 @@ from calibration.names.inplant import Facts, Made, as_found
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, candidate, tried
 from calibration.names.scene import since_first
 
-PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)  # time constants, of the time from the first row to the last
-LONGEST = 1.0  # of that time, for a time constant: a slower one is a slope
+# part of the time from the first row to the last: time constants that are tried. ASSUMPTION
+PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)
+# times that time, for a time constant: a slower one is a slope. ASSUMPTION
+LONGEST = 1.0
 OF_COULOMB = "of_coulomb"
 
 
@@ -30,7 +32,7 @@ def columns(s: Scene) -> list[Candidate]:
     ]
     t = s.temperature
     if t is not None and s.pair is None:
-        size = ("relative_per_degree", "1/K")
+        size = ("depth", "1/K")
         out.append(candidate(NAME.name, _friction(s, t - t.mean()), size, domain="temperature", sign=-1))
     return out
 
@@ -65,9 +67,10 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="friction_warmup",
+    observed={"of_coulomb": "1 where the response's column shows it in what knows no speed"},
     channels=(FORCE,),
     columns=columns,
-    relative={"depth": ("coulomb", 1), "relative_per_degree": ("coulomb", 1)},
+    relative={"depth": ("coulomb", 1)},
     to_plant=to_plant,
     experiment="repeat the same run after a rest of half an hour: a warm-up comes back",
     beside=Beside(single=True),

@@ -11,7 +11,8 @@ from calibration.names.name import FORCE, Array, Beside, Candidate, Facts, Findi
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
 
-LEAST_TURN = 1 / 12  # of travel: on less, a sine is a slope and an offset
+# of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
+LEAST_TURN = 1 / 12
 
 
 def gravity(s: Scene) -> Array:

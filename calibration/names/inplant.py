@@ -91,7 +91,7 @@ def as_found(f: Finding, facts: Facts) -> Made:
     return made.add(f.name, facts, values, f.stage, f.harmonic or 1)
 
 
-#: how far a motor's angle lies off the axis', in parts of half the play: both motors, A, B
+#: how far a motor's angle lies off the axis', times half the play: both motors, A, B. definition
 SIDES = (0.0, 1.0, -1.0)
 
 #: phase, rad, from the cosine that two encoders differ by to the sine of the absolute one's error, which is

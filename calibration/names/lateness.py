@@ -43,6 +43,8 @@ SLACK = 3.0
 QUICK = 0.2
 # pieces of the log, in each of which the delay must be seen. ASSUMPTION
 PARTS = 5
+# rows that are held out, before they are looked at. ASSUMPTION
+FEWEST_HELD = 20
 # of the delay: standard deviation over those pieces. ASSUMPTION
 ALIKE = 0.35
 
@@ -161,4 +163,4 @@ def _step(s: Scene, y: Array, more: Array) -> tuple[float, float]:
 def _left(s: Scene, y: Array, more: Array) -> float:
     """rms of it on held-out rows."""
     p = s.problem
-    return rms((y - s.fitted(more, y=y)[1])[p.test if p.test.sum() > 20 else p.train])
+    return rms((y - s.fitted(more, y=y)[1])[p.test if p.test.sum() > FEWEST_HELD else p.train])

@@ -13,7 +13,7 @@ from calibration.inputs.declaration import Stage
 from calibration.names.candidates import Size, candidate
 from calibration.names.inplant import SIDES, Facts, Made, motor_of, value
 from calibration.names.scene import MOTOR, Scene
-from calibration.statistics.orders import Wanted, standing_out
+from calibration.statistics.orders import PER_ROW, Wanted, standing_out
 
 # turns of a line needed before its two coefficients mean anything. ASSUMPTION
 ENOUGH = 1.2
@@ -29,8 +29,6 @@ OWN = 0.35
 OFF = 0.05
 # lines of no stage that are tried beside a stage's. ASSUMPTION
 AROUND = 4
-# part of a line's period that most rows move at most: quicker is not seen. ASSUMPTION
-PER_ROW = 0.45
 # share of the fitted rows that must see a line. ASSUMPTION
 SEEN = 0.3
 # cycles, rms, by which the turn and the clock run apart before a log tells a line over one from a line over

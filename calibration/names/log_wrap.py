@@ -19,6 +19,18 @@ OF_SHAPES = ("structural_mode", "damaged_tooth", UNKNOWN)
 RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 # off a whole number of bits, share of one, from where on it is said. ASSUMPTION
 WHOLE_BITS = 1e-6
+# part of a bit, for a column of whole counts: rounding. arithmetic
+EXACT_BITS = 1e-9
+# part of a wrap's size, that a jump may be off it: the motion of a row. ASSUMPTION
+OFF_POWER = 0.05
+# rows from which a motion is told. ASSUMPTION
+FEWEST_STEPS = 10
+# rows of a column, before its folds and ends are looked at. ASSUMPTION
+FEWEST_ROWS = 100
+# counts beyond which a column's scale is told. ASSUMPTION
+CLEAR_COUNTS = 10
+# counts at which the currents' converter ends. definition: 10 bits (log-format.md)
+ADC_END = 1023
 # -log10 p of one jump that is a power of two within a tenth (a fold) or a twentieth either way. arithmetic
 WHOLE = 1.0
 
@@ -30,7 +42,7 @@ def repair_wraps(run: Run) -> Finding | None:
     counts = position / per_count
     step = np.diff(counts)
     good = np.isfinite(step)
-    if good.sum() < 10:
+    if good.sum() < FEWEST_STEPS:
         return None
     usual = float(np.median(np.abs(step[good]))) + 1
     waited = np.diff(run.columns["t"])
@@ -40,7 +52,7 @@ def repair_wraps(run: Run) -> Finding | None:
     if big.any():
         sizes = np.abs(jump[big])
         power = round(float(np.log2(np.median(sizes))))
-        if np.all(np.abs(sizes / 2.0**power - np.round(sizes / 2.0**power)) < 0.05):
+        if np.all(np.abs(sizes / 2.0**power - np.round(sizes / 2.0**power)) < OFF_POWER):
             fix = np.cumsum(np.where(big, np.round(jump / 2.0**power) * 2.0**power, 0.0))
             run.columns["position"] = (counts - np.concatenate([[0.0], fix])) * per_count
             run.notes.append(f"position wraps at 2^{power} counts")
@@ -54,7 +66,7 @@ def _other_wraps(run: Run) -> Finding | None:
     for name in ("velocity", "adc_a", "adc_b", "tach_a", "tach_b"):
         raw, unsigned = run.raw.get(name, np.zeros(0)), name.startswith("adc")
         x = raw[np.isfinite(raw)]
-        if len(x) < 100:
+        if len(x) < FEWEST_ROWS:
             continue
         size, times = _folds(x, 10 if unsigned else 17)
         if size:
@@ -76,7 +88,7 @@ def _unfold(run: Run, name: str, size: int) -> None:
     """Add turns of `size` counts until the column follows the encoder's own rate."""
     column = RENAMED.get(name, name)
     raw, si = run.raw[name], run.columns[column]
-    big = np.abs(raw) > 10
+    big = np.abs(raw) > CLEAR_COUNTS
     scale = float(np.nanmedian(si[big] / raw[big])) if big.any() else 0.0
     if name.startswith("adc"):
         run.columns[column] = np.full(len(si), np.nan)
@@ -104,10 +116,10 @@ def _stops(x: Array, name: str, effort: Array) -> tuple[int, float]:
     if name.startswith("tach"):
         return 0, 0.0  # a count or two at constant speed pile up by themselves
     for end, inward in ((x.max(), -1.0), (x.min(), 1.0)):
-        if end == 0 or (name.startswith("adc") and (end >= 1023 or inward > 0)):
+        if end == 0 or (name.startswith("adc") and (end >= ADC_END or inward > 0)):
             continue  # a motor that pulls one way only has a lowest current
         power = np.log2(abs(end) + (1 if end > 0 else 0))
-        if name == "velocity" and abs(power - round(power)) > 1e-9:
+        if name == "velocity" and abs(power - round(power)) > EXACT_BITS:
             continue  # a constant speed piles up too: only an end of a power of two is a stop
         at = piled_at(x, effort, float(end), float(end + inward))
         if at is not None:
@@ -135,6 +147,10 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 NAME = Name(
     to_plant=to_plant,
     name="log_wrap",
+    observed={
+        "count": "rows of the column",
+        "length": "of the column's counter",
+    },
     experiment="read the counter at its full length",
     repairs=("wrap", "signed", "saturation"),
     beside=Beside(consequences={"S": (*OF_SENSORS, *OF_FORCES, *OF_SHAPES)}),

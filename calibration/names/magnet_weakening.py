@@ -7,10 +7,12 @@ from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, Scene, candidate
 from calibration.names.onsets import Begins, steps
 
-LENGTHS = (0.02, 0.2, 0.5, 1.0)  # of the time, that the fall may take at first
-# likewise, where volts show it: from a shorter one the search ends at a step. ASSUMPTION
+# part of the time, that the fall may take at first. ASSUMPTION, as of every slow change
+LENGTHS = (0.02, 0.2, 0.5, 1.0)
+# part of the time likewise, where volts show it: from a shorter one the search ends at a step. ASSUMPTION
 VOLTS_LENGTHS = (0.05, 0.4)
-STEP = 0.02  # of the time: volts show an onset and a length no better
+# part of the time: volts show an onset and a length no better. ASSUMPTION
+STEP = 0.02
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -56,6 +58,10 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="magnet_weakening",
+    observed={
+        "start": "on the log's clock",
+        "duration": "on the log's clock",
+    },
     channels=(FORCE, VOLTS),
     columns=columns,
     experiment="turn the motor by hand or by another one at a known speed and read the volts of its "

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatch
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.frame import Frame
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate, tried
-from calibration.names.inplant import Facts, Made, as_found, value
+from calibration.names.inplant import IN_RUN, Facts, Made, as_found, value
 from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene
+from plant.effects import REGISTRY
 
 __all__ = ["FORCE", "FULL_RATES", "MOTOR", "OF_CLOCKS", "RATES", "SENSORS", "SPEED", "VOLTS", "Array"]
 __all__ += ["Beside", "Candidate", "Changed", "Facts", "Finding", "Made", "Name", "Scene", "as_found"]
@@ -20,7 +22,7 @@ WORTH = 0.01
 # the same share of one whose frequency or order was looked for among hundreds. ASSUMPTION
 SEARCHED_WORTH = 0.04
 
-# factor either way: clear of 20 % and of the scatter of an estimate
+# times, either way: clear of 20 % (hardware.md 2.3) and of the scatter of an estimate
 TOLERANCE = 1.29
 #: what rows at a wrong time look like: steps and spikes
 OF_CLOCKS = ("roller_slip", "damaged_tooth", UNKNOWN)
@@ -96,9 +98,10 @@ class Name:
     searched: its lines are looked for in what is left by what was found, and again under that. scaled: they
     are no plain sine of an order of their own over the position. waves_of_friction: they are friction's over
     the place. random: its course is another one in every run. worth: share of the final held-out mean square
-    that leaving it out must add. loop: parameters that are the width of a loop after every reversal. changed:
-    the declared numbers that it is a change of, where it is no more. beside: how it stands to
-    others.
+    that leaving it out must add. observed: parameters that no plant file has, and what each is: a property of
+    the log, of one of its columns, or of a drive that a rig file describes; `*` for any end. loop: parameters
+    that are the width of a loop after every reversal. changed: the declared numbers that it is a change of,
+    where it is no more. beside: how it stands to others.
     """
 
     name: str
@@ -119,9 +122,19 @@ class Name:
     waves_of_friction: bool = False
     random: bool = False
     worth: float = WORTH
+    observed: Mapping[str, str] = field(default_factory=dict)
     loop: tuple[str, ...] = ()
     changed: Changed | None = None
     beside: Beside = field(default_factory=Beside)
+
+    def knows(self, parameter: str) -> bool:
+        """Whether a report may print it: the plant's effect has it, the plant file where the name changes a
+        number of it, or `observed` says what it is. A harmonic ends in its number, a time from the start of
+        every run in IN_RUN."""
+        plain = parameter.removesuffix(IN_RUN).rstrip("0123456789").removesuffix("_")
+        plants = {p.name for p in REGISTRY[self.name].parameters}
+        written = set(self.changed.numbers.values()) if self.changed is not None else set()
+        return plain in plants | written or any(fnmatch(parameter, pattern) for pattern in self.observed)
 
     def retold(self, f: Finding, quotients: Mapping[str, float]) -> Finding:
         """`f` of the coefficients as they are now; `quotients` (before over now) by their names."""

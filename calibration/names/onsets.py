@@ -11,13 +11,15 @@ from calibration.balances.candidate import Candidate, ramp
 from calibration.names.candidates import tried
 from calibration.names.scene import Scene
 
-# of the time, at either end: a step there is how a run begins or ends
+# share of the time, at either end: a step there is how a run begins or ends. ASSUMPTION
 EDGE = 0.04
-# onsets that are tried, and between what parts of the time
-TRIALS, PLACES = 24, (0.06, 0.94)
-# of the time before it, from where a slow change may have begun
+# places of an onset that are tried. ASSUMPTION: time against steps missed
+TRIALS = 24
+# part of the time, between which they lie: clear of EDGE. ASSUMPTION
+PLACES = (0.06, 0.94)
+# part of the time before it, from where a slow change may have begun. ASSUMPTION
 BEFORE = 0.4
-# of the time, that a slow change's length moves by at first
+# part of the time, that a slow change's length moves by at first. ASSUMPTION
 LENGTH_STEP = 0.008
 
 

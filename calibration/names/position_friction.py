@@ -79,6 +79,7 @@ def nearest_place(order: float) -> tuple[str, int]:
 
 NAME = Name(
     name="position_friction",
+    observed={"order": "along the position column"},
     scaled=True,
     channels=(FORCE,),
     columns=columns,

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.finding import Parameter
+from calibration.names.magnet_weakening import LENGTHS
 from calibration.names.name import FORCE, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
 from calibration.names.onsets import Begins, steps
 
-# s, of a change that is sudden
+# s, of a change that is sudden: the plant's shortest (docs/reference/effects.md)
 SHORTEST_S = 0.01
-# of the session, that the change takes; a run is too short to tell it from a step
-LENGTHS = (0.02, 0.2, 0.5, 1.0)
 
 
 def columns(s: Scene) -> list[Candidate]:

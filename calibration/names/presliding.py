@@ -8,9 +8,9 @@ from calibration.inputs.declaration import FrictionLaw
 from calibration.names.name import FORCE, Array, Candidate, Changed, Name, Scene, both_ways, tried
 from calibration.names.scene import FEWEST
 
-# of the usual stroke; an element of half a stroke or more never slides, which is a spring
+# part of the usual stroke: an element of half a stroke or more never slides, which is a spring. ASSUMPTION
 RADII = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.14, 0.2, 0.28, 0.36)
-# factor: sigma_0 is not published, only one beyond 1.7 with the scatter of an estimate is a change
+# times: sigma_0 is not published, only one beyond 1.7 with an estimate's scatter is a change. ASSUMPTION
 UNPUBLISHED = 2.2
 # standard error, of the number. ASSUMPTION
 PRECISE = {"sigma_0": 0.2}
@@ -53,6 +53,12 @@ def columns(s: Scene) -> list[Candidate]:
 
 NAME = Name(
     name="presliding",
+    observed={
+        "loop_force": "height of the loop in the response's column",
+        "second_loop_force": "likewise of its second element",
+        "breakaway_travel": "along the position column, until an element slides",
+        "bristle_travel": "of a rig file's friction_law",
+    },
     channels=(FORCE,),
     columns=columns,
     experiment="a sine smaller than break-away",

@@ -16,10 +16,12 @@ KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)
 ABOVE = 0.5
 # of the rows, that may have pulses shorter than a dead band taken for a constant. ASSUMPTION
 SHORTEST = 0.01
-# of a period: a knee is no smaller
+# part of a period: a knee is no smaller. arithmetic
 SMALLEST = 1e-4
-# of the dead band, that a knee may be at, and of a period: switches' resistances bend its corner. ASSUMPTION
-REACH, SHARP = 2.0, 0.005
+# times the dead band, that a knee may be at. ASSUMPTION: switches' resistances bend its corner
+REACH = 2.0
+# part of a period beside that. ASSUMPTION
+SHARP = 0.005
 
 
 def columns(s: Scene) -> list[Candidate]:

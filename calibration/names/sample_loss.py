@@ -14,6 +14,12 @@ MOVING = 4e-8
 QUICK = 4e-7
 # fraction of the rows missing, or repeated, that is worth a word. ASSUMPTION
 LOST = 0.003
+# rows on either side that are looked at for a motion. ASSUMPTION
+AROUND = 30
+# rows of them that move. ASSUMPTION
+MOVING_ROWS = 20
+# rows without motion, from which on they are no chance of a slow motion. ASSUMPTION
+STANDS = 5
 # rows per RS232 packet (log-format.md)
 PACKET = 25
 
@@ -47,7 +53,7 @@ def _repeated(frame: Frame) -> Mask:
     """Rows (n,) of packets that repeat the packet before them, or frozen rows while moving."""
     p, columns = frame.columns["position"], ("position", "velocity", "effort", "current_a")
     moving = np.abs(np.gradient(np.nan_to_num(p))) > MOVING
-    near = np.convolve(moving, np.ones(61), "same") > 20
+    near = np.convolve(moving, np.ones(2 * AROUND + 1), "same") > MOVING_ROWS
     both = (_as_before(frame, PACKET, *columns, "current_b") | _as_before(frame, 1, *columns)) & near
     edges = np.flatnonzero(np.diff(both.astype(int), prepend=0, append=0))
     for start, end in edges.reshape(-1, 2):
@@ -68,11 +74,14 @@ def _goes_on(p: Array, at: int, rows: int) -> bool:
     """Whether the row after `rows` unchanged ones from `at` has moved as if the axis had not come to rest."""
     before, after = p[max(at - 1, 0)], p[min(at + rows, len(p) - 1)]
     usual = np.nanmedian(np.abs(np.diff(p[max(at - 12, 0) : at + 1]))) if at > 1 else 0.0
-    return bool(abs(after - before) > 0.3 * (rows + 1) * usual and usual > (MOVING if rows >= 5 else QUICK))
+    return bool(
+        abs(after - before) > 0.3 * (rows + 1) * usual and usual > (MOVING if rows >= STANDS else QUICK)
+    )
 
 
 NAME = Name(
     name="sample_loss",
+    observed={"count": "rows of the log, or of the column"},
     experiment="record at half the rate, or over a shorter cable: a transport loses fewer rows then",
     stamps=stamps,
     repairs=("spike", "repeat", "lost"),

@@ -23,7 +23,11 @@ FEWEST = 0.005
 VARIES = 0.1
 # of temperature, before a coefficient of it means anything. ASSUMPTION
 LEAST_K = 0.5
-BOTH = 0.05  # of the rows in either direction: fewer say nothing of a difference between the two
+# share of the rows in either direction: fewer say nothing of a difference between the two. ASSUMPTION
+BOTH = 0.05
+
+# part of 1, from where on a direction is one. definition
+HALF = 0.5
 
 #: kinds of balance that a name can be seen in: forces, two sensors, volts; of an axis with two motors also
 #: the roller's rate against the axis', on the analysis grid and at the log's full rate; a speed by itself
@@ -139,7 +143,7 @@ class Scene:
     def both(self) -> bool:
         """True when the drive goes both ways."""
         d = self.view.direction[self.view.ok]
-        return bool(min(np.mean(d > 0.5), np.mean(d < -0.5)) > BOTH) if len(d) else False
+        return bool(min(np.mean(d > HALF), np.mean(d < -HALF)) > BOTH) if len(d) else False
 
     @property
     def temperature(self) -> Array | None:

@@ -5,8 +5,10 @@ import numpy as np
 from calibration.names.name import FORCE, Candidate, Changed, Name, Scene, tried
 from calibration.names.scene import FEWEST
 
-PARTS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)  # Stribeck speeds, of the top speed
-CLEAR = 3.0  # of the speed at which the direction fades: below, a dip is only how friction turns
+# part of the top speed: Stribeck speeds that are tried. ASSUMPTION
+PARTS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
+# times the speed at which the direction fades: below, a dip is only how friction turns. ASSUMPTION
+CLEAR = 3.0
 # standard errors, of the numbers: a dip that is seen badly moves far at no cost. ASSUMPTION
 PRECISE = {"stiction": 0.1, "stribeck_speed": 0.15}
 # share of the held-out mean square that leaving it out must add: less is how friction turns (seed 1011)
@@ -50,6 +52,10 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="stribeck_change",
+    observed={
+        "stribeck_force": "stiction less Coulomb's friction, in the response's column",
+        "stribeck_speed": "of a rig file's friction_law",
+    },
     channels=(FORCE,),
     columns=columns,
     experiment="slow ramps on both sides of the Stribeck speed",

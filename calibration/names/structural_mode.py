@@ -5,23 +5,25 @@ from numpy.typing import NDArray
 
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, tried
+from calibration.names.scene import HALF
 
 # places of a mode's frequency that are tried on any drive. ASSUMPTION
 COUNT = 14
 # ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
 DAMPING = 0.05
-# of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
-LEAST_DAMPED, MOST_DAMPED = 0.001, 0.2
+# part of critical, of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
+LEAST_DAMPED = 0.001
+# part of critical likewise, at most (Altintas 2012)
+MOST_DAMPED = 0.2
 # part of critical: more comes to the bound of the fit on an axis, and is no resonance. ASSUMPTION
 RINGS = 0.145
-# from where on a direction is one. definition
-HALF = 0.5
 # part of the filter's corner: above it nothing remains to be seen. ASSUMPTION
 BELOW = 0.5
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
 FEWEST_PERIODS = 8.0
-# Hz, on a telescope's axis: 4.5 % apart, as wide as a mode of 2 % damping; and its dampings
+# Hz, on a telescope's axis: 4.5 % apart, as wide as a mode of 2 % damping
 AXIS_HZ = np.geomspace(1.8, 14.2, 48)
+# part of critical, tried there: either side of what structures have (Altintas 2012)
 AXIS_DAMPINGS = (0.008, 0.03)
 # part of the rate of the analysed rows, for a frequency: quicker is not seen. ASSUMPTION
 SEEN = 0.4

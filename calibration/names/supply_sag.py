@@ -4,8 +4,10 @@ import numpy as np
 
 from calibration.names.name import FORCE, VOLTS, Array, Candidate, Name, Scene, candidate
 
-LEAST = 0.01  # of the mean supply: standard deviation below which it is steady
-MOST = 3.0  # of the supply's deviation, that an effort may follow it by
+# part of the mean supply: standard deviation below which it is steady. ASSUMPTION
+LEAST = 0.01
+# times the supply's deviation, that an effort may follow it by. ASSUMPTION
+MOST = 3.0
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -41,6 +43,7 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="supply_sag",
+    observed={"share": "part of the supply column's deviation that the effort follows"},
     channels=(FORCE, VOLTS),
     columns=columns,
     experiment="record the supply voltage and divide by it, or feed the drive from a steady supply",

@@ -16,18 +16,32 @@ from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import order_spectrum, peaks
 from calibration.statistics.tails import middle
 
+# knots of a smooth function. ASSUMPTION: names against what only looks smooth
 KNOTS = 8
-SLOW = 4  # knots over time of a scale that moves
-WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the usual stroke, of the widest of several loops
-RADII = (0.002, 0.01, 0.05, 0.2)  # of the usual stroke, of the loops in a flexible fit
-# of an axis with two motors: rad/s from where the logarithm of the speed counts, and splines over it
-SLOW_RATE, SPEED_KNOTS = 5e-5, 9
-# lines at fixed Hz that are tried, and cells (1 / time) between them
-LINES, APART = 3, 3.0
-# of such a line within the log, at least and at most
-FEWEST_CYCLES, MOST_CYCLES = 4, 2e5
-# Hz, and of the rows' rate for the highest of HARMONICS
-SLOWEST_HZ, QUICKEST, HARMONICS = 0.05, 0.45, 5
+# knots over time of a scale that moves. ASSUMPTION
+SLOW = 4
+# part of the usual stroke, of the widest of several loops. ASSUMPTION
+WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)
+# part of the usual stroke, of the loops in a flexible fit. ASSUMPTION
+RADII = (0.002, 0.01, 0.05, 0.2)
+# rad/s, of an axis with two motors, 10 arcsec/s: quicker, the logarithm of the speed counts. ASSUMPTION
+SLOW_RATE = 5e-5
+# knots over that logarithm. ASSUMPTION
+SPEED_KNOTS = 9
+# lines at fixed Hz that are tried. ASSUMPTION
+LINES = 3
+# times 1 / time that lies between them. ASSUMPTION
+APART = 3.0
+# cycles of such a line within the log, at least. ASSUMPTION
+FEWEST_CYCLES = 4
+# cycles likewise, at most, for its memory. ASSUMPTION
+MOST_CYCLES = 2e5
+# Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
+SLOWEST_HZ = 0.05
+# part of the rows' rate, for the highest of HARMONICS. ASSUMPTION: a little below the Nyquist limit
+QUICKEST = 0.45
+# harmonics of such a line. ASSUMPTION
+HARMONICS = 5
 
 
 def spline_columns(x: Array, knots: int) -> Array:
@@ -238,6 +252,35 @@ def clock_jumps(frame: Frame) -> Finding | None:
 
 NAME = Name(
     name=UNKNOWN,
+    observed={
+        "knot_*": "of a spline, in the response's column",
+        "loop*": "height of a loop in the response's column",
+        "travel": "of that loop, along the position column",
+        "square": "of the speed, in the response's column",
+        "cube": "of the speed, in the response's column",
+        "stiffness": "of the response's column over the position's",
+        "scale_*": "of the response's column over the position's",
+        "offset_*": "of the response's column",
+        "amplitude*": "of a line in the column",
+        "phase*": "of that line",
+        "frequency": "of that line, on the log's clock",
+        "rms": "of the column",
+        "size": "of pulses in the column of the effort",
+        "period": "of those pulses, on the log's clock",
+        "following": "share of the other motor's column",
+        "motor": "whose column it is",
+        "jump": "of the log's clock",
+        "bit": "of the position column's word",
+        "step": "of that bit",
+        "gain_*": "of the law that the column of the effort follows",
+        "*_feedforward": "of that law",
+        "*speed_limit": "below which that law has other gains",
+        # of a finding that was taken for a name first
+        "*gap": "along the position column",
+        "*_force": "of the response's column",
+        "*_travel": "along the position column",
+        "deadband": "of the column of the duty",
+    },
     channels=(FORCE, SENSORS, VOLTS),
     columns=columns,
     experiment="repeat the run: what is fixed to angle, to time or to neither tells where to look",

@@ -10,11 +10,10 @@ from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
 from calibration.names.lines import line, over_place
 from calibration.names.scene import Scene
+from calibration.names.unnamed import HARMONICS
 
-# of the share: a lagging motor's current that follows the leading one's has 1
+# share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
 FOLLOWS = 2.0
-# of the motor's turn: brushes and commutator segments. ASSUMPTION
-HARMONICS = 6
 
 
 def of_volts(s: Scene) -> list[Candidate]:

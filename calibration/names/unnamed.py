@@ -9,8 +9,9 @@ from calibration.finding import Finding
 from calibration.names.inplant import SIDES, Facts, Knots, Made, motor_of, value
 from plant.effects.unknown import KNOTS
 
-#: radii in rad of the sum of loops of an axis, in the order of its parameters
+#: rad, radii of the sum of loops of an axis, in the order of its parameters. ASSUMPTION: 1 arcmin to 1 deg
 LOOPS = (3e-4, 1e-3, 3e-3, 8e-3, 0.02)
+# harmonics of the motor's turn: brushes and commutator segments. ASSUMPTION
 HARMONICS = 6
 
 

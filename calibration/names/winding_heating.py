@@ -7,11 +7,11 @@ from calibration.balances.volts import Windings
 from calibration.names.name import VOLTS, Array, Candidate, Facts, Finding, Made, Name, Scene, tried, value
 from plant.effects.winding_heating import COPPER
 
-# s: small motors' windings have 5 to 400 s by their data sheets, the telescope's are heavier
+# s: small motors' windings have 5 to 400 s by their datasheets, the telescope's are heavier
 TAUS_S = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
-# of a time constant, for its refinement
+# part of a time constant, for its refinement. ASSUMPTION
 STEP = 0.05
-# s, between two files that each begin cold
+# s, between two files that each begin cold: many times the longest of TAUS_S. ASSUMPTION
 COOLED_S = 1e5
 
 

@@ -3,7 +3,9 @@
 import numpy as np
 
 from calibration.arrays import Array, Mask
+from calibration.balances.filters import since
 from calibration.balances.frame import Frame
+from calibration.balances.noise import row_to_row
 from calibration.replay import thresholds as limits
 from calibration.replay.trace import Trace
 from plant.units import ARCSEC
@@ -13,17 +15,15 @@ UNITS = {"torque": "N m", "velocity": "arcsec/s", "position": "arcsec"}
 
 def comparable(frame: Frame, rows: Mask) -> Mask:
     """Rows of the run `rows` that are settled: SETTLE_S away from start, gaps and jumps of the command."""
-    t = np.arange(int(rows.sum()))
     there = np.isfinite(frame.clock[rows])
     wanted = frame.columns["setpoint"][rows]
-    jump = np.zeros(len(t), dtype=bool)
+    jump = np.zeros(len(there), dtype=bool)
     jump[0] = True
     jump[1:] |= np.abs(np.diff(np.nan_to_num(wanted))) > limits.SETPOINT_STEP
     jump[1:] |= there[1:] & ~there[:-1]
     if not np.isfinite(wanted).any():
         jump[1:] |= np.abs(np.diff(np.nan_to_num(frame.columns["effort"][rows]))) > limits.EFFORT_STEP
-    last = np.maximum.accumulate(np.where(jump, t, 0))
-    settled = t - last > round(limits.SETTLE_S / frame.period_s)
+    settled = since(jump) > round(limits.SETTLE_S / frame.period_s)
     settled[:-2] &= ~(jump[1:-1] | jump[2:])
     return np.asarray(settled & there)
 
@@ -53,15 +53,6 @@ def residual(channel: str, log: Trace, model: Trace, use: Mask) -> Array:
     return np.asarray(e[use & np.isfinite(e)])
 
 
-def noise(x: Array, use: Mask) -> float:
-    """rms of what changes from row to row, from fourth differences."""
-    d = np.convolve(np.where(use, x, np.nan), limits.DIFFERENCE, "valid")
-    d = d[np.isfinite(d)]
-    if len(d) <= limits.FEWEST_DIFFERENCES:
-        return float("nan")
-    return float(np.sqrt(np.mean(d**2) / np.sum(np.square(limits.DIFFERENCE))))
-
-
 def errors(pairs: list[tuple[Trace, Trace, Mask]]) -> dict[str, tuple[float, float]]:
     """Per channel (units: UNITS) the rms of replay less log over the runs, each (log, replay, rows), and what
     noise and quantisation of both leave."""
@@ -70,7 +61,7 @@ def errors(pairs: list[tuple[Trace, Trace, Mask]]) -> dict[str, tuple[float, flo
         e = np.concatenate([residual(channel, log, model, use) for log, model, use in pairs])
         if len(e) < limits.FEWEST_COMPARED:
             continue
-        both = [(noise(getattr(x, channel), use), int(use.sum())) for a, b, use in pairs for x in (a, b)]
+        both = [(row_to_row(getattr(x, channel), use), int(use.sum())) for a, b, use in pairs for x in (a, b)]
         weight = sum(n for _, n in both) / 2
         floor = float(np.sqrt(sum(s * s * n for s, n in both if np.isfinite(s)) / max(weight, 1)))
         out[channel] = float(np.sqrt(np.mean(e**2))), floor

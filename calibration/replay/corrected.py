@@ -9,8 +9,7 @@ from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.declaredplant import declared_model
 from calibration.inputs.train import MESH, SHAFT
 from calibration.look.axis_result import AxisResult
-from calibration.look.looked import Looked
-from calibration.look.options import Options
+from calibration.look.looked import Looked, Options
 from calibration.names.inplant import Facts
 from calibration.replay.before import before_numbers, with_declared_lines
 from calibration.replay.curves import curve_of

@@ -5,14 +5,16 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.view import View
 from calibration.decide.selection import Selection
+from calibration.decide.thresholds import MODEL_ERROR
 from calibration.finding import Curve
+from calibration.names.unknown import SLOW_RATE
 from calibration.statistics.tails import student_reach
 from plant.evaluate import evaluate_function
 
-POINTS = 24  # knots: three for each of a smooth function's eight splines
-SLOW = 5e-5  # rad/s: knots over speed are as far apart as its logarithm from there on
-STIFF = 1e-6  # of the normal matrix: holds knots in a gap of the data to a straight line
-MODEL_ERROR = 0.01  # of a value, as for every parameter (decide/parameters.py)
+# knots: three for each of a smooth function's eight splines. ASSUMPTION
+POINTS = 24
+# part of the normal matrix: holds knots in a gap of the data to a straight line. ASSUMPTION
+STIFF = 1e-6
 
 
 def places(domain: str, u: Array) -> Array:
@@ -20,9 +22,9 @@ def places(domain: str, u: Array) -> Array:
     low, high = float(u.min()), float(u.max())
     if domain != "velocity":
         return np.linspace(low, high, POINTS)
-    first, last = (float(np.sign(x) * np.log1p(abs(x) / SLOW)) for x in (low, high))
+    first, last = (float(np.sign(x) * np.log1p(abs(x) / SLOW_RATE)) for x in (low, high))
     z = np.linspace(first, last, POINTS)
-    return np.asarray(np.sign(z) * np.expm1(np.abs(z)) * SLOW)
+    return np.asarray(np.sign(z) * np.expm1(np.abs(z)) * SLOW_RATE)
 
 
 def curve_of(s: Selection, index: int, view: View) -> Curve | None:

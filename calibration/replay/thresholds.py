@@ -27,10 +27,6 @@ WORSE = 1.25
 NEAR = 1.2
 # share of the rows that are near a break-away, from which on it is worth a line. ASSUMPTION
 CHAOS_SHARE = 0.02
-# fourth difference of rows: what changes from row to row is noise; by definition
-DIFFERENCE = (1.0, -4.0, 6.0, -4.0, 1.0)
-# rows with a fourth difference, before they tell a noise. ASSUMPTION
-FEWEST_DIFFERENCES = 20
 
 # rounds in which transients are led to the log's angle: what saturates takes a second one. ASSUMPTION
 NUDGES = 2

@@ -20,6 +20,8 @@ HIGHEST = 4000
 PER_ROW = 0.45
 # bins per cycle of the quickest line. ASSUMPTION
 FINE = 8
+# rows, fewest, for a spectrum. ASSUMPTION
+FEWEST_ROWS = 20
 # bins of a spectrum at most, for its memory. ASSUMPTION
 MOST_BINS = 2**21
 # share of 1 / span to either side, that a line is compared with. ASSUMPTION
@@ -37,10 +39,10 @@ def order_spectrum(e: Array, angle: Array, weight: Array, top: float, fine: int 
     Orders run from one cycle per travel to `top`, `fine` per resolution cell.
     """
     span = float(np.ptp(angle))
-    if span <= 0 or len(e) < 20:
+    if span <= 0 or len(e) < FEWEST_ROWS:
         return np.zeros(0), np.zeros(0)
     bins = int(min(max(2.5 * top * span, 64), 2**19))
-    size = _power_of_two(bins * fine)
+    size = power_of_two(bins * fine)
     power = _folded(weight * e, (angle - angle.min()) / span, bins, size)
     orders = np.arange(len(power)) * bins / (span * size)
     noise = float(np.mean(e**2) * np.sum(weight**2)) or 1.0
@@ -81,7 +83,7 @@ def standing_out(e: Array, z: Array, label: NDArray[np.int64], want: Wanted) -> 
     if top <= 2 * want.least:
         return []
     cells = int(min(np.ceil(want.span * top * FINE), MOST_BINS))
-    size, width = _power_of_two(max(2 * cells, 16)), want.span / cells
+    size, width = power_of_two(max(2 * cells, 16)), want.span / cells
     power, energy = np.zeros(size // 2 + 1), float(np.sum(e**2))
     for k in np.unique(label):
         rows = label == k
@@ -106,7 +108,8 @@ def standing_out(e: Array, z: Array, label: NDArray[np.int64], want: Wanted) -> 
     return found
 
 
-def _power_of_two(least: int) -> int:
+def power_of_two(least: int) -> int:
+    """The smallest one that is no less."""
     return 1 << int(np.ceil(np.log2(least)))
 
 

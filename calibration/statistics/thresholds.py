@@ -16,5 +16,3 @@ SMALLEST_TAIL = 1e-250
 SECOND = 6 - 32 / 19
 # standard errors beyond which an estimate is surely not zero. ASSUMPTION: 1 in 3e4 by luck
 SURE_Z = 4.0
-# standard deviations, of a normal value's median size. By definition
-MEDIAN = 1.4826

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_toeplitz
 
-from calibration.arrays import Array, Mask
-from calibration.statistics.thresholds import LOADING, MEDIAN, ROWS_PER_ORDER, SECOND
+from calibration.arrays import Array, Mask, by_median
+from calibration.statistics.orders import power_of_two
+from calibration.statistics.thresholds import LOADING, ROWS_PER_ORDER, SECOND
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def autocovariance(e: Array, valid: Mask, lags: int) -> Array:
     """Autocovariance of a gappy series at lags 0..lags (products of valid pairs only, biased)."""
     x = np.where(valid, e, 0.0)
     n = max(int(valid.sum()), 1)
-    size = 1 << (2 * len(x) - 1).bit_length()
+    size = power_of_two(2 * len(x))
     spectrum = np.abs(np.fft.rfft(x, size)) ** 2
     return np.asarray(np.fft.irfft(spectrum, size)[: lags + 1] / n)
 
@@ -64,5 +65,5 @@ def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:
 def white_noise(e: Array, valid: Mask, bursts: bool = True) -> float:
     """rms of sample-to-sample noise of `e` (n,), means over two boxcars; by medians without `bursts`."""
     second = np.diff(np.where(valid, e, np.nan), 2)
-    size = np.sqrt(np.nanmean(second**2)) if bursts else MEDIAN * np.nanmedian(np.abs(second))
+    size = np.sqrt(np.nanmean(second**2)) if bursts else by_median(second)
     return float(size / np.sqrt(SECOND))

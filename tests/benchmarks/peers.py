@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.rigfile import telescope
 from calibration.look.axis_channels import analyse
-from calibration.look.options import Options
+from calibration.look.looked import Options
 from plant.gears import ORDERS as STAGES
 from tests.benchmarks.drives import TRUE_LINES, Drive
 

@@ -6,7 +6,7 @@ import pytest
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.rigfile import telescope
 from calibration.look.axis_channels import analyse
-from calibration.look.options import Options
+from calibration.look.looked import Options
 from plant.model import default_files, load
 from tests.calibration.logs import write_logs
 

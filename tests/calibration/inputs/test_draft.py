@@ -14,8 +14,8 @@ from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Rig
 from calibration.inputs.draft import draft
-from calibration.inputs.headers import said
 from calibration.inputs.logs import read_drive
+from calibration.inputs.loose import said
 from calibration.inputs.rigfile import load_rig
 from scenarios.cli import cli
 

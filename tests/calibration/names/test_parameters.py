@@ -1,0 +1,82 @@
+"""Every parameter of a report is the plant's, or its name's file says which property of a log it is."""
+
+import ast
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from calibration.finding import UNKNOWN
+from calibration.names import NAMES
+from calibration.names.name import Name
+from plant.effects import REGISTRY
+
+ROOM = Path(__file__).parents[3] / "calibration"
+MAKERS = {"candidate", "tried", "_over", "line"}
+SIZES = {"Parameter", "normal", "deviation", "middle", "middle_of"}
+#: files of no name, and whose findings they make
+MADE = {
+    "decide/broadband.py": (UNKNOWN, "wind_torque"),
+    "decide/delays.py": ("channel_delay",),
+    "decide/reported.py": ("play",),
+    "decide/residual.py": (UNKNOWN,),
+    "balances/effortchange.py": (UNKNOWN,),
+    "look/controllerlaw.py": (UNKNOWN, "command_disturbance"),
+    "names/columns.py": ("log_wrap", "sample_loss", "clock_jitter"),
+    "names/unknown_bits.py": (UNKNOWN,),
+    "names/unknown_volts.py": (UNKNOWN,),
+    "names/lines.py": ("bearing_pass",),
+}
+
+
+def words(node: ast.AST, module: object) -> Iterator[str]:
+    """The text that a label is, or a constant of the module; of a text made of parts none."""
+    found = node.value if isinstance(node, ast.Constant) else None
+    if isinstance(node, ast.Name):
+        found = getattr(module, node.id, None)
+    if isinstance(found, str):
+        yield found
+
+
+def printed(path: Path) -> Iterator[str]:
+    """Parameters that a file's text gives to candidates and findings."""
+    at = ".".join(path.relative_to(ROOM.parent).with_suffix("").parts)
+    module = importlib.import_module(at)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MAKERS:
+            for size in node.args[2 if node.func.id != "_over" else 1 :]:
+                yield from words(size.elts[0] if isinstance(size, ast.Tuple) else size, module)
+        if isinstance(node, ast.keyword) and node.arg in ("at", "fixed", "parameters"):
+            for key in node.value.keys if isinstance(node.value, ast.Dict) else ():
+                yield from words(key, module) if key is not None else ()
+        if isinstance(node, ast.keyword) and node.arg == "size" and isinstance(node.value, ast.Tuple):
+            yield from words(node.value.elts[0], module)
+        if isinstance(node, ast.Dict):
+            for key, made in zip(node.keys, node.values, strict=True):
+                name = getattr(made.func, "id", "") if isinstance(made, ast.Call) else ""
+                yield from words(key, module) if name in SIZES and key is not None else ()
+
+
+def known(n: Name, parameter: str) -> bool:
+    """Whether a report of this name may print it, or no report prints it."""
+    return n.knows(parameter) or parameter in n.nuisances
+
+
+def test_every_parameter_in_the_text_is_known() -> None:
+    strange, count = [], 0
+    for path in sorted(ROOM.rglob("*.py")):
+        at = path.relative_to(ROOM).as_posix()
+        mine = MADE.get(at, (path.stem,) if at.startswith("names/") and path.stem in NAMES else ())
+        for parameter in printed(path) if mine else ():
+            count += 1
+            if not any(known(NAMES[name], parameter) for name in mine):
+                strange.append(f"{at}: {parameter}")
+    assert not strange, strange
+    assert count > 70  # else the text is written otherwise, and nothing was asked
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_observed_is_not_the_plants(name: str) -> None:
+    own = {p.name for p in REGISTRY[name].parameters}
+    assert not own & set(NAMES[name].observed)
