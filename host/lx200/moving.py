@@ -1,5 +1,7 @@
 """The commands that move: slew, stop, keys, pulses, tracking, park, sync, focus."""
 
+from collections.abc import Callable
+
 from bus.protocol import SpeedClass
 from host.lx200.handbox import FREQUENCIES
 from host.lx200.session import Handler, Session
@@ -64,12 +66,6 @@ def _plain(text: str) -> str:
     return text.encode("ascii", "replace").decode("ascii")
 
 
-async def stop(session: Session, _: str) -> str:
-    """`:Q#`: whatever moves over the sky; tracking goes on."""
-    await session.act(lambda t: t.drive.abort())
-    return ""
-
-
 async def precision(session: Session, _: str) -> str:
     """`:U#` toggles between seconds and tenths of a minute."""
     session.precise = session.box.precise = not session.precise
@@ -84,57 +80,38 @@ async def pulse(session: Session, argument: str) -> str:
     return ""
 
 
-async def park(session: Session, _: str) -> str:
-    """`:hP#`."""
-    await session.act(lambda t: t.drive.park())
-    return ""
-
-
-async def wake(session: Session, _: str) -> str:
-    """`:AP#` and `:hW#`: track, after powering up where that is needed."""
-    await session.act(lambda t: t.drive.wake())
-    return ""
-
-
-async def land(session: Session, _: str) -> str:
-    """`:AL#`: stop following the sky."""
-    await session.act(lambda t: t.drive.track(False))
-    return ""
-
-
-async def focus_stop(session: Session, _: str) -> str:
-    """`:FQ#`."""
-    await session.act(lambda t: t.focuser.halt())
-    return ""
-
-
 async def nothing(_session: Session, _: str) -> str:
     """Understood, without an answer and without effect here."""
     return ""
 
 
-def _key(direction: str) -> Handler:
-    async def press(session: Session, _: str) -> str:
-        await session.act(lambda t: t.paddle.press(direction, session.speed, wake=True))
+def _does(act: Callable[[Telescope, Session], object]) -> Handler:
+    async def do(session: Session, _: str) -> str:
+        await session.act(lambda t: act(t, session))
         return ""
 
-    return press
+    return do
+
+
+def _key(direction: str) -> Handler:
+    return _does(lambda t, s: t.paddle.press(direction, s.speed, wake=True))
 
 
 def _release(axis: str) -> Handler:
-    async def release(session: Session, _: str) -> str:
-        await session.act(lambda t: t.paddle.release(axis))
+    return _does(lambda t, _: t.paddle.release(axis))
+
+
+def _focus(outward: bool) -> Handler:
+    return _does(lambda t, s: t.focuser.run(outward, s.focus_slow))
+
+
+def _keeps(**fields: object) -> Handler:
+    async def keep(session: Session, _: str) -> str:
+        for name, value in fields.items():
+            setattr(session, name, value)
         return ""
 
-    return release
-
-
-def _speed(speed: SpeedClass) -> Handler:
-    async def choose(session: Session, _: str) -> str:
-        session.speed = speed
-        return ""
-
-    return choose
+    return keep
 
 
 def _rate(rate: DriveRate) -> Handler:
@@ -146,36 +123,23 @@ def _rate(rate: DriveRate) -> Handler:
     return choose
 
 
-def _focus(outward: bool) -> Handler:
-    async def run(session: Session, _: str) -> str:
-        slow = session.focus_slow
-
-        def start(telescope: Telescope) -> object:
-            return telescope.focuser.run(outward, slow)
-
-        await session.act(start)
-        return ""
-
-    return run
-
-
-def _focus_speed(slow: bool) -> Handler:
-    async def choose(session: Session, _: str) -> str:
-        session.focus_slow = slow
-        return ""
-
-    return choose
-
-
+_STOP = _does(lambda t, _: t.drive.abort())
+"""Whatever moves over the sky; tracking goes on."""
+_PARK = _does(lambda t, _: t.drive.park())
+_WAKE = _does(lambda t, _: t.drive.wake())
+"""Track, after powering up where that is needed."""
+_LAND = _does(lambda t, _: t.drive.track(False))
+"""Stop following the sky."""
+_FOCUS_STOP = _does(lambda t, _: t.focuser.halt())
 MOVING: dict[str, Handler] = {
-    "MS": slew, "MA": slew_ground, "CM": sync, "Q": stop, "U": precision, "hP": park, "hW": wake,
-    "AP": wake, "AL": land, "AA": nothing, "TM": nothing,
+    "MS": slew, "MA": slew_ground, "CM": sync, "Q": _STOP, "U": precision, "hP": _PARK, "hW": _WAKE,
+    "AP": _WAKE, "AL": _LAND, "AA": nothing, "TM": nothing,
     **{f"M{letter}": _key(letter) for letter in "nsew"},
     "Qn": _release("dec"), "Qs": _release("dec"), "Qe": _release("ra"), "Qw": _release("ra"),
-    **{letters: _speed(speed) for letters, speed in _KEYS.items()},
+    **{letters: _keeps(speed=speed) for letters, speed in _KEYS.items()},
     "TQ": _rate(DriveRate.SIDEREAL), "TS": _rate(DriveRate.SOLAR), "TL": _rate(DriveRate.LUNAR),
-    "F+": _focus(outward=False), "F-": _focus(outward=True), "FQ": focus_stop,
-    "FS": _focus_speed(slow=True), "FF": _focus_speed(slow=False),
+    "F+": _focus(outward=False), "F-": _focus(outward=True), "FQ": _FOCUS_STOP,
+    "FS": _keeps(focus_slow=True), "FF": _keeps(focus_slow=False),
 }  # fmt: skip
 """Commands without argument to handlers."""
 TAKING: dict[str, Handler] = {"Mg": pulse, "W": nothing, "L": nothing}

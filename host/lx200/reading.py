@@ -1,6 +1,7 @@
 """The `:G…#` commands and what else only looks: answers come from the last snapshot."""
 
 import importlib.metadata
+from collections.abc import Callable
 
 from host.lx200 import angles
 from host.lx200.session import Handler, Session
@@ -23,16 +24,6 @@ async def declination(session: Session, _: str) -> str:
     return angles.signed(place.declination_rad, session.precise) + "#"
 
 
-async def target_right_ascension(session: Session, _: str) -> str:
-    """`:Gr#`."""
-    return angles.hours(session.target_ra_rad or 0.0, session.precise) + "#"
-
-
-async def target_declination(session: Session, _: str) -> str:
-    """`:Gd#`."""
-    return angles.signed(session.target_dec_rad or 0.0, session.precise) + "#"
-
-
 async def altitude(session: Session, _: str) -> str:
     """`:GA#`, with refraction, as the tube stands."""
     return angles.signed((await _observed(session)).altitude_rad, session.precise, "'") + "#"
@@ -48,78 +39,50 @@ async def _observed(session: Session) -> Observed:
     return session.telescope.observatory.observed(ra, dec)
 
 
-async def sidereal_time(session: Session, _: str) -> str:
-    """`:GS#`, local apparent."""
+def _says(read: Callable[[Session], str]) -> Handler:
+    async def answer(session: Session, _: str) -> str:
+        return read(session) + "#"
+
+    return answer
+
+
+def _sidereal_time(session: Session) -> str:
     about = session.telescope.observatory
-    return angles.hours(sidereal_time_rad(about.site, about.clock, session.now.t_s)) + "#"
-
-
-async def slewing(session: Session, _: str) -> str:
-    """`:D#`: a bar while slewing, parking or moved by hand; nothing but `#` when the target is reached."""
-    return (_SLEWING if session.now.slewing else "") + "#"
-
-
-async def latitude(session: Session, _: str) -> str:
-    """`:Gt#`."""
-    return angles.signed(session.telescope.observatory.site.latitude_rad, precise=False) + "#"
-
-
-async def longitude(session: Session, _: str) -> str:
-    """`:Gg#`, west positive, 0 to 360."""
-    return angles.unsigned(-session.telescope.observatory.site.longitude_rad, precise=False) + "#"
-
-
-async def clock_format(_session: Session, _: str) -> str:
-    """`:Gc#`."""
-    return "24#"
-
-
-async def utc_offset(session: Session, _: str) -> str:
-    """`:GG#`, hours to add to local time for UTC."""
-    return f"{session.box.utc_offset_h:+05.1f}#"
-
-
-async def local_time(session: Session, _: str) -> str:
-    """`:GL#`."""
-    return session.box.local(session.now.t_s).strftime("%H:%M:%S#")
-
-
-async def local_date(session: Session, _: str) -> str:
-    """`:GC#`."""
-    return session.box.local(session.now.t_s).strftime("%m/%d/%y#")
-
-
-async def frequency(session: Session, _: str) -> str:
-    """`:GT#`, Hz."""
-    return f"{session.box.frequency_hz:.1f}#"
-
-
-async def alignment(session: Session, _: str) -> str:
-    """`:GW#`: polar mount, tracking or not, aligned."""
-    return f"P{'T' if session.now.tracking else 'N'}1#"
-
-
-def _site(index: int) -> Handler:
-    async def name(session: Session, _: str) -> str:
-        return session.box.site_names[index] + "#"
-
-    return name
-
-
-def _text(text: str) -> Handler:
-    async def fixed(_session: Session, _: str) -> str:
-        return text + "#"
-
-    return fixed
+    return angles.hours(sidereal_time_rad(about.site, about.clock, session.now.t_s))
 
 
 _VERSION = importlib.metadata.version("schmidt")
+_READ: dict[str, Callable[[Session], str]] = {
+    # the target
+    "Gr": lambda s: angles.hours(s.target_ra_rad or 0.0, s.precise),
+    "Gd": lambda s: angles.signed(s.target_dec_rad or 0.0, s.precise),
+    # a bar while slewing, parking or moved by hand; nothing but `#` when the target is reached
+    "D": lambda s: _SLEWING if s.now.slewing else "",
+    # the site: latitude; longitude, west positive, 0 to 360; names
+    "Gt": lambda s: angles.signed(s.telescope.observatory.site.latitude_rad, precise=False),
+    "Gg": lambda s: angles.unsigned(-s.telescope.observatory.site.longitude_rad, precise=False),
+    "GM": lambda s: s.box.site_names[0],
+    "GN": lambda s: s.box.site_names[1],
+    "GO": lambda s: s.box.site_names[2],
+    "GP": lambda s: s.box.site_names[3],
+    # time: local apparent sidereal; format; hours to add to local time for UTC; local time and date
+    "GS": _sidereal_time,
+    "Gc": lambda _: "24",
+    "GG": lambda s: f"{s.box.utc_offset_h:+05.1f}",
+    "GL": lambda s: s.box.local(s.now.t_s).strftime("%H:%M:%S"),
+    "GC": lambda s: s.box.local(s.now.t_s).strftime("%m/%d/%y"),
+    # frequency, Hz; polar mount, tracking or not, aligned
+    "GT": lambda s: f"{s.box.frequency_hz:.1f}",
+    "GW": lambda s: f"P{'T' if s.now.tracking else 'N'}1",
+    # product, version, its date and time
+    "GVP": lambda _: "schmidt",
+    "GVN": lambda _: _VERSION,
+    "GVD": lambda _: "Nov 22 2026",
+    "GVT": lambda _: "00:00:00",
+    "GVF": lambda _: f"schmidt {_VERSION}",
+}
 READING: dict[str, Handler] = {
-    "GR": right_ascension, "GD": declination, "Gr": target_right_ascension, "Gd": target_declination,
-    "GA": altitude, "GZ": azimuth, "GS": sidereal_time, "D": slewing, "Gt": latitude, "Gg": longitude,
-    "Gc": clock_format, "GG": utc_offset, "GL": local_time, "GC": local_date, "GT": frequency,
-    "GW": alignment, "GM": _site(0), "GN": _site(1), "GO": _site(2), "GP": _site(3),
-    "GVP": _text("schmidt"), "GVN": _text(_VERSION), "GVD": _text("Nov 22 2026"), "GVT": _text("00:00:00"),
-    "GVF": _text(f"schmidt {_VERSION}"),
+    "GR": right_ascension, "GD": declination, "GA": altitude, "GZ": azimuth,
+    **{letters: _says(read) for letters, read in _READ.items()},
 }  # fmt: skip
 """Command letters to handlers."""
