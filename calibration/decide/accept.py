@@ -6,7 +6,7 @@ from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.heldout import HeldOut, Model, compare, cross_validate
 from calibration.decide.refine import never_begins
-from calibration.decide.scan import Contender
+from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.statistics.tails import wald_log10
@@ -16,10 +16,14 @@ SHORT = "the log is too short for it"
 
 def scores(others: Selection, contender: Contender) -> tuple[HeldOut, HeldOut]:
     """Of a contender beside `others`: on training rows it was not fitted to, and on the held-out rows."""
-    p, c, w = others.problem, contender.candidate, contender.fit.whitener
-    x = np.hstack([others.columns, c.columns])
-    beside = Model(x=x, beta=contender.fit.beta, phases=p.phases([*others.candidates, c]))
-    return cross_validate(p, others.columns, x, w), compare(p, others.model, beside, w)
+    p, w, beside = others.problem, contender.fit.whitener, _beside(others, contender)
+    return cross_validate(p, others.columns, beside.x, w), compare(p, others.model, beside, w)
+
+
+def _beside(others: Selection, one: Contender) -> Model:
+    """`one` with the others, as it was fitted beside them."""
+    x = np.hstack([others.columns, one.candidate.columns])
+    return Model(x=x, beta=one.fit.beta, phases=others.problem.phases([*others.candidates, one.candidate]))
 
 
 def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float) -> str:
@@ -84,7 +88,8 @@ def too_small(others: Selection, contender: Contender, further: bool = True) -> 
 
 
 def equivalents(others: Selection, contenders: list[Contender], best: Contender) -> list[Contender]:
-    """Contenders of another name that fit as well within the scatter over blocks (paired likelihoods)."""
+    """Contenders of another name that fit as well within the scatter over blocks (paired likelihoods), and
+    that held-out rows do not tell apart from the best."""
     out, first = [], best.candidate
     for rival in contenders:
         c = rival.candidate
@@ -93,9 +98,31 @@ def equivalents(others: Selection, contenders: list[Contender], best: Contender)
         if same or c.width > first.width or rival.gain < limits.RIVAL_GAIN * best.gain:
             continue
         loss, spread = _paired(others, best, rival)
-        if loss < max(limits.PAIRED_LOSS, limits.LUCK_Z * spread):
+        if loss < max(limits.PAIRED_LOSS, limits.LUCK_Z * spread) and not _told_held_out(others, best, rival):
             out.append(rival)
     return out
+
+
+def tied_at_last(s: Selection, k: int) -> list[Contender]:
+    """What still ties with pick `k` beside all that was chosen in the end: its class was made before."""
+    pick, p = s.chosen[k], s.problem
+    own = [x for x in pick.confounded if x.candidate.key == pick.candidate.key]
+    rivals = [x.candidate for x in pick.confounded if x.candidate.key != pick.candidate.key]
+    if not rivals:
+        return own
+    others = s.without(k)
+    best = fit_with(p, others.columns, pick.candidate)
+    if best is None:
+        return list(pick.confounded)
+    again = (fit_with(p, others.columns, c, best.fit.whitener) for c in rivals)
+    return [*own, *equivalents(others, [x for x in again if x is not None], best)]
+
+
+def _told_held_out(others: Selection, best: Contender, rival: Contender) -> bool:
+    """Whether held-out rows have the best rather than the rival."""
+    w = best.fit.whitener
+    held = compare(others.problem, _beside(others, rival), _beside(others, best), w)
+    return held.z > limits.LUCK_Z and held.share > limits.ROUNDING
 
 
 def _paired(others: Selection, best: Contender, rival: Contender) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from scipy.special import chndtrix
 from calibration.arrays import Array
 from calibration.balances.candidate import pairs_by_section
 from calibration.decide import thresholds as limits
+from calibration.decide.accept import tied_at_last
 from calibration.decide.refine import slopes, unseen
 from calibration.decide.scan import Contender
 from calibration.decide.selection import Selection
@@ -114,8 +115,9 @@ def amplitude_interval(beta: Array, cov: Array, blocks: int) -> tuple[float, flo
 def finding_of(s: Selection, k: int) -> Finding:
     """The chosen effect as a finding, with the names, or the own name elsewhere, that tie with it."""
     x, c = s.chosen[k], s.candidates[k]
-    tied = [e for e in x.confounded if e.candidate.key == c.key]
-    others = [*(e.candidate.name for e in x.confounded), *c.twins]
+    confounded = tied_at_last(s, k)
+    tied = [e for e in confounded if e.candidate.key == c.key]
+    others = [*(e.candidate.name for e in confounded), *c.twins]
     return Finding(
         c.name,
         s.problem.channel,
@@ -142,7 +144,7 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
     """The chosen effect as findings: one, or each harmonic of a stage that was taken as one candidate."""
     c, whole = s.candidates[k], finding_of(s, k)
     if "frequency" in whole.parameters:  # as refined
-        whole.frequency = whole.parameters["frequency"].value
+        whole = replace(whole, frequency=whole.parameters["frequency"].value)
     sections = pairs_by_section(c.columns) if c.kind == "line" else [[]]
     pairs = min(len(section) for section in sections)
     if c.harmonic is not None or c.stage is None or pairs < 2:

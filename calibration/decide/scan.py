@@ -160,13 +160,16 @@ def few(candidates: list[Candidate]) -> list[list[Candidate]]:
     return [[c for c, k in zip(candidates, ends, strict=True) if k == g] for g in np.unique(ends)]
 
 
-def fit_with(p: Problem, base: Array, candidate: Candidate) -> Contender | None:
-    """Fit base and candidate together; None when physics refuses the sign."""
+def fit_with(
+    p: Problem, base: Array, candidate: Candidate, through: Whitener | None = None
+) -> Contender | None:
+    """Fit base and candidate together, scored `through` a filter, or its own; None when physics refuses the
+    sign."""
     fit = _fit_beside(p, base, candidate)
     if fit is None:
         return None
-    without = under(p.y, base, p.train, fit.whitener)
-    return _scored(p, base, candidate, fit, fit.whitener, without)
+    common = through or fit.whitener
+    return _scored(p, base, candidate, fit, common, under(p.y, base, p.train, common))
 
 
 def _fits_beside(p: Problem, base: Array, null: Fit, some: Sequence[Candidate]) -> list[Fitted]:

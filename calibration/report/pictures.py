@@ -6,6 +6,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from calibration.balances.candidate import pairs_by_section
+from calibration.decide.accept import tied_at_last
 from calibration.decide.selection import Selection
 from calibration.look.looked import Balance, Looked
 from calibration.names.position_friction import NAME as FRICTION
@@ -46,15 +47,15 @@ TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, 
 def _effect(b: Balance, k: int) -> Picture:
     """An effect over the domain that explains it, the other effects taken away. A line whose phase is every
     section's own is drawn for the first."""
-    s, x = b.selection, b.selection.chosen[k]
-    c, alt = x.candidate, "Fitted rows, the declared model and the other effects taken away"
+    s, c = b.selection, b.selection.chosen[k].candidate
+    alt = "Fitted rows, the declared model and the other effects taken away"
     assert b.over is not None
     values, label = b.over(c)
     if c.kind == "line" and len(sections := pairs_by_section(c.columns)) > 1:
         first = np.any(c.columns[:, sections[0]] != 0, axis=1)
         s = replace(s, problem=replace(s.problem, valid=s.problem.valid & first))
         alt += "; of the first section: the phase of every further one is its own"
-    alike = [e.candidate.name for e in x.confounded if e.candidate.name != c.name]
+    alike = [e.candidate.name for e in tied_at_last(s, k) if e.candidate.name != c.name]
     more = f" (or {', '.join(dict.fromkeys(alike[:2]))})" if alike else ""
     odd = b.direction if c.name == FRICTION.name else None
     title = f"{c.say()}{more}, {b.row or f'channel {b.key}'}"

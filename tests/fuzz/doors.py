@@ -31,6 +31,7 @@ from scenarios.doors.hid_report import out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
 from scenarios.doors.snapshots import Snapshots
+from scenarios.doors.steps import Steps
 from scenarios.lab.prepare import chosen, load
 from scenarios.language.document import ScenarioError
 from scenarios.native.finder import compiled
@@ -200,6 +201,47 @@ def control(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     return found
 
 
+def steps(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
+    """Lines of clients that step the time, and clients that hang up."""
+    served.steps = stepping = Steps(served)
+    door = ControlDoor("7411", None, served)
+    found = {"accepted": 0, "refused": 0, "waited": 0, "hung up": 0}
+    folder = tempfile.TemporaryDirectory(dir=inputs.MEMORY)
+    Snapshots(Path(folder.name) / "taken", served)
+    pairs = [socket.socketpair() for _ in range(3)]
+    clients = [Client(ours, "127.0.0.1") for ours, _ in pairs]
+    door._trusted.update(clients)
+    for _, theirs in pairs:
+        theirs.setblocking(False)
+
+    def one(number: int) -> None:
+        place = random.randrange(3)
+        client = clients[place]
+        if random.random() < 0.1:
+            stepping.leave(client)  # as the door does when a client has gone
+            found["hung up"] += 1
+        elif not stepping.waits(client):
+            answer = door._answer(client, inputs.stepped(random))
+            if answer is not None and (not answer.startswith(("ok", "error: ")) or "\n" in answer):
+                raise AssertionError(f"an answer of its own kind: {answer!r}")
+            kind = "waited" if answer is None else "accepted" if answer.startswith("ok") else "refused"
+            found[kind] += 1
+        looks = iter((False, False, False))
+        stepping.run(lambda: next(looks, True), lambda _timeout_s: True)
+        with suppress(BlockingIOError):
+            pairs[place][1].recv(1 << 16)
+        if number % 100 == 99:
+            for name in served.network.boards:
+                served.switch(name, True)
+
+    rounds(served, count, one)
+    folder.cleanup()
+    for client, (_, theirs) in zip(clients, pairs, strict=True):
+        client.close()
+        theirs.close()
+    return found
+
+
 def telnet(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     """What an RFC 2217 client sends."""
     door = Rfc2217Door("7501", served)
@@ -275,8 +317,8 @@ def scenarios(served: LiveNetwork, count: int, random: Random) -> dict[str, int]
 
 
 DOORS: dict[str, Callable[[LiveNetwork, int, Random], dict[str, int]]] = {
-    "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "telnet": telnet,
-    "serial": serial,    "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
+    "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "steps": steps,
+    "telnet": telnet, "serial": serial, "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
 }  # fmt: skip
 
 
