@@ -26,6 +26,11 @@ _WORDS = (
     "snapshot", "../x", "/tmp/x",
     "nan", "inf", "-1", "1e400", "0", "5", "\0", "\u2028", "\ud7ff", "x" * 1200, " ", "\t",
 )  # fmt: skip
+_STEPS = (
+    "join", "listen", "send", "step", "1", "2", "3", "-1", "a", "b", "5ms", "5", "ms", "0 s", "1e400 s",
+    "inf s", "nan s", "-1 ms", "9999999999 h", "0.1 us", "1e-400 s", "5 kg", "011#1105", "7FF#", "7FF#R",
+    "1FFFFFFF#00", "3FFFFFFF#00", "091#1110010000000000", "091##1", "#", "91#1", "011#" + "0" * 18,
+)  # fmt: skip
 _YAML = (
     "name: x", "start_utc: 2026-02-10T14:00:00Z", "steps:", "  - power_on: {}", "  - wait: {for: 1 s}",
     "  - goto: {target: Capella}", "speed: 1", "description: &a [x, y]", "b: *a", "plant: low-preload",
@@ -100,6 +105,17 @@ def line(random: Random) -> bytes:
         words[0] = "status"
     text = " ".join(words).encode("utf-8", "surrogatepass")
     return (data(random, 40).replace(b"stop", b"") if random.random() < 0.2 else text) + b"\n"
+
+
+def stepped(random: Random) -> bytes:
+    """A line for `--clock steps`: one that can be meant, its words in disorder, or another of the plane."""
+    if random.random() < 0.2:
+        return line(random).rstrip(b"\n")
+    if random.random() < 0.4:
+        words = random.choice(("join 1", "join 2 a", "join 3 b", "listen", "send 011#1105", "step 2ms"))
+    else:
+        words = " ".join(random.choice(_STEPS) for _ in range(random.randrange(1, 4)))
+    return words.encode()
 
 
 def datagram(random: Random) -> bytes:
