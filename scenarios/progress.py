@@ -13,7 +13,7 @@ FIRST_S, EVERY_S = 5.0, 15.0
 Show = Callable[[float | None, str], None]
 """Takes what is done, in the unit of the total (None: nobody knows), and what is being done."""
 Stage = Callable[[str], None]
-"""Takes the name of the stage that begins."""
+"""Takes the name of the stage that begins, or goes on."""
 _FEWEST = 0.01
 """Share of the total that a rate is taken over at least. ASSUMPTION."""
 _TICK_S = 1.0
@@ -96,8 +96,9 @@ def paced(before_s: float, usual_s: float, wall_before_s: float, wall_s: float) 
 def stages(what: str, usual_s: Mapping[str, float], stream: TextIO | None = None) -> Iterator[Stage]:
     """Show what is left of stages that say nothing on their way; how long each usually takes is known.
 
-    The pace of the machine at hand is measured. A thread shows, as the stages block. A last stage that takes
-    longer than usual has no time left that anybody knows.
+    The pace of the machine at hand is measured. A thread shows, as the stages block. A stage that has begun
+    is not begun again, nor one before it. A last stage that takes longer than usual has no time left that
+    anybody knows.
     """
     names = list(usual_s)
     begun = time.monotonic()
@@ -106,7 +107,8 @@ def stages(what: str, usual_s: Mapping[str, float], stream: TextIO | None = None
 
     def enter(name: str) -> None:
         nonlocal now
-        now = (name, time.monotonic())
+        if names.index(name) > names.index(now[0]):
+            now = (name, time.monotonic())
 
     with shown(what, sum(usual_s.values()), stream=stream) as show:
 

@@ -1,5 +1,6 @@
 """docs/reference/effects.md: the catalogue of physical effects, from plant/effects."""
 
+from docs.generate.tex import tex
 from docs.generate.text import MADE, cell, table
 from plant.effects import REGISTRY, Effect
 
@@ -16,6 +17,8 @@ A plant file or a scenario adds an effect by its name; `schmidt calibrate` names
 | E | volts and currents of the motors |
 | K | encoders against each other |
 | S | one column or its time stamps |
+
+In the formulas ω is the rate and φ a phase. An arrow says what takes the place of a quantity of the model.
 """
 
 
@@ -28,7 +31,9 @@ def _effect(effect: Effect) -> str:
         for p in effect.parameters
     ]
     parameters = table(["parameter", "unit", "default", "range", "source"], rows) if rows else ""
-    return f"\n## {effect.name}\n\n`{effect.equation}`\n\nIt is in {', '.join(facts)}.\n{parameters}"
+    return (
+        f"\n## {effect.name}\n\n$$\n{tex(effect.equation)}\n$$\n\nIt is in {', '.join(facts)}.\n{parameters}"
+    )
 
 
 def page() -> str:

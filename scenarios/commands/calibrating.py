@@ -1,6 +1,7 @@
 """Commands on measured logs: calibrate, rig."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -8,8 +9,13 @@ import click
 from scenarios.commands.options import PATH
 from scenarios.commands.parts import need
 
-BEGIN_S, PER_MEGABYTE_S = 3.0, 5.0
-"""Usual time of a calibration: 3.7 MB of an axis log take 16 to 19 s (docs/results/speed.md)."""
+READING, SEARCHING, REPLAYING, WRITING = "reading", "searching", "replaying", "writing the report"
+USUAL = {READING: (0.4, 0.3), SEARCHING: (10.0, 2.8), REPLAYING: (0.3, 0.4), WRITING: (2.6, 0.4)}
+"""Usual time of each stage: seconds, and seconds per megabyte of logs. Measured as processor time on
+docs/example, on 2026-11-24; the pace of the machine at hand corrects the later ones."""
+STEPS = {"running the closed loop again": REPLAYING, WRITING: WRITING}
+"""Steps of the finder that begin a stage; all others are part of the search."""
+RIG_S, RIG_PER_MEGABYTE_S = 2.0, 2.0
 
 
 @click.command(short_help="Name what the model lacks in measured logs.")
@@ -30,12 +36,24 @@ def calibrate(
     from calibration.command import calibrate as command
     from scenarios.progress import stages
 
-    megabytes = sum(log.stat().st_size for log in logs if log.is_file()) / 1e6
-    usual_s = {f"{megabytes:.1f} MB of logs": BEGIN_S + PER_MEGABYTE_S * megabytes}
+    size = megabytes(logs)
+    usual_s = {name: begin_s + per_mb_s * size for name, (begin_s, per_mb_s) in USUAL.items()}
     # on a terminal the command's own line, which names its steps, stands below
-    with stages("calibrating", usual_s, sys.stdout if sys.stdout.isatty() else None):
-        status = command(list(logs), rig, list(hold_out), out, plant)
+    with stages("calibrating", usual_s, sys.stdout if sys.stdout.isatty() else None) as enter:
+        status = command(
+            list(logs),
+            rig,
+            list(hold_out),
+            out,
+            plant,
+            told=lambda step: enter(STEPS.get(step, SEARCHING)),
+        )
     sys.exit(status)
+
+
+def megabytes(logs: Sequence[Path]) -> float:
+    """Size of the logs that are there."""
+    return sum(log.stat().st_size for log in logs if log.is_file()) / 1e6
 
 
 @click.command(short_help="Show what is understood of a rig file and its logs.")
@@ -49,7 +67,11 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None, new: bool) -> Non
     """Show what is understood of a rig FILE and its LOGS, before anything is fitted."""
     need("calibrate")
     from calibration.command import draft, show_rig
+    from scenarios.progress import stages
 
     if new and (logs or plot is not None):
         raise click.UsageError("--new drafts from one log, and draws nothing")
-    click.echo(draft(file) if new else show_rig(file, list(logs), plot))
+    files = (file,) if new else logs
+    with stages("reading", {f"{len(files)} files": RIG_S + RIG_PER_MEGABYTE_S * megabytes(files)}):
+        text = draft(file) if new else show_rig(file, list(logs), plot)
+    click.echo(text)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from plant.model import load as load_plant
+from plant.yamltext import TextError, check_regular, read_text
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.payload import unpack_frame
 from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording
@@ -14,6 +15,10 @@ from scenarios.doors.rest import Rest
 from scenarios.doors.standing import standing
 from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot.file import read
+from scenarios.progress import Show, shown
+
+_STEP_NS = 1_000_000_000
+"""Simulated time between two looks at what is left."""
 
 
 class ReplayError(ValueError):
@@ -67,14 +72,23 @@ def _nodes(served: LiveNetwork, facts: dict[str, Any]) -> None:
 
 def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int = 0) -> None:
     """Everything that entered, from number `after` on, and on to the session's end."""
-    t_ns = served.now_ns
-    for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
-        served.run_until(t_ns)
-        try:
-            served.entry.enter(kind, data)
-        except (KeyError, ValueError) as error:
-            raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
-    served.run_until(max(t_ns, int(facts.get("end_ns", t_ns))))
+    begun_ns = t_ns = served.now_ns
+    end_ns = int(facts.get("end_ns", begun_ns))  # none: never closed, and nobody knows what is left
+    with shown("replaying", end_ns, begun=begun_ns) as show:
+        for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
+            _go(served, t_ns, end_ns, show)
+            try:
+                served.entry.enter(kind, data)
+            except (KeyError, ValueError) as error:
+                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
+        _go(served, max(t_ns, end_ns), end_ns, show)
+
+
+def _go(served: LiveNetwork, t_ns: int, end_ns: int, show: Show) -> None:
+    """On to `t_ns`, a second at a time."""
+    while served.now_ns < t_ns:
+        served.run_until(min(t_ns, served.now_ns + _STEP_NS))
+        show(served.now_ns if end_ns else None, f"{served.now_ns / _STEP_NS:.0f} s simulated")
 
 
 def _register(served: LiveNetwork, kind: str) -> None:
@@ -84,7 +98,7 @@ def _register(served: LiveNetwork, kind: str) -> None:
 
 def _facts(folder: Path) -> dict[str, Any]:
     try:
-        facts: dict[str, Any] = json.loads((folder / SESSION).read_text(encoding="utf-8"))
+        facts: dict[str, Any] = json.loads(read_text(folder / SESSION))
         wanted = {"scenario": bool, "seed": int, "kinds": list}
         if not all(isinstance(facts[key], kind) for key, kind in wanted.items()):
             raise ValueError("fields are missing")
@@ -95,6 +109,7 @@ def _facts(folder: Path) -> dict[str, Any]:
 
 def _entries(file: Path) -> Iterator[tuple[int, str, bytes]]:
     try:
+        check_regular(file)
         with file.open(encoding="utf-8") as lines:
             for number, line in enumerate(lines, 1):
                 try:
@@ -104,3 +119,5 @@ def _entries(file: Path) -> Iterator[tuple[int, str, bytes]]:
                     raise ReplayError(f"{file}:{number}: not an entry: {line[:60]!r}") from None
     except OSError as error:
         raise ReplayError(f"{file}: {error.strerror}") from None
+    except TextError as error:
+        raise ReplayError(f"{file}: {error}") from None

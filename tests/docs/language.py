@@ -24,6 +24,8 @@ _ROW = re.compile(r"^\|.*$", re.MULTILINE)
 _BREAK = re.compile(r"\n\s*\n|\n(?=\s*(?:[-*+]|\d+\.) )|\n(?=#)|(?<=\|)\n| \| ")
 _END = re.compile(r"(?<=[.!?])[)\"'*_]*\s+(?=[^a-z])")
 _NUMBER = re.compile(r"(?<!\w)[−±-]?\d[\d.,\u202f\u00a0]*")
+_FORMULA = re.compile(r"\$\$.*?\$\$|\$[^$\n]+\$", re.DOTALL)
+"""TeX in a page: one word of a sentence."""
 _DATE = re.compile(r"\b\d{4}-\d\d-\d\d\b")
 """No figure: a page of results bears one."""
 _QUOTE = re.compile(r"^>.*$", re.MULTILINE)
@@ -48,7 +50,8 @@ def pages() -> dict[str, Path]:
 
 def sentences(text: str) -> Iterator[str]:
     """Sentences of a page, those in cells of tables too; headings, code and quotes are none."""
-    for block in _BREAK.split(_QUOTE.sub("", _CODE.sub("", text))):
+    text = _FORMULA.sub("Formula", _CODE.sub("", text))
+    for block in _BREAK.split(_QUOTE.sub("", text)):
         lines = block.strip("\n").splitlines()
         if all(line.startswith("    ") for line in lines) and not re.match(r" +[-*\d]", block):
             continue  # indented code

@@ -4,8 +4,10 @@ import re
 import tomllib
 from pathlib import Path, PurePosixPath
 
+import pytest
 import yaml
 
+from docs.generate.tex import tex
 from tests.coverage import room, table
 
 ROOT = Path(__file__).parents[2]
@@ -82,6 +84,27 @@ def test_coverage_names_the_lowest_room_first() -> None:
     lines = table({"good": (10, 1), "bad": (10, 9)}, most=1).splitlines()
     assert lines[0].split()[0] == "10.0%" and lines[0].endswith("bad")
     assert lines[1].split()[0] == "50.0%"
+
+
+@pytest.mark.parametrize("name", ["concepts/plant.md", "concepts/calibration.md", "reference/effects.md"])
+def test_a_page_of_models_has_formulas(name: str) -> None:
+    text = (DOCS / name).read_text(encoding="utf-8")
+    formulas = re.findall(r"\$\$\n(.*?)\n\$\$", text, re.DOTALL)
+    assert formulas
+    assert all(each.count("{") == each.count("}") for each in formulas)
+
+
+@pytest.mark.parametrize(
+    ("equation", "shown"),
+    [
+        ("T = A sin(order angle + phase)", r"T = A\, \sin ( \text{order angle} + \varphi )"),
+        ("Ts -> a Ts, w0^2", r"T_s \to a\, T_s ,\; \omega_0^2"),
+        ("column modulo 2^bits", r"\text{column modulo}\, 2^{\text{bits}}"),
+        ("a packet is lost with probability p", r"\text{a packet is lost with probability}\, p"),
+    ],
+)
+def test_an_equation_becomes_tex(equation: str, shown: str) -> None:
+    assert tex(equation) == shown
 
 
 def test_version_and_day_are_the_same_wherever_they_stand() -> None:

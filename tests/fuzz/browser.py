@@ -24,6 +24,7 @@ from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.runs import RecordedRuns
 from scenarios.lab.prepare import chosen
 from tests.fuzz import inputs
+from tests.fuzz.left import counted
 from tests.host.inprocess import HostInProcess
 
 _PATHS = ("/", "/focus", "/alignment", "/maintenance", "/dome", "/bus", "/calibrate")
@@ -175,7 +176,7 @@ def websocket(count: int, random: Random) -> dict[str, int]:
         page = (browser.client, browser.elements) if returns else None
         return Browser(at, random.choice(_PATHS), page)
 
-    for number in range(count):
+    for number in counted(count):
         message = _message(random, browser)
         try:
             browser.send(message)

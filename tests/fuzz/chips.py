@@ -14,6 +14,7 @@ from boards.silicon.endat import check
 from bus.can import Wire
 from bus.time import EventQueue
 from tests.fuzz import near
+from tests.fuzz.left import counted
 
 _LEAST = {0xC0: 1, 0x03: 3, 0x02: 3, 0x05: 4, 0xA0: 2, 0xB0: 2}
 _LEAST |= dict.fromkeys(range(0x40, 0x46), 2) | dict.fromkeys((*range(0x90, 0x98, 2), *range(0x81, 0x88)), 1)
@@ -41,7 +42,7 @@ def spi(count: int, random: Random) -> dict[str, int]:
     """SPI, whole and bit by bit with a torn last byte: the same; no instruction, no change."""
     found = {"accepted": 0, "refused": 0}
     one, other = Rig(), Rig()
-    for number in range(count):
+    for number in counted(count):
         if number % _FRESH == 0:
             one, other = Rig(), Rig()
         data = near.spi(random, [*_LEAST])
@@ -81,7 +82,7 @@ def endat(count: int, random: Random) -> dict[str, int]:
     position that the pin has, or EndatError."""
     found = {"accepted": 0, "refused": 0}
     encoder, master, t_ns = _line()
-    for number in range(count):
+    for number in counted(count):
         if number % _FRESH == 0:
             encoder, master, t_ns = _line()
         t_ns = _noise(encoder, t_ns, random)
@@ -107,7 +108,7 @@ def edges(count: int, random: Random) -> dict[str, int]:
     has, its data line high or low. After a rest it is an encoder again."""
     encoder = ClockedEncoder(lambda t_ns: t_ns)
     t_ns = 0
-    for _ in range(count):
+    for _ in counted(count):
         slowest = 3000 if random.random() < 0.9 else 60 * _MS
         for _ in range(8):
             t_ns += random.randrange(1, slowest)
@@ -124,7 +125,7 @@ def edges(count: int, random: Random) -> dict[str, int]:
 def bits(count: int, random: Random) -> dict[str, int]:
     """36 bits of noise: the fast check and the master's agree on CRC, position and alarm."""
     found = {"accepted": 0, "refused": 0}
-    for _ in range(count):
+    for _ in counted(count):
         line = [random.randrange(2) for _ in range(36)]
         crc = line[31:]
         position, alarm, good = check(as_number(line[:31]) | int("".join(map(str, crc)), 2) << 31)

@@ -37,6 +37,7 @@ from scenarios.language.document import ScenarioError
 from scenarios.native.finder import compiled
 from tests.fuzz import browser, chips, files, frozen, inputs, streams
 from tests.fuzz.hosted import alpaca, lx200
+from tests.fuzz.left import counted
 
 MS = 1_000_000
 ROOT = Path(__file__).parents[2]
@@ -70,7 +71,7 @@ def _still(served: LiveNetwork) -> list[str]:
 def rounds(served: LiveNetwork, count: int, one: Callable[[int], None]) -> None:
     """So many inputs, time going on between them, and a look at the boards now and then."""
     look = max(_LOOK, count // _LOOKS)
-    for number in range(count):
+    for number in counted(count):
         one(number)
         if number % 16 == 0:
             served.run_until(served.now_ns + 2 * MS)
@@ -306,7 +307,7 @@ def scenarios(served: LiveNetwork, count: int, random: Random) -> dict[str, int]
     found = {"accepted": 0, "refused": 0}
     with tempfile.TemporaryDirectory(dir=inputs.MEMORY) as folder:
         file = Path(folder) / "x.yaml"
-        for _ in range(count):
+        for _ in counted(count):
             file.write_bytes(inputs.scenario(random).encode("utf-8", "surrogatepass"))
             try:
                 load(file)

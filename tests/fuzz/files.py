@@ -18,6 +18,7 @@ from tests.calibration.logs import tiny_log
 from tests.calibration.test_readers import GUIDE
 from tests.fuzz import near
 from tests.fuzz.inputs import MEMORY
+from tests.fuzz.left import counted
 
 Found = dict[str, int]
 
@@ -88,7 +89,7 @@ def _files(
     found = {"accepted": 0, "refused": 0}
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         path = Path(folder) / "x.log"
-        for _ in range(count):
+        for _ in counted(count):
             text = make(random)
             path.write_bytes(text)
             try:

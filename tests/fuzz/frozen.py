@@ -14,6 +14,7 @@ from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
 from tests.fuzz.inputs import MEMORY, data
+from tests.fuzz.left import counted
 
 MS = 1_000_000
 _INTACT = 0.005
@@ -30,7 +31,7 @@ def snapshots(count: int, random: Random) -> dict[str, int]:
         good = (Path(folder) / "good").read_bytes()
         served.run_until(30 * MS)
         path = Path(folder) / "x"
-        for _ in range(count):
+        for _ in counted(count):
             said = good if random.random() < _INTACT else _changed(random, good)
             path.write_bytes(said)
             try:

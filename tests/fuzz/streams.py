@@ -11,6 +11,7 @@ from bus.protocol import COMMAND_BASE, Device, Opcode
 from bus.protocol.serial import SYNC, Packet, PacketDecoder, pack_packet
 from tests.boards.core.test_debug import Desk
 from tests.fuzz import near
+from tests.fuzz.left import counted
 
 Said = tuple[list[Packet], int, int]
 _FRESH = 500
@@ -26,7 +27,7 @@ def _decoded(pieces: list[bytes]) -> Said:
 def packets(count: int, random: Random) -> dict[str, int]:
     """RS232 packets, torn, joined and with wrong bytes: what is decoded stands in the stream, in order."""
     found = {"accepted": 0, "refused": 0}
-    for _ in range(count):
+    for _ in counted(count):
         stream = near.packets(random)
         whole = _decoded([stream])
         if whole != _decoded([stream[at : at + 1] for at in range(len(stream))]):
@@ -53,7 +54,7 @@ def debug(count: int, random: Random) -> dict[str, int]:
     """Bytes on a board's debug port, whole and byte by byte: the same answers, replies and losses."""
     found = {"accepted": 0, "refused": 0}
     whole, bytewise = Desk(), Desk()
-    for number in range(count):
+    for number in counted(count):
         if number % _FRESH == 0:
             whole, bytewise = Desk(), Desk()
         data = near.slcan(random, Device.DISPLAY)
@@ -76,7 +77,7 @@ def debug(count: int, random: Random) -> dict[str, int]:
 def slcan(count: int, random: Random) -> dict[str, int]:
     """Single lines of a debug port: a frame is what the line's digits are, or there is none."""
     found = {"accepted": 0, "refused": 0}
-    for _ in range(count):
+    for _ in counted(count):
         line = near.slcan_line(random, Device.DISPLAY)
         frame = frame_of(line)
         if frame is not None:

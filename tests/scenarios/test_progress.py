@@ -68,3 +68,15 @@ def test_a_last_stage_that_takes_longer_than_usual_has_no_time_left(
         time.sleep(0.2)
     last = capsys.readouterr().err.splitlines()[-1]
     assert last == "schmidt: calibrating: 1.0 MB of logs, longer than usual, time left not known yet"
+
+
+def test_a_stage_is_begun_once(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(progress, "FIRST_S", 0.0)
+    monkeypatch.setattr(progress, "EVERY_S", 0.0)
+    monkeypatch.setattr(progress, "_TICK_S", 0.02)
+    with progress.stages("calibrating", {"reading": 0.01, "searching": 10.0, "writing": 1.0}) as stage:
+        for name in ("searching", "searching", "reading"):  # a step of a stage that is gone is none
+            stage(name)
+            time.sleep(0.06)
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert "searching" in last

@@ -55,6 +55,7 @@ class Objective:
         self.best_x: Array | None = None
         self.best_terms: list[Term] = []
         self.tried = 0
+        self.noted: Callable[[int], None] | None = None
         self.room = ROOM
 
     def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
@@ -105,6 +106,8 @@ class Objective:
 
     def _note(self, x: Array, found: float, terms: list[Term]) -> None:
         self.tried += 1
+        if self.noted is not None:
+            self.noted(self.tried)
         if found < self.best:
             self.best, self.best_x, self.best_terms = found, np.array(x), terms
             missed = [term for term in terms if term.excess > 0.0]

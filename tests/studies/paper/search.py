@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.campaign.plantfile import write
+from scenarios.progress import shown
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.starts import STARTS
 from tests.studies.paper.objective import READINGS, Enough, Objective
@@ -172,7 +173,8 @@ def main(arguments: list[str] | None = None) -> int:
     objective = Objective(chosen.reading, not chosen.no_diode, starts, chosen.points, tell, left_out, many)
     known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
     seeds = tuple(chosen.seeds)
-    with suppress(KeyboardInterrupt):
+    with suppress(KeyboardInterrupt), shown("fitting", chosen.points) as show:
+        objective.noted = lambda tried: show(tried, f"best cost {objective.best:.3f}")
         search(objective, seeds, known, chosen.step)
     if objective.best_x is None:
         print("no point of the space could be run at all", file=sys.stderr)
