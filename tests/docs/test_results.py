@@ -28,3 +28,9 @@ def test_a_page_names_its_command_and_its_day_and_what_was_missed_first(page: Pa
     assert re.search(r"\b20\d\d-\d\d-\d\d\b", head)
     assert sections[0].startswith("Missed\n")
     assert len(sections[0].split("\n")) > 3, "nothing is said to be missed"
+
+
+def test_readme_quotes_the_page_of_the_measured_drives() -> None:
+    page = (ROOT / "docs" / "results" / "measured-drives.md").read_text(encoding="utf-8")
+    found = re.search(r"The held-out error falls in (\d+ of \d+), and comes", page)
+    assert found and f"falls in {found[1]} answers" in (ROOT / "README.md").read_text(encoding="utf-8")

@@ -1,4 +1,7 @@
-"""`python -m tests.measured [KEY…] --out DIR`: every measured log answered, and judged by what is in it."""
+"""`python -m tests.measured [KEY…] --out DIR`: every measured log answered, and judged by what is in it.
+
+`--page FILE` writes docs/results/measured-drives.md from the answers; `--again` takes those that are in DIR.
+"""
 
 import contextlib
 import io
@@ -6,7 +9,8 @@ import json
 import os
 import time
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -16,61 +20,77 @@ from rich.console import Console
 from rich.table import Table
 
 from calibration.command import calibrate
+from scenarios.progress import shown
 from tests.measured.cases import CASES, DATA
-from tests.measured.truth import WRONG, judge, say
+from tests.measured.page import page
+from tests.measured.truth import WRONG, Answer, judge, say
 
-
-@dataclass(frozen=True, kw_only=True)
-class Answer:
-    """One row of the table: `before`, `after`, `floor` and `own` are held-out rms in the response's unit."""
-
-    key: str
-    verdict: str
-    judged: str
-    why: str
-    before: float
-    after: float
-    floor: float
-    own: float
-    seconds: float
-    said: str
+ANSWER = "answer.json"
+"""Beside a log's report."""
 
 
 def answer(key: str, out: Path) -> Answer:
     """Calibrate and judge; a process of its own finds the case by its key."""
     case = next(c for c in CASES if c.key == key)
-    folder, begun = out / key, time.perf_counter()
+    folder, begun = out / key, time.process_time()
     with contextlib.redirect_stdout(io.StringIO()):
         calibrate(case.logs, case.rig, list(case.hold_out), folder, plots=False, replay=False)
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     data: dict[str, Any] = json.loads((folder / "report.json").read_text())
     judged, why = judge(data, case.needs, case.may)
     row: dict[str, Any] = next((r for k, r in data["error"].items() if k in ("torque", "position")), {})
     own = case.own(case.logs, case.rig) if case.own and row else np.nan
     figures = {k: float("nan") if row.get(k) is None else float(row[k]) for k in ("before", "after", "floor")}
-    said = "; ".join(say(e) for e in data["effects"]) or str(data["separating_experiment"] or "")[:160]
-    verdict = str(data["verdict"])
-    return Answer(
-        key=key, verdict=verdict, judged=judged, why=why, own=own, seconds=seconds, said=said, **figures
+    found = Answer(
+        key=key,
+        verdict=str(data["verdict"]),
+        judged=judged,
+        why=why,
+        unit=str(row.get("unit", "")),
+        own=own,
+        seconds=seconds,
+        effects=tuple(say(e) for e in data["effects"]),
+        experiment=str(data["separating_experiment"] or ""),
+        **figures,
     )
+    (folder / ANSWER).write_text(json.dumps(asdict(found), indent=1) + "\n", encoding="utf-8")
+    return found
+
+
+def kept(key: str, out: Path) -> Answer | None:
+    """The answer that a run before left in `out`, or None."""
+    file = out / key / ANSWER
+    if not file.exists():
+        return None
+    fields: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return Answer(**fields | {"effects": tuple(fields["effects"])})
 
 
 @click.command()
 @click.argument("keys", nargs=-1)
 @click.option("--out", type=click.Path(path_type=Path), default=Path("out/measured"))
 @click.option("--jobs", default=1)
-def main(keys: tuple[str, ...], out: Path, jobs: int) -> None:
+@click.option("--page", "file", type=click.Path(path_type=Path), help="Page of results to write.")
+@click.option("--again", is_flag=True, help="Ask only what a run before left open in the folder.")
+def main(keys: tuple[str, ...], out: Path, jobs: int, file: Path | None, again: bool) -> None:
     """Print the table."""
     if not DATA.is_dir():
         raise click.ClickException("../shared/data/measured is absent: no measured data to answer")
+    if file and keys:
+        raise click.UsageError("a page is of all logs; leave the keys out")
     os.environ["OMP_NUM_THREADS"] = "1"
     wanted = [c.key for c in CASES if not keys or any(c.key.startswith(k) for k in keys)]
-    with ProcessPoolExecutor(jobs) as pool:
-        rows = []
-        for row in pool.map(answer, wanted, [out] * len(wanted)):
-            rows.append(row)
+    rows = {key: row for key in wanted if again and (row := kept(key, out))}
+    open_ = [key for key in wanted if key not in rows]
+    with ProcessPoolExecutor(jobs) as pool, shown("measured logs", len(open_)) as show_left:
+        for done, row in enumerate(pool.map(answer, open_, [out] * len(open_)), start=1):
+            rows[row.key] = row
             click.echo(f"{row.key}: {row.judged} in {row.seconds:.0f} s", err=True)
-    show(rows)
+            show_left(done, f"{done} of {len(open_)}")
+    ordered = [rows[key] for key in wanted]
+    show(ordered)
+    if file:
+        file.write_text(page(ordered, date.today()), encoding="utf-8")
 
 
 def show(rows: list[Answer]) -> None:

@@ -51,6 +51,33 @@ class Sign:
         return ends[0] <= high and low <= ends[-1] and abs(told["value"]) <= FAR * high
 
 
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """A log's answer.
+
+    `before`, `after`, `floor` and `own` are held-out rms in `unit`, nan where there is none. `seconds` is
+    processor time.
+    """
+
+    key: str
+    verdict: str
+    judged: str
+    why: str
+    unit: str
+    before: float
+    after: float
+    floor: float
+    own: float
+    seconds: float
+    effects: tuple[str, ...]
+    experiment: str
+
+    @property
+    def said(self) -> str:
+        """The effects, or the experiment in their place."""
+        return "; ".join(self.effects) or self.experiment[:160]
+
+
 def _inside(value: float | None, bounds: tuple[float, float] | None) -> bool:
     return bounds is None or (value is not None and bounds[0] <= value <= bounds[1])
 
