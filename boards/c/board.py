@@ -4,9 +4,9 @@ import logging
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NoReturn
 
-from boards.c.library import CALLS, ROUTINES, FirmwareError, Memory, told
+from boards.c.library import CALLS, DUTIES_FROM, ROUTINES, FirmwareError, Memory, told
 from boards.core.declared import BoardError
 from boards.core.interrupts import Source
 from boards.core.parameters import ParameterTable
@@ -22,10 +22,16 @@ from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE, Opcode, Result, pack_command, unpack_reply
 
 _RESET, _TIMER, _FRAME, _CAN, _SENT, _INIT = range(len(ROUTINES))
+(
+    _CRYSTAL_100US, _READ_ENCODER, _READ_CURRENT, _READ_ENDAT, _WRITE_PWM_Q16, _CAN_FILTER, _CAN_SEND,
+    _CAN_WITHDRAW, _CAN_FREE, _CAN_STATE, _CAN_TEC, _REQUEST_CAN, _CAN_NOTIFY, _UART_SEND, _BOOK_CYCLES,
+    _LOST_INTERRUPTS, _COUNT_DROPPED, _DEBUG_LINE,
+) = range(len(CALLS))  # fmt: skip
 _PWM_PRIORITY: Final = 1 << 16
 _STATES: Final = ("active", "passive", "bus_off")
 _STAMP_NS: Final = 100_000
 _ALARM, _WRONG_CRC = 1 << 30, 1 << 31
+_NO_DUTIES: Final = (1 << DUTIES_FROM) - 1
 _log = logging.getLogger("schmidt.firmware")
 
 
@@ -50,7 +56,6 @@ class FirmwareBoard(PeriodicBoard):
         self.qei, self.pwm, self.adc, self.endat = chips.qei, chips.pwm, chips.adc, chips.endat
         self.uart = Uart(place.queue)
         self.parameters = _Asked(self)
-        self._answers = [getattr(self, f"_{name}") for name in CALLS]
         self._output_ns = 0
         self._sent: dict[int, Frame] = {}
         self._filters: tuple[list[int], list[int]] = [], []
@@ -58,7 +63,8 @@ class FirmwareBoard(PeriodicBoard):
         self._asked: list[bytes] | None = None
         """Where replies go while a parameter is set without the bus."""
         memory.ask = self._ask
-        self._call(_INIT, 0, place.device_type, 0, struct.pack(f"<{len(settings)}i", *settings))
+        packed = struct.pack(f"<{len(settings)}i", *settings)
+        self._call(_INIT, 0, place.device_type, packed)
         groups = zip(self._masks, self._filters, strict=True)
         self.can.accept(*((mask, codes) for mask, codes in groups if codes))
 
@@ -77,7 +83,13 @@ class FirmwareBoard(PeriodicBoard):
         """Timer interrupt."""
         end = self.enter(t_ns)
         if end:
-            self._call(_TIMER, end)
+            memory, qei, epoch_ns = self.memory, self.qei, self.epoch_ns
+            self._output_ns = end
+            # what firmware reads first is handed in, not asked for
+            there, count = (0, 0) if qei is None else (1, qei.poscnt(t_ns))
+            ended = memory.run(memory.block, _TIMER, t_ns - epoch_ns, end - epoch_ns, count, there, b"")
+            if ended or memory.error is not None:
+                self._end(_TIMER, ended)
 
     def take_command(self, data: bytes) -> None:
         """A COMMAND by another way than CAN: the debug port."""
@@ -85,8 +97,13 @@ class FirmwareBoard(PeriodicBoard):
 
     def _receive(self, t_ns: int, frame: Frame) -> None:
         if self.on:
-            kind = frame.extended + 2 * frame.remote
-            self._call(_FRAME, t_ns, frame.identifier, kind, frame.data)
+            memory, data = self.memory, frame.data
+            self._output_ns = t_ns
+            now_ns, size = t_ns - self.epoch_ns, len(data)
+            extended, remote = frame.extended, frame.remote
+            ended = memory.frame(memory.block, now_ns, frame.identifier, extended, remote, size, data)
+            if ended or memory.error is not None:
+                self._end(_FRAME, ended)
 
     def _serve(self, t_ns: int) -> None:
         if self.on:
@@ -97,13 +114,23 @@ class FirmwareBoard(PeriodicBoard):
             self._late, self.port.on_sent = None, self._before
             self._call(_SENT, t_ns)
 
-    def _call(self, routine: int, output_ns: int, number: int = 0, kind: int = 0, data: bytes = b"") -> None:
-        now_ns, epoch_ns = self.queue.now_ns, self.epoch_ns
+    def _call(self, routine: int, output_ns: int, number: int = 0, data: bytes = b"") -> None:
+        memory, epoch_ns = self.memory, self.epoch_ns
         self._output_ns = output_ns
-        ended = self.memory.run(routine, now_ns - epoch_ns, output_ns - epoch_ns, number, kind, data)
+        now_ns, end_ns = self.queue.now_ns - epoch_ns, output_ns - epoch_ns
+        ended = memory.run(memory.block, routine, now_ns, end_ns, number, len(data), data)
+        if ended or memory.error is not None:
+            self._end(routine, ended)
+
+    def _end(self, routine: int, ended: int) -> None:
+        """What a routine leaves behind."""
+        if ended > _NO_DUTIES:
+            self._write_pwm(ended)
+            ended &= _NO_DUTIES
+        self.memory.raise_error()
         if ended:
             self.on = False
-            where = f"{self.memory.file}: board {self.name} fails at {now_ns * 1e-9:.6g} s"
+            where = f"{self.memory.file}: board {self.name} fails at {self.queue.now_ns * 1e-9:.6g} s"
             raise BoardError(f"{where}: board_{ROUTINES[routine]} {told(ended)}")
 
     def command(self, opcode: Opcode, *arguments: int) -> Answer:
@@ -112,7 +139,10 @@ class FirmwareBoard(PeriodicBoard):
         self._asked = replies
         try:
             data = pack_command(self.device_type, opcode, *arguments)
-            self._call(_FRAME, self.queue.now_ns, COMMAND_BASE + self.device_type, 0, data)
+            memory, identifier = self.memory, COMMAND_BASE + self.device_type
+            now_ns = self.clock_ns(self.queue.now_ns)
+            ended = memory.frame(memory.block, now_ns, identifier, False, False, len(data), data)
+            self._end(_FRAME, ended)
             self._call(_CAN, self.queue.now_ns)
         finally:
             self._asked = None
@@ -123,101 +153,77 @@ class FirmwareBoard(PeriodicBoard):
 
     # --- what the firmware calls ------------------------------------------------------------------
     def _ask(self, call: int, a: int, b: int, data: bytes) -> int:
-        found: int = self._answers[call](a, b, data)
-        return found
+        """The frequent ones first."""
+        if call > _NO_DUTIES:
+            self._write_pwm(call)
+            call &= _NO_DUTIES
+        if call == _READ_CURRENT:
+            return (self.adc or self._lacks("ADC")).read(self.queue.now_ns, a)
+        if call == _CAN_SEND:
+            return self._can_send(a, data)
+        if call == _READ_ENCODER:
+            return (self.qei or self._lacks("encoder")).poscnt(self.queue.now_ns)
+        if call == _WRITE_PWM_Q16:
+            (self.pwm or self._lacks("PWM")).write_spread(self._output_ns, a, b)
+            return 0
+        if call == _READ_ENDAT:
+            position, alarm, good = (self.endat or self._lacks("EnDat encoder")).poll(self.queue.now_ns)
+            return position | _ALARM * alarm | _WRONG_CRC * (not good)
+        if call == _CRYSTAL_100US:
+            return self.oscillator.local_ns(self.queue.now_ns) // _STAMP_NS & 0xFFFF_FFFF
+        return self._ask_can(call, a, b) if call <= _CAN_NOTIFY else self._ask_else(call, a, b, data)
 
-    def _missing(self, what: str) -> BoardError:
-        return BoardError(f"{self.memory.file}: board {self.name} has no {what}")
-
-    def _crystal_100us(self, _a: int, _b: int, _data: bytes) -> int:
-        return self.oscillator.local_ns(self.queue.now_ns) // _STAMP_NS & 0xFFFF_FFFF
-
-    def _read_encoder(self, _a: int, _b: int, _data: bytes) -> int:
-        if self.qei is None:
-            raise self._missing("encoder")
-        return self.qei.poscnt(self.queue.now_ns)
-
-    def _read_current(self, motor: int, _b: int, _data: bytes) -> int:
-        if self.adc is None:
-            raise self._missing("ADC")
-        return self.adc.read(self.queue.now_ns, motor)
-
-    def _read_endat(self, _a: int, _b: int, _data: bytes) -> int:
-        if self.endat is None:
-            raise self._missing("EnDat encoder")
-        position, alarm, good = self.endat.poll(self.queue.now_ns)
-        return position | _ALARM * alarm | _WRONG_CRC * (not good)
-
-    def _write_pwm(self, a: int, b: int, _data: bytes) -> int:
-        if self.pwm is None:
-            raise self._missing("PWM")
-        self.pwm.write(self._output_ns, a, b)
+    def _ask_can(self, call: int, a: int, b: int) -> int:
+        if call == _CAN_FREE:
+            return self.port.free_buffers
+        if call == _CAN_STATE:
+            return _STATES.index(self.port.state)
+        if call == _CAN_TEC:
+            return self.port.tec
+        if call == _CAN_WITHDRAW:
+            frame = self._sent.get(a)
+            return 0 if frame is None else self.port.withdraw(frame)
+        if call == _CAN_FILTER:
+            self._masks[a >= 2] = b >> 16
+            self._filters[a >= 2].append(b & 0xFFFF)
+        elif call == _REQUEST_CAN:
+            if self._asked is None:
+                self.cpu.lines["can"].request(self.queue.now_ns)
+        elif self._late is None:  # _CAN_NOTIFY
+            self._late, self._before, self.port.on_sent = b"", self.port.on_sent, self._freed
         return 0
 
-    def _write_pwm_q16(self, a: int, b: int, _data: bytes) -> int:
-        if self.pwm is None:
-            raise self._missing("PWM")
-        self.pwm.write_spread(self._output_ns, a, b)
+    def _ask_else(self, call: int, a: int, b: int, data: bytes) -> int:
+        if call == _UART_SEND:
+            return self.uart.send(self._output_ns, data)
+        if call == _LOST_INTERRUPTS:
+            return self.cpu.overruns
+        if call == _COUNT_DROPPED:
+            self.dropped += 1
+        elif call == _BOOK_CYCLES:
+            cpu = self.cpu
+            cpu.top.own_ns = cpu.cycles_ns(a)
+            period_ns = 0 if self.pwm is None else self.pwm.period_ns
+            cpu.steal(Source("pwm", _PWM_PRIORITY, 0, b) if b else None, period_ns)
+            self.cost_ns = cpu.top.cost_ns
+        elif call == _DEBUG_LINE:
+            text = data.decode(errors="replace")
+            _log.warning("%.6f s %s: %s", self.queue.now_ns * 1e-9, self.name, text)
         return 0
 
-    def _can_filter(self, number: int, word: int, _data: bytes) -> int:
-        group = number >= 2
-        self._masks[group] = word >> 16
-        self._filters[group].append(word & 0xFFFF)
-        return 0
+    def _lacks(self, what: str) -> NoReturn:
+        raise BoardError(f"{self.memory.file}: board {self.name} has no {what}")
 
-    def _can_send(self, identifier: int, _b: int, data: bytes) -> int:
+    def _write_pwm(self, duties: int) -> None:
+        a, b = duties >> DUTIES_FROM + 16 & 0xFFFF, duties >> DUTIES_FROM & 0xFFFF
+        (self.pwm or self._lacks("PWM")).write(self._output_ns, a, b)
+
+    def _can_send(self, identifier: int, data: bytes) -> int:
         if self._asked is not None and identifier == REPLY_BASE + self.device_type:
             self._asked.append(data)
             return 1
         self._sent[identifier] = frame = Frame(identifier, data)
         return self.send(frame, self._output_ns)
-
-    def _can_withdraw(self, identifier: int, _b: int, _data: bytes) -> int:
-        frame = self._sent.get(identifier)
-        return 0 if frame is None else self.port.withdraw(frame)
-
-    def _can_free(self, _a: int, _b: int, _data: bytes) -> int:
-        return self.port.free_buffers
-
-    def _can_state(self, _a: int, _b: int, _data: bytes) -> int:
-        return _STATES.index(self.port.state)
-
-    def _can_tec(self, _a: int, _b: int, _data: bytes) -> int:
-        return self.port.tec
-
-    def _request_can(self, _a: int, _b: int, _data: bytes) -> int:
-        if self._asked is None:
-            self.cpu.lines["can"].request(self.queue.now_ns)
-        return 0
-
-    def _can_notify(self, _a: int, _b: int, _data: bytes) -> int:
-        if self._late is None:
-            self._late, self._before, self.port.on_sent = b"", self.port.on_sent, self._freed
-        return 0
-
-    def _uart_send(self, _a: int, _b: int, data: bytes) -> int:
-        return self.uart.send(self._output_ns, data)
-
-    def _book_cycles(self, timer: int, pwm: int, _data: bytes) -> int:
-        cpu = self.cpu
-        cpu.top.own_ns = cpu.cycles_ns(timer)
-        period_ns = 0 if self.pwm is None else self.pwm.period_ns
-        cpu.steal(Source("pwm", _PWM_PRIORITY, 0, pwm) if pwm else None, period_ns)
-        self.cost_ns = cpu.top.cost_ns
-        return 0
-
-    def _lost_interrupts(self, _a: int, _b: int, _data: bytes) -> int:
-        return self.cpu.overruns
-
-    def _count_dropped(self, _a: int, _b: int, _data: bytes) -> int:
-        self.dropped += 1
-        return 0
-
-    def _debug_line(self, _a: int, _b: int, data: bytes) -> int:
-        text = data.decode(errors="replace")
-        _log.warning("%.6f s %s: %s", self.queue.now_ns * 1e-9, self.name, text)
-        return 0
 
 
 class _Asked(ParameterTable):

@@ -11,7 +11,7 @@
 
 #define STACK_BYTES 1048576 /* of a routine; the smallest usual stack of a thread is twice that */
 
-static int64_t firmware_ask(void *host, int what, int64_t a, int64_t b, void *data, int length);
+static int64_t firmware_ask(void *host, int64_t what, int64_t a, int64_t b, void *data, int length);
 
 /* The routine that this thread is in. inside: firmware's own code, not Python's that it called. */
 static __thread struct {
@@ -19,6 +19,8 @@ static __thread struct {
     void *host;
     char *stack;
     int64_t now_ns, output_ns;
+    int64_t duties;  /* of write_pwm(), not yet told: with the next call, or at the end */
+    int32_t encoder; /* its counter, handed in with the timer's routine; -1: has to be asked for */
     volatile sig_atomic_t inside;
     volatile unsigned long steps;
 } here;
@@ -59,39 +61,54 @@ static void prepare(void) {
     setitimer(ITIMER_VIRTUAL, &every, NULL);
 }
 
-/* Runs a routine, by its place in ROUTINES of library.py; 0, or the signal that ended it.
- * kind: 1 extended, 2 remote. data: of the frame, or the settings. */
-static int firmware_run(int routine, void *host, void *memory, int64_t now_ns, int64_t output_ns,
-                        uint32_t identifier, int kind, const uint8_t *data, int length) {
-    struct frame frame = {identifier, kind & 1, (uint8_t)(kind >> 1), (uint8_t)length, {0}};
+/* Runs a routine; arguments and result are those of Memory in library.py. block: its handle, then the memory. */
+static int64_t enter(void **block, int routine, int64_t now_ns, int64_t output_ns, uint32_t number, int size,
+                     const uint8_t *data, const struct frame *frame) {
     __typeof__(here) outer = here;
-    int signal;
+    struct board *memory = (struct board *)(block + 1);
+    int64_t ended;
     if (!ready)
         prepare();
-    memcpy(frame.data, data, length < 8 ? (size_t)length : 8);
-    here.host = host;
-    here.stack = (char *)&frame;
+    here.host = *block;
+    here.stack = (char *)&ended;
     here.now_ns = now_ns;
     here.output_ns = output_ns;
+    here.duties = 0;
+    here.encoder = routine == 1 && size ? (int32_t)number : -1;
     here.steps = ++steps;
-    signal = sigsetjmp(here.jump, 0);
-    if (!signal) {
+    ended = sigsetjmp(here.jump, 0);
+    if (!ended) {
         here.inside = 1;
         switch (routine) {
         case 0: board_reset(memory); break;
         case 1: board_timer(memory); break;
-        case 2: board_frame(memory, &frame); break;
+        case 2: board_frame(memory, frame); break;
         case 3: board_can(memory); break;
         case 4: board_sent(memory); break;
-        default: board_init(memory, (uint8_t)identifier, (const int32_t *)(const void *)data);
+        default: board_init(memory, (uint8_t)number, (const int32_t *)(const void *)data);
         }
     }
+    ended |= here.duties;
     here = outer;
-    return signal;
+    return ended;
 }
 
-static int64_t ask(int what, int64_t a, int64_t b, const void *data, size_t length) {
+static int64_t firmware_run(void **block, int routine, int64_t now_ns, int64_t output_ns, uint32_t number, int size,
+                            const uint8_t *data) {
+    return enter(block, routine, now_ns, output_ns, number, size, data, NULL);
+}
+
+static int64_t firmware_frame(void **block, int64_t now_ns, uint32_t identifier, int extended, int remote, int size,
+                              const uint8_t *data) {
+    struct frame frame = {identifier, (uint8_t)extended, (uint8_t)remote, (uint8_t)size, {0}};
+    memcpy(frame.data, data, size < 8 ? (size_t)size : 8);
+    return enter(block, 2, now_ns, now_ns, 0, 0, NULL, &frame);
+}
+
+static int64_t ask(int64_t what, int64_t a, int64_t b, const void *data, size_t length) {
     int64_t found;
+    what |= here.duties;
+    here.duties = 0;
     if (here.stack - (char *)&found > STACK_BYTES)
         siglongjmp(here.jump, SIGSEGV); /* Python, which could not come back, would find no stack left */
     here.inside = 0;
@@ -104,10 +121,14 @@ static int64_t ask(int what, int64_t a, int64_t b, const void *data, size_t leng
 int64_t time_ns(void) { return here.now_ns; }
 int64_t output_ns(void) { return here.output_ns; }
 uint32_t crystal_100us(void) { return (uint32_t)ask(CRYSTAL_100US, 0, 0, NULL, 0); }
-uint16_t read_encoder(void) { return (uint16_t)ask(READ_ENCODER, 0, 0, NULL, 0); }
+uint16_t read_encoder(void) {
+    int32_t known = here.encoder;
+    here.encoder = -1;
+    return (uint16_t)(known >= 0 ? known : ask(READ_ENCODER, 0, 0, NULL, 0));
+}
 uint16_t read_current(uint8_t motor) { return (uint16_t)ask(READ_CURRENT, motor, 0, NULL, 0); }
 uint32_t read_endat(void) { return (uint32_t)ask(READ_ENDAT, 0, 0, NULL, 0); }
-void write_pwm(uint16_t a, uint16_t b) { ask(WRITE_PWM, a, b, NULL, 0); }
+void write_pwm(uint16_t a, uint16_t b) { here.duties = INT64_C(1) << 40 | (int64_t)a << 24 | (int64_t)b << 8; }
 void write_pwm_q16(uint32_t a, uint32_t b) { ask(WRITE_PWM_Q16, a, b, NULL, 0); }
 void can_filter(uint8_t number, uint16_t mask, uint16_t identifier) {
     ask(CAN_FILTER, number, (int64_t)mask << 16 | identifier, NULL, 0);

@@ -28,19 +28,26 @@ class IsolatedMemory(Memory):
             self._process = subprocess.Popen([sys.executable, "-c", code], pass_fds=[fd])
         self._line = Connection(ours.detach())
         weakref.finalize(self, _end, self._line, self._process)
+        self.run = lambda _block, *routine: self._over(False, *routine)
+        self.frame = lambda _block, *frame: self._over(True, *frame)
 
-    def run(
-        self, routine: int, now_ns: int, output_ns: int, number: int = 0, kind: int = 0, data: bytes = b""
-    ) -> int:
-        """Like that of its base; a process that dies has ended with that signal."""
+    def _over(self, *order: object) -> int:
+        """A routine over there; a process that dies has ended with that signal."""
         try:
-            self._line.send((routine, now_ns, output_ns, number, kind, data))
+            self._line.send(order)
             while isinstance(heard := self._line.recv(), tuple):
-                self._line.send(self.answer(*heard))
+                self._line.send(self._answer(*heard))
         except (EOFError, OSError):
             return -self._process.wait()
-        self.raise_error()
         return int(heard)
+
+    def _answer(self, call: int, a: int, b: int, data: bytes) -> int:
+        if self.error is None and self.ask is not None:
+            try:
+                return self.ask(call, a, b, data)
+            except BaseException as error:
+                self.error = error
+        return 0
 
     @property
     def bytes(self) -> bytes:
@@ -78,7 +85,9 @@ def main(fd: int, file: str, flags: tuple[str, ...]) -> None:
         while True:
             order = line.recv()
             if isinstance(order, tuple):
-                line.send(memory.run(*order))
+                call = memory.frame if order[0] else memory.run
+                line.send(call(memory.block, *order[1:]))
+                memory.raise_error()  # the line is closed
             elif order is None:
                 line.send(memory.bytes)
             else:

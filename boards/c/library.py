@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 ROUTINES: Final = ("reset", "timer", "frame", "can", "sent", "init")
 """What firmware provides, by the names without `board_`."""
 CALLS: Final = (
-    "crystal_100us", "read_encoder", "read_current", "read_endat", "write_pwm", "write_pwm_q16", "can_filter",
+    "crystal_100us", "read_encoder", "read_current", "read_endat", "write_pwm_q16", "can_filter",
     "can_send", "can_withdraw", "can_free", "can_state", "can_tec", "request_can", "can_notify", "uart_send",
     "book_cycles", "lost_interrupts", "count_dropped", "debug_line",
 )  # fmt: skip
@@ -40,12 +40,17 @@ struct firmware {
     uint16_t memory_bytes; uint32_t fcy_hz; uint32_t period_us; struct interrupt timer, can; ...;
 };
 extern const struct firmware firmware;
-int firmware_run(int, void *, void *, int64_t, int64_t, uint32_t, int, const uint8_t *, int);
-extern "Python" int64_t firmware_ask(void *, int, int64_t, int64_t, void *, int);
+int64_t firmware_run(void **, int, int64_t, int64_t, uint32_t, int, const uint8_t *);
+int64_t firmware_frame(void **, int64_t, uint32_t, int, int, int, const uint8_t *);
+extern "Python" int64_t firmware_ask(void *, int64_t, int64_t, int64_t, void *, int);
 """
 
+DUTIES_FROM: Final = 8
+"""Bits of a signal, or of a call's place in CALLS. Above them are the duties of write_pwm(), 16 bits each,
+and a bit that says so: they come with the next call or the routine's end, whatever is first."""
+
 Ask = Callable[[int, int, int, bytes], int]
-"""(call by its place in CALLS, two numbers, bytes) -> what firmware gets."""
+"""(call by its place in CALLS, + duties, two numbers, bytes) -> what firmware gets."""
 
 
 class FirmwareError(ValueError):
@@ -63,7 +68,14 @@ class Row(NamedTuple):
 
 
 class Memory:
-    """One board's `struct board` with the library that works on it. ask: whoever answers its calls."""
+    """One board's `struct board` with the library that works on it. ask: whoever answers its calls.
+
+    run(block, routine by its place in ROUTINES, now, its end (ns), number, size, bytes) returns 0 or the
+    signal that ended it, + duties. For `timer`: the encoder's counter and 1, if there is one. For `init`:
+    device type, size, settings. frame(block, now, identifier, extended, remote, size, bytes): board_frame().
+    Whoever calls them asks for `error` next: what `ask` has raised meanwhile. They are the library's own, as
+    a function of Python between would cost as much as the firmware does.
+    """
 
     def __init__(self, file: Path, flags: Sequence[str] = (), ask: Ask | None = None) -> None:
         self.file, self.flags = file, tuple(flags)
@@ -73,33 +85,12 @@ class Memory:
         row = lib.firmware
         lines = [(each.priority, each.latency_cycles, each.cost_cycles) for each in (row.timer, row.can)]
         self.row = Row(row.memory_bytes, row.fcy_hz, row.period_us, *lines)
-        self._block = ffi.new("int64_t[]", row.memory_bytes // 8 + 1)  # aligned for every member
         self._handle = ffi.new_handle(self)
-        self._run = lib.firmware_run
+        self.block = ffi.new("void *[]", row.memory_bytes // ffi.sizeof("void *") + 2)
+        self.block[0] = self._handle
+        self.run: Callable[[Any, int, int, int, int, int, bytes], int] = lib.firmware_run
+        self.frame: Callable[[Any, int, int, bool, bool, int, bytes], int] = lib.firmware_frame
         self.error: BaseException | None = None
-
-    def run(
-        self, routine: int, now_ns: int, output_ns: int, number: int = 0, kind: int = 0, data: bytes = b""
-    ) -> int:
-        """A routine by its place in ROUTINES; returns 0 or the signal that ended it.
-
-        number, kind, data: a frame's identifier, 1 extended + 2 remote, bytes; or device type and settings of
-        `init`. What `ask` raises ends the routine's answers and is raised here.
-        """
-        ended: int = self._run(
-            routine, self._handle, self._block, now_ns, output_ns, number, kind, data, len(data)
-        )
-        self.raise_error()
-        return ended
-
-    def answer(self, call: int, a: int, b: int, data: bytes) -> int:
-        """What firmware gets; an error waits until the routine has come to its end."""
-        if self.error is None and self.ask is not None:
-            try:
-                return self.ask(call, a, b, data)
-            except BaseException as error:
-                self.error = error
-        return 0
 
     def raise_error(self) -> None:
         """Raise what `ask` has raised meanwhile."""
@@ -110,11 +101,11 @@ class Memory:
     @property
     def bytes(self) -> bytes:
         """All of the board's memory."""
-        return bytes(self._module.ffi.buffer(self._block, self.row.memory_bytes))
+        return bytes(self._module.ffi.buffer(self.block + 1, self.row.memory_bytes))
 
     @bytes.setter
     def bytes(self, data: bytes) -> None:
-        self._module.ffi.buffer(self._block, self.row.memory_bytes)[:] = data
+        self._module.ffi.buffer(self.block + 1, self.row.memory_bytes)[:] = data
 
     def __reduce__(self) -> tuple[Callable[[bool], "Memory"], tuple[bool], dict[str, Any]]:
         from boards.c.isolated import IsolatedMemory, unbuilt
@@ -164,6 +155,8 @@ def load(file: Path, flags: tuple[str, ...] = ()) -> tuple[Any, str]:
     from cffi import FFI
 
     parts = [_HERE / "host.c", _HERE / "firmware.h", file]
+    if file.exists() and not (file.is_file() or file.is_dir()):  # a pipe may never begin, a device never end
+        raise FirmwareError(f"{file}: no regular file")
     try:
         texts = [part.read_bytes() for part in parts]
     except OSError as error:
@@ -192,8 +185,13 @@ def load(file: Path, flags: tuple[str, ...] = ()) -> tuple[Any, str]:
     memory_of, contents = made.ffi.from_handle, made.ffi.buffer
 
     def ask(handle: Any, call: int, a: int, b: int, data: Any, length: int) -> int:
-        found: int = memory_of(handle).answer(call, a, b, contents(data, length)[:] if length else b"")
-        return found
+        memory: Memory = memory_of(handle)
+        if memory.error is None and memory.ask is not None:
+            try:
+                return memory.ask(call, a, b, contents(data, length)[:] if length else b"")
+            except BaseException as error:  # waits until the routine has come to its end
+                memory.error = error
+        return 0
 
     made.ffi.def_extern("firmware_ask")(ask)
     return made, digest
