@@ -13,10 +13,9 @@ FIELD = "calibration"
 def declared(document: Document, beside: Path) -> Any:
     """The declared plant with the document's overrides. beside: folder of relative names."""
     from scenarios.language.load import DEFAULT_PLANT
-    from scenarios.language.plants import plant_model
+    from scenarios.language.plants import named, plant_model
 
-    given = document.get("plant", DEFAULT_PLANT)
-    return plant_model({"file": given} if isinstance(given, str) else given, beside)
+    return plant_model(named(document.get("plant", DEFAULT_PLANT)), beside)
 
 
 def base(given: Document, folder: Path) -> Document:

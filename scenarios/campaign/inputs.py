@@ -94,18 +94,16 @@ def _plant(path: Any, where: str, base: Document) -> Put:
 
     from plant.model import ModelError, get
     from scenarios.language.load import DEFAULT_PLANT
-    from scenarios.language.plants import plant_model
+    from scenarios.language.plants import named, plant_model
 
-    plant = base.get("plant", DEFAULT_PLANT)
-    whole = {"file": plant} if isinstance(plant, str) else plant
+    whole = named(base.get("plant", DEFAULT_PLANT))
     try:
         number = get(plant_model(whole, Path(base["_folder"])), str(path)).value
     except ModelError as error:
         raise ScenarioError(f"{where}: {error}") from None
 
     def put(document: Document, value: Any) -> None:
-        given = document.get("plant", DEFAULT_PLANT)
-        given = {"file": given} if isinstance(given, str) else given
+        given = named(document.get("plant", DEFAULT_PLANT))
         document["plant"] = {**given, "overrides": {**given.get("overrides", {}), str(path): float(value)}}
 
     return put, str(path), lambda: number

@@ -17,6 +17,7 @@ from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.own import CAMPAIGNS, located
 from scenarios.language.units import parse
+from scenarios.language.validate import check
 
 SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
 MOST = 1_000_000
@@ -95,7 +96,7 @@ def load(file: Path) -> Plan:
     """
     file = located(file, CAMPAIGNS)
     document = read(file)
-    check(document)
+    check(document, schema())
     data = document.data
     scenario = file.parent / data["scenario"] if "scenario" in data else file
     plain = _base(data, scenario)
@@ -196,14 +197,6 @@ def schema() -> dict[str, Any]:
     """The published JSON schema of campaign files."""
     loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
     return loaded
-
-
-def check(document: Document) -> None:
-    """Raise ScenarioError for the first thing the language does not allow."""
-    from scenarios.language import validate
-
-    validate.check(document, schema())
-    validate.check_finite(document)
 
 
 def _text(value: object) -> str:

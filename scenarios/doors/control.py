@@ -15,6 +15,7 @@ import json
 import os
 import secrets
 from collections.abc import Callable
+from functools import partial
 from time import sleep
 
 from bus.outside.punctual import Punctuality
@@ -27,6 +28,11 @@ _LINE_LIMIT = 1000
 _LINES_PER_POLL = 8
 STEPPING, _PACING = ("join", "listen", "send", "step"), ("speed", "pause", "resume")
 TOKEN_VARIABLE = "SCHMIDT_TOKEN"
+HELP = (
+    "status | speed X | pause | resume | power BOARD on|off | late | stop | "
+    "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER | "
+    "snapshot [NAME]; with --clock steps: join N [NAME] | listen | send ID#DATA | step 5ms"
+)
 
 
 class ControlError(ValueError):
@@ -60,9 +66,10 @@ class ControlDoor:
         self._trusted: set[Client] = set()
         self.refused = 0
         self._commands: dict[str, Callable[[list[str]], str]] = {
-            "status": self._status, "speed": self._speed, "pause": self._pause, "resume": self._resume,
+            "status": self._status, "speed": self._speed, "pause": partial(self._pause, True),
+            "resume": partial(self._pause, False),
             "power": self._power, "fault": self._fault, "late": self._late,
-            "snapshot": self._snapshot, "stop": self._stop, "help": self._help,
+            "snapshot": self._snapshot, "stop": self._stop, "help": lambda _: HELP,
         }  # fmt: skip
 
     def open(self) -> None:
@@ -167,13 +174,9 @@ class ControlDoor:
         self._served.pacer.speed = speed
         return f"speed {speed:g}"
 
-    def _pause(self, _words: list[str]) -> str:
-        self._served.pacer.paused = True
-        return "paused"
-
-    def _resume(self, _words: list[str]) -> str:
-        self._served.pacer.paused = False
-        return "running"
+    def _pause(self, paused: bool, _words: list[str]) -> str:
+        self._served.pacer.paused = paused
+        return "paused" if paused else "running"
 
     def _power(self, words: list[str]) -> str:
         if len(words) != 2 or words[1] not in ("on", "off"):
@@ -211,13 +214,6 @@ class ControlDoor:
     def _stop(self, _words: list[str]) -> str:
         self._served.stop()
         return "ending"
-
-    def _help(self, _words: list[str]) -> str:
-        return (
-            "status | speed X | pause | resume | power BOARD on|off | late | stop | "
-            "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER | "
-            "snapshot [NAME]; with --clock steps: join N [NAME] | listen | send ID#DATA | step 5ms"
-        )
 
     def _forget(self, client: Client) -> None:
         if self._served.steps is not None:

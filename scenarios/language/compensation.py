@@ -11,7 +11,7 @@ from bus.protocol import HARMONICS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
 from scenarios.language.document import ScenarioError, read
-from scenarios.language.validate import check, check_finite
+from scenarios.language.validate import check
 
 FORMAT = "schmidt-compensation 1"
 _Q8, _Q16 = 256, 65536
@@ -95,7 +95,6 @@ def load(file: Path) -> Compensation:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise ScenarioError(f"{file}: is not a compensation file, 'format: {FORMAT}' is missing")
     check(document, _LANGUAGE)
-    check_finite(document)
     lines = [
         Line(*(float(row[name]) for name in ("order", "cosine_steps", "sine_steps")))
         for row in data.get("lines", [])

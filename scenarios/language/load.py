@@ -13,7 +13,7 @@ from host.sky.site import NAINITAL, Site, standard_pressure_hpa
 from scenarios.language import model
 from scenarios.language.document import Document, ScenarioError
 from scenarios.language.units import parse
-from scenarios.language.validate import check, check_finite, nearest, schema
+from scenarios.language.validate import check, nearest, schema
 
 DEFAULT_PLANT = "low-preload"
 BESIDE = ("name", "at", "until", "may_not_act")
@@ -41,7 +41,6 @@ def convert(document: Document, language: dict[str, Any] | None = None) -> model
     """
     language = language or schema()
     check(document, language)
-    check_finite(document)
     data: dict[str, Any] = in_base_units(document.data, language)
     steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
     _check_names(document, steps)

@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from plant.model import EffectModel, PlantModel
 
 
+def named(given: Any) -> dict[str, Any]:
+    """A `plant` of a document as a block, when it is only a name."""
+    return {"file": given} if isinstance(given, str) else given
+
+
 def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
     """Load and change a plant; `beside` is the folder that relative file names are also looked for in."""
     from plant import model as plants

@@ -81,9 +81,10 @@ def check(document: Document, language: dict[str, Any] | None = None) -> None:
         message = problems[0][2]
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         raise ScenarioError(message + more)
+    _check_finite(document)
 
 
-def check_finite(document: Document) -> None:
+def _check_finite(document: Document) -> None:
     """Raise `ScenarioError` for a number that is none: `.inf` and `.nan` pass every bound of a schema."""
     waiting: list[tuple[Path_, Any]] = [((), document.data)]
     while waiting:

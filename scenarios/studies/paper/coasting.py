@@ -46,7 +46,7 @@ def drive(plant: PlantModel) -> Drive:
     drops = [e.parameters["drop"].si for e in axis.effects if e.name == "diode_braking"]
     return Drive(
         torque_constant=motor.torque_constant.si,
-        resistance=motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
+        resistance=motor.loop,
         inductance=motor.inductance.si,
         diode_drop=drops[0] if drops else float("inf"),
         rotor=motor.rotor_inertia.si * GEAR_RATIO**2,

@@ -51,7 +51,7 @@ def linear_axis(model: PlantModel) -> LinearAxis:
     square = GEAR_RATIO**2
     return LinearAxis(
         torque_constant=motor.torque_constant.si,
-        resistance=motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si,
+        resistance=motor.loop,
         inductance=motor.inductance.si,
         inertia=axis.inertia.si / square + 2.0 * motor.rotor_inertia.si,
         viscous=axis.friction.viscous.si / square + 2.0 * motor.drag.si,
