@@ -4,6 +4,7 @@ An alias stands for a whole tree, so a few lines can name more values than a mac
 nested deeper than the parser's stack. Both are seen in the event stream, which costs neither.
 """
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,8 @@ MAX_BYTES = 4_000_000
 """The largest file of the project has 30 kB."""
 MAX_DEPTH = 50
 MAX_VALUES = 100_000
+_TOO_LONG = re.compile(r"[-+]?(0[xb])?[0-9a-fA-F_:]{251,}")
+"""A whole number that no floating-point number may hold: 250 hexadecimal digits are 1e301."""
 
 
 class TextError(ValueError):
@@ -130,3 +133,5 @@ def _check_scalar(value: str, line: int) -> None:
     for character in value:
         if (character < " " and character not in "\t\n\r") or "\ud800" <= character <= "\udfff":
             raise TextError(f"{character!a} is no character of a text", line)
+    if len(value) > 250 and _TOO_LONG.fullmatch(value):
+        raise TextError(f"a number of {len(value)} digits is too long", line)

@@ -182,7 +182,8 @@ class _Section:
             try:
                 start_s = (datetime.fromisoformat(start[1]) - datetime(2000, 1, 1)).total_seconds()
             except ValueError:
-                raise CalibrationInputError(self.path, f"'{start[0]}' is no date and time") from None
+                what = f"the section above this line: '{start[0]}' is no date and time"
+                raise CalibrationInputError(self.path, what, self.first) from None
         t, ra, dec, segment, dither = np.array(self.rows).T.copy()
         columns = {
             "t": t,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from os.path import realpath
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from calibration.inputs.rigfile import telescope
 from calibration.inputs.run import Run
 from calibration.inputs.stuck import check_stuck
 from calibration.inputs.tables import READERS, read_table, set_starts
-from calibration.inputs.text import load_text
+from calibration.inputs.text import check_file, load_text
 from calibration.inputs.twomotors import runs_of
 
 #: what a log of each format is called

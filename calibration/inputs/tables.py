@@ -17,6 +17,7 @@ from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import load_utf8, read_columns, read_long
+from calibration.inputs.thresholds import LARGEST_NUMBER
 
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, **RECORDINGS}
@@ -56,6 +57,9 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
             raise CalibrationInputError(path, what, None, label)
         if (big := np.abs(values) > LARGEST_FIELD).any():
             what = f"is beyond {LARGEST_FIELD:g} in data row {int(np.argmax(big)) + 1}"
+            raise CalibrationInputError(path, what, None, label)
+        if (big := np.abs(values) > LARGEST_NUMBER).any():
+            what = f"is beyond {LARGEST_NUMBER:g} in data row {int(np.argmax(big)) + 1}"
             raise CalibrationInputError(path, what, None, label)
         if where.sign_bit is not None:
             values = signed(path, values, where.sign_bit, label)

@@ -37,6 +37,8 @@ ANGLE_OF_A_TURN = 2e6
 LEAST_TRAVEL = 1000
 # unit as the scale's: no scale is larger, and sums of such numbers stay finite. ASSUMPTION
 LARGEST_SCALE = 1e12
+# of any unit, in a table: its fourth power is finite still, and nothing measured is larger. ASSUMPTION
+LARGEST_NUMBER = 1e60
 
 # --- columns that hold one number
 

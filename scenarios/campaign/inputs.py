@@ -44,6 +44,8 @@ def read(given: dict[str, Any], where: str, base: Document) -> Input:
 def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
     spread = given.get("times", given.get("is"))
     if isinstance(spread, list):
+        if "times" in given and not all(type(each) in (int, float) for each in spread):
+            raise ScenarioError(f"{where}: {kind}: `times` is a list of numbers")
         return (lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]), spread
     if not isinstance(spread, dict):
         raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
@@ -68,6 +70,8 @@ def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
             raise ScenarioError(f"{where}: between {low:g} and {high:g} there is nothing")
         width = high - low
         return lambda share: share * width + low
+    if "distribution" not in spread:
+        raise ScenarioError(f"{where}: `between` or `distribution` is missing")
     from scipy import stats  # a second of imports
 
     name = str(spread["distribution"])

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from host.logs.files import LogError
+from plant.yamltext import TextError, check_regular
 from scenarios.campaign.job import Row
 from scenarios.language.document import ScenarioError
 
@@ -52,6 +53,10 @@ class Journal:
 
 def rows(path: Path) -> Iterator[Row]:
     """The runs of a journal; lines that were torn or are no run are left out."""
+    try:
+        check_regular(path)
+    except TextError as error:
+        raise ScenarioError(f"{path}: {error}") from None
     with path.open(encoding="utf-8", errors="replace") as file:
         for line in file:
             try:

@@ -53,8 +53,8 @@ def _validator() -> Any:
             if not bounds[0] <= parse(value, kind) <= bounds[1]:
                 yield ValidationError(f"{value} is out of range; {_limits(bounds, value, kind)}")
 
-    def one_of(_: object, names: list[str], value: Mapping[str, object], __: object) -> Iterable[Exception]:
-        if not set(names) & set(value):
+    def one_of(_: object, names: list[str], value: object, __: object) -> Iterable[Exception]:
+        if isinstance(value, Mapping) and not set(names) & set(value):
             yield ValidationError(f"needs a {' or an '.join(names)}")
 
     rules = {"x-quantity": quantity, "x-range": within, "x-needs": one_of}

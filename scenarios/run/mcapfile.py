@@ -13,11 +13,18 @@ from scenarios.run.sources import Source, sources, summary_of
 def export(folder: Path, file: Path) -> int:
     """Write what a run has left in `folder`; returns the number of messages. Times are UTC.
 
-    Raises ValueError for a folder that is none of a run's.
+    Raises ValueError for a folder that is none of a run's, OSError with the file's name.
     """
+    summary = summary_of(folder)
+    try:
+        return _write(folder, summary, file)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, error.filename or str(file)) from None
+
+
+def _write(folder: Path, summary: dict[str, Any], file: Path) -> int:
     from mcap.writer import Writer
 
-    summary = summary_of(folder)
     start_ns = round(datetime.fromisoformat(summary["start_utc"]).timestamp() * 1e3) * 1_000_000
     channels: dict[str, int] = {}
     count = 0

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
 from bus.protocol.page import DBC_PATH
+from plant.yamltext import read_text
 
 _BATCH = 4096
 """Rows of a Parquet file at a time."""
@@ -169,7 +170,9 @@ def _fitted(value: Any, schema: dict[str, Any]) -> Any:
 def summary_of(folder: Path) -> dict[str, Any]:
     """summary.json of a run; raises ValueError where there is none."""
     try:
-        found: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        found: dict[str, Any] = json.loads(read_text(folder / "summary.json"))
     except FileNotFoundError:
         raise ValueError(f"{folder}: no summary.json: give the output folder of schmidt run") from None
+    except ValueError as error:
+        raise ValueError(f"{folder / 'summary.json'}: {error}") from None
     return found
