@@ -215,37 +215,26 @@ static Axis *make(const char *name, const char *token, void *environment, void (
     return 0;
 }
 
-static int keep(Axis *a, void **state)
-{
-    if (!*state && !(*state = malloc(sizeof(State)))) return ERROR;
-    return memcpy(*state, &a->s, sizeof(State)), OK;
-}
-
 #define EACH(action) for (size_t k = 0; k < n; k++) { int said = (action); if (said) return said; } return OK
 #define NONE(name) EXPORT int name(void) { return ERROR; }
 
 #if FMI == 2
+typedef int Flag;
 typedef struct { void (*log)(); void *alloc, *release, *finished, *environment; } Callbacks;
-typedef const uint32_t *Refs;
+#define F(name) fmi2##name
+#define REAL(verb) fmi2##verb##Real
+#define STATE(verb) fmi2##verb##FMUstate
+#define SIZE fmi2SerializedFMUstateSize
+#define LOADS fmi2DeSerializeFMUstate
+#define ARRAY(type) const uint32_t *r, size_t n, type *v
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
 EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
 EXPORT void *fmi2Instantiate(const char *name, int kind, const char *token, const char *place, const Callbacks *c,
                              int visible, int logging)
-{
-    (void)place, (void)visible, (void)logging;
-    return kind == 1 ? make(name, token, c->environment, c->log) : 0;
-}
-EXPORT void fmi2FreeInstance(Axis *a) { free(a); }
-EXPORT int fmi2SetDebugLogging(void *a, int on, size_t n, const char *const *c)
-{ (void)a, (void)on, (void)n, (void)c; return OK; }
+{ return kind == 1 ? make(name, token, c->environment, c->log) : 0; }
 EXPORT int fmi2SetupExperiment(Axis *a, int has, double tolerance, double start, int ends, double end)
-{ (void)has, (void)tolerance, (void)ends, (void)end; a->s.start = start; return OK; }
-EXPORT int fmi2EnterInitializationMode(Axis *a) { (void)a; return OK; }
-EXPORT int fmi2ExitInitializationMode(Axis *a) { return a->s.ready || begin(a) ? OK : ERROR; }
-EXPORT int fmi2Terminate(Axis *a) { (void)a; return OK; }
-EXPORT int fmi2Reset(Axis *a) { reset(&a->s); return OK; }
-EXPORT int fmi2GetReal(Axis *a, Refs r, size_t n, double *v) { EACH(get_real(a, r[k], v + k)); }
-EXPORT int fmi2SetReal(Axis *a, Refs r, size_t n, const double *v) { EACH(set_real(a, r[k], v + k)); }
+{ return a->s.start = start, OK; }
+EXPORT int fmi2EnterInitializationMode(Axis *a) { return OK; }
 static int get_int(Axis *a, uint32_t r, int *v)
 {
     int64_t count = 0;
@@ -253,61 +242,40 @@ static int get_int(Axis *a, uint32_t r, int *v)
     *v = (int)count;
     return said || *v != count ? ERROR : OK; /* FMI 2 has no more than 32 bits */
 }
-EXPORT int fmi2GetInteger(Axis *a, Refs r, size_t n, int *v) { EACH(get_int(a, r[k], v + k)); }
-EXPORT int fmi2GetBoolean(Axis *a, Refs r, size_t n, int *v)
-{ bool *on = 0; EACH(switched(a, r[k], &on, false) ? ERROR : (v[k] = *on, OK)); }
-EXPORT int fmi2SetBoolean(Axis *a, Refs r, size_t n, const int *v)
-{ bool *on = 0; EACH(switched(a, r[k], &on, true) ? ERROR : (*on = v[k] != 0, OK)); }
-EXPORT int fmi2DoStep(Axis *a, double from, double length, int final) { (void)final; return step(a, from, length); }
-EXPORT int fmi2GetBooleanStatus(Axis *a, int kind, int *v) { (void)a, (void)kind; *v = 0; return OK; }
+EXPORT int fmi2GetInteger(Axis *a, ARRAY(int)) { EACH(get_int(a, r[k], v + k)); }
+EXPORT int fmi2DoStep(Axis *a, double from, double length, int final) { return step(a, from, length); }
+EXPORT int fmi2GetBooleanStatus(Axis *a, int kind, int *v) { return *v = 0, OK; }
 EXPORT int fmi2GetRealStatus(Axis *a, int kind, double *v)
-{ (void)kind; *v = a->s.start + (double)a->s.now * 1e-9; return OK; }
-#define STATE(verb) fmi2##verb##FMUstate
-#define SIZE fmi2SerializedFMUstateSize
-#define LOADS fmi2DeSerializeFMUstate
+{ return *v = a->s.start + (double)a->s.now * 1e-9, OK; }
 NONE(fmi2SetInteger) NONE(fmi2GetString) NONE(fmi2SetString) NONE(fmi2GetDirectionalDerivative)
 NONE(fmi2SetRealInputDerivatives) NONE(fmi2GetRealOutputDerivatives) NONE(fmi2CancelStep) NONE(fmi2GetStatus)
 NONE(fmi2GetIntegerStatus) NONE(fmi2GetStringStatus)
 #else
-typedef const uint32_t *Refs;
+typedef bool Flag;
+#define F(name) fmi3##name
+#define REAL(verb) fmi3##verb##Float64
+#define STATE(verb) fmi3##verb##FMUState
+#define SIZE fmi3SerializedFMUStateSize
+#define LOADS fmi3DeserializeFMUState
+#define ARRAY(type) const uint32_t *r, size_t n, type *v, size_t m
 EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
 EXPORT void *fmi3InstantiateCoSimulation(const char *name, const char *token, const char *place, bool visible,
-                                         bool logging, bool events, bool early, Refs wanted, size_t n,
+                                         bool logging, bool events, bool early, const uint32_t *wanted, size_t n,
                                          void *environment, void (*log)(), void (*update)())
-{
-    (void)place, (void)visible, (void)logging, (void)events, (void)early, (void)wanted, (void)n, (void)update;
-    return make(name, token, environment, log);
-}
+{ return make(name, token, environment, log); }
 EXPORT void *fmi3InstantiateModelExchange(void) { return 0; }
 EXPORT void *fmi3InstantiateScheduledExecution(void) { return 0; }
-EXPORT void fmi3FreeInstance(Axis *a) { free(a); }
-EXPORT int fmi3SetDebugLogging(void *a, bool on, size_t n, const char *const *c)
-{ (void)a, (void)on, (void)n, (void)c; return OK; }
 EXPORT int fmi3EnterInitializationMode(Axis *a, bool has, double tolerance, double start, bool ends, double end)
-{ (void)has, (void)tolerance, (void)ends, (void)end; a->s.start = start; return OK; }
-EXPORT int fmi3ExitInitializationMode(Axis *a) { return a->s.ready || begin(a) ? OK : ERROR; }
-EXPORT int fmi3Terminate(Axis *a) { (void)a; return OK; }
-EXPORT int fmi3Reset(Axis *a) { reset(&a->s); return OK; }
-EXPORT int fmi3GetFloat64(Axis *a, Refs r, size_t n, double *v, size_t m) { (void)m; EACH(get_real(a, r[k], v + k)); }
-EXPORT int fmi3SetFloat64(Axis *a, Refs r, size_t n, const double *v, size_t m)
-{ (void)m; EACH(set_real(a, r[k], v + k)); }
-EXPORT int fmi3GetInt64(Axis *a, Refs r, size_t n, int64_t *v, size_t m) { (void)m; EACH(get_count(a, r[k], v + k)); }
-EXPORT int fmi3GetBoolean(Axis *a, Refs r, size_t n, bool *v, size_t m)
-{ bool *on = 0; (void)m; EACH(switched(a, r[k], &on, false) ? ERROR : (v[k] = *on, OK)); }
-EXPORT int fmi3SetBoolean(Axis *a, Refs r, size_t n, const bool *v, size_t m)
-{ bool *on = 0; (void)m; EACH(switched(a, r[k], &on, true) ? ERROR : (*on = v[k], OK)); }
+{ return a->s.start = start, OK; }
+EXPORT int fmi3GetInt64(Axis *a, ARRAY(int64_t)) { EACH(get_count(a, r[k], v + k)); }
 EXPORT int fmi3DoStep(Axis *a, double from, double length, bool final, bool *events, bool *ends, bool *early,
                       double *reached)
 {
     int said = step(a, from, length);
-    (void)final;
     *events = *ends = *early = false;
     *reached = a->s.start + (double)a->s.now * 1e-9;
     return said;
 }
-#define STATE(verb) fmi3##verb##FMUState
-#define SIZE fmi3SerializedFMUStateSize
-#define LOADS fmi3DeserializeFMUState
 #define BOTH(type) NONE(fmi3Get##type) NONE(fmi3Set##type)
 #define OTHER(type) NONE(fmi3Set##type)
 BOTH(Float32) BOTH(Int8) BOTH(UInt8) BOTH(Int16) BOTH(UInt16) BOTH(Int32) BOTH(UInt32) BOTH(UInt64) BOTH(String)
@@ -321,15 +289,26 @@ NONE(fmi3GetNominalsOfContinuousStates) NONE(fmi3GetNumberOfEventIndicators) NON
 NONE(fmi3EnterStepMode) NONE(fmi3GetOutputDerivatives) NONE(fmi3ActivateModelPartition)
 #endif
 
-EXPORT int STATE(Get)(Axis *a, void **state) { return keep(a, state); }
+EXPORT void F(FreeInstance)(Axis *a) { free(a); }
+EXPORT int F(SetDebugLogging)(Axis *a, Flag on, size_t n, const char *const *categories) { return OK; }
+EXPORT int F(ExitInitializationMode)(Axis *a) { return a->s.ready || begin(a) ? OK : ERROR; }
+EXPORT int F(Terminate)(Axis *a) { return OK; }
+EXPORT int F(Reset)(Axis *a) { return reset(&a->s), OK; }
+EXPORT int REAL(Get)(Axis *a, ARRAY(double)) { EACH(get_real(a, r[k], v + k)); }
+EXPORT int REAL(Set)(Axis *a, ARRAY(const double)) { EACH(set_real(a, r[k], v + k)); }
+EXPORT int F(GetBoolean)(Axis *a, ARRAY(Flag))
+{ bool *on = 0; EACH(switched(a, r[k], &on, false) ? ERROR : (v[k] = *on, OK)); }
+EXPORT int F(SetBoolean)(Axis *a, ARRAY(const Flag))
+{ bool *on = 0; EACH(switched(a, r[k], &on, true) ? ERROR : (*on = v[k] != 0, OK)); }
+EXPORT int STATE(Get)(Axis *a, void **state)
+{ return *state || (*state = malloc(sizeof(State))) ? memcpy(*state, &a->s, sizeof(State)), OK : ERROR; }
 EXPORT int STATE(Set)(Axis *a, void *state) { return memcpy(&a->s, state, sizeof(State)), OK; }
-EXPORT int STATE(Free)(Axis *a, void **state) { return (void)a, free(*state), *state = 0, OK; }
-EXPORT int SIZE(Axis *a, void *state, size_t *size) { return (void)a, (void)state, *size = sizeof(State), OK; }
+EXPORT int STATE(Free)(Axis *a, void **state) { return free(*state), *state = 0, OK; }
+EXPORT int SIZE(Axis *a, void *state, size_t *size) { return *size = sizeof(State), OK; }
 EXPORT int STATE(Serialize)(Axis *a, void *state, char *bytes, size_t size)
-{ return (void)a, size < sizeof(State) ? ERROR : (memcpy(bytes, state, sizeof(State)), OK); }
+{ return size < sizeof(State) ? ERROR : (memcpy(bytes, state, sizeof(State)), OK); }
 EXPORT int LOADS(Axis *a, const char *bytes, size_t size, void **state)
 {
-    (void)a;
     if (size != sizeof(State) || !(*state = malloc(sizeof(State)))) return ERROR;
     return memcpy(*state, bytes, sizeof(State)), OK;
 }
