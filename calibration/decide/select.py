@@ -72,51 +72,77 @@ class _Search:
             left = [c for c in left if c.stage]
         left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
         while len(self.picks.chosen) < most and left:
-            found = self.first_accepted(self.picks, left, limits.TRIED)
-            if found is None:
+            found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]
+            if not found:
                 break
-            self.picks = leave_out(self.picks.keep([*self.picks.chosen, found]), superfluous)
-            left = [c for c in left if c.key != found.candidate.key]
+            self.picks = leave_out(self.picks.keep([*self.picks.chosen, *found]), superfluous)
+            taken = {x.candidate.key for x in found}
+            left = [c for c in left if c.key not in taken]
 
     def revise(self) -> None:
         """Look at every pick again beside the others; drop what needs no name or has a size that none has."""
-        if len(self.picks.chosen) > 1:
-            for k in range(len(self.picks.chosen)):
-                self._look_again(k)
+        replaced = False
+        for k in range(len(self.picks.chosen)):
+            first, *later = self.picks.candidates[k:]
+            shares = (_shared(self.picks.problem, first, c) for c in later)
+            if replaced or any(share > limits.APART for share in shares):
+                replaced |= self._look_again(k)
         self.picks = leave_out(self.picks, needless(self.margin), lesser_of_one_order)
         for k in range(len(self.picks.chosen)):
             self.picks = _polished(self.picks, k)
         self.picks = signed(self.picks)
 
-    def _look_again(self, k: int) -> None:
-        """What was picked while the others were missing may be another's name."""
+    def _look_again(self, k: int) -> bool:
+        """What was picked while the others were missing may be another's name; whether it is."""
         others = self.picks.without(k)
         taken = {c.key for c in others.candidates}
         left = [c for c in self.candidates if c.key not in taken]
-        found = self.first_accepted(others, left, limits.TRIED_AGAIN, further=False)
+        found, *_ = [*self.accepted(others, left, limits.TRIED_AGAIN, further=False), None]
         if found is None:
-            return
+            return False
         was, now = self.picks.candidates[k], found.candidate
         if now.key != was.key:
             self.picks.refused.append(Refusal(was.say(), f"{now.say()} explains it better"))
         self.picks = self.picks.put(k, found)
+        return now.key != was.key
 
-    def first_accepted(
+    def accepted(
         self, others: Selection, candidates: list[Candidate], tries: int, further: bool = True
-    ) -> Contender | None:
-        """The first of the best `tries` that nothing speaks against; no `further` one replaces a pick."""
-        p, base = others.problem, others.columns
+    ) -> list[Contender]:
+        """The first of the best `tries` that nothing speaks against; no `further` one replaces a pick.
+
+        A line comes with the lines next to it in rank that it has nothing in common with.
+        """
+        p, base, out = others.problem, others.columns, list[Contender]()
         contenders = look(p, base, others.after, candidates)
         for one in contenders[:tries]:
+            if out and not _apart(p, one.candidate, out):
+                break
             contender = replace(one, candidate=settled(p, base, one.candidate, one.fit))
             inside, held = scores(others, contender)
             why = refuse(contender, inside, held, self.margin) or too_small(others, contender, further)
             if not why:
                 rivals = [*contender.confounded, *equivalents(others, contenders, contender)]
-                return replace(contender, held=held, confounded=rivals)
-            if further:
+                out.append(replace(contender, held=held, confounded=rivals))
+                if not further:
+                    break
+            elif further and not out:
                 self.picks.refused.append(Refusal(contender.candidate.say(), why))
-        return None
+        return out
+
+
+def _apart(p: Problem, c: Candidate, taken: list[Contender]) -> bool:
+    """Whether all are lines, and `c` has nothing in common with those that are taken."""
+    others = [x.candidate for x in taken]
+    lines = all(x.kind == "line" for x in [c, *others])
+    return lines and max(_shared(p, c, x) for x in others) <= limits.APART
+
+
+def _shared(p: Problem, one: Candidate, other: Candidate) -> float:
+    """Largest share of mean square that two candidates can take from each other."""
+    centred = (c.columns[p.train] - c.columns[p.train].mean(axis=0) for c in (one, other))
+    a, b = (np.linalg.qr(x)[0] for x in centred)
+    return float(np.linalg.norm(a.T @ b, 2)) ** 2
 
 
 def _polished(s: Selection, k: int) -> Selection:

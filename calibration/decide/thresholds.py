@@ -50,6 +50,8 @@ UNNAMED = 0.85
 MORE = 0.05
 # of the mean square of what two add: more apart, they are two explanations. ASSUMPTION
 SAME_SHAPE = 0.1
+# share of mean square that two picks may have in common and not change each other's rank. ASSUMPTION
+APART = 0.01
 # candidates fitted in full, each with its own noise model. ASSUMPTION: time against names missed
 CONTENDERS = 8
 # candidates of CONTENDERS, at least, from the ranking on the residual as it is. ASSUMPTION
