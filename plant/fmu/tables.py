@@ -1,6 +1,6 @@
 """model.h: the numbers of one axis and where in its row of the world they go, for plant/fmu/wrapper.c."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,56 +26,54 @@ _CONSTANTS = {
 
 def header(axis: Exported, token: str) -> str:
     """Return the text of model.h."""
-    rows, fills = _rows(axis)
-    starts = [row for *_, row in _row_numbers(axis)]
-    changes, delays = _changes(axis), _delays(axis)
-    sizes = {
-        **_PLACES, "N_PARAMETERS": len(axis.parameters), "N_EFFECTS": len(axis.enabled), "N_ROWS": len(rows),
-        "N_CHANGES": len(changes), "N_DELAYS": len(delays), "N_REALS": len(REALS),
-        "N_COUNTERS": len(COUNTERS),
-    }  # fmt: skip
+    part, of, each = axis.part, axis.of_effects, axis.parameters
+    everything = tuple(replace(effect, enabled=True) for effect in part.effects)
+    made = rows_of(everything, constants(part), axis.seed, axis.axis)
+    rows, fills = _rows(axis, made)
+    changes = [  # what effects change once
+        (k, of[k][parameter], NUMBER_OF[switch])
+        for k, effect in enumerate(part.effects)
+        for parameter, switch in REGISTRY[effect.name].switches.items()
+    ]
+    late = [k for k, effect in enumerate(part.effects) if effect.name == LATE]
     counters = [
         (reading, COLUMNS.index(column), NUMBER_OF[bits] if bits else -1)
         for _, reading, column, bits in COUNTERS
     ]
-    each = axis.parameters
+    sizes = _PLACES | {
+        "N_PARAMETERS": len(each), "N_EFFECTS": len(axis.enabled), "N_ROWS": len(rows),
+        "N_CHANGES": len(changes), "N_DELAYS": len(late), "N_REALS": len(REALS), "N_COUNTERS": len(COUNTERS),
+    }  # fmt: skip
     return "\n".join(
         [
             f'#define TOKEN "{token}"',
-            f"enum {{ {', '.join(f'{name} = {size}' for name, size in sizes.items())} }};",
-            _numbers("START", [p.start for p in each]),
-            _numbers("LOW", [p.low for p in each]),
-            _numbers("HIGH", [p.high for p in each]),
-            "static const char *const NAMES[] = {" + ", ".join(f'"{p.name}"' for p in each) + "};",
-            "static const _Bool ENABLED[] = {"
-            + ", ".join(str(int(on)) for on in (*axis.enabled, False))
-            + "};",
+            f"enum {{ {_list(f'{name} = {size}' for name, size in sizes.items())} }};",
+            *(
+                f"static const double {name.upper()}[] = {{{_list(float(getattr(p, name)) for p in each)}}};"
+                for name in ("start", "low", "high")
+            ),
+            'static const char *const NAMES[] = {"' + '", "'.join(p.name for p in each) + '"};',
+            f"static const _Bool ENABLED[] = {{{_list(map(int, (*axis.enabled, False)))}}};",
             _table("CHANGES", "effect, parameter, number", changes),
-            _table("DELAYS", "effect, column, delay", delays),
+            _table("DELAYS", "effect, column, delay", [(k, of[k]["column"], of[k]["delay"]) for k in late]),
             _table("ROWS", "effect, of_motors, first, end", rows),
             _table("FILLS", "place, constant, from", fills),
             _table("COUNTER", "reading, column, bits", counters),
-            "static const double ROW_START[][AT_ROW] = {"
-            + ",\n".join("{" + ", ".join(map(repr, row)) + "}" for row in [*starts, [0.0]])
-            + "};\n",
+            f"static const double ROW_START[][AT_ROW] = {_braced([*(row for *_, row in made), [0.0]])};\n",
         ]
     )
 
 
-def _row_numbers(axis: Exported) -> list[tuple[Any, int, list[float]]]:
-    """Rows of all effects, as if each were switched on."""
-    part = axis.part
-    everything = tuple(replace(effect, enabled=True) for effect in part.effects)
-    return rows_of(everything, constants(part), axis.seed, axis.axis)
+_Table = Sequence[tuple[int, ...]]
 
 
-def _rows(axis: Exported) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+def _rows(axis: Exported, made: list[tuple[Any, int, list[float]]]) -> tuple[_Table, _Table]:
+    """Rows of all effects, as if each were switched on, and what the importer's numbers fill in."""
     rows: list[tuple[int, ...]] = []
     fills: list[tuple[int, ...]] = []
-    for hook, k, _ in _row_numbers(axis):
+    for hook, k, _ in made:
         first = len(fills)
-        for j, name in enumerate(REGISTRY[axis.part.effects[k].name].numbers):
-            place = at.ROW_MEMORY + MEMORY + j
+        for place, name in enumerate(REGISTRY[axis.part.effects[k].name].numbers, at.ROW_MEMORY + MEMORY):
             if name in axis.of_effects[k]:
                 fills.append((place, 0, axis.of_effects[k][name]))
             elif name in _CONSTANTS:
@@ -84,28 +82,14 @@ def _rows(axis: Exported) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]
     return rows, fills
 
 
-def _changes(axis: Exported) -> list[tuple[int, ...]]:
-    """What effects change once."""
-    return [
-        (k, axis.of_effects[k][parameter], NUMBER_OF[switch])
-        for k, effect in enumerate(axis.part.effects)
-        for parameter, switch in REGISTRY[effect.name].switches.items()
-    ]
+def _list(values: Iterable[object]) -> str:
+    return ", ".join(map(str, values))
 
 
-def _delays(axis: Exported) -> list[tuple[int, ...]]:
-    return [
-        (k, axis.of_effects[k]["column"], axis.of_effects[k]["delay"])
-        for k, effect in enumerate(axis.part.effects)
-        if effect.name == LATE
-    ]
+def _braced(rows: Iterable[Iterable[float]]) -> str:
+    return "{" + ",\n".join("{" + _list(row) + "}" for row in rows) + "}"
 
 
-def _numbers(name: str, values: Iterable[float]) -> str:
-    return f"static const double {name}[] = {{{', '.join(map(repr, map(float, values)))}}};"
-
-
-def _table(name: str, members: str, rows: Iterable[tuple[int, ...]]) -> str:
+def _table(name: str, members: str, rows: _Table) -> str:
     """A table of whole numbers; a last row of zeros, as C knows no empty one."""
-    text = ", ".join("{" + ", ".join(map(str, row)) + "}" for row in (*rows, (0,)))
-    return f"static const struct {{ int {members}; }} {name}[] = {{{text}}};"
+    return f"static const struct {{ int {members}; }} {name}[] = {_braced([*rows, (0,)])};"
