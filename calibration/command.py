@@ -17,7 +17,7 @@ from calibration.look.axis import look_at_axis
 from calibration.look.drift import look_at_drift
 from calibration.look.looked import Looked, Options
 from calibration.look.response import look_at_response
-from calibration.replay.corrected import correct_and_replay
+from calibration.replay.corrected import correct_and_replay, with_curves
 from calibration.report.htmlpage import page
 from calibration.report.jsonreport import report_of
 from calibration.report.pictures import Picture, pictures
@@ -67,7 +67,7 @@ def calibrate(
         _check_names(hold_out or [], drive.runs, logs)
         out.mkdir(parents=True, exist_ok=True)
         options = Options(hold_out=hold_out or [], out=out, plant=plant, replay=replay, tell=tell)
-        found = look(drive, options)
+        found = with_curves(look(drive, options))
         again = correct_and_replay(found, options)
         data = report_of(found, again)
         tell("writing the report")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, replace
 
 import numpy as np
 
@@ -53,19 +54,20 @@ class Curve:
     half: tuple[float, ...]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Finding:
     """One effect; `evidence` is -log10 p on training rows, `share` the held-out mean square it takes away."""
 
     name: str
     channel: str
     domain: str
+    _: KW_ONLY
     stage: str | None = None
     harmonic: int | None = None
     order: float | None = None
     frequency: float | None = None
-    equivalent: list[str] = field(default_factory=list)
-    parameters: dict[str, Parameter] = field(default_factory=dict)
+    equivalent: Sequence[str] = ()
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
     evidence: float = 0.0
     share: float = 0.0
     note: str = ""
@@ -76,6 +78,14 @@ class Finding:
         """Whether it is a column's or a clock's fault that takes nothing off a response's error."""
         return self.channel == "S" and self.domain == "clock" and self.share == 0.0
 
+    def noted(self, note: str) -> Finding:
+        """With a further note behind its own."""
+        return replace(self, note=f"{self.note}; {note}".lstrip("; "))
+
+    def having(self, **parameters: Parameter) -> Finding:
+        """With other parameters, or more."""
+        return replace(self, parameters={**self.parameters, **parameters})
+
     @property
     def key(self) -> tuple[str, str | None, int | None]:
         """Name and place."""
@@ -83,7 +93,7 @@ class Finding:
 
 
 def of_columns(
-    name: str, parameters: dict[str, Parameter], evidence: float, share: float = 1.0, note: str = ""
+    name: str, parameters: Mapping[str, Parameter], evidence: float, share: float = 1.0, note: str = ""
 ) -> Finding:
     """A fault of columns or clocks, which is settled before any balance."""
     return Finding(name, "S", "clock", parameters=parameters, evidence=evidence, share=share, note=note)

@@ -39,7 +39,7 @@ def delay_findings(selections: Selections, declared: Declared) -> list[Finding]:
         return []
     found = late_column(f"the {late.column} column is late", late.delay, late.reach / REACH, reach=REACH)
     if late.column in COLUMNS:
-        found.parameters["column"] = Parameter(float(COLUMNS[late.column]), "1")
+        found = found.having(column=Parameter(float(COLUMNS[late.column]), "1"))
     return [found]
 
 

@@ -47,7 +47,7 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
         if f.channel == "T" and others:
             if electrical & {f.name, *others}:
                 continue
-            f.equivalent = list(dict.fromkeys([*f.equivalent, *others]))
+            f = replace(f, equivalent=list(dict.fromkeys([*f.equivalent, *others])))
         out.append(f)
     return out
 
@@ -90,8 +90,7 @@ def _same_key(findings: list[Finding]) -> list[Finding]:
         first = best.setdefault(key, f)
         for torque, twist in ((first, f), (f, first)):
             if torque.channel == "T" and twist.channel == "K" and "amplitude" in twist.parameters:
-                torque.parameters["kinematic"] = twist.parameters["amplitude"]
-                best[key] = torque
+                best[key] = torque.having(kinematic=twist.parameters["amplitude"])
         if not single and f.harmonic != first.harmonic and f.channel == first.channel:
             best[(f"{f.name} {f.harmonic}", f.stage)] = f
     return list(best.values())

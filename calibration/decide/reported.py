@@ -1,5 +1,7 @@
 """From the effects that were fitted to what they may be called."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -21,10 +23,8 @@ def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
 
 def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]) -> list[Finding]:
     """Parts of a friction from before the effect was known, told as parts of the `final` one, by its name."""
-    for f in findings:  # a slow motion is behind by the delay times the part of the sensor that is late
-        if "ratio" in f.parameters and f.name == "channel_delay":
-            part = f.parameters.pop("ratio").value / (final.get("scale") or scene.view.response.ratio or 1.0)
-            f.parameters["delay"] = f.parameters["delay"].times(abs(part))
+    whole = final.get("scale") or scene.view.response.ratio or 1.0
+    findings = [_of_all(f, whole) for f in findings]
     coulomb = max(final.get("coulomb", 0.0), 0.0)
     known = scene.declared.get("coulomb", 0.0)
     speed = np.abs(scene.view.speed[scene.view.ok])
@@ -32,12 +32,22 @@ def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]
         return findings
     after = float(np.mean(coulomb + max(final.get("viscous", 0.0), 0.0) * speed))
     before = float(np.mean(scene.sliding.size[scene.view.ok]))
+    out = []
     for f in findings:
         was, now = (known, coulomb) if OF_COULOMB in f.parameters else (before, after)
-        for size in NAMES[f.name].relative if f.name in NAMES else ():
-            if size in f.parameters and f.parameters[size].unit.startswith("1") and was > 0 and now > 0:
-                f.parameters[size] = f.parameters[size].times(was / now)
-    return findings
+        parts = NAMES[f.name].relative if f.name in NAMES and was > 0 and now > 0 else ()
+        sizes = {size: f.parameters[size] for size in parts if size in f.parameters}
+        out.append(f.having(**{k: p.times(was / now) for k, p in sizes.items() if p.unit.startswith("1")}))
+    return out
+
+
+def _of_all(f: Finding, whole: float) -> Finding:
+    """A slow motion is behind by the delay times the part of the sensor that is late, of `whole`."""
+    if "ratio" not in f.parameters or f.name != "channel_delay":
+        return f
+    kept = {k: p for k, p in f.parameters.items() if k != "ratio"}
+    part = abs(f.parameters["ratio"].value / whole)
+    return replace(f, parameters=kept | {"delay": kept["delay"].times(part)})
 
 
 def _loop(f: Finding) -> tuple[str, ...]:
@@ -52,32 +62,31 @@ def _wide_loop(f: Finding, scene: Scene) -> Finding:
         return f
     travel, stroke = f.parameters[key].value, scene.stroke
     small = stroke <= BRISTLE.get(scene.angle_unit, 0.0)
-    if travel > WIDEST * stroke and not small:
-        f.name, f.equivalent = UNKNOWN, []
-        wide = f"{travel:.3g} {scene.angle_unit}"
-        f.note = f"a loop of {wide} after every reversal: too wide for bristles or gears"
-    return f
+    if travel <= WIDEST * stroke or small:
+        return f
+    note = f"a loop of {travel:.3g} {scene.angle_unit} after every reversal: too wide for bristles or gears"
+    return replace(f, name=UNKNOWN, equivalent=[], note=note)
 
 
 def _turned_gap(f: Finding) -> Finding:
     """A gap has a width: below zero only the difference of the sensors was taken the other way round."""
     gap = f.parameters.get("gap")
-    if f.channel == "K" and gap is not None and gap.value < 0:
-        low, high = (None if x is None else -x for x in (gap.high, gap.low))
-        f.parameters["gap"] = Parameter(-gap.value, gap.unit, low, high)
-        f.note = f"{f.note}; the column is the first sensor less the second".lstrip("; ")
-    return f
+    if f.channel != "K" or gap is None or gap.value >= 0:
+        return f
+    low, high = (None if x is None else -x for x in (gap.high, gap.low))
+    turned = Parameter(-gap.value, gap.unit, low, high)
+    return f.having(gap=turned).noted("the column is the first sensor less the second")
 
 
 def _one_loop(findings: list[Finding]) -> list[Finding]:
     """Only the first of several loops is an effect; the others are told as its shape."""
     out: list[Finding] = []
-    first: Finding | None = None
+    first: int | None = None
     for f in findings:
         if f.domain == "reversal" and (_loop(f) or f.name == UNKNOWN):
             if first is not None:
-                first.note = f"{first.note}; its shape needs a second element ({f.name})".lstrip("; ")
+                out[first] = out[first].noted(f"its shape needs a second element ({f.name})")
                 continue
-            first = f
+            first = len(out)
         out.append(f)
     return out

@@ -1,6 +1,7 @@
 """Findings that keep their name: what speaks against one when everything has been fitted and tried."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from calibration.decide.rules import negative
@@ -61,10 +62,12 @@ def against_nature(selections: Mapping[str, Selection]) -> Against:
 
 
 def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> list[Finding]:
-    """The findings of a rig's balance; what loses its name stays as `unknown`. In place."""
+    """The findings of a rig's balance; what loses its name stays as `unknown`."""
+    out = []
     for f in findings:
         wrong = accepted(f, controls)
         if wrong and f.name != UNKNOWN:
-            f.note = f"{wrong[0]} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
-            f.name, f.stage, f.harmonic, f.equivalent = UNKNOWN, None, None, []
-    return findings
+            note = f"{wrong[0]} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
+            f = replace(f, name=UNKNOWN, stage=None, harmonic=None, equivalent=[], note=note)
+        out.append(f)
+    return out

@@ -1,6 +1,6 @@
 """An axis with two motors, channel by channel; a fault of a column is undone and all looked at again."""
 
-from copy import deepcopy
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
     wraps = [w for r in runs for w in (repair_stuck_bit(r), repair_wraps(r)) if w is not None]
     result = _look(runs, rig, options)
     result.findings = [*wraps[:1], *result.findings]
-    named = merge(deepcopy(result.findings), result.frame.train)
+    named = merge(result.findings, result.frame.train)
     fault = next((f for f in named if f.name in applied.UNDONE), None)
     if fault is None:
         return result
@@ -54,10 +54,10 @@ def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
         again.selections["K"] = result.selections["K"]
         before["K"] = result.selections["K"].held.before
     applied.keep_untouched(result, again)
-    fault.share = max(1 - (again.selections[k].held.after / b) ** 2 for k, b in before.items() if b > 0)
+    taken = max(1 - (again.selections[k].held.after / b) ** 2 for k, b in before.items() if b > 0)
     stamps = [f for f in result.findings if f.domain == "clock" and f.name != fault.name]
     rest = [f for f in again.findings if f.name != fault.name and f.domain != "clock"]
-    again.findings = [fault, *stamps, *rest]
+    again.findings = [replace(fault, share=taken), *stamps, *rest]
     return again
 
 

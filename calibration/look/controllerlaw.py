@@ -61,11 +61,7 @@ def look_at_law(view: View, balance: Problem) -> Balance | None:
     waves = lines(scene, c.follows @ c.gains)  # no mode of a plant is among the names of a command
     plain = [replace(x, labels=(("amplitude", p.unit),), twins=()) for x in waves]
     s = select(p, [*plain, *changed_below(c), _forward(view, c)])
-    findings = [f for k in range(len(s.chosen)) for f in findings_of(s, k)]
-    for f in findings:
-        forward = f.domain == "reference"
-        f.domain = "command" if f.name == UNKNOWN else f.domain
-        f.note = f.note or (FORWARD if forward else BEFORE)
+    findings = [_of_the_law(f) for k in range(len(s.chosen)) for f in findings_of(s, k)]
     remarks: list[str] = []
     if not any(f.name == UNKNOWN for f in findings):  # else the law has no one set of gains
         remarks, others = _others(c, declared_terms(law))
@@ -75,6 +71,12 @@ def look_at_law(view: View, balance: Problem) -> Balance | None:
         for (name, unit), x in zip(c.labels, c.sizes, strict=True)
     }
     return Balance(key="U", row="command", selection=s, findings=findings, numbers=numbers, remarks=remarks)
+
+
+def _of_the_law(f: Finding) -> Finding:
+    """With the plant's domain, and what it says of the law."""
+    note = f.note or (FORWARD if f.domain == "reference" else BEFORE)
+    return replace(f, domain="command" if f.name == UNKNOWN else f.domain, note=note)
 
 
 def _others(c: Command, declared: dict[str, float]) -> tuple[list[str], list[Finding]]:

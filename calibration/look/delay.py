@@ -1,7 +1,7 @@
 """When the effort acts: a late column, and the hold of a sampled loop. Both are settled before any name."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
     telling = was**2 - now**2 > max(EARNS * was**2, least)
     if telling or (simpler and now < was):
         if before > 0:  # of what the declared model leaves, as every other effect's
-            delay.share = max(1 - (alone / before) ** 2, 0.0)
+            delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
         return Timed(moved, late, delay, before)
     return Timed(plain_loop, found)
 

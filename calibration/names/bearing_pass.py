@@ -1,5 +1,6 @@
 """A line over position at a period of no stage."""
 
+from dataclasses import replace
 from math import pi
 
 from calibration.inputs.train import MESH, SHAFT
@@ -16,13 +17,14 @@ def columns(s: Scene) -> list[Candidate]:
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
     """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
-    if f.name == NAME.name and f.order:
-        f.note = f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}"
-        if not s.view.rig.stages:
-            f.name, f.stage = SHAFT, None
-            f.equivalent = list(dict.fromkeys([*f.equivalent, MESH, COGGING.name, NAME.name]))
-            f.note += "; no gear table was given, so its stage cannot be named"
-    return f
+    if f.name != NAME.name or not f.order:
+        return f
+    f = replace(f, note=f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}")
+    if s.view.rig.stages:
+        return f
+    alike = list(dict.fromkeys([*f.equivalent, MESH, COGGING.name, NAME.name]))
+    gears = replace(f, name=SHAFT, stage=None, equivalent=alike)
+    return gears.noted("no gear table was given, so its stage cannot be named")
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

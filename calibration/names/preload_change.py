@@ -37,7 +37,7 @@ def lacks(s: Scene) -> str:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """A step is a ramp of the shortest duration; time runs from the log's first row."""
-    return as_found(replace(f, parameters={"duration": Parameter(SHORTEST_S, "s")} | f.parameters), facts)
+    return as_found(replace(f, parameters={"duration": Parameter(SHORTEST_S, "s"), **f.parameters}), facts)
 
 
 NAME = Name(

@@ -63,7 +63,8 @@ def with_declared_lines(model: PlantModel, axis: str, result: AxisResult, fit: F
             if size <= REGISTRY[effect.name].parameter("amplitude").high and variance <= size**2:
                 sizes = {"amplitude": size, "phase": float(np.arctan2(-s, c))}
                 found = {name: Parameter(value, "") for name, value in sizes.items()}
-                wave = Finding(effect.name, "T", "axis_angle", stage, effect.harmonic, parameters=found)
+                place = {"stage": stage, "harmonic": effect.harmonic}
+                wave = Finding(effect.name, "T", "axis_angle", parameters=found, **place)
                 (made,) = NAMES[effect.name].to_plant(wave, Facts("")).effects
                 numbers = {name: replace(made.parameters[name], source="re-calibrated") for name in sizes}
                 effect = replace(effect, parameters={**effect.parameters, **numbers})

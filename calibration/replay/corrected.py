@@ -35,7 +35,6 @@ def correct_and_replay(found: Looked, options: Options) -> Replay:
     result, unsure, effects = found.axis, found.unsure, list(found.effects)
     name = result.frame.runs[0].name
     calibrated, t = found.calibrated, result.selections.get("T")
-    add_curves(result, effects)
     facts = facts_of(result, calibrated, model, name)
     bare = with_declared_lines(model, axis, result, t.after if t else None)
     corrected, remarks = write_plant(out, bare, calibrated, effects, facts, unsure)
@@ -54,15 +53,20 @@ def correct_and_replay(found: Looked, options: Options) -> Replay:
     return replace(again, reasons=[*again.reasons, *remarks])
 
 
-def add_curves(result: AxisResult, effects: list[Finding]) -> None:
-    """Give every `unknown` of the torque channel that is a function of its domain its curve, in place."""
-    t, scene = result.selections.get("T"), result.scene
-    if t is None or scene is None:
-        return
+def with_curves(found: Looked) -> Looked:
+    """With its curve for every `unknown` of an axis' torque that is a function of its domain."""
+    result = found.axis if found.header is not None else None
+    if result is None or result.scene is None or "T" not in result.selections:
+        return found
+    t, view = result.selections["T"], result.scene.view
     places = {(c.candidate.name, c.candidate.domain): k for k, c in reversed(list(enumerate(t.chosen)))}
-    for f in effects:
-        if f.name == UNKNOWN and f.channel == "T" and (f.name, f.domain) in places:
-            f.curve = curve_of(t, places[f.name, f.domain], scene.view)
+
+    def drawn(f: Finding) -> Finding:
+        if f.name != UNKNOWN or f.channel != "T" or (f.name, f.domain) not in places:
+            return f
+        return replace(f, curve=curve_of(t, places[f.name, f.domain], view))
+
+    return replace(found, effects=[drawn(f) for f in found.effects])
 
 
 def facts_of(result: AxisResult, calibrated: dict[str, Parameter], model: PlantModel, name: str) -> Facts:

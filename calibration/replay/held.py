@@ -5,6 +5,7 @@ simulated axis at another angle, where periodic torques have another phase. The 
 takes that offset out; the offset is a figure of its own.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -24,12 +25,12 @@ AGAIN = "closed loop run again"
 IDENTIFIED = "identified from set point, velocity and effort"
 
 
-@dataclass
+@dataclass(frozen=True, kw_only=True)
 class Replay:
     """`rows` as in report.json's closed_loop; `reasons` in words; traces of the first run for the plot."""
 
-    rows: dict[str, dict[str, Any]] = field(default_factory=dict)
-    reasons: list[str] = field(default_factory=list)
+    rows: Mapping[str, dict[str, Any]] = field(default_factory=dict)
+    reasons: Sequence[str] = ()
     run: str = ""
     time: Array = field(default_factory=lambda: np.zeros(0))
     log: Trace | None = None
@@ -53,7 +54,7 @@ def replay(
     axis = frame.runs[0].header["axis"]
     gains = identify(frame, ~held) or identify(frame, held)
     loop = Loop(frame=frame, axis=axis, per_ampere=per_ampere, gains=gains)
-    out = Replay()
+    shown: dict[str, Any] = {}
     pairs: dict[str, list[Compared]] = {"before": [], "after": []}
     offsets: dict[str, list[float]] = {"before": [], "after": []}
     chaos: list[Mask] = []
@@ -81,18 +82,16 @@ def replay(
             for key, trace in traces.items():
                 pairs[key].append((log, trace, use))
             chaos.append(breaking(log.position, frame.period_s, stribeck))
-            if out.log is None:
-                out.run, out.time = run.name, frame.t[whole] - frame.t[whole][0]
-                out.log, out.before, out.after = log, traces["before"], traces["after"]
-                out.use = use & ~chaos[-1]
+            if not shown:
+                time = frame.t[whole] - frame.t[whole][0]
+                shown = {"run": run.name, "time": time, "log": log, "use": use & ~chaos[-1], **traces}
     except ValueError as error:
         return Replay(reasons=[f"closed loop not run again: {error}"])
-    if out.log is None:
+    if not shown:
         return Replay(reasons=["closed loop not run again: the held-out rows hold no settled motion"])
-    _judge(out, pairs, chaos)
-    out.reasons += _beside(offsets)
-    out.reasons += _conditions(gains, left_out, frame)
-    return out
+    rows, reasons = _judge(pairs, chaos)
+    reasons += [*_beside(offsets), *_conditions(gains, left_out, frame)]
+    return Replay(rows=rows, reasons=reasons, **shown)
 
 
 def as_sampled(trace: Trace) -> Trace:
@@ -113,8 +112,12 @@ def sampled_at_the_edge(loop: Loop, held: Mask, model: PlantModel) -> bool:
     return False
 
 
-def _judge(out: Replay, pairs: dict[str, list[Compared]], chaos: list[Mask]) -> None:
-    """Fill the rows and say what is worse, and what the rows near a break-away would add."""
+def _judge(
+    pairs: dict[str, list[Compared]], chaos: list[Mask]
+) -> tuple[dict[str, dict[str, Any]], list[str]]:
+    """The rows, what is worse, and what the rows near a break-away would add."""
+    out: dict[str, dict[str, Any]] = {}
+    reasons: list[str] = []
     settled = {
         key: [(a, b, use & ~c) for (a, b, use), c in zip(runs, chaos, strict=True)]
         for key, runs in pairs.items()
@@ -122,24 +125,25 @@ def _judge(out: Replay, pairs: dict[str, list[Compared]], chaos: list[Mask]) -> 
     all_rows, rows = (sum(int(use.sum()) for _, _, use in x["after"]) for x in (pairs, settled))
     if rows < LEAST_ROWS:
         settled, rows = pairs, all_rows
-        out.reasons.append(f"{AGAIN}: the whole of the held-out rows is sticking and slipping")
+        reasons.append(f"{AGAIN}: the whole of the held-out rows is sticking and slipping")
     declared = errors(settled["before"])
     for channel, (after, floor) in errors(settled["after"]).items():
         before, unit = declared[channel][0], UNITS[channel]
-        out.rows[channel] = {"unit": unit, "before": before, "after": after, "floor": floor}
+        out[channel] = {"unit": unit, "before": before, "after": after, "floor": floor}
         if after > WORSE * before and after > NEAR * floor:
-            out.reasons.append(
+            reasons.append(
                 f"{AGAIN}: the corrected plant is WORSE than the declared one in {channel}: "
                 f"{before:.3g} before, {after:.3g} {unit} after"
             )
     if all_rows - rows > CHAOS_SHARE * all_rows:
         first, last = errors(pairs["before"]), errors(pairs["after"])
         told = ", ".join(f"{c} {first[c][0]:.3g} before, {last[c][0]:.3g} {UNITS[c]} after" for c in last)
-        out.reasons.append(
+        reasons.append(
             f"{AGAIN}: {100 * (1 - rows / all_rows):.0f} % of the settled rows are within a "
             f"second of a passage through the Stribeck speed and left out: the moment of breaking away "
             f"cannot be repeated; with them {told}"
         )
+    return out, reasons
 
 
 def _beside(offsets: dict[str, list[float]]) -> list[str]:
