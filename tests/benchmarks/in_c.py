@@ -1,6 +1,7 @@
 """The night with both axis boards in C against Python, in turn: `python -m tests.benchmarks.in_c`.
 
-Both run in this process, a second of each after the other, in an order that changes. So both see the same machine.
+Both run in this process, a second of each after the other, in an order that changes. Both see the same
+machine.
 """
 
 import sys
@@ -13,7 +14,7 @@ from scenarios.lab.session import Session
 from scenarios.native import compiled
 from tests.benchmarks import network
 
-ROUNDS = 100
+ROUNDS = 300
 CONFIDENCE = 0.99
 _SECOND_NS = 1_000_000_000
 
