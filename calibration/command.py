@@ -36,14 +36,14 @@ def calibrate(
     plant: Path | None = None,
     plots: bool = True,
     replay: bool = True,
-    told: Callable[[str], None] | None = None,
+    on_step: Callable[[str], None] | None = None,
 ) -> int:
     """Calibrate on `logs` and write report.json, report.html and (for an axis log) plant.yaml into `out`.
 
     Returns 0 whenever there is an answer, "nothing" and UNKNOWN included. Raises CalibrationInputError (a
     ValueError) naming file, line and column for input that cannot be read. `plant` is the declared plant
     file; `plots=False` leaves the pictures out of the report. `replay=False` leaves out the replayed closed
-    loop on an axis log's held-out rows. `told` hears each step as it begins.
+    loop on an axis log's held-out rows. `on_step` hears each step as it begins.
     """
     if not logs:
         raise CalibrationInputError("calibrate", "give at least one log")
@@ -58,8 +58,8 @@ def calibrate(
 
         def tell(text: str) -> None:
             bar.update(task, description=text)
-            if told is not None:
-                told(text)
+            if on_step is not None:
+                on_step(text)
 
         drive = read_drive(logs, load_rig(rig) if rig is not None else None)
         if plant is not None and not drive.emulated:

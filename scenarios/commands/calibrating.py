@@ -46,7 +46,7 @@ def calibrate(
             list(hold_out),
             out,
             plant,
-            told=lambda step: enter(STEPS.get(step, SEARCHING)),
+            on_step=lambda step: enter(STEPS.get(step, SEARCHING)),
         )
     sys.exit(status)
 

@@ -41,7 +41,7 @@ class Lab(AbstractContextManager["Lab"]):
     """Boards, bus and plant, parked and powered; simulated time goes on in `run` and `ask` only.
 
     network: `lab`, `serial`, `final`, or a scenario's file, whose steps are not run. plant: a file, or the
-    name of one that comes along. Any number of labs stand beside each other. Raises ValueError with one line.
+    name of a built-in one. Any number of labs stand beside each other. Raises ValueError with one line.
     boards: by name. faults: `start`, `clear`, `running`, `evidence`. plant: the pins' other side.
     """
 

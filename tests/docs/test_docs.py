@@ -93,6 +93,32 @@ def test_documents_that_sources_name_are_in_the_repository() -> None:
     assert not lost, f"no such document: {', '.join(lost)}"
 
 
+def test_sections_that_sources_name_are_in_the_document() -> None:
+    """`hardware.md 2.3, 3.1`: every number is a heading; `trap ii`, `set S1`, `lesson 3`: the page has it."""
+    folder = ROOT / "docs" / "sources"
+    pages = {page.name: page.read_text(encoding="utf-8") for page in folder.glob("*.md")}
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    files = [ROOT / name for name in listed.splitlines() if name.endswith((".py", ".yaml", ".c"))]
+    lost, seen = [], 0
+    for file in (each for each in files if each.exists()):
+        text = file.read_text(encoding="utf-8")
+        for name, numbers in re.findall(r"\b([a-z-]+\.md) (\d\.\d(?:(?:, | and )\d\.\d)*)(?![\d.])", text):
+            for number in re.findall(r"\d\.\d", numbers):
+                seen += 1
+                if not re.search(rf"^#+ {re.escape(number)} ", pages.get(name, ""), re.MULTILINE):
+                    lost.append(f"{file.relative_to(ROOT)}: {name} {number}")
+        for name, mark in re.findall(
+            r"\b(hardware\.md|effects\.md|design\.md)[ \d.]*, ((?:trap|set|lesson) \w+)", text
+        ):
+            seen += 1
+            word, _, which = mark.partition(" ")
+            there = rf"^{which}\. " if word == "lesson" else rf"\b{which}\b"
+            if not re.search(there, pages[name], re.MULTILINE):
+                lost.append(f"{file.relative_to(ROOT)}: {name}, {mark}")
+    assert seen > 50
+    assert not lost, f"no such section: {', '.join(lost)}"
+
+
 def test_every_command_is_in_the_readme_or_a_page_of_docs() -> None:
     told = {name for page in PAGES for line in code(page) for name, _ in COMMAND.findall(line)}
     assert set(cli.commands) - told <= {"protocol"}, "commands nobody tells a user about"

@@ -27,7 +27,7 @@ def test_P8_crc_of_position_frames(position: int, healthy: int, alarm: int) -> N
 
 
 def test_crc_of_the_published_endat_2_1_vector() -> None:
-    # makeCrcPos(25 clocks, F1 = 0, 1234324343) = 29 and makeCrcNorm(100, 10000) = 30 (hardware.md 3.1, [TE])
+    # makeCrcPos(25 clocks, F1 = 0, 1234324343) = 29 and makeCrcNorm(100, 10000) = 30 (hardware.md 3.1)
     assert crc5((1234324343 & (1 << 25) - 1) << 1, 26) == 29
     word = f"{100:08b}{10000:016b}"
     assert crc5(int(word[::-1], 2), 24) == 30

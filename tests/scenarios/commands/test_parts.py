@@ -1,6 +1,7 @@
 """What works with the base installation alone, and how a missing extra is answered."""
 
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -12,6 +13,8 @@ from scenarios.commands.parts import MissingPart, advice, need
 from tests.scenarios.commands.base import closure
 
 ROOT = Path(__file__).parents[3]
+WORKSHOP = {"all", "test", "kit", "bench", "compiled", "wheels", "docs", "coverage", "cluster"}
+"""Extras that `all` leaves out: for those who change schmidt, and for clusters."""
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
@@ -38,8 +41,14 @@ def test_the_base_brings_no_web_server_no_plots_and_no_tables() -> None:
 
 def test_all_brings_every_extra_of_a_user() -> None:
     extras = PROJECT["optional-dependencies"]
-    users = {"parquet", "plots", "calibrate", "alpaca", "consoles", "canopen"}
-    names = {line.split(">")[0] for each in users for line in extras[each] if not line.startswith("schmidt")}
+    users = set(extras) - WORKSHOP
+    assert users >= {"parquet", "plots", "firmware", "fmu", "recordings"}
+    names = {
+        re.split("[>=<]", line)[0]
+        for each in users
+        for line in extras[each]
+        if not line.startswith("schmidt")
+    }
     assert names <= closure("schmidt", frozenset({"all"}))
 
 
@@ -52,6 +61,7 @@ def test_all_brings_every_extra_of_a_user() -> None:
         (("serve", "--console", "0"), "consoles", "nicegui>=3.0"),
         (("eds", "out"), "canopen", "canopen>=2.3"),
         (("campaign", "file.yaml", "--out", "out"), "calibrate", "scipy>=1.12"),
+        (("export", "run", "--mcap", "out.mcap"), "recordings", "mcap>=1.2"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
@@ -73,6 +83,14 @@ def test_boards_are_checked_and_served_with_the_base_alone(tmp_path: Path) -> No
     doors = ["--serial", "pty:ports", "--hid", "unix:usb.sock", "--lx200", "pty:lx200"]
     done = schmidt(tmp_path, "serve", *doors, "--duration", "1")
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_part_of_a_user_is_answered_with_its_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.commands.parts.find_spec", lambda name: None)
+    for extra in (set(PROJECT["optional-dependencies"]) - WORKSHOP) | {"cluster"}:
+        with pytest.raises(MissingPart, match=rf"\(extra {extra}\); .* -m pip install "):
+            need(extra)
+    assert "(extra firmware)" in advice("cffi")  # what needs a C compiler is asked for when it is imported
 
 
 def test_what_is_installed_needs_nothing() -> None:

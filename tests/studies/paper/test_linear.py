@@ -5,7 +5,7 @@ from plant.model import load, with_value
 from scenarios.studies.paper.linear import LinearAxis, linear_axis, simulate_loop
 from scenarios.studies.paper.scales import ARCSEC, COUNT_RATE, GEAR_RATIO
 
-# hardware.md 1.4, set S1 with L = R * 2 ms: poles -15.4 and -488 1/s, 1.91 counts per PWM step
+# hardware.md 2.3, the first set, with L = R * 2 ms: poles -15.4 and -488 1/s, 1.91 counts per PWM step
 S1 = LinearAxis(
     torque_constant=0.78, resistance=4.0, inductance=0.008, inertia=1760.0 / GEAR_RATIO**2,
     viscous=6700.0 / GEAR_RATIO**2, stiction=621.0 / GEAR_RATIO, voltage=24.0, drive=1.0,
