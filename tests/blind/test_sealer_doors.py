@@ -3,6 +3,8 @@
 import ast
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 ROOMS = {"boards", "bus", "plant", "calibration", "host", "scenarios"}
 
@@ -29,17 +31,16 @@ def test_the_sealer_knows_no_room() -> None:
                 assert name.startswith("tests.blind.sealer"), f"{path.name} imports {name}"
 
 
-def test_the_other_drives_know_no_room() -> None:
+@pytest.mark.parametrize("family", ["drives", "world"])
+def test_the_families_of_tables_know_no_room(family: str) -> None:
     """What seals knows the sealer's compiler only. The command line, which nothing here imports, hands whole
-    cases to the campaigns' executor as the axis' harness does; the finder is called by its command."""
-    files = sorted((ROOT / "tests" / "blind" / "drives").glob("*.py"))
+    cases to the campaigns' executor (tests/blind/family.py); the finder is called by its command."""
+    files = sorted((ROOT / "tests" / "blind" / family).glob("*.py"))
     assert len(files) > 8
     for path in files:
         rooms = {name for name in imported(path) if name.split(".")[0] in ROOMS}
-        if path.name == "__main__.py":
-            rooms -= {"scenarios.campaign.executor", "scenarios.campaign.executor.each"}
         assert not rooms, f"{path.name} imports {rooms}"
-        assert "tests.blind.drives.__main__" not in imported(path)
+        assert f"tests.blind.{family}.__main__" not in imported(path)
 
 
 def test_no_room_knows_the_tests() -> None:

@@ -38,11 +38,12 @@ def holds_zero(effect: dict[str, Any]) -> bool:
 
 
 def short(report: dict[str, Any], top: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
-    """A log too short to be sure: the name, or `cannot tell` with the candidate among what is told of it."""
+    """A log too short to be sure: the name, or `cannot tell` that tells of the candidate or its stage."""
     if top is not None:
         return fits(top, wanted)
     told = json.dumps([report.get("separating_experiment"), report.get("refused")])
-    return report["verdict"] == "cannot tell" and any(name in told for name in wanted["class"])
+    candidates = [*wanted["class"], *([wanted["stage"]] if wanted.get("stage") else [])]
+    return report["verdict"] == "cannot tell" and any(name in told for name in candidates)
 
 
 def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str, Any]) -> dict[str, Any]:
@@ -64,7 +65,8 @@ def score(answer: dict[str, Any], report: dict[str, Any] | None, truth: dict[str
     }  # fmt: skip
     top = effects[0] if effects else None
     staged = bool(wanted and wanted.get("stage"))
-    row["stage_right"] = bool(top and wanted and top.get("stage") == wanted.get("stage")) if staged else None
+    stage = str(top.get("stage") or "").split(" ")[0] if top else ""  # "worm of a 180-tooth wheel" is a worm
+    row["stage_right"] = bool(wanted and stage == wanted.get("stage")) if staged else None
     row["empty"] = sum(map(holds_zero, effects))
     if truth["cell"] == "nothing":
         row["right"] = report is not None and not effects

@@ -7,51 +7,13 @@ from tests.blind.world import arm, logfile, oracle
 from tests.blind.world import arm_kernel as kernel
 from tests.blind.world.arm import Arm
 from tests.blind.world.arm_effects import WHERE, Effect
+from tests.blind.world.arm_oracle import Runs, columns_of, confounded, logged, seen
 from tests.blind.world.logfile import Column, Log, Style
 from tests.blind.world.made import TURN, Array, Made, Rng, clock, pick, wide
 from tests.blind.world.rigtext import Rig
 
-Runs = list[tuple[Array, Array]]
-MOVES = 0.02  # of the typical speed: slower rows may stand
+LEAST_SEEN = 2.0  # what the log's own columns must show, over the same log without the effect
 TRIES = 4
-
-
-def columns_of(a: Arm, runs: Runs, weight: bool) -> tuple[Array, Array, Array]:
-    """Rows that move (all files), the declared terms' columns, and the effort's torque."""
-    rows = np.concatenate([r for r, _ in runs])
-    loads = np.concatenate([np.full(len(r), a.loads[k] if a.loads else 1.0) for k, (r, _) in enumerate(runs)])
-    beyond = np.concatenate([angle for _, angle in runs])
-    way = np.sign(rows[:, kernel.V]) * (np.abs(rows[:, kernel.V]) > MOVES * a.speed)
-    keep = np.abs(np.convolve(way, np.ones(3), "same")) == 3.0  # nor do its neighbours stand or turn
-    rows, loads, beyond = rows[keep], loads[keep], beyond[keep]
-    v, x = rows[:, kernel.V], rows[:, kernel.X]
-    base = [rows[:, kernel.A], v, np.sign(v), np.ones(len(v))]
-    if weight:
-        base += [loads * np.sin(x), loads * np.cos(x), np.sin(x + beyond), np.cos(x + beyond)]
-    if a.values["STIC"] > a.values["COUL"]:
-        base.append(np.sign(v) * np.exp(-((v / a.values["VS"]) ** 2)))
-    return rows, np.column_stack(base), a.values["GAIN"] * rows[:, kernel.EFFORT]
-
-
-def logged(a: Arm, rows: Array, rng: Rng) -> Array:
-    """The effort as its column has it: a current or a torque is measured, a duty is what was sent."""
-    effort, step = rows[:, kernel.EFFORT], a.values["EFFORT_STEP"]
-    if a.sensor_noise:
-        effort = np.round((effort + a.sensor_noise * rng.standard_normal(len(rows))) / step) * step
-    return np.asarray(effort)
-
-
-def confounded(name: str, rows: Array, base: Array, torque: Array) -> tuple[str, ...]:
-    """Names over the same domain that these moves cannot tell from the true one."""
-    x, v = rows[:, kernel.X], rows[:, kernel.V]
-    turn = np.column_stack([np.sin(x), np.cos(x)])
-    columns = {
-        "gravity_imbalance": turn, "cable_wrap": x[:, None], "position_friction": np.sign(v)[:, None] * turn,
-        "load_friction": (np.sign(v) * np.abs(torque))[:, None],
-    }  # fmt: skip
-    if name not in ("gravity_imbalance", "cable_wrap"):
-        return ()
-    return oracle.rivals(torque, base, columns[name], {k: c for k, c in columns.items() if k != name})
 
 
 def sized(
@@ -74,7 +36,8 @@ def make(order: Order, rng: Rng, number: int) -> Made:
     name = order.names[0] if order.names else ""
     for _ in range(40):
         made = _one(order, rng, number, name)
-        if not name or made.reached > 0.9 * order.ratio:
+        tells = order.cell == "short" or made.drive["seen_over_sound"] > LEAST_SEEN
+        if not name or (made.reached > 0.9 * order.ratio and tells):
             return made
     return made
 
@@ -99,14 +62,16 @@ def _one(order: Order, rng: Rng, number: int, name: str) -> Made:
         a.gear = min(a.gear, 0.1 / (a.speed * a.period_s))  # the line is well below the rows' rate
         a.values["STEP"] = min(a.values["STEP"], TURN / a.gear / 60)
     goals = arm.paths(rng, a)
-    size, reached, runs = 0.0, 0.0, arm.run(a, lifted, goals, number)
+    size, reached, tells, runs = 0.0, 0.0, 1.0, arm.run(a, lifted, goals, number)
     if effect is not None:
+        sound = seen(a, runs, declares, number)
         size, reached, runs = sized(a, effect, lifted, goals, number, order.ratio)
         rows, base, torque = columns_of(a, runs, effect.weight)
+        torque = torque + a.floor * np.random.default_rng([number, 8]).standard_normal(len(torque))
         effect.hidden.confounded = confounded(name, rows, base, torque)
         effect.hidden.raw = effect.values(size)
-    rows, base, torque = columns_of(a, runs, declares)
-    extra = np.column_stack([base, rows[:, kernel.OWN]])
+        shares = np.array(seen(a, runs, declares, number)) / np.array(sound)
+        tells = float(np.nanmax(shares)) if np.isfinite(shares).any() else 0.0
     files, rig = _tables(order, rng, a, runs, declares, two, number)
     drive = {
         **a.values,
@@ -115,8 +80,7 @@ def _one(order: Order, rng: Rng, number: int, name: str) -> Made:
         "files": a.files,
         "stroke": a.stroke,
         "floor": a.floor,
-        "declared_over_floor": oracle.rms(oracle.left(torque, base)) / a.floor,
-        "oracle_over_floor": oracle.rms(oracle.left(torque, extra)) / a.floor,
+        "seen_over_sound": tells,
     }
     return Made(files, rig, effect.hidden if effect else None, reached, drive)
 

@@ -91,6 +91,7 @@ WHERE: dict[str, Draw] = {
     "outside_bump": bump, "outside_shake": shake, "outside_stiffening": cubic,
 }  # fmt: skip
 TRIES = 4
+BETWEEN = 0.3  # of the floor: what may be lost between two readings
 LEAST_LATE = 0.4  # of a row: less is a matter of how stamps are read
 LOADED = ("shaft_compliance", "outside_stiffening")
 
@@ -105,10 +106,13 @@ def make(order: Order, rng: Rng, number: int) -> Made:
         g.travel = max(g.travel, 1.3)
     if order.cell == "short":
         g.files, g.seconds = 1, g.seconds / 12
-    if order.spoil.startswith("long") and name != "channel_delay":
+    long = order.spoil.startswith("long")
+    if long:
         g.every = int(pick(rng, 1.0, 2.0, 5.0))
     hidden, unit = WHERE[name](rng, g) if name else (None, Twist())
     xs = [gears.motion(np.random.default_rng([number, 1, k]), g) for k in range(g.files)]
+    while long and max(gears.between(g, x) for x in xs) > BETWEEN * g.floor:
+        xs = [x / 2 for x in xs]  # shorter sweeps: a straight line between two readings is the motion
     loads = [gears.torque(np.random.default_rng([number, 2]), g, x) for x in xs]
     span = g.files * g.seconds
     begun = [k * (g.seconds + 5.0) for k in range(g.files)]

@@ -93,6 +93,12 @@ def motion(rng: Rng, g: Gear) -> Array:
     return np.concatenate(parts)[:total]
 
 
+def between(g: Gear, x: Array) -> float:
+    """What a straight line between two of the output's readings misses of the motion, output turns."""
+    bend = np.gradient(np.gradient(x, g.period_s), g.period_s)
+    return float(np.max(np.abs(bend)) * (g.every * g.period_s) ** 2 / 8.0)
+
+
 @compiled
 def behind(x: Array, gap: float) -> Array:
     """The play operator: what is driven through a gap."""

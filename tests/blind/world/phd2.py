@@ -98,7 +98,7 @@ def section(
     turn = np.array([math.cos(math.radians(g.angle)), math.sin(math.radians(g.angle))])
     across = np.array([-turn[1], turn[0]])
     moved, moved_y, next_dither = 0.0, 0.0, g.dither_s
-    mass = wide(rng, 300.0, 5000.0)
+    mass, settled = wide(rng, 300.0, 5000.0), -1
     for k in range(rows):
         if g.dither_s and t[k] > next_dither:
             next_dither += g.dither_s
@@ -109,6 +109,9 @@ def section(
             out += [f"INFO: SET LOCK POSITION, new lock pos = {place}",
                     f"INFO: DITHER by {by:.3f}, {by_y:.3f}, new lock pos = {place}",
                     "INFO: SETTLING STATE CHANGE, Settling started"]  # fmt: skip
+            settled = k + int(rng.integers(5, 15))
+        if k == settled:
+            out.append("INFO: SETTLING STATE CHANGE, Settling complete")
         if rng.random() < g.lost:
             out.append(f'{k + 1},{t[k]:.3f},"DROP",,,,,,,,,,,,,{0.2 * mass:.0f},2.10,2,"Star lost - low SNR"')
             continue
