@@ -101,7 +101,7 @@ class Duel:
         elif draw < 0.74:
             self.command(Opcode.SET_PARAMETER, *self.parameter())
         elif draw < 0.78:
-            self.random.choice((self.compensate, self.corner))()
+            self.random.choice((self.compensate, self.corner, self.settle))()
         elif draw < 0.86:
             self.stray()
         elif not self.running or (draw < 0.92 and len(self.running) < 3):
@@ -171,6 +171,16 @@ class Duel:
         self.both(0.002)
         self.command(Opcode.SET_CLASS, draw.randint(1, 2), way)
         self.both(draw.uniform(0.5, 2.0))
+
+    def settle(self) -> None:
+        """Short moves, each until it has settled: that shows in a tick of fifty."""
+        draw = self.random
+        self.command(Opcode.POWER, 1)
+        self.both(0.002)
+        for _ in range(12):
+            here = self.sides[0].network.boards["AXIS_RA"].motion.position
+            self.command(Opcode.MOVE_TO, here + draw.randint(-2000, 2000), 3)
+            self.both(draw.uniform(0.7, 1.0))
 
     def stray(self) -> None:
         """Frames that nobody should send, and many commands at once."""
