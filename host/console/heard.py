@@ -1,6 +1,6 @@
 """The bus page's view of real boards: what reaches the host's own link, and what the heartbeats say."""
 
-from collections import deque
+from collections import Counter, deque
 from concurrent.futures import Future
 
 from bus.can.length import frame_bits
@@ -32,20 +32,21 @@ class HeardBus:
         self._client = client
         self._frames: deque[tuple[int, int, bytes]] = deque(maxlen=KEPT)
         self._second_ns = 0
-        self._bits = 0
-        self._load = 0.0
+        self._bits: Counter[int] = Counter()
+        self._loads: dict[int, float] = {}
 
     def take(self, t_ns: int, report: bytes) -> None:
         """A report of the gateway, on the ticking thread."""
         if t_ns - self._second_ns >= _LOAD_NS:
-            self._load = self._bits * 1e9 / MAX_BITRATE / (t_ns - self._second_ns)
-            self._second_ns, self._bits = t_ns, 0
+            share = 1e9 / MAX_BITRATE / (t_ns - self._second_ns)
+            self._loads = {number: bits * share for number, bits in self._bits.items()}
+            self._second_ns, self._bits = t_ns, Counter()
         try:
             frames = unpack_report(report)
         except ReportError:
             return  # the link counts it
         for frame in frames:
-            self._bits += frame_bits(frame)
+            self._bits[frame.data[0]] += frame_bits(frame)
             self._frames.append((t_ns, frame.identifier, frame.data))
 
     def nodes(self) -> list[Node]:
@@ -54,7 +55,7 @@ class HeardBus:
 
     def load(self) -> float:
         """Of the last whole second, at least."""
-        return self._load
+        return sum(self._loads.values())
 
     def errors(self) -> dict[str, int]:
         """Of the cable only: no host hears error frames through the gateway."""
@@ -95,8 +96,8 @@ class HeardBus:
         heard_ns, data = self._client.link.heard_ns.get(device), self._client.link.heartbeats.get(device)
         if heard_ns is None or data is None or self._client.now_ns - heard_ns > SILENCE_NS:
             return Node(device.name, False, "silent", 0, 0)
-        tec = unpack_heartbeat(data).tec
-        return Node(device.name, True, "passive" if tec >= _PASSIVE else "active", tec, 0)
+        tec, load = unpack_heartbeat(data).tec, self._loads.get(int(device), 0.0)
+        return Node(device.name, True, "passive" if tec >= _PASSIVE else "active", tec, 0, load)
 
 
 def _refused() -> Future[str]:

@@ -6,13 +6,15 @@ from typing import NamedTuple, Protocol
 
 
 class Node(NamedTuple):
-    """One node of the CAN bus: error state by ISO 11898-1 and its counters."""
+    """One node of the CAN bus: error state by ISO 11898-1 and its counters; its frames' share of the last
+    second."""
 
     name: str
     powered: bool
     state: str
     tec: int
     rec: int
+    load: float = 0.0
 
 
 class SeenFrame(NamedTuple):

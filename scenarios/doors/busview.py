@@ -1,10 +1,11 @@
 """The wire of a served network, for the bus page of a host's consoles: this is the emulator's side."""
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from bus.can.frame import Frame
+from bus.can.length import frame_bits
 from host.console.views import FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.pipe_messages import BusState
@@ -24,8 +25,9 @@ class EmulatedBus:
     def __init__(self, served: LiveNetwork) -> None:
         self._served = served
         self._frames: deque[tuple[int, str, int, bytes]] = deque(maxlen=KEPT)
-        self._bits: deque[tuple[int, int]] = deque([(0, 0)])
-        """Time and bits on the wire so far, of the last second."""
+        self._sent: Counter[str] = Counter()
+        self._bits: deque[tuple[int, int, dict[str, int]]] = deque([(0, 0, {})])
+        """Time and bits on the wire so far, all and by sender, of the last second."""
         self._wanted: deque[Callable[[], None]] = deque()
         self._acts: dict[str, Callable[..., str]] = {
             "start_fault": self._start_fault,
@@ -36,27 +38,32 @@ class EmulatedBus:
 
     def _tap(self, t_ns: int, frame: Frame, sender: str) -> None:
         self._frames.append((t_ns, sender, frame.identifier, frame.data))
+        self._sent[sender] += frame_bits(frame)
 
     def look(self) -> BusState:
         """Everything at this moment."""
         wire = self._served.network.wire
-        return BusState(self._nodes(), self._load(), dict(wire.errors), self._running(), list(self._frames))
+        load = self._load()
+        return BusState(self._nodes(), load, dict(wire.errors), self._running(), list(self._frames))
 
     def _load(self) -> float:
         """Share of the last second in which the bus was busy."""
         wire, now_ns = self._served.network.wire, self._served.now_ns
-        self._bits.append((now_ns, wire.bits))
+        self._bits.append((now_ns, wire.bits, dict(self._sent)))
         while len(self._bits) > 2 and self._bits[1][0] <= now_ns - _LOAD_NS:
             self._bits.popleft()
-        since_ns, before = self._bits[0]
+        since_ns, before, _ = self._bits[0]
         return (wire.bits - before) * wire.bit_ns / (now_ns - since_ns) if now_ns > since_ns else 0.0
 
     def _nodes(self) -> list[Node]:
-        boards = self._served.network.boards
+        boards, wire = self._served.network.boards, self._served.network.wire
+        (since_ns, _, before), (now_ns, _, sent) = self._bits[0], self._bits[-1]
+        share = wire.bit_ns / max(now_ns - since_ns, 1)
         found = []
-        for port in self._served.network.wire.ports:
+        for port in wire.ports:
             on = boards[port.name].on if port.name in boards else port.online
-            found.append(Node(port.name, on, port.state, port.tec, port.rec))
+            load = (sent.get(port.name, 0) - before.get(port.name, 0)) * share
+            found.append(Node(port.name, on, port.state, port.tec, port.rec, load))
         return found
 
     def fault_kinds(self) -> list[FaultKind]:

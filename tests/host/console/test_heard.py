@@ -18,6 +18,7 @@ from host.client import SILENCE_NS, Client
 from host.console.heard import HeardBus
 from host.link import HidLink
 from host.logs.journal import Journal
+from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.runs import RecordedRuns
 from tests.doors.process import PROGRAM, ROOT, Serving
 from tests.host.console.conftest import opened, press
@@ -48,6 +49,15 @@ def test_nodes_load_and_frames_are_those_of_the_wire() -> None:
         end_s = rig.served.now_ns * 1e-9
         load = (wire.load * end_s - busy_s) / (end_s - start_s)
         assert 0.9 * load < heard.load() <= 1.01 * load
+        shares = {node.name: node.load for node in heard.nodes()}
+        assert sum(shares.values()) == pytest.approx(heard.load()) and shares["POSITION_RA"] > 0.01
+        seen = EmulatedBus(rig.served)
+        seen.look()
+        rig.served.run_until(rig.served.now_ns + 1_000_000_000)
+        told = seen.look()
+        sent = {node.name: node.load for node in told.nodes}
+        assert sum(sent.values()) == pytest.approx(told.load, rel=0.02)  # the rest: frames that were cut
+        assert sent["POSITION_RA"] == pytest.approx(shares["POSITION_RA"], rel=0.1)
         assert {n.name for n in heard.nodes() if n.powered and n.state == "active"} == {
             name for name, board in rig.served.network.boards.items() if board.on and name != "GATEWAY"
         } | ({"GATEWAY"} if int(Device.GATEWAY) in link.heard_ns else set())
