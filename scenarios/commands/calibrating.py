@@ -72,6 +72,6 @@ def rig(file: Path, logs: tuple[Path, ...], plot: Path | None, new: bool) -> Non
     if new and (logs or plot is not None):
         raise click.UsageError("--new drafts from one log, and draws nothing")
     files = (file,) if new else logs
-    with stages("reading", {f"{len(files)} files": RIG_S + RIG_PER_MEGABYTE_S * megabytes(files)}):
+    with stages("reading", {f"{len(files)} file(s)": RIG_S + RIG_PER_MEGABYTE_S * megabytes(files)}):
         text = draft(file) if new else show_rig(file, list(logs), plot)
     click.echo(text)
