@@ -14,12 +14,14 @@ from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
-from boards.axis.profile import UNITS_PER_STEP, Profile
+from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
-from bus.protocol import HARMONICS, AxisMode, AxisParameter
+from bus.protocol import HARMONICS, AxisMode, AxisParameter, PositionFlag
+from bus.protocol.position import pack_position
 from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 from bus.protocol.tach import pack_tach
+from bus.units import ARCSEC_PER_TURN
 from tests.boards.checked import Checked, checked
 from tests.boards.lab import Lab
 
@@ -175,6 +177,27 @@ def test_B2_the_encoder_watch_counts_in_32_bits(counts: list[int], before: int, 
     assert abs(watch.counts) <= INT32
     watch.disagree(Checked(after * UNITS_PER_STEP))
     assert watch.counts == 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("arcsec", "parted"), [(39.5, False), (40.5, True)])
+def test_B2_encoders_have_parted_beyond_40_arcsec(arcsec: float, parted: bool, sign: int) -> None:
+    counts = round(arcsec / ARCSEC_PER_TURN * COUNTS_PER_TURN) * sign
+    watch = EncoderWatch()
+    assert not watch.disagree(0)  # there is no look before
+    assert watch.disagree(counts << UNIT_SHIFT) is parted
+    watch.counts = 1000 + counts
+    assert watch.disagree((counts + 1000) << UNIT_SHIFT) is parted
+
+
+@pytest.mark.parametrize("flag", [PositionFlag.ALARM, PositionFlag.CRC_ERROR])
+def test_B2_a_worthless_position_is_not_taken(flag: PositionFlag) -> None:
+    axis = motion(1000)
+    good_ns = axis.good_ns
+    axis.take_position(good_ns + 10_000_000, pack_position(0x21, flag, 5000, 0, 7))
+    assert (axis.position, axis.good_ns) == (1000, good_ns)
+    axis.take_position(good_ns + 20_000_000, pack_position(0x21, 0, 5000, 0, 8))
+    assert (axis.position, axis.good_ns) == (5000, good_ns + 20_000_000)
 
 
 @given(st.lists(st.tuples(extremes(-INT32, INT32), velocities, st.integers(0, 25_000_000)), max_size=8))

@@ -1,5 +1,6 @@
 """Figures of merit on traces whose answer is known beforehand."""
 
+import dataclasses
 import math
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from host.sky.catalogue import star
 from host.sky.observed import observe_many
 from scenarios.language.document import parse
 from scenarios.language.load import convert
+from scenarios.language.model import Expectation
 from scenarios.language.programme import Record
 from scenarios.run import errors, evaluate
 from scenarios.run.outcome import Outcome
@@ -82,3 +84,23 @@ def test_tracking_rate_error_three_ways(outcome: Outcome) -> None:
 def test_a_step_that_was_not_reached_has_no_value(outcome: Outcome) -> None:
     with pytest.raises(errors.NoData, match="follow was not reached"):
         evaluate.pointing_error(outcome, {"during": "follow", "settle": 200.0})
+
+
+@pytest.mark.parametrize(
+    ("statistic", "value"),
+    [("peak", 4.0), ("rms", math.sqrt(26 / 3)), ("mean", 2 / 3), ("final", 1.0), ("p95", 3.7)],
+)
+def test_statistics_of_numbers_of_either_sign(statistic: str, value: float) -> None:
+    """A mean is that of the numbers, not of their sizes, and has no sign."""
+    assert evaluate.STATISTICS[statistic](np.array([3.0, -4.0, -1.0])) == pytest.approx(value, abs=0.2)
+
+
+@pytest.mark.parametrize(("upper", "value", "passed"), [
+    (True, 2.0, True), (True, 3.0, True), (True, 4.0, False),
+    (False, 2.0, False), (False, 3.0, True), (False, 4.0, True),
+])  # fmt: skip
+def test_a_limit_is_within_it(outcome: Outcome, upper: bool, value: float, passed: bool) -> None:
+    expected = Expectation(name="lost", kind="overruns", arguments={}, limit=3.0, upper=upper, where="")
+    scenario = dataclasses.replace(outcome.scenario, expectations=(expected,))
+    counted = dataclasses.replace(outcome, scenario=scenario, counters={"overruns": value})
+    assert evaluate.judge(counted)[-1].passed is passed

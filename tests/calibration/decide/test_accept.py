@@ -1,0 +1,54 @@
+"""Scores that let a contender in, and those that do not."""
+
+import re
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from calibration.decide.accept import refuse
+from calibration.decide.heldout import HeldOut
+from calibration.decide.thresholds import LEAST_EVIDENCE, LUCK_Z, MARGIN, ROUNDING
+
+GOOD = HeldOut(before=2.0, after=1.0, z=9.0, share=0.5, everywhere=True)
+
+
+def contender(**other: Any) -> Any:
+    """One that has all it takes."""
+    candidate = SimpleNamespace(name="gear_mesh", least=None)
+    return SimpleNamespace(
+        **{"bayes": 50.0, "evidence": 30.0, "candidate": candidate, "after": lambda k: 30.0 * k, **other}
+    )
+
+
+def scored(share: float, z: float = 9.0, everywhere: bool = False) -> HeldOut:
+    return HeldOut(before=1.0, after=(1.0 - share) ** 0.5, z=z, share=share, everywhere=everywhere)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.0, -0.9 * ROUNDING])
+def test_an_effect_that_the_held_out_run_does_not_excite_may_gain_nothing(share: float) -> None:
+    assert refuse(contender(), GOOD, scored(share), MARGIN) == ""
+
+
+@pytest.mark.parametrize("worse", [1.1 * ROUNDING, 0.05, 0.4, 0.6])
+def test_none_may_make_the_held_out_run_worse(worse: float) -> None:
+    assert refuse(contender(), GOOD, scored(-worse), MARGIN) == (
+        f"makes the held-out mean square worse by {100 * worse:.1f} %"
+    )
+
+
+@pytest.mark.parametrize(
+    ("one", "inside", "why"),
+    [
+        (contender(bayes=0.0), GOOD, "costs|cost"),
+        (contender(), HeldOut(), "too few rows"),
+        (contender(), scored(0.9 * MARGIN, 3.0), "falls by 4.5 % only"),
+        (contender(), scored(-0.2), r"grows by 20.0 %$"),
+        (contender(), scored(0.5, 0.9 * LUCK_Z), "within luck"),
+        (contender(evidence=0.9 * LEAST_EVIDENCE, after=lambda k: 0.0), GOOD, "too little evidence"),
+        (contender(evidence=0.9 * LEAST_EVIDENCE, after=lambda k: 4.0 * k), GOOD, "2 times as long"),
+    ],
+)
+def test_each_rule_says_why(one: Any, inside: HeldOut, why: str) -> None:
+    assert re.search(why, refuse(one, inside, GOOD, MARGIN))
+    assert refuse(contender(), scored(0.5, 0.9 * LUCK_Z, everywhere=True), GOOD, MARGIN) == ""

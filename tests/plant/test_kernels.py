@@ -1,0 +1,96 @@
+"""Kernels as plain Python against closed forms, each number by itself."""
+
+import numpy as np
+import pytest
+
+from plant.compiled import Floats
+from plant.kernels import layout as at
+from plant.kernels.drive import back_emf, train, winding
+from plant.kernels.noise import normal, uniform
+from plant.kernels.readings import read
+from plant.plant import Plant
+from tests.plant.bench import bare
+
+emf_of, push_of, wound, normal_of, uniform_of, shown = (
+    each.py_func  # type: ignore[attr-defined]
+    for each in (back_emf, train, winding, normal, uniform, read)
+)
+
+
+def test_P4_a_winding_tends_to_its_target_and_the_diode_stops_it_at_nothing() -> None:
+    assert wound(2.0, 5.0, 0.25, 0.5) == (5.0 - 3.0 * 0.25, 5.0 - 3.0 * 0.5)
+    assert wound(2.0, -5.0, 0.25, 0.5) == (0.0, 0.0)
+    assert wound(2.0, -5.0, 0.9, 0.95) == (-5.0 + 7.0 * 0.9, -5.0 + 7.0 * 0.95)
+    assert wound(2.0, -5.0, 0.5, 0.9) == (0.0, -5.0 + 7.0 * 0.9)
+
+
+@pytest.mark.parametrize(("speed", "applied", "leads", "diode", "expected"), [
+    (10.0, 6.0, True, 0.0, 4.0), (10.0, 6.0, False, 1.0, 4.0),  # turned its own way
+    (-10.0, 6.0, True, 0.0, -4.0), (-10.0, 3.0, True, 0.0, -3.0), (-10.0, 6.0, False, 0.0, 0.0),
+    (-10.0, 6.0, False, 1.0, -3.3), (-10.0, 3.0, True, 0.5, -3.15), (-1.0, 6.0, False, 1.0, 0.0),
+])  # fmt: skip
+def test_P4_back_emf_of_either_way(
+    speed: float, applied: float, leads: bool, diode: float, expected: float
+) -> None:
+    assert emf_of(speed, 0.4, applied, leads, diode, 0.7) == pytest.approx(expected)
+
+
+def test_P3_teeth_push_beyond_the_play_and_never_pull() -> None:
+    assert push_of(0.3, 2.0, 100.0, 5.0, 0.1) == pytest.approx(100.0 * 0.2 + 10.0)
+    assert push_of(-0.3, 2.0, 100.0, 5.0, 0.1) == pytest.approx(-100.0 * 0.2 + 10.0)
+    assert push_of(0.3, -5.0, 100.0, 5.0, 0.1) == push_of(-0.3, 5.0, 100.0, 5.0, 0.1) == 0.0
+    assert push_of(0.1, 9.0, 100.0, 5.0, 0.1) == push_of(-0.1, -9.0, 100.0, 5.0, 0.1) == 0.0
+
+
+def test_noise_is_standard_normal_and_every_number_by_itself() -> None:
+    with np.errstate(over="ignore"):  # whole numbers of 64 bits
+        rows = np.array([[normal_of(float(seed), float(k)) for k in range(4000)] for seed in (1, 2)])
+        plain = [uniform_of(np.uint64(1), np.uint64(k)) for k in range(3)]
+        pairs_of = [[uniform_of(np.uint64(2), np.uint64(2 * k + j)) for j in (0, 1)] for k in range(3)]
+        told = [np.sqrt(-2.0 * np.log(a)) * np.cos(2.0 * np.pi * b) for a, b in pairs_of]
+    assert np.abs(rows.mean(axis=1)).max() < 0.06 and np.abs(rows.std(axis=1) - 1.0).max() < 0.04
+    pairs = [
+        (rows[0], rows[1]),
+        *((rows[0][:-k], rows[0][k:]) for k in (1, 2)),
+        (rows[0][::2], rows[0][1::2]),
+    ]
+    for a, b in [*pairs, (np.abs(rows[0][:-1]), np.abs(rows[0][1:]))]:
+        assert abs(np.corrcoef(a, b)[0, 1]) < 0.08
+    assert rows[1][:3] == pytest.approx(told)  # no two share a uniform number
+    assert min(plain) > 0.0 and max(plain) < 1.0 and len(set(plain)) == 3
+
+
+@pytest.fixture
+def row() -> Floats:
+    """A grid point with another number in every place that is read."""
+    w = np.zeros(at.WIDTH)
+    w[at.GRID], w[at.RATE], w[at.ANGLE] = 2e-3, 0.5, 7.0
+    w[at.TACH_SCALE], w[at.RIPPLE] = 100.0, 0.8
+    for m, (angle, rate, zero, duty, current) in enumerate(
+        ((20.0, 3.0, 1.5, 0.25, 2.0), (30.0, -4.0, 2.5, 0.5, 0.0))
+    ):
+        o = at.MOTORS + m * at.MOTOR_SIZE
+        w[o + at.M_ANGLE], w[o + at.M_RATE], w[o + at.M_CURRENT] = angle, rate, current
+        w[at.TACH_ZERO + m], w[at.DUTY + m] = zero, duty
+    return w
+
+
+def test_P7_readings_are_of_the_grid_point_and_currents_of_the_ripples_peak(row: Floats) -> None:
+    shown(row)
+    half, o = 1e-3, at.OUT
+    assert row[o + at.OUT_ANGLE] == pytest.approx(7.0 - half * 0.5)
+    assert row[o + at.OUT_TACH_A] == pytest.approx((20.0 - half * 3.0 - 1.5) * 100.0)
+    assert row[o + at.OUT_TACH_A + 2] == pytest.approx((30.0 + half * 4.0 - 2.5) * 100.0)
+    assert row[o + at.OUT_TACH_A + 3] == pytest.approx(-4.0 * 1e-9 * 100.0)
+    assert row[o + at.OUT_CURRENT_A] == pytest.approx(2.0 + 0.8 * 0.25 * 0.75)
+    assert row[o + at.OUT_CURRENT_A + 1] == 0.0  # none flows, none ripples
+
+
+def test_P8_both_tachometers_wake_up_within_a_count_of_their_own() -> None:
+    """Each encoder's fraction of a count is another one."""
+    w = Plant(bare(), 1).world[0]
+    parts = []
+    for m in range(2):
+        zero = w[at.MOTORS + m * at.MOTOR_SIZE + at.M_ANGLE] - w[at.TACH_ZERO + m]
+        parts.append(zero * w[at.TACH_SCALE])
+    assert all(0.0 <= part < 1.0 for part in parts) and abs(parts[0] - parts[1]) > 1e-3
