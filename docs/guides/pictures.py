@@ -84,7 +84,7 @@ def console(browser: Browser, target: Path) -> None:
             shown.goto(f"http://127.0.0.1:{port}/")
             shown.get_by_role("button", name="Power on", exact=True).click()
             shown.get_by_text("motors on", exact=True).wait_for()
-            star = shown.get_by_label("Named star")
+            star = shown.get_by_label("Name", exact=True)
             star.fill("Pollux")
             shown.get_by_role("option", name="Pollux").click()
             shown.get_by_role("button", name="Go", exact=True).click()

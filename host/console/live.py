@@ -6,12 +6,17 @@ from typing import NamedTuple
 
 from bus.protocol import Device, unpack_tach
 from bus.units import ARCSEC_PER_TURN
+from host.console.figures import Clocks, clocks
+from host.console.skymap import Chart
 from host.console.views import BusView
 from host.telescope import Snapshot, Telescope
-from host.telescope.alarms import Alarms, of_bus
+from host.telescope.alarms import SILENCE_S, Alarms, of_bus, of_house
+from host.telescope.events import Events
 
 PERIOD_S = 0.25
 """Wall time between samples; the RS232 links of the paper's console are as fast."""
+_CLOCKS = 4
+"""Samples from one look at the clocks to the next; the way to the limits takes milliseconds."""
 KEPT = 480
 """Samples kept, two minutes."""
 RATIO = (113 / 27) * (123 / 21) * (250 / 17)
@@ -26,7 +31,7 @@ class Sample(NamedTuple):
 
     t_s: float
     error_arcsec: tuple[float | None, float | None]
-    rate_arcsec_s: tuple[float, float]
+    rate_arcsec_s: tuple[float | None, float | None]
     effort_percent: tuple[float, float]
     current_a: tuple[float, float, float, float]
     gear: tuple[float | None, float | None]
@@ -39,8 +44,14 @@ class Live:
     def __init__(self, telescope: Telescope, bus: BusView) -> None:
         self.telescope = telescope
         self.alarms = Alarms()
+        self.events = Events()
+        self.widths: list[tuple[float, float]] = []
+        """Of the focus curve: half steps, star width as somebody has measured it."""
+        self.chart = Chart(telescope.observatory)
+        self.clocks = Clocks("–", "–", "–", "–", "–")
         self._bus = bus
         self.samples: deque[Sample] = deque(maxlen=KEPT)
+        self._taken = 0
 
     async def run(self) -> None:
         """Until cancelled."""
@@ -54,13 +65,20 @@ class Live:
         if self.samples and now.t_s <= self.samples[-1].t_s:
             return
         found = self.alarms.of_telescope(now) | of_bus(self._bus.load(), self._bus.running())
+        if now.t_s > SILENCE_S:  # boards that have just been switched on are not silent
+            found = of_house(self.telescope.house) | found
         self.alarms.take(now.t_s, found)
+        self.events.take(self.telescope, self.alarms.standing)
+        if self._taken % _CLOCKS == 0:
+            self.clocks = clocks(self.telescope)
+        self._taken += 1
         errors = None if now.slewing else now.errors_arcsec  # degrees to go hide arcseconds
+        moved = now.slewing  # and degrees a second the sky's own motion
         self.samples.append(
             Sample(
                 now.t_s,
                 (errors[0], errors[1]) if errors is not None else (None, None),
-                (now.ra.rate_arcsec_s, now.dec.rate_arcsec_s),
+                (None, None) if moved else (now.ra.rate_arcsec_s, now.dec.rate_arcsec_s),
                 (100 * now.ra.effort, 100 * now.dec.effort),
                 (*now.ra.currents_a, *now.dec.currents_a),
                 (_gear(now, "ra"), _gear(now, "dec")),

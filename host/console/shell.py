@@ -10,6 +10,7 @@ from nicegui.events import GenericEventArguments, KeyEventArguments
 from host.console.figures import summary
 from host.console.live import PERIOD_S, Live
 from host.console.theme import CSS
+from host.procedures.pointing import ENCODERS
 from host.telescope import AsyncDesk, Refused, Telescope
 from host.telescope.alarms import Alarm
 
@@ -149,6 +150,7 @@ class Shell:
             self._mode_button()
             lock = button("Lock", on_click=self._lock)
             self._stop_button()
+            self._clocks()
             self._alarms()
             self._said = ui.label().classes("said").props('role="log" aria-label="Last answer"')
         with ui.element("div").classes("w-full"):
@@ -156,6 +158,23 @@ class Shell:
         self.each(lambda: state.set_text(summary(self.desk.now)))
         self.each(lambda: lock.set_text("Unlock" if self.desk.now.locked else "Lock"))
         ui.timer(PERIOD_S, self._tick)
+
+    def _clocks(self) -> None:
+        """The times of the night, on every page."""
+        with ui.element("div").classes("clocks").props('role="group" aria-label="Clock"'):
+            labels = []
+            for name in ("UTC", "sidereal", "airmass", "meridian", "limit in"):
+                with ui.element("span"):
+                    ui.label(name).classes("small")
+                    labels.append(ui.label("–").classes("mid"))
+
+        def refresh() -> None:
+            for label, text in zip(labels, self.live.clocks, strict=True):
+                label.set_text(text)
+            for label in labels[2:]:
+                stale(label, not self.desk.now.stale.isdisjoint(ENCODERS))
+
+        self.each(refresh)
 
     def _alarms(self) -> None:
         """What is wrong, on every page, until somebody acknowledges it; with a sound if wanted."""
@@ -205,6 +224,10 @@ def alarm_line(alarm: Alarm, since: str) -> str:
     return f'<div class="{kind}{new}">{words}</div>'
 
 
+OLD = " (stale)"
+"""The same within a table."""
+
+
 def stale(element: Any, old: bool) -> None:
     """Mark a value that is older than it may be."""
     element.classes(add="stale" if old else None, remove=None if old else "stale")
@@ -239,6 +262,32 @@ def table(columns: tuple[str, ...]) -> Callable[[Sequence[tuple[str, ...]]], Non
         )
 
     return fill
+
+
+def seldom(refresh: Any, every: int = 4) -> Any:
+    """Once in so many ticks."""
+    count = 0
+
+    def now_and_then() -> None:
+        nonlocal count
+        if count % every == 0:
+            refresh()
+        count += 1
+
+    return now_and_then
+
+
+def log_of(shell: Shell, name: str, lines: Callable[[], Sequence[tuple[float, str]]]) -> None:
+    """A window of (t_s, words), the newest on top, with UTC."""
+    element = ui.html(sanitize=False).props(f'role="log" aria-label="{name}"')
+
+    def refresh() -> None:
+        utc = shell.telescope.observatory.clock.iso
+        text = escape("\n".join(f"{utc(t_s)[11:19]}  {words}" for t_s, words in reversed(lines())))
+        if (made := f'<pre class="lines">{text}</pre>') != element.content:
+            element.set_content(made)
+
+    shell.each(refresh)
 
 
 def escape(text: str) -> str:

@@ -25,9 +25,9 @@ class Place(NamedTuple):
 
 def star_of_apparent(place: Place, clock: Clock, t_s: float, name: str) -> Star:
     """The ICRS place that has this apparent place now; a telescope tracks it like a star."""
-    terrestrial = _terrestrial(clock, t_s)
-    origins = erfa.eo06a(*terrestrial)
-    ra, dec, _ = erfa.atic13(place.right_ascension_rad + origins, place.declination_rad, *terrestrial)
+    time = terrestrial(clock, t_s)
+    origins = erfa.eo06a(*time)
+    ra, dec, _ = erfa.atic13(place.right_ascension_rad + origins, place.declination_rad, *time)
     return Star(name, float(erfa.anp(ra)), float(dec))
 
 
@@ -42,7 +42,7 @@ def apparent_of_observed(
             site.longitude_rad, site.latitude_rad, site.height_m, site.polar_motion_x_rad,
             site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c, site.humidity, site.wavelength_um,
         )  # fmt: skip
-    return Place(float(erfa.anp(ra - erfa.eo06a(*_terrestrial(clock, t_s)))), float(dec))
+    return Place(float(erfa.anp(ra - erfa.eo06a(*terrestrial(clock, t_s)))), float(dec))
 
 
 def horizontal(hour_angle_rad: float, declination_rad: float, site: Site) -> Observed:
@@ -64,11 +64,12 @@ def sidereal_time_rad(site: Site, clock: Clock, t_s: float) -> float:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", erfa.ErfaWarning)
         universal = erfa.utcut1(day, fraction, site.ut1_minus_utc_s)
-    greenwich = erfa.gst06a(*universal, *_terrestrial(clock, t_s))
+    greenwich = erfa.gst06a(*universal, *terrestrial(clock, t_s))
     return float(erfa.anp(greenwich + site.longitude_rad))
 
 
-def _terrestrial(clock: Clock, t_s: float) -> tuple[float, float]:
+def terrestrial(clock: Clock, t_s: float) -> tuple[float, float]:
+    """Terrestrial time as ERFA's two-part Julian date."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", erfa.ErfaWarning)
         day, fraction = erfa.taitt(*erfa.utctai(*clock.julian(t_s)))

@@ -7,6 +7,7 @@ rotation and refraction in one go. So none of it is written here.
 import datetime as dt
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -108,6 +109,22 @@ def observe_many(
         np.pi / 2 - zenith,
         np.asarray(azimuth),
     )
+
+
+def observe_all(
+    stars: Sequence[Star], site: Site, clock: Clock, t_s: float
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Altitudes and azimuths of many stars at one time, without their proper motions and parallaxes."""
+    places = np.array([(star.right_ascension_rad, star.declination_rad) for star in stars]).T
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        air, _ = erfa.apco13(
+            *clock.julian(t_s), site.ut1_minus_utc_s, site.longitude_rad, site.latitude_rad, site.height_m,
+            site.polar_motion_x_rad, site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c,
+            site.humidity, site.wavelength_um,
+        )  # fmt: skip
+    azimuth, zenith, *_ = erfa.atioq(*erfa.atciqz(*places, air), air)
+    return np.pi / 2 - zenith, azimuth
 
 
 def rates(star: Star, site: Site, clock: Clock, t_s: float) -> Rates:

@@ -7,6 +7,7 @@ from typing import Final
 
 from bus.protocol import State
 from host.client import SILENCE_NS
+from host.telescope.house import House
 from host.telescope.state import AxisState, Snapshot
 
 SILENCE_S: Final = SILENCE_NS * 1e-9
@@ -115,3 +116,10 @@ def of_bus(load: float, running: list[tuple[int, str]]) -> dict[str, Severity]:
     for number, words in running:
         found[f"fault {number} runs: {words.partition(',')[0]}"] = Severity.WARNING
     return found
+
+
+def of_house(house: House) -> dict[str, Severity]:
+    """What the weather does to a dome: an alarm while the shutter is not shut."""
+    dome = house.reading("DOME")
+    opened = dome is not None and not dome["Closed"]
+    return dict.fromkeys(house.unsafe(), Severity.ALARM if opened else Severity.WARNING)

@@ -20,7 +20,10 @@ from host.sky.mount import STEP_ARCSEC
 
 _TACH_PERIOD_S = 0.01
 _TACH_COUNTS = 4096
-_PERIOD_NS = {"POSITION": 5_000_000, "AXIS": 10_000_000, "MOTOR": 10_000_000, "FOCUS": 50_000_000}
+_PERIOD_NS = {
+    "POSITION": 5_000_000, "AXIS": 10_000_000, "MOTOR": 10_000_000, "FOCUS": 50_000_000,
+    "AUXILIARY": 10_000_000, "DOME": 100_000_000, "POWER": 250_000_000, "WEATHER": 1_000_000_000,
+}  # fmt: skip
 """Of their measurement frames (docs/reference/protocol.md)."""
 MISSED = 5
 """Frames in a row that may be late or lost before a value is called old. ASSUMPTION."""

@@ -4,6 +4,7 @@ import os
 import secrets
 
 from host.console.server import Consoles
+from host.sky.listed import VARIABLE, listed
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.control import TOKEN_VARIABLE
 from scenarios.doors.door import DoorError
@@ -24,6 +25,10 @@ class ConsoleDoor(ServerDoor):
             runs.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise DoorError(f"--runs {runs.folder}: cannot be made: {error.strerror}") from None
+        try:
+            listed()
+        except ValueError as error:
+            raise DoorError(f"{VARIABLE}: {error}") from None
         self._consoles = Consoles(host.pc.telescope, host.bus, runs, made)
 
     def open(self) -> None:

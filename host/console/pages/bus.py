@@ -5,10 +5,11 @@ from concurrent.futures import Future
 
 from nicegui import ui
 
-from host.console.shell import Shell, box, button, table
+from host.console.shell import Shell, box, button, log_of, table
 from host.console.views import BusView
+from host.logs.journal import Entry
 
-FRAMES = 25
+FRAMES, LINES = 25, 14
 ANSWER_S = 5.0
 """Wall time until the next slice must have come. ASSUMPTION: slices are a millisecond."""
 
@@ -20,20 +21,28 @@ def bus(shell: Shell, view: BusView) -> None:
             load = ui.label("–").classes("big")
             errors = ui.label("–").classes("small")
         with box("Nodes"):
-            nodes = table(("node", "supply", "state", "TEC", "REC"))
+            nodes = table(("node", "supply", "state", "TEC", "REC", "load, %"))
         with box("Supply of the boards"):
             _supply(shell, view)
         with box("Faults"):
             _faults(shell, view)
+        with box("Commands and boards, UTC", wide=True):
+            journal = shell.telescope.journal.entries
+            log_of(shell, "Commands and boards", lambda: _entries(list(journal.copy())[-LINES:]))
         with box("Frames", wide=True):
             running = ui.switch("follow", value=True).props('aria-label="Follow the frames"')
             frames = table(("t, s", "from", "id", "data", "says"))
 
     def refresh() -> None:
-        load.set_text(f"{100 * view.load():.1f} % load")
+        load.set_text(f"{100 * view.load():.1f} % in the last second")
         found = view.errors()
         errors.set_text(", ".join(f"{name} {count}" for name, count in found.items() if count) or "no errors")
-        nodes([(n.name, "on" if n.powered else "OFF", n.state, str(n.tec), str(n.rec)) for n in view.nodes()])
+        nodes(
+            [
+                (n.name, "on" if n.powered else "OFF", n.state, str(n.tec), str(n.rec), f"{100 * n.load:.2f}")
+                for n in view.nodes()
+            ]
+        )
         if running.value:
             frames(
                 [
@@ -43,6 +52,10 @@ def bus(shell: Shell, view: BusView) -> None:
             )
 
     shell.each(refresh)
+
+
+def _entries(entries: list[Entry]) -> list[tuple[float, str]]:
+    return [(entry.t_s, f"{entry.where}: {entry.text}") for entry in entries]
 
 
 def _supply(shell: Shell, view: BusView) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
+from host.console.plots import plots
 from host.console.shell import Shell, box, button, escape
 from host.console.views import Runs
 
@@ -41,6 +42,8 @@ def calibrate(shell: Shell, runs: Runs) -> None:
                     link.set_visibility(True)
 
             shell.control(button("Calibrate on the recorded runs", on_click=ask))
+
+        plots(shell)
 
     def refresh() -> None:
         count = len(runs.logs("ra"))

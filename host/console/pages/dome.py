@@ -1,12 +1,15 @@
 """Dome and weather consoles (H7), and the power boards, as far as the network has them."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 from nicegui import ui
 
 from bus.protocol.nodes import DOME, POWER, WEATHER
 from host.console.figures import number
-from host.console.shell import Shell, box, button, table
+from host.console.pages.target import target
+from host.console.shell import OLD, Shell, box, button, stale, table
+from host.telescope import Telescope
 
 
 def dome(shell: Shell) -> None:
@@ -15,6 +18,7 @@ def dome(shell: Shell) -> None:
         _dome(shell)
         _weather(shell)
         _power(shell)
+        target(shell)
 
 
 def _dome(shell: Shell) -> None:
@@ -31,16 +35,31 @@ def _dome(shell: Shell) -> None:
                 await shell.attempt(shell.desk.do(lambda t: t.house.turn(wanted)))
 
             shell.control(button("Turn", on_click=go))
+        following = ui.label("–").classes("mid")
         with ui.row():
             shell.control(button("Open shutter", on_click=shell.doing(lambda t: t.house.shutter(True))))
             shell.control(button("Close shutter", on_click=shell.doing(lambda t: t.house.shutter(False))))
             button("Stop dome", on_click=shell.doing(lambda t: t.house.stop()))
+        with ui.row():
+            for text, on in (("Follow the telescope", True), ("Stay", False)):
+                shell.control(button(text, on_click=shell.doing(_slave(on))))
+        interlock = ui.label("–").classes("mid")
 
     def refresh() -> None:
         found = house.reading("DOME") if house.boards(DOME) else None
         state.set_text("No dome board on this network." if found is None else dome_text(found))
+        stale(state, found is not None and house.stale("DOME"))
+        aim = shell.telescope.aim()
+        slit = "–" if aim is None else f"{math.degrees(aim.azimuth_rad) % 360:.1f}°"
+        doing = "follows the telescope" if house.slaved else "stays where it is"
+        following.set_text(f"The slit {doing}; the telescope needs it at {slit}.")
+        interlock.set_text(interlock_text(house.unsafe(), found))
 
     shell.each(refresh)
+
+
+def _slave(on: bool) -> Callable[[Telescope], None]:
+    return lambda telescope: telescope.house.slave(on)
 
 
 def dome_text(found: Mapping[str, float]) -> str:
@@ -55,6 +74,15 @@ def dome_text(found: Mapping[str, float]) -> str:
     return "; ".join(words)
 
 
+def interlock_text(causes: Sequence[str], found: Mapping[str, float] | None) -> str:
+    """What the weather lets the shutter do, and why. found: what the dome board says."""
+    if found is not None and found["BadWeather"]:
+        return (
+            f"Interlock: the shutter is kept shut ({'; '.join(causes) or 'the dome board hears no station'})."
+        )
+    return f"Interlock: {'; '.join(causes)}." if causes else "Interlock: the shutter may open."
+
+
 def _weather(shell: Shell) -> None:
     house = shell.telescope.house
     with box("Weather"):
@@ -66,7 +94,7 @@ def _weather(shell: Shell) -> None:
             found = house.reading(name) or {}
             rows.append(
                 (
-                    name.removeprefix("WEATHER_").lower(),
+                    name.removeprefix("WEATHER_").lower() + OLD * house.stale(name),
                     number(found["Temperature"], ".1f"),
                     number(found["Humidity"], ".0f"),
                     number(found["Wind"], ".1f"),
@@ -90,7 +118,7 @@ def _power(shell: Shell) -> None:
             found = house.reading(name) or {}
             off = [str(k + 1) for k in range(8) if not int(found["Relays"]) >> k & 1]
             supply = number(found["Voltage"], ".2f"), number(found["Current"], ".2f")
-            rows.append((name, *supply, ", ".join(off) or "none"))
+            rows.append((name + OLD * house.stale(name), *supply, ", ".join(off) or "none"))
         fill(rows or [("No power board on this network.", "", "", "")])
 
     shell.each(refresh)

@@ -7,6 +7,7 @@ from nicegui import ui
 
 from bus.protocol import Device
 from host.console.figures import number
+from host.console.pages.focuscurve import curve
 from host.console.shell import Shell, box, button, stale
 from host.telescope import Telescope
 
@@ -22,6 +23,7 @@ def focus(shell: Shell) -> None:
         _readings(shell)
         _moves(shell)
         _power(shell)
+        curve(shell)
 
 
 def _readings(shell: Shell) -> None:

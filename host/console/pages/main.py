@@ -1,56 +1,34 @@
 """Main console (H2): power, health, slewing, tracking, hand paddle, targets, limits, parameters, status."""
 
-from typing import Any
-
 from nicegui import ui
 from nicegui.events import KeyEventArguments
 
 from bus.protocol import AxisParameter, Device, Health, SpeedClass
-from host.console.figures import clocks, number, pointing
+from host.console.figures import number, pointing
+from host.console.pages.target import target
 from host.console.plots import plots
-from host.console.shell import Shell, box, button, stale, table
-from host.console.skymap import svg
-from host.sky.angles import parse_declination, parse_right_ascension
-from host.sky.apparent import horizontal
-from host.sky.catalogue import STARS, Star, star
+from host.console.shell import Shell, box, button, log_of, seldom, stale, table
 from host.telescope import BoardState
 
 SPEEDS = {
     speed.name.lower(): speed
     for speed in (SpeedClass.SLEW, SpeedClass.SET, SpeedClass.GUIDE, SpeedClass.FINE)
 }
+SHOWN_EVENTS = 14
 ARROWS = {"ArrowUp": "n", "ArrowDown": "s", "ArrowLeft": "e", "ArrowRight": "w"}
 
 
 def main(shell: Shell) -> None:
     """The page."""
     with shell.page("/", "Main console"), ui.element("div").classes("boxes"):
-        _clocks(shell)
         _place(shell)
         _motors(shell)
-        _paddle(shell)
-        _target(shell)
-        _sky(shell)
+        paddle(shell)
+        target(shell)
+        _night(shell)
         _boards(shell)
         plots(shell)
         _parameters(shell)
-        _status(shell)
-
-
-def _clocks(shell: Shell) -> None:
-    with box("Clock"), ui.element("div").classes("pair"):
-        labels = []
-        for name in ("UTC", "sidereal", "airmass", "meridian", "limit in"):
-            ui.label(name).classes("small")
-            labels.append(ui.label("–").classes("mid"))
-
-    def refresh() -> None:
-        for label, text in zip(labels, clocks(shell.telescope), strict=True):
-            label.set_text(text)
-        for label in labels[2:]:
-            stale(label, not shell.desk.now.stale.isdisjoint((Device.POSITION_RA, Device.POSITION_DEC)))
-
-    shell.each(_seldom(refresh))
 
 
 def _place(shell: Shell) -> None:
@@ -111,7 +89,8 @@ def _motors(shell: Shell) -> None:
         )
 
 
-def _paddle(shell: Shell) -> None:
+def paddle(shell: Shell) -> None:
+    """Keys to hold, and the arrow keys."""
     held: set[str] = set()
     with box("Hand paddle (also the arrow keys)"):
         speed = shell.control(
@@ -155,76 +134,6 @@ def _paddle(shell: Shell) -> None:
     ui.context.client.on_disconnect(gone)
 
 
-def _target(shell: Shell) -> None:
-    with box("Go to"):
-        chosen = shell.control(
-            ui.select(sorted(STARS), label="Named star", with_input=True)
-            .classes("w-full")
-            .props("outlined dense")
-        )
-        with ui.row().classes("w-full"):
-            ra = shell.control(ui.input("RA, ICRS", placeholder="05:16:41.36").props("outlined dense"))
-            dec = shell.control(ui.input("Dec, ICRS", placeholder="+45:59:52.8").props("outlined dense"))
-
-        async def go() -> None:
-            try:
-                wanted = _wanted(chosen.value, ra.value, dec.value)
-            except ValueError as error:
-                shell.say(str(error), bad=True)
-                return
-            await shell.attempt(shell.desk.do(lambda t: t.drive.goto(wanted, wake=True)))
-
-        shell.control(button("Go", on_click=go))
-        going = ui.label().classes("mid")
-
-    def refresh() -> None:
-        now = shell.desk.now
-        far = max(abs(now.ra.to_go_arcsec), abs(now.dec.to_go_arcsec))
-        going.set_text(f"{now.target}: {far / 3600:.2f}° to go" if now.slewing and now.target else now.target)
-
-    shell.each(refresh)
-
-
-def _wanted(name: str | None, ra: str, dec: str) -> Star:
-    if ra.strip() or dec.strip():
-        return Star("RA/Dec", parse_right_ascension(ra), parse_declination(dec))
-    if not name:
-        raise ValueError("choose a star, or write right ascension and declination")
-    return star(name)
-
-
-def _sky(shell: Shell) -> None:
-    with box("Soft limits and horizon"):
-        element = ui.html(sanitize=False).classes("w-full").style("max-width: 24rem")
-
-    def refresh() -> None:
-        about = shell.telescope.observatory
-        here = pointing(shell.telescope).place
-        track = shell.telescope.drive.pointing.track
-        target = None
-        if track is not None and (shell.desk.now.slewing or shell.desk.now.tracking):
-            ra, dec = track.steps(shell.desk.now.t_s)
-            target = horizontal(about.mount.ra.angle_rad(ra), about.mount.dec.angle_rad(dec), about.site)
-        picture = svg(about, here, target)
-        if picture != element.content:
-            element.set_content(picture)
-
-    shell.each(_seldom(refresh))
-
-
-def _seldom(refresh: Any, every: int = 4) -> Any:
-    """Once in so many ticks."""
-    count = 0
-
-    def now_and_then() -> None:
-        nonlocal count
-        if count % every == 0:
-            refresh()
-        count += 1
-
-    return now_and_then
-
-
 def _boards(shell: Shell) -> None:
     with box("Boards"):
         fill = table(("board", "state", "health", "TEC", "over"))
@@ -232,7 +141,7 @@ def _boards(shell: Shell) -> None:
     def refresh() -> None:
         fill([_board_row(board) for board in shell.desk.now.boards])
 
-    shell.each(_seldom(refresh))
+    shell.each(seldom(refresh))
 
 
 def _board_row(board: BoardState) -> tuple[str, ...]:
@@ -279,19 +188,6 @@ def _parameters(shell: Shell) -> None:
             shell.control(button("Write", on_click=write))
 
 
-def _status(shell: Shell) -> None:
-    with box("Status"):
-        lines = ui.html(sanitize=False).props('role="log" aria-label="Status window"')
-    seen = [-1]
-
-    def refresh() -> None:
-        entries = list(shell.telescope.journal.entries.copy())[-14:]
-        last = entries[-1].number if entries else 0
-        if last == seen[0]:
-            return
-        seen[0] = last
-        utc = shell.telescope.observatory.clock.iso
-        text = "\n".join(f"{utc(e.t_s)[11:21]}  {e.where}: {e.text}" for e in reversed(entries))
-        lines.set_content(f'<pre class="lines">{text.replace("&", "&amp;").replace("<", "&lt;")}</pre>')
-
-    shell.each(refresh)
+def _night(shell: Shell) -> None:
+    with box("Night log, UTC"):
+        log_of(shell, "Night log", lambda: list(shell.live.events.kept.copy())[-SHOWN_EVENTS:])

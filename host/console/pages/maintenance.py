@@ -2,14 +2,12 @@
 
 from nicegui import ui
 
-from host.auxiliary import ABSOLUTE_ARCSEC, APART, AUXILIARY_ARCSEC, combine
+from host.auxiliary import ABSOLUTE_ARCSEC, APART, AUXILIARY_ARCSEC, BOARDS, combine
 from host.console.figures import number
 from host.console.live import RATIO
 from host.console.plots import plots
-from host.console.shell import Shell, box, table
+from host.console.shell import OLD, Shell, box, table
 from host.telescope.state import AXES
-
-_OLD = " (stale)"
 
 
 def maintenance(shell: Shell) -> None:
@@ -30,8 +28,8 @@ def _motors(shell: Shell) -> None:
         rows = []
         for name, axis, (board, _, *motors) in (("RA", now.ra, AXES["ra"]), ("Dec", now.dec, AXES["dec"])):
             for k, motor in enumerate("AB"):
-                current = f"{axis.currents_a[k]:.3f}{_OLD if board in now.stale else ''}"
-                turns = number(axis.motor_turns_s[k], "+.4f") + (_OLD if motors[k] in now.stale else "")
+                current = f"{axis.currents_a[k]:.3f}{OLD * (board in now.stale)}"
+                turns = number(axis.motor_turns_s[k], "+.4f") + OLD * (motors[k] in now.stale)
                 rows.append((f"{name} {motor}", current, turns))
         fill(rows)
 
@@ -52,7 +50,11 @@ def _gears(shell: Shell) -> None:
         last = shell.live.samples[-1]
         fill(
             [
-                (name, number(last.gear[k], ".2f"), number(last.twist_arcsec[k], "+.1f"))
+                (
+                    name + OLD * (not shell.desk.now.stale.isdisjoint(AXES[name.lower()])),
+                    number(last.gear[k], ".2f"),
+                    number(last.twist_arcsec[k], "+.1f"),
+                )
                 for k, name in enumerate(("RA", "Dec"))
             ]
         )
@@ -79,9 +81,8 @@ def _encoders(shell: Shell) -> None:
             rows.append(
                 (
                     name,
-                    number(found.absolute_arcsec, ".2f")
-                    + (_OLD if AXES[name.lower()][1] in now.stale else ""),
-                    number(found.auxiliary_arcsec, ".2f")
+                    number(found.absolute_arcsec, ".2f") + OLD * (AXES[name.lower()][1] in now.stale),
+                    number(found.auxiliary_arcsec, ".2f", OLD * (BOARDS[name.lower()] in now.stale))
                     if found.auxiliary_arcsec is not None
                     else "no board",
                     number(found.difference_arcsec, "+.2f"),

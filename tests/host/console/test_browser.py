@@ -10,6 +10,18 @@ from tests.host.console.conftest import PATHS, Consoles, Used, choose, opened, p
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
 SPEEDS = ("slew", "set", "guide", "fine")
+_OVER = """[...document.querySelectorAll('.box')].filter(box => box.scrollWidth > box.clientWidth + 1)
+.map(box => box.querySelector('h2').textContent)"""
+"""Cards that something runs out of."""
+_BARE = """() => {
+  const at = [...document.querySelectorAll('.sky-star, .sky-cloud')].map(
+    each => [each.getAttribute('cx'), each.getAttribute('cy')]);
+  for (let k = 0; k < 4000; k++) {
+    const [x, y] = [Math.sqrt(k) * Math.cos(2.4 * k), Math.sqrt(k) * Math.sin(2.4 * k)];
+    if (at.every(([cx, cy]) => Math.hypot(cx - x, cy - y) > 3)) return [x, y];
+  }
+}"""
+"""A place of the chart with nothing near it."""
 KEYS = ("Move N ↑", "Move S ↓", "Move E ←", "Move W →")
 
 
@@ -21,6 +33,8 @@ def test_axe_finds_nothing_on_any_page(browser: Any, served: Consoles, path: str
     found = []
     for mode in ("night", "day"):
         found += Axe().run(page).response["violations"]
+        assert page.evaluate(_OVER) == []
+        page.wait_for_timeout(500)  # plots are drawn anew once a second
         shot(page, f"{path.strip('/') or 'main'}-{mode}")
         press(page, "Night / day")
         page.locator("body.day" if mode == "night" else "body:not(.day)").wait_for()
@@ -39,7 +53,7 @@ def test_a_night_by_hand(browser: Any, served: Consoles) -> None:
     page.get_by_text("healthy").first.wait_for()
     press(page, "Power on")
     page.get_by_text("motors on").first.wait_for()
-    choose(page, "Named star", "Capella")
+    choose(page, "Name", "Capella")
     press(page, "Go")
     state(page, "slewing")
     press(page, "Abort slew")
@@ -122,6 +136,37 @@ def test_the_lock_greys_everything_but_the_way_out_and_the_stop(browser: Any, se
     page.close()
 
 
+def test_a_click_on_the_sky_chooses_and_a_double_click_goes(browser: Any, served: Consoles) -> None:
+    page = opened(browser, served, "/")
+    sky = page.locator(".sky")
+    for text in ("points at altitude", "GATEWAY", "rms of 120 s"):  # nothing moves any more
+        page.get_by_text(text).first.wait_for()
+    sky.get_by_text("Capella").wait_for()
+    page.wait_for_timeout(2000)
+    star = sky.get_by_text("Capella").bounding_box()
+    zoom = sky.bounding_box()["width"] / 240
+    place = (star["x"] + star["width"] / 2, star["y"] + star["height"] + 1.6 * zoom)
+    page.mouse.click(*place)
+    page.wait_for_function("document.querySelector('input[aria-label=Name]').value === 'Capella'")
+    page.mouse.dblclick(*place)
+    state(page, "slewing, Capella")
+    state(page, "^tracking, Capella")
+    page.get_by_role("log", name="Night log").get_by_text("Tracking Capella").wait_for()
+    served.wait(served.status()["simulated_s"] + 20.0)
+    page.get_by_text(re.compile(r"rms of 120 s: RA \d")).wait_for()
+    shot(page, "main-tracking")
+    press(page, "Night / day")
+    page.wait_for_timeout(1500)
+    shot(page, "main-tracking-day")
+    box, spot = sky.bounding_box(), page.evaluate(_BARE)
+    page.mouse.click(box["x"] + (120 + spot[0]) * zoom, box["y"] + (120 + spot[1]) * zoom)
+    page.wait_for_function("!document.querySelector('input[aria-label=Name]').value")
+    page.wait_for_function("/^\\d\\d:/.test(document.querySelector('input[aria-label=\"RA, ICRS\"]').value)")
+    press(page, "STOP  (space)")
+    state(page, "^idle")
+    page.close()
+
+
 def tracking(browser: Any, served: Consoles) -> Any:
     """The main console of a telescope that tracks; Track has the focus."""
     page = opened(browser, served, "/")
@@ -175,14 +220,33 @@ def test_focus(browser: Any, served: Consoles) -> None:
     page.get_by_text(re.compile("the focus is free")).first.wait_for()
     press(page, "Motor power OFF: hold")
     page.get_by_text(re.compile("^hold")).first.wait_for()
+    _curve(page)
     left = used.untouched(page, "section")
     page.close()
     assert left == set()
 
 
+def _curve(page: Any) -> None:
+    """Widths of a star at five places: (x - 20)² / 100 + 4 is width², so the best focus is at 20."""
+    press(page, "Go to the best focus")
+    page.get_by_text(re.compile("needs 4 positions")).wait_for()
+    for place in (-20, 0, 20, 40, 60):
+        page.get_by_role("spinbutton", name="Half steps").fill(str(place))
+        press(page, "Move To")
+        page.get_by_text(f"{place:+d} half steps", exact=True).wait_for()
+        page.get_by_label("Star width here").fill(f"{((place - 20) ** 2 / 100 + 4) ** 0.5:.4f}")
+        press(page, "Add this point")
+    page.get_by_text("best focus at +20 half steps").wait_for()
+    press(page, "Go to the best focus")
+    page.get_by_text("+20 half steps", exact=True).wait_for()
+    shot(page, "focus-curve")
+    press(page, "Clear the points")
+    page.get_by_text("0 points").wait_for()
+
+
 def test_alignment_on_the_star_that_is_followed_and_not_on_another(browser: Any, served: Consoles) -> None:
     main = opened(browser, served, "/")
-    choose(main, "Named star", "Pollux")
+    choose(main, "Name", "Pollux")
     press(main, "Go")
     state(main, "slewing")
     state(main, "^tracking")
@@ -195,7 +259,7 @@ def test_alignment_on_the_star_that_is_followed_and_not_on_another(browser: Any,
     press(page, "Align on this star")
     page.get_by_text(re.compile("^aligned: hour angle")).first.wait_for()
     shot(page, "alignment-aligned")
-    left = used.untouched(page, "section")
+    left = used.untouched(page, "section:first-child")
     page.close()
     press(main, "STOP  (space)")
     main.close()
@@ -284,14 +348,22 @@ def test_dome_and_weather_on_the_network_that_has_them(browser: Any, tmp_path: P
         page.get_by_label("Azimuth, °").fill("90")
         press(page, "Turn")
         page.get_by_text(re.compile("turning to 90.0°")).first.wait_for()
+        press(page, "Follow the telescope")
+        page.get_by_text(re.compile("The slit follows the telescope")).wait_for()
+        press(page, "Turn")
+        page.get_by_text(re.compile("end that first")).wait_for()
+        press(page, "Stay")
+        page.get_by_text(re.compile("The slit stays where it is")).wait_for()
         press(page, "Stop dome")
         page.get_by_text(re.compile(r"azimuth \d+\.\d°; shutter")).first.wait_for()
         press(page, "Open shutter")
         page.get_by_text(re.compile("shutter .*(moving|open)")).first.wait_for()
         press(page, "Close shutter")
         page.get_by_text(re.compile("shutter closed")).first.wait_for()
+        page.get_by_text("Interlock: the shutter may open.").wait_for()
+        assert page.evaluate(_OVER) == []
         shot(page, "dome-final")
-        left = used.untouched(page, "section")
+        left = used.untouched(page, "section:first-child")
         page.close()
     assert left == set()
 
