@@ -211,6 +211,30 @@ def test_changed_bytes_are_no_snapshot(bench: Bench, tmp_path: Path) -> None:
         read(tmp_path / "x")
 
 
+AGAIN = """
+import sys
+from pathlib import Path
+from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.standing import standing
+from scenarios.lab.snapshot.file import read
+stood = standing(read(Path(sys.argv[1])))
+served = LiveNetwork(stood.scenario, stood.model, begun=stood)
+served.run_until(served.now_ns + 40_000_000)
+print(len(served.network.boards), sum(board.on for board in served.network.boards.values()))
+"""
+
+
+def test_final_is_restored_where_nothing_was_built_before(tmp_path: Path) -> None:
+    """In a process of its own: what building declares is not there while it reads."""
+    scenario, model = chosen(network_name="final")
+    served = LiveNetwork(scenario, model)
+    served.run_until(400_000_000)
+    Snapshots(tmp_path, served).take("x")
+    words = [sys.executable, "-c", AGAIN, str(tmp_path / "x")]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+    assert done.stdout.split() == ["18", "18"], done.stderr
+
+
 @pytest.mark.slow
 def test_the_commands(tmp_path: Path) -> None:
     """serve, control snapshot, replay --from, serve --from, replay; with a client that talks all the time."""
