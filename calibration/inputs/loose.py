@@ -18,7 +18,16 @@ from calibration.inputs.guidelog import is_guide_log
 from calibration.inputs.matlab import columns_of, read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
-from calibration.inputs.text import Heading, check_file, heading, load_utf8, plain, read_columns, read_long, split
+from calibration.inputs.text import (
+    Heading,
+    check_file,
+    heading,
+    load_utf8,
+    plain,
+    read_columns,
+    read_long,
+    split,
+)
 
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _PART = re.compile(r"[^\W\d_]+")

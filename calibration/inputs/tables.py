@@ -55,9 +55,6 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
         if np.isinf(values).any():
             what = f"is infinite in data row {int(np.argmax(np.isinf(values))) + 1}"
             raise CalibrationInputError(path, what, None, label)
-        if (big := np.abs(values) > LARGEST_FIELD).any():
-            what = f"is beyond {LARGEST_FIELD:g} in data row {int(np.argmax(big)) + 1}"
-            raise CalibrationInputError(path, what, None, label)
         if (big := np.abs(values) > LARGEST_NUMBER).any():
             what = f"is beyond {LARGEST_NUMBER:g} in data row {int(np.argmax(big)) + 1}"
             raise CalibrationInputError(path, what, None, label)
