@@ -42,7 +42,7 @@ class Device:
     interface_version: int
     description: str
     members: Mapping[str, Member]
-    actions: Mapping[str, Act]
+    actions: Mapping[str, Act] = {}
     unique_id: str
 
     def __init__(self, desk: AsyncDesk) -> None:

@@ -25,12 +25,11 @@ class DomeDevice(Device):
     interface_version = 3
     description = "Dome of the 50/80 cm Schmidt telescope"
     unique_id = "8ad6c6f4-0b0e-4f0b-9c52-5c1d5f1d0003"
-    actions = {}  # noqa: RUF012
 
     def reading(self) -> dict[str, float]:
         """The board's last frame."""
-        found = self.desk.telescope.house.reading(DOME_BOARD.name)
-        if found is None or self.desk.telescope.house.stale(DOME_BOARD.name):
+        found = self.desk.telescope.house.fresh(DOME_BOARD.name)
+        if found is None:
             raise unknown()
         return found
 

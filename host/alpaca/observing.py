@@ -38,13 +38,11 @@ class ObservingConditionsDevice(Device):
     interface_version = 2
     description = "Weather station on the mast"
     unique_id = "8ad6c6f4-0b0e-4f0b-9c52-5c1d5f1d0004"
-    actions = {}  # noqa: RUF012
 
     def state(self) -> dict[str, object]:
         """Operational properties."""
-        name = self._station
-        now = self.desk.telescope.house.reading(name)
-        if now is None or self.desk.telescope.house.stale(name):
+        now = self.desk.telescope.house.fresh(self._station)
+        if now is None:
             raise unknown()
         return {
             "DewPoint": dew_point_c(now["Temperature"], max(now["Humidity"], 0.1) / 100),
@@ -69,7 +67,6 @@ class SafetyMonitorDevice(Device):
     interface_version = 3
     description = "What the weather stations say of an open dome"
     unique_id = "8ad6c6f4-0b0e-4f0b-9c52-5c1d5f1d0005"
-    actions = {}  # noqa: RUF012
 
     def state(self) -> dict[str, object]:
         """Operational properties."""

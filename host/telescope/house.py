@@ -54,6 +54,10 @@ class House:
         oldest_ns = MISSED * _codecs()[board].period_ns + TICK_NS
         return self._client.now_ns * 1e-9 - self.heard_s(board) > oldest_ns * 1e-9
 
+    def fresh(self, board: str) -> dict[str, float] | None:
+        """The same as `reading`; None also when it is stale."""
+        return None if self.stale(board) else self.reading(board)
+
     def expected(self, kind: Kind) -> list[str]:
         """Names of the boards of a kind that this network should have."""
         return [device.name for device in kind.devices() if device in self._client.devices]
@@ -62,8 +66,8 @@ class House:
         """What speaks against an open dome, station by station; empty: nothing, or there is no station."""
         found = []
         for name in self.expected(WEATHER):
-            reading = self.reading(name)
-            if reading is None or self.stale(name):
+            reading = self.fresh(name)
+            if reading is None:
                 found.append(f"{name} is silent")
             elif reading["Unsafe"]:
                 causes = [word.lower() for word in ("Rain", "Windy", "Humid") if reading[word]]

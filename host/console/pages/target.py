@@ -1,11 +1,9 @@
 """Where to go: a name, coordinates, or a click on the sky chart; a double click goes at once."""
 
-import math
-
 from nicegui import ui
 from nicegui.events import MouseEventArguments
 
-from host.console.figures import pointing
+from host.console.figures import hours, pointing
 from host.console.shell import Shell, box, button, seldom
 from host.console.skymap import SIZE, label, svg
 from host.sky.angles import format_degrees, parse_declination, parse_right_ascension
@@ -47,7 +45,7 @@ def target(shell: Shell) -> None:
         place = _icrs(found, shell.telescope.observatory, shell.desk.now.t_s)
         named = isinstance(found, Star)
         chosen.set_value(place.name if named else None)
-        ra.set_value("" if named else _hours(place.right_ascension_rad))
+        ra.set_value("" if named else hours(place.right_ascension_rad))
         dec.set_value("" if named else format_degrees(place.declination_rad))
         if event.type == "dblclick":
             await go()
@@ -93,8 +91,3 @@ def _icrs(found: Star | Observed, about: Observatory, t_s: float) -> Star:
         return found
     place = apparent_of_observed(found.hour_angle_rad, found.declination_rad, about.site, about.clock, t_s)
     return star_of_apparent(place, about.clock, t_s, "RA/Dec")
-
-
-def _hours(angle_rad: float) -> str:
-    seconds = round(math.degrees(angle_rad) * 240) % 86400
-    return f"{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}"

@@ -161,7 +161,7 @@ def test_a_click_on_the_sky_chooses_and_a_double_click_goes(browser: Any, served
     box, spot = sky.bounding_box(), page.evaluate(_BARE)
     page.mouse.click(box["x"] + (120 + spot[0]) * zoom, box["y"] + (120 + spot[1]) * zoom)
     page.wait_for_function("!document.querySelector('input[aria-label=Name]').value")
-    page.wait_for_function("/^\\d\\d:/.test(document.querySelector('input[aria-label=\"RA, ICRS\"]').value)")
+    page.wait_for_function("/^\\d\\dh/.test(document.querySelector('input[aria-label=\"RA, ICRS\"]').value)")
     press(page, "STOP  (space)")
     state(page, "^idle")
     page.close()
