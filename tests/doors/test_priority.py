@@ -1,4 +1,4 @@
-"""Real-time priority of `serve`: ticks before ordinary programs, their children not, and what is not granted."""
+"""Real-time priority of `serve`: ticks before ordinary programs, children not, what is not granted."""
 
 import os
 import subprocess
@@ -75,9 +75,11 @@ def test_a_system_without_the_class_runs_on(monkeypatch: pytest.MonkeyPatch) -> 
     ("words", "expected"),
     [
         ((), "ticks run"),
-        (("--no-realtime",), None), (("--speed", "2"), None), (("--clock", "steps", "--control", "{port}"), None),
+        (("--no-realtime",), None),
+        (("--speed", "2"), None),
+        (("--clock", "steps", "--control", "{port}"), None),
     ],
-)  # fmt: skip
+)
 def test_serve_takes_it_by_itself_at_the_walls_pace_and_says_so(
     tmp_path: Path, words: tuple[str, ...], expected: str | None
 ) -> None:
