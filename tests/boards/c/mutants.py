@@ -59,7 +59,7 @@ def candidates(text: str) -> Iterator[Mutant]:
             continue
         for found, put in _RULES:
             now = re.sub(found, put, line, count=1)
-            if now != line and now.strip() not in EQUIVALENT:
+            if now != line:
                 yield Mutant(number, line, now)
 
 
@@ -67,7 +67,8 @@ def chosen(count: int, seed: int) -> list[Mutant]:
     """So many, of different lines."""
     every = list(candidates(AXIS_C.read_text(encoding="utf-8")))
     random.Random(seed).shuffle(every)
-    return list({mutant.line: mutant for mutant in every}.values())[:count]
+    each = {mutant.line: mutant for mutant in every}.values()
+    return [mutant for mutant in each if mutant.now.strip() not in EQUIVALENT][:count]
 
 
 def found(mutant: Mutant, folder: Path) -> str:
