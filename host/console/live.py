@@ -12,6 +12,7 @@ from host.console.views import BusView
 from host.telescope import Snapshot, Telescope
 from host.telescope.alarms import SILENCE_S, Alarms, of_bus, of_house
 from host.telescope.events import Events
+from host.telescope.jobs import Activity
 
 PERIOD_S = 0.25
 """Wall time between samples; the RS232 links of the paper's console are as fast."""
@@ -72,7 +73,8 @@ class Live:
         if self._taken % _CLOCKS == 0:
             self.clocks = clocks(self.telescope)
         self._taken += 1
-        errors = None if now.slewing else now.errors_arcsec  # degrees to go hide arcseconds
+        follows = now.activity == Activity.TRACKING.value  # else degrees to go hide arcseconds
+        errors = now.errors_arcsec if follows else None
         moved = now.slewing  # and degrees a second the sky's own motion
         self.samples.append(
             Sample(

@@ -120,9 +120,13 @@ def choose(page: Any, label: str, name: str) -> None:
     """Pick from a list."""
     field = page.get_by_label(label, exact=True)
     field.click()
-    if label == "Name":  # a long list: only what is in view is there
+    option = page.get_by_role("option", name=name, exact=True)
+    if label == "Name":  # a long list: only what is in view is there, and what is typed changes it
         field.fill(name)
-    page.get_by_role("option", name=name, exact=True).click()
+        page.wait_for_function("document.querySelectorAll('[role=option]').length < 10")
+        page.wait_for_timeout(500)
+    option.click()
+    option.wait_for(state="hidden")
 
 
 def press(page: Any, name: str) -> None:

@@ -75,6 +75,9 @@ def test_the_tracking_strip_is_not_ruined_by_a_slew(final: Rig) -> None:
     ends = span(errors, 0.2)
     assert -20 < ends["min"] < 0 < ends["max"] < 20
     assert rms_text(live.samples).startswith("rms of 120 s: RA 0.")
+    final.do(lambda t: t.drive.stop())
+    looked(final, live, 150.0)  # the sky leaves; that is no error
+    assert rms_text(live.samples) == "rms of 120 s: RA –, Dec –"
 
 
 def test_a_peak_does_not_set_the_scale() -> None:
