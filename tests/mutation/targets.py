@@ -1,5 +1,13 @@
 """Modules that are mutated, and the tests that have to notice, the quick ones first."""
 
+from pathlib import Path
+
+AIMS = {
+    "bus": 95, "boards": 95, "plant/kernels": 95, "scenarios/run": 95, "calibration/decide": 90,
+    "calibration": 85, "host": 85, "plant": 85, "scenarios": 85,
+}  # fmt: skip
+"""Rooms, the inner ones before those around them, and the share of mutants that is to be killed, per cent."""
+
 _BITS = tuple(f"tests/bus/can/test_{name}.py" for name in ("bits", "disturbance"))
 _ERRORS = tuple(f"tests/bus/can/test_{name}.py" for name in ("disturbance", "trouble"))
 _RECOVERY = tuple(f"tests/bus/can/test_{name}.py" for name in ("recovery", "stuck", "trouble"))
@@ -33,7 +41,7 @@ TARGETS: dict[str, tuple[str, ...]] = {
     "bus/can/recovery.py": (*_RECOVERY, *_MODES),
     "bus/can/trouble.py": (
         "tests/bus/can/test_confinement.py",
-        "tests/bus/test_errorframes.py",
+        "tests/bus/outside/test_errorframes.py",
         "tests/bus/can/test_trouble_told.py",
         "tests/bus/can/test_plan.py",
         *_MODES,
@@ -54,3 +62,24 @@ TARGETS: dict[str, tuple[str, ...]] = {
     "bus/protocol/tach.py": _PROTOCOL,
     "bus/protocol/target.py": _PROTOCOL,
 }
+
+
+def modules(room: str) -> dict[str, tuple[str, ...]]:
+    """Every module of a room with its tests: TARGETS', else those that mirror it."""
+    files = sorted(Path(room).rglob("*.py"), key=str)
+    code = [str(each) for each in files if each.name != "__init__.py"]
+    return {path: TARGETS.get(path) or mirrored(path) for path in code if room_of(path) == room}
+
+
+def room_of(path: str) -> str:
+    """The first room of AIMS that a module lies in."""
+    return next((room for room in AIMS if path.startswith(f"{room}/")), "")
+
+
+def mirrored(path: str) -> tuple[str, ...]:
+    """The test of the module's name; without one, all of the nearest folder that mirrors the module's."""
+    folder = Path("tests", path).parent
+    while not any(folder.glob("test_*.py")) and folder != Path("tests"):
+        folder = folder.parent
+    own = folder / f"test_{Path(path).stem}.py"
+    return (str(own),) if own.exists() else tuple(sorted(map(str, folder.glob("test_*.py"))))

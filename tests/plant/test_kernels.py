@@ -20,6 +20,7 @@ emf_of, push_of, wound, normal_of, uniform_of, shown = (
 def test_P4_a_winding_tends_to_its_target_and_the_diode_stops_it_at_nothing() -> None:
     assert wound(2.0, 5.0, 0.25, 0.5) == (5.0 - 3.0 * 0.25, 5.0 - 3.0 * 0.5)
     assert wound(2.0, -5.0, 0.25, 0.5) == (0.0, 0.0)
+    assert wound(0.5, 0.1, 0.25, 0.5) == pytest.approx((0.2, 0.3))
     assert wound(2.0, -5.0, 0.9, 0.95) == (-5.0 + 7.0 * 0.9, -5.0 + 7.0 * 0.95)
     assert wound(2.0, -5.0, 0.5, 0.9) == (0.0, -5.0 + 7.0 * 0.9)
 

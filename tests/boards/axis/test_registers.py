@@ -184,10 +184,14 @@ def test_B2_the_encoder_watch_counts_in_32_bits(counts: list[int], before: int, 
 def test_B2_encoders_have_parted_beyond_40_arcsec(arcsec: float, parted: bool, sign: int) -> None:
     counts = round(arcsec / ARCSEC_PER_TURN * COUNTS_PER_TURN) * sign
     watch = EncoderWatch()
-    assert not watch.disagree(0)  # there is no look before
+    assert watch.counts == 0 and not watch.disagree(0)  # there is no look before
     assert watch.disagree(counts << UNIT_SHIFT) is parted
     watch.counts = 1000 + counts
     assert watch.disagree((counts + 1000) << UNIT_SHIFT) is parted
+    watch.forget()
+    assert watch.counts == 0 and not watch.disagree(1 << 40)
+    assert not watch.disagree((1 << 40) + sign * (3484 << UNIT_SHIFT))  # just 40 arcsec
+    assert watch.disagree(1 << 40) is False
 
 
 @pytest.mark.parametrize("flag", [PositionFlag.ALARM, PositionFlag.CRC_ERROR])
