@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -16,6 +17,8 @@ from host.sky.catalogue import STARS, Star
 from host.sky.observed import Clock, Observed, observe
 from host.sky.site import Site
 
+FAINTEST_NGC = 9.0
+"""Visual magnitude to which the NGC is listed. ASSUMPTION: a few hundred objects, what binoculars show."""
 VARIABLE = "SCHMIDT_CATALOGUE"
 """The path of a list of one's own: columns name, ra, dec (ICRS). All of it is on the chart."""
 _EARTH_AU = 6378.137 / 149597870.7
@@ -30,7 +33,7 @@ class Listed(NamedTuple):
     stellar: bool = False
 
 
-def read(path: Path, stellar: bool = False) -> list[Listed]:
+def read(path: Path) -> list[Listed]:
     """A CSV: notes that begin with #, a head line, objects. Raises ValueError with file and line."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -42,7 +45,7 @@ def read(path: Path, stellar: bool = False) -> list[Listed]:
     for row in rows:
         try:
             star = Star(row["name"], parse_right_ascension(row["ra"]), parse_declination(row["dec"]))
-            found.append(Listed(star, float(row["magnitude"]) if row.get("magnitude") else None, stellar))
+            found.append(Listed(star, float(row["magnitude"]) if row.get("magnitude") else None))
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{path}: line {notes + rows.line_num}: {error}") from None
     return found
@@ -51,13 +54,38 @@ def read(path: Path, stellar: bool = False) -> list[Listed]:
 @cache
 def listed() -> dict[str, Listed]:
     """All, by name. One's own come first; a star to align on has its exact place."""
-    own, folder = os.environ.get(VARIABLE), Path(__file__).parent
+    own = os.environ.get(VARIABLE)
     found = {each.star.name: each._replace(magnitude=None) for each in read(Path(own))} if own else {}
     found |= {name: Listed(star, None, True) for name, star in STARS.items() if name not in found}
-    for each in (*read(folder / "stars.csv", stellar=True), *read(folder / "deepsky.csv")):
+    for each in (*bright_stars(), *deep_sky()):
         name = each.star.name
         found[name] = found[name]._replace(magnitude=each.magnitude) if name in found else each
     return found
+
+
+def bright_stars() -> Iterator[Listed]:
+    """The stars of PyEphem's list: Hipparcos places, names of the IAU; without proper motion."""
+    from ephem.stars import db  # of the extra `consoles`, which alone lists what there is
+
+    for line in db.splitlines():
+        name, _, ra_h, dec_deg, magnitude = line.split(",")[:5]
+        place = (float(text.split("|")[0]) for text in (ra_h, dec_deg))
+        right_ascension, declination = (math.radians(k * x) for k, x in zip((15, 1), place, strict=True))
+        yield Listed(Star(name, right_ascension, declination), float(magnitude), True)
+
+
+def deep_sky() -> Iterator[Listed]:
+    """Messier's objects and the bright ones of the NGC, from OpenNGC (PyOngc)."""
+    from pyongc.ongc import listObjects
+
+    for each in (*listObjects(catalog="M"), *listObjects(catalog="NGC", uptovmag=FAINTEST_NGC)):
+        messier, _, _, common, _ = each.identifiers
+        number = f"M {int(messier[1:])}" if messier else f"NGC {each.name[3:].lstrip('0')}"
+        name = f"{number} ({common[0]})" if common else number
+        place = each.rad_coords
+        if place is not None:
+            _, visual, *_ = each.magnitudes
+            yield Listed(Star(name, float(place[0]), float(place[1])), visual)
 
 
 def moon(site: Site, clock: Clock, t_s: float) -> tuple[Observed, float]:
