@@ -8,6 +8,7 @@ import shutil
 import signal
 from collections import Counter
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple, NoReturn
@@ -42,10 +43,10 @@ class Hung(BaseException):
 
 
 class Case(NamedTuple):
-    """what: the change, for whoever repeats it. text: of the file."""
+    """what: the change, for whoever repeats it. text: makes the file's."""
 
     what: str
-    text: bytes
+    text: Callable[[], bytes]
 
 
 class Kind(NamedTuple):
@@ -70,13 +71,16 @@ def documents(file: Path) -> Iterator[Case]:
     whole = yaml.safe_load(file.read_text(encoding="utf-8"))
     for place in _places(whole):
         for wrong in WRONG:
-            changed = copy.deepcopy(whole)
-            inner = changed
-            for key in place[:-1]:
-                inner = inner[key]
-            inner[place[-1]] = wrong
-            text = yaml.safe_dump(changed, allow_unicode=True)
-            yield Case(f"{file.name}: {place} = {str(wrong)[:30]!r}", text.encode())
+            yield Case(f"{file.name}: {place} = {str(wrong)[:30]!r}", partial(_with, whole, place, wrong))
+
+
+def _with(whole: Any, place: tuple[Any, ...], wrong: Any) -> bytes:
+    changed = copy.deepcopy(whole)
+    inner = changed
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = wrong
+    return yaml.safe_dump(changed, allow_unicode=True).encode()
 
 
 def tables(file: Path) -> Iterator[Case]:
@@ -88,13 +92,13 @@ def tables(file: Path) -> Iterator[Case]:
                 cells = lines[row].split(",")
                 cells[k] = wrong
                 text = "\n".join([*lines[:row], ",".join(cells), *lines[row + 1 :]])
-                yield Case(f"{file.name}: row {row}, column {k} = {wrong[:20]!r}", text.encode())
+                yield Case(f"{file.name}: row {row}, column {k} = {wrong[:20]!r}", text.encode)
         for wrong in _LINES:
             text = "\n".join([*lines[:row], wrong, *lines[row + 1 :]])
-            yield Case(f"{file.name}: row {row} = {wrong[:20]!r}", text.encode())
+            yield Case(f"{file.name}: row {row} = {wrong[:20]!r}", text.encode)
     whole = "\n".join(lines).encode()
     for end in range(0, len(whole), max(len(whole) // 20, 1)):
-        yield Case(f"{file.name}: {end} bytes", whole[:end])
+        yield Case(f"{file.name}: {end} bytes", partial(bytes, whole[:end]))
 
 
 KINDS: dict[str, Kind] = {
@@ -122,7 +126,7 @@ def try_all(kind: str, count: int, seed: int, folder: Path) -> tuple[Counter[str
     before = signal.signal(signal.SIGALRM, late)
     try:
         for case in random.Random(seed).sample(cases, min(count, len(cases))):
-            file.write_bytes(case.text)
+            file.write_bytes(case.text())
             signal.setitimer(signal.ITIMER_REAL, _HUNG_S)
             try:
                 use(file)

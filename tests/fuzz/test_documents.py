@@ -17,7 +17,7 @@ from scenarios.run.mcapfile import export
 from scenarios.run.sources import summary_of
 from tests.fuzz.documents import KINDS, try_all
 
-COUNT = 150
+COUNT = 300
 
 
 @pytest.mark.slow
