@@ -88,8 +88,10 @@ def too_small(others: Selection, contender: Contender, further: bool = True) -> 
 
 
 def equivalents(others: Selection, contenders: list[Contender], best: Contender) -> list[Contender]:
-    """Contenders of another name that fit as well within the scatter over blocks (paired likelihoods), and
-    that held-out rows do not tell apart from the best."""
+    """Contenders of another name that fit as well within the scatter over blocks (paired likelihoods).
+
+    Those that held-out rows tell apart from the best are none of them.
+    """
     out, first = [], best.candidate
     for rival in contenders:
         c = rival.candidate

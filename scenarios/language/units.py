@@ -9,8 +9,8 @@ from typing import NamedTuple
 class Quantity(NamedTuple):
     """base: what `parse` returns it in. limit: largest magnitude, in the base unit. units: their sizes in it.
 
-    Limits are far beyond anything at a telescope (four months, 7700 turns, 10 km), near enough that no sum of
-    them overflows and nobody waits for it. ASSUMPTION.
+    Limits are far beyond anything at a telescope: four months, 7700 turns, 10 km. ASSUMPTION. They are near
+    enough that no sum of them overflows and nobody waits for it.
     """
 
     base: str
