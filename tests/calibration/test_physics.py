@@ -272,9 +272,8 @@ def test_heating_is_told_of_the_cold_resistance() -> None:
 
 def line(channel: str, name: str, **more: object) -> Finding:
     a = {"amplitude": Parameter(0.01, "N m at the motor", 0.009, 0.011)}
-    return Finding(
-        name, channel, "motor_angle", "motor", 2, 2 * STAGES["motor"], parameters=a, share=0.5, **more
-    )  # type: ignore[arg-type]
+    place = {"stage": "motor", "harmonic": 2, "order": 2 * STAGES["motor"]}
+    return Finding(name, channel, "motor_angle", parameters=a, share=0.5, **place, **more)  # type: ignore[arg-type]
 
 
 def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:

@@ -32,7 +32,8 @@ def written(name: str, **more: float) -> list[EffectModel]:
     size = "ripple" if name == "torque_ripple" else "amplitude"
     parameters = {size: Parameter(0.1, ""), "phase": Parameter(PHASE, "rad")}
     parameters |= {key: Parameter(x, "") for key, x in more.items()}
-    f = Finding(name, "T", REGISTRY[name].domain, stage, harmonic, order, parameters=parameters)
+    domain = REGISTRY[name].domain
+    f = Finding(name, "T", domain, stage=stage, harmonic=harmonic, order=order, parameters=parameters)
     return NAMES[name].to_plant(f, Facts("log")).effects
 
 

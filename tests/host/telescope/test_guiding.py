@@ -70,7 +70,6 @@ def test_pulses_of_an_axis_follow_one_another_and_make_the_sum(tracking: Rig) ->
     track = tracking.telescope.drive.pointing.track
     assert isinstance(track, SkyTrack)
     before = track.shifted(tracking.telescope.snapshot.t_s)
-    pulse = tracking.telescope.paddle.pulse
     for direction in "wws":
         tracking.do(lambda t, d=direction: t.paddle.pulse(d, 1.0))
     tracking.advance(2.0 + 2 * RAMP_S - 0.4)
@@ -81,13 +80,12 @@ def test_pulses_of_an_axis_follow_one_another_and_make_the_sum(tracking: Rig) ->
     assert made == pytest.approx([2 * GUIDE_ARCSEC_S, -GUIDE_ARCSEC_S])
     boards = tracking.telescope.drive.pointing.errors_arcsec()
     assert boards is not None and max(map(abs, boards)) < OVERSHOOT_ARCSEC
+
+
+def test_more_than_a_minute_of_pulses_does_not_wait_and_a_stop_ends_those_that_do(tracking: Rig) -> None:
     with pytest.raises(Refused) as refused:
-        tracking.do(lambda t: [pulse("w", 60.0) for _ in range(3)])
+        tracking.do(lambda t: [t.paddle.pulse("w", 60.0) for _ in range(3)])
     assert refused.value.reason is Reason.STATE
-
-
-def test_a_stop_ends_a_pulse(tracking: Rig) -> None:
-    tracking.do(lambda t: t.paddle.pulse("e", 30.0))
     assert tracking.telescope.snapshot.pulse_guiding
     tracking.run(lambda t: t.drive.stop())
     tracking.advance(1.0)
