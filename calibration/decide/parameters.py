@@ -156,8 +156,7 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
         waves = [(*_wave(beta[x], cov[x, x], s.problem.blocks, unit, 0.0), _spread(cov[x, x])) for x in pair]
         # the phase is the section's that shows the line best: one that is held out shows none
         amplitude, phase, spread = max(waves, key=lambda w: w[0].value)
-        clear = pairs <= limits.MOST_WAVES or amplitude.value >= limits.CLEAR_Z * spread
-        if clear and (amplitude.low or 0.0) > 0.0:
+        if pairs <= limits.MOST_WAVES or amplitude.value >= limits.CLEAR_Z * spread:
             order = c.order * (h + 1) if c.order else None
             sizes = {size: amplitude, "phase": phase}
             out.append(replace(whole, harmonic=h + 1, order=order, parameters=sizes))
