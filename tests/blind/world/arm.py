@@ -15,6 +15,8 @@ from tests.blind.world import arm_kernel as kernel
 from tests.blind.world.made import TURN, Array, Rng, clock, pick, wide
 
 GRAVITY = 9.81  # m/s2
+FEWEST_ROWS = 250
+"""Of a file: fewer than 200 are refused, whatever is in them."""
 
 
 @dataclass
@@ -97,7 +99,8 @@ def path(rng: Rng, a: Arm, up_only: bool) -> Array:
         still = max(int(a.rest_s * rng.uniform(0.5, 1.5) / a.period_s), 2)
         parts += [np.full(still, goal)]
         at, rows = goal, rows + n + still
-    return np.concatenate(parts)[:total]
+    whole = np.concatenate(parts)[:total]
+    return np.pad(whole, (0, max(FEWEST_ROWS - len(whole), 0)), mode="edge")  # it rests there
 
 
 def paths(rng: Rng, a: Arm) -> list[Array]:
