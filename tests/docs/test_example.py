@@ -82,10 +82,10 @@ def test_page_tells_the_figures_of_the_report(answer: tuple[dict[str, Any], Path
 @pytest.mark.parametrize(
     ("page", "pattern"),
     [
-        ("README.md", r"a torque of ([\d.]+) N m.*?falls from ([\d.]+) N m to ([\d.]+) N m"),
+        ("README.md", r"amplitude of (?P<found>[\d.]+) N m.*?falls\s+to (?P<after>[\d.]+) N m"),
         (
             "docs/guides/calibrate-a-log.md",
-            r"harmonic 1,\s+([\d.]+) N m.*?error, N m \| ([\d.]+) \| ([\d.]+) \|",
+            r"torque error, N m \| (?P<before>[\d.]+) \| (?P<after>[\d.]+) \|",
         ),
     ],
 )
@@ -98,8 +98,9 @@ def test_other_pages_tell_the_same_figures(
     report = answer[0]
     torque = report["error"]["torque"]
     found = report["effects"][0]["parameters"]["amplitude"]["value"]
-    for figure, value in zip(told.groups(), (found, torque["before"], torque["after"]), strict=True):
-        assert float(figure) == pytest.approx(value, rel=0.05)
+    values = {"found": found, "before": torque["before"], "after": torque["after"]}
+    for name, figure in told.groupdict().items():
+        assert float(figure) == pytest.approx(values[name], rel=0.05), name
 
 
 @pytest.mark.slow
