@@ -104,7 +104,7 @@ def test_without_an_axis_line_there_is_nothing_to_record(tmp_path: Path) -> None
 @pytest.fixture
 def program(tmp_path: Path) -> Iterator[Any]:
     """The boards in one process, the host program in another on two of their cables, as on real ones."""
-    socket, first, port = tmp_path / "gateway.sock", free_ports(), free_ports()
+    socket, first, port = tmp_path / "gateway.sock", free_ports(5), free_ports()
     with Serving(tmp_path, "--hid", f"unix:{socket}", "--serial", f"tcp:{first}"):
         words = [
             *("--usb", f"unix:{socket}", "--serial", f"AXIS_RA=socket://localhost:{first}"),
