@@ -141,6 +141,7 @@ def test_positions_have_the_columns_stellarium_reads(client: Client) -> None:
 
 def test_precision_toggles_silently_and_for_this_client_only(door: Door, client: Client) -> None:
     other = Client(door.port)
+    assert other.ask("GR")  # its session is there: a connection alone may still wait to be accepted
     client.send(b"#:U#")
     assert client.rest() == b""
     assert re.fullmatch(r"\d\d:\d\d\.\d", client.ask("GR"))
