@@ -1,5 +1,6 @@
 """`INTERFACE:CHANNEL[,key=value…]` as users write it on the command line, opened as a python-can bus."""
 
+import errno
 import logging
 import os
 import socket
@@ -16,6 +17,14 @@ _ALL_GROUPS = (
     (socket.AF_INET6, socket.IPPROTO_IPV6, 29),  # IPV6_MULTICAST_ALL
 )
 """Linux' option by which a socket hears every group that anybody on the machine has joined, by default on."""
+
+
+_SOCKETCAN = {
+    errno.EAFNOSUPPORT: "udp_multicast:239.74.163.2, which needs no CAN in the kernel",
+    errno.ENODEV: "sudo ip link add dev {0} type vcan && sudo ip link set {0} up",
+    errno.ENETDOWN: "sudo ip link set {0} up",
+}
+"""What to do where Linux refuses a SocketCAN channel."""
 
 
 class SpecError(ValueError):
@@ -44,10 +53,17 @@ def open_bus(spec: str) -> can.BusABC:
         bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise SpecError(f'"{spec}" cannot be opened: {reason}') from None
+        remedy = _remedy(error).format(channel) if interface == "socketcan" else ""
+        raise SpecError(f'"{spec}" cannot be opened: {reason}{remedy and f"; try: {remedy}"}') from None
     if interface == "udp_multicast" and sys.platform == "linux":
         _hear_one_group(bus)
     return bus
+
+
+def _remedy(error: BaseException | None) -> str:
+    while error and getattr(error, "errno", None) not in _SOCKETCAN:
+        error = error.__cause__ or error.__context__
+    return _SOCKETCAN[getattr(error, "errno", 0)] if error else ""
 
 
 def _hear_one_group(bus: can.BusABC) -> None:

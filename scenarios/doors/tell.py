@@ -27,6 +27,9 @@ def tell(command: str, at: str, token: str | None = None) -> str:
                 answer = stream.readline().rstrip("\n")
                 if not answer.startswith("ok"):
                     break
+    except ConnectionRefusedError:
+        what = f"nobody listens; start schmidt serve --control {port} first"
+        raise ControlError(f"{host}:{port}: {what}") from None
     except (OSError, UnicodeError) as error:
         raise ControlError(f"{host}:{port}: no answer: {error}") from None
     if not answer.startswith("ok"):

@@ -1,5 +1,6 @@
 """A multicast group is one bus, whoever else uses its port on this machine."""
 
+import errno
 import os
 from contextlib import ExitStack
 
@@ -76,3 +77,26 @@ def test_one_ping_beside_two_networks_has_one_reply() -> None:
             pytest.skip("multicast does not come back here")
     assert replies == 1
     assert entered == [1, 0]
+
+
+@pytest.mark.parametrize(
+    ("code", "remedy"),
+    [
+        (errno.EAFNOSUPPORT, "udp_multicast:239.74.163.2"),
+        (errno.ENODEV, "sudo ip link add dev vcan7 type vcan && sudo ip link set vcan7 up"),
+        (errno.ENETDOWN, "sudo ip link set vcan7 up"),
+    ],
+)
+def test_a_channel_that_linux_refuses_says_what_to_try(
+    monkeypatch: pytest.MonkeyPatch, code: int, remedy: str
+) -> None:
+    def refused(**_: object) -> None:
+        try:
+            raise OSError(code, os.strerror(code))
+        except OSError as error:  # as python-can hands it on
+            raise can.CanInitializationError("no channel") from error
+
+    monkeypatch.setattr(can, "Bus", refused)
+    with pytest.raises(SpecError) as caught:
+        open_bus("socketcan:vcan7")
+    assert str(caught.value).endswith(f"; try: {remedy}") or f"; try: {remedy}," in str(caught.value)

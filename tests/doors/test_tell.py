@@ -1,0 +1,16 @@
+"""`schmidt control`: where nobody listens, the line says what to start."""
+
+import pytest
+
+from scenarios.doors.control import ControlError
+from scenarios.doors.tell import tell
+from tests.ports import free_ports
+
+
+def test_where_nobody_listens_the_line_names_the_command() -> None:
+    port = free_ports(1)
+    with pytest.raises(ControlError) as caught:
+        tell("status", str(port))
+    assert (
+        str(caught.value) == f"127.0.0.1:{port}: nobody listens; start schmidt serve --control {port} first"
+    )
