@@ -28,7 +28,11 @@ CHECKS = (
     "unknown identifier", "extended frame", "remote frame", "wrong state", "limits", "response time",
     "flooding", "still there",
 )  # fmt: skip
-"""One test each, so that a report says what is wrong."""
+CANOPEN = (
+    "pre-operational", "boot-up", "state", "heartbeat", "object", "abort", "short request", "server",
+    "operational", "stopped", "SYNC", "event again",
+)  # fmt: skip
+"""One test each, so that a report says what is wrong; with `--can-canopen` the second list."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -41,6 +45,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--board", action="append", default=[], metavar="TYPE:ID", help="board to check, such as axis:0x11"
     )
     group.addoption("--can-motion", action="store_true", help="also send commands that move something")
+    group.addoption("--can-canopen", action="store_true", help="check what a CANopen master expects, instead")
     group.addoption("--can-stamps", type=float, default=0.001, help="uncertainty of time stamps, seconds")
     group.addoption("--can-speed", type=float, default=1.0, help="simulated seconds per second")
 
@@ -94,7 +99,10 @@ class _Found:
         if board.name not in self._results:
             option = self._config.getoption
             settings = Settings(
-                motion=option("--can-motion"), stamps_s=option("--can-stamps"), speed=option("--can-speed")
+                motion=option("--can-motion"),
+                stamps_s=option("--can-stamps"),
+                speed=option("--can-speed"),
+                canopen=option("--can-canopen"),
             )
             with _open(self._config) as bus:
                 self._results[board.name] = run(bus, devices=[board], settings=settings)
@@ -134,7 +142,7 @@ def pytest_collection_modifyitems(
         return
     found = _Found(config, boards)
     for board in boards:
-        for check in CHECKS:
+        for check in CANOPEN if config.getoption("--can-canopen") else CHECKS:
             name = f"conformance[{board.name}-{check}]"
             items.append(
                 ConformanceItem.from_parent(session, name=name, found=found, board=board, check=check)

@@ -121,6 +121,9 @@ def _expectation(document: Document, index: int, data: dict[str, Any]) -> model.
     arguments = dict(data[kind])
     upper = "at_most" in arguments
     limit = float(arguments.pop("at_most" if upper else "at_least"))
+    if upper and limit < 0:
+        where = document.where(("expect", index, kind, "at_most"))
+        raise ScenarioError(f"{where}: no figure is below zero; give 0 or more")
     words = [kind.replace("_", " "), *(str(arguments[key]) for key in ("axis", "source") if key in arguments)]
     if "during" in arguments:
         words.append(f"during {arguments['during']}")

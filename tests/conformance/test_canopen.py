@@ -1,6 +1,9 @@
 """The CANopen part: the boards' own voice passes, and each way of being wrong is found."""
 
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from canopen.objectdictionary import ObjectDictionary
@@ -8,6 +11,7 @@ from canopen.objectdictionary import ObjectDictionary
 import boards.canopen.voice as voice
 from boards.canopen.server import Server
 from bus.conformance import CheckResult, Settings, board_of, run
+from bus.kit import CANOPEN
 from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import Device
 from plant.model import load
@@ -20,17 +24,54 @@ Patch = pytest.MonkeyPatch
 BOARDS = (Device.DISPLAY, Device.MOTOR_RA_A)
 
 
-def wrong(devices: tuple[Device, ...] = BOARDS) -> list[CheckResult]:
+def found(devices: tuple[Device, ...] = BOARDS) -> list[CheckResult]:
     made = build(NetworkConfig(canopen=True), Plant(load("low_preload"), 1), 1)
     with SchmidtBus(made.wire) as bus:
         settings = Settings(canopen=True, stamps_s=0.0, period_tolerance=0.002)
         results = run(bus, devices=[board_of(device) for device in devices], settings=settings)
     assert len(results) > 30 * len(devices)
-    return [result for result in results if not result.passed]
+    return results
+
+
+def wrong() -> list[CheckResult]:
+    return [result for result in found() if not result.passed]
 
 
 def test_all_boards_are_what_a_master_expects() -> None:
-    assert wrong(tuple(Device)) == []
+    results = found(tuple(Device))
+    assert [result for result in results if not result.passed] == []
+    assert {result.check for result in results} == set(CANOPEN)
+
+
+KIT = """
+from bus.registry import publish
+from plant.model import load
+from plant.plant import Plant
+from scenarios.lab.network import build
+from scenarios.lab.networks import NetworkConfig
+made = build(NetworkConfig(canopen=True), Plant(load("low_preload"), 1), 1)
+publish("kit", made.wire)
+"""
+
+
+def test_the_kit_runs_them_with_its_option(tmp_path: Path) -> None:
+    (tmp_path / "conftest.py").write_text(KIT)
+    options = [
+        "--can",
+        "schmidt:kit",
+        "--board",
+        "display:0x51",
+        "--can-canopen",
+        "--can-stamps",
+        "0",
+        "-p",
+        "no:cacheprovider",
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "bus.kit", "-c", "/dev/null", *options, str(tmp_path)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert f"{len(CANOPEN)} passed" in done.stdout, done.stdout + done.stderr
 
 
 def without(patch: Patch, index: int) -> None:
@@ -73,9 +114,9 @@ BROKEN: list[tuple[str, Callable[[Patch], None], set[str]]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("what", "change", "found"), BROKEN, ids=[each[0] for each in BROKEN])
+@pytest.mark.parametrize(("what", "change", "checks"), BROKEN, ids=[each[0] for each in BROKEN])
 def test_what_is_wrong_is_found(
-    what: str, change: Callable[[Patch], None], found: set[str], monkeypatch: Patch
+    what: str, change: Callable[[Patch], None], checks: set[str], monkeypatch: Patch
 ) -> None:
     change(monkeypatch)
-    assert {result.check for result in wrong()} == found
+    assert {result.check for result in wrong()} == checks

@@ -64,6 +64,7 @@ def test_a_good_scenario_arrives_in_base_units() -> None:
         ("10 s}", "10 sec}", 8, ["'10 sec'", "ms, s, min, h"]),
         ("10 s}", "10}", 8, ["no unit", "'10 s'"]),
         ("10 arcsec", "10 arcsec/s", 13, ["arcsec/s", "does not fit"]),
+        ("at_most: 10 arcsec", "at_most: -1 arcsec", 13, ["no figure is below zero", "0 or more"]),
         ("during: hold", "during: hald", 13, ["'hald'", "'hold'"]),
         ("start_utc: 2026-02-10T14:00:00Z", "start_utc: yesterday", 2, ["start_utc", "'yesterday'"]),
         ("start_utc: 2026-02-10T14:00:00Z", "start_utc: 2026-02-10T14:00:00", 2, ["time zone"]),
