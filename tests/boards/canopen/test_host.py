@@ -10,6 +10,7 @@ from plant.model import load
 from scenarios.lab.session import Session
 from scenarios.language.document import read
 from scenarios.language.load import convert
+from scenarios.run.run import run
 
 FILE = Path(__file__).parents[3] / "scenarios" / "quick-look.yaml"
 
@@ -29,6 +30,18 @@ def test_every_step_of_a_night_is_done(session: Session) -> None:
     assert all(record.end_s is not None and not record.failed for record in session.programme.records)
     assert {voice.node.nmt.state for voice in session.network.voices.values()} == {"OPERATIONAL"}
     session.recorder.close()
+
+
+@pytest.mark.slow
+def test_verdicts_are_those_of_the_run_without(tmp_path: Path) -> None:
+    scenario = convert(read(FILE))
+    master = replace(scenario, network={**scenario.network, "canopen": True})
+    plain, started = (
+        run(each, load("low_preload"), tmp_path / name, lambda *_: None).verdicts
+        for name, each in (("plain", scenario), ("canopen", master))
+    )
+    assert [(v.name, v.passed) for v in started] == [(v.name, v.passed) for v in plain]
+    assert all(v.passed for v in plain)
 
 
 def test_a_board_that_boots_again_is_started_again(session: Session) -> None:
