@@ -4,6 +4,7 @@ import contextlib
 import os
 import re
 import shlex
+import shutil
 import socket
 import subprocess
 import sys
@@ -182,3 +183,27 @@ def test_a_door_is_attached_to_as_the_page_says(
         pytest.skip("needs a kernel with vcan and uhid: make guest")
     monkeypatch.chdir(served)
     assert CHECKS[row.option](row.code), row
+
+
+@pytest.mark.skipif(shutil.which("indiserver") is None, reason="indi-bin is not installed")
+def test_indis_lines_connect_and_say_where_the_telescope_points(served: Path) -> None:
+    section = text_of("docs/guides/attach-a-host.md").partition("## From INDI")[2].partition("\n## ")[0]
+    server, *lines = [shlex.split(line) for line in section.splitlines() if line.startswith("    ")]
+    assert len(lines) == 4
+
+    def said(words: list[str]) -> str:
+        done = subprocess.run(words, cwd=served, capture_output=True, text=True, timeout=WAIT_S, check=False)
+        return done.stdout if done.returncode == 0 else ""
+
+    with subprocess.Popen(server, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        try:
+            end = time.monotonic() + WAIT_S
+            while not said(["indi_getprop", "-1", lines[0][1].partition("=")[0]]):  # the driver comes up
+                assert time.monotonic() < end
+            for words in lines[:-1]:
+                said(words)
+            while len(found := said(lines[-1]).splitlines()) != 2:
+                assert time.monotonic() < end, found
+        finally:
+            process.terminate()
+    assert all(re.search(r"=-?[\d.]+$", each) for each in found), found

@@ -61,7 +61,9 @@ def test_finder_names_what_was_sealed_and_nothing_else(answer: tuple[dict[str, A
 
 @pytest.mark.slow
 def test_the_page_of_formats_lists_the_fields_of_a_report(answer: tuple[dict[str, Any], Path]) -> None:
-    table = (HERE.parent / "sources" / "log-format.md").read_text(encoding="utf-8").partition("## report.json")[2]
+    table = (
+        (HERE.parent / "sources" / "log-format.md").read_text(encoding="utf-8").partition("## report.json")[2]
+    )
     cells = re.findall(r"^\| (`.+?`) \|", table, re.MULTILINE)
     of_effects = [c.replace("effects[].", "") for c in cells if "effects[]." in c]
     top = {name for c in cells if "effects[]." not in c for name in re.findall(r"`(\w+)`", c)}
