@@ -1,6 +1,10 @@
 """Faults of the bus, each while it is on and after."""
 
-from bus.protocol import MEASUREMENT_BASE, Device, Opcode
+import numpy as np
+import pytest
+
+import schmidt
+from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, Device, Opcode, pack_command
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 
 
@@ -50,6 +54,16 @@ def test_a_forged_position_is_believed_until_it_ends() -> None:
     lab.faults.clear(number)
     lab.run(0.1)
     assert abs(lab.network.boards["AXIS_RA"].motion.position - true) < 100
+
+
+def test_one_forged_open_loop_turns_the_axis_as_far_as_fidelity_says() -> None:
+    lab = schmidt.Lab("lab", plant="low_preload", seed=1).run("0.5 s")
+    lab.ask("AXIS_RA", "POWER", 1)
+    frame = pack_command(Device.AXIS_RA, Opcode.OPEN_LOOP, 1500)
+    identifier = COMMAND_BASE + Device.AXIS_RA
+    lab.faults.start("forged_sender", identifier=identifier, data=int.from_bytes(frame, "big"), period="9 s")
+    angle = lab.run("8 s").truth("ra")["angle"]
+    assert np.degrees(angle[-1] - angle[0]) == pytest.approx(12, abs=1)
 
 
 def test_a_babbler_takes_the_share_it_is_given() -> None:
