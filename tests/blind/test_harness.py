@@ -59,6 +59,7 @@ def dies() -> None:
     os._exit(3)
 
 
+@pytest.mark.slow
 def test_a_finder_whose_process_dies_is_a_case_without_an_answer(tmp_path: Path) -> None:
     results = harness.run(ORDERS, 1004, tmp_path, 2, f"{__name__}:dies")
     assert [row["answered"] for row in results["cases"]] == [False, False]

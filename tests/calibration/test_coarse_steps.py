@@ -23,6 +23,7 @@ def answer(folder: Path, names: tuple[str, ...], ratio: float, seed: int = 1024)
     return report
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [2.0, 4.0])
 def test_friction_over_the_travel_is_named_although_the_floor_is_as_high(
     tmp_path: Path, ratio: float
@@ -35,6 +36,7 @@ def test_friction_over_the_travel_is_named_although_the_floor_is_as_high(
     assert report["error"]["torque"]["before"] < 2 * report["error"]["torque"]["floor"]
 
 
+@pytest.mark.slow
 def test_what_the_steps_leave_has_no_name(tmp_path: Path) -> None:
     assert answer(tmp_path, (), 0.0)["effects"] == []
 

@@ -61,6 +61,7 @@ def report(folder: Path, rig: str, **changes: Any) -> dict[str, Any]:
     return answer(folder, rig, *[loop(k, **changes) for k in range(3)], header="t,x,u,r")
 
 
+@pytest.mark.slow
 def test_a_sound_loop_of_a_plain_log_writer_keeps_its_law(tmp_path: Path) -> None:
     """The position is written after the step, its zero is another, and the logged command ends at 5 N."""
     tables = []
@@ -79,6 +80,7 @@ def of_the_command(data: dict[str, Any]) -> list[dict[str, Any]]:
     return [e for e in data["effects"] if e["channel"] == "S"]
 
 
+@pytest.mark.slow
 def test_a_sound_loop_keeps_its_law_and_gets_its_gains(tmp_path: Path) -> None:
     data = report(tmp_path, RIG)
     assert of_the_command(data) == []
@@ -87,6 +89,7 @@ def test_a_sound_loop_keeps_its_law_and_gets_its_gains(tmp_path: Path) -> None:
     assert data["error"]["command"]["after"] < 0.1  # N, of 5 N
 
 
+@pytest.mark.slow
 def test_an_integral_goes_on_where_rows_are_missing(tmp_path: Path) -> None:
     """Three files of twenty seconds, each with three gaps of 0.3 s."""
     tables = []
@@ -102,6 +105,7 @@ def test_an_integral_goes_on_where_rows_are_missing(tmp_path: Path) -> None:
         assert data["calibrated"][f"gain_{name}"]["value"] == pytest.approx(value, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_quick_disturbance_has_its_size_before_the_filter(tmp_path: Path) -> None:
     """The filter of the balance leaves four fifths of it (`smooth_s` says how wide it is)."""
     (found,) = of_the_command(report(tmp_path, RIG + "smooth_s: 0.02\n", hertz=26.3))
@@ -109,12 +113,14 @@ def test_a_quick_disturbance_has_its_size_before_the_filter(tmp_path: Path) -> N
     assert found["parameters"]["amplitude"]["value"] == pytest.approx(0.4, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_square_is_one_disturbance(tmp_path: Path) -> None:
     (found,) = of_the_command(report(tmp_path, RIG, hertz=1.3, square=True))
     assert found["name"] == "command_disturbance" and found["equivalent"] == []
     assert found["parameters"]["amplitude"]["value"] == pytest.approx(0.4 * 4 / np.pi, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_disturbance_of_the_command_is_seen_where_the_balance_of_forces_cannot(tmp_path: Path) -> None:
     """It moves the slide, so that force and motion agree."""
     data = report(tmp_path, RIG, hertz=3.7)
@@ -129,11 +135,13 @@ def test_a_disturbance_of_the_command_is_seen_where_the_balance_of_forces_cannot
     assert all(abs((e["frequency_Hz"] or 0.0) - 3.7) > 0.1 for e in alone["effects"])
 
 
+@pytest.mark.slow
 def test_gains_that_follow_the_speed_are_unknown_over_the_command(tmp_path: Path) -> None:
     found = of_the_command(report(tmp_path, RIG, slow=0.7))
     assert [(f["name"], f["domain"]) for f in found] == [("unknown", "command")]
 
 
+@pytest.mark.slow
 def test_a_feed_forward_is_unknown_until_it_is_declared(tmp_path: Path) -> None:
     (found,) = of_the_command(report(tmp_path, RIG, forward=1.5))
     assert (found["name"], found["domain"]) == ("unknown", "command")
@@ -146,6 +154,7 @@ def test_a_feed_forward_is_unknown_until_it_is_declared(tmp_path: Path) -> None:
     assert gain["value"] == pytest.approx(1.5, rel=0.02) and gain["unit"] == "N s2/m"
 
 
+@pytest.mark.slow
 def test_another_gain_than_the_declared_one_is_told(tmp_path: Path) -> None:
     data = report(tmp_path, RIG.replace("d: 40", "d: 30"))
     (found,) = of_the_command(data)
@@ -153,6 +162,7 @@ def test_another_gain_than_the_declared_one_is_told(tmp_path: Path) -> None:
     assert any("+3" in r and "of the declared one" in r for r in data["reasons"])
 
 
+@pytest.mark.slow
 def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its picture's error is the table's: the line has the held-out file's own phase."""
     drawn: list[Selection] = []

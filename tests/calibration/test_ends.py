@@ -47,6 +47,7 @@ def test_a_steady_effort_makes_a_steady_current() -> None:
     assert piled_at(400 * effort, effort, 200.0, 199.0) is None
 
 
+@pytest.mark.slow
 def test_an_axis_with_clipped_currents_is_understood(tmp_path: Path) -> None:
     """Thousands of rows at 8.19 A, the end of twelve bits at 2 mA: with them the motors' constant came out
     negative and the drag had two unnamed neighbours."""

@@ -43,6 +43,7 @@ def log(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, np.round(x, 6), u
 
 
+@pytest.mark.slow
 def test_what_the_declared_law_says_is_no_effect(tmp_path: Path) -> None:
     tables = [log(k) for k in range(3)]
     (tmp_path / "without").mkdir()

@@ -23,6 +23,7 @@ def moved(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     return t, x, v, MASS * a + VISCOUS * v + 0.02 * rng.standard_normal(len(t))
 
 
+@pytest.mark.slow
 def test_friction_over_the_place_may_be_nine_tenths_of_it(tmp_path: Path) -> None:
     tables = []
     for k in range(3):

@@ -75,6 +75,7 @@ def electrical(folder: Path, **changes: Any) -> tuple[list[dict[str, Any]], dict
     return [e for e in data["effects"] if e["channel"] == "E"], data
 
 
+@pytest.mark.slow
 def test_a_sound_motor_gives_its_numbers_and_no_name(tmp_path: Path) -> None:
     found, data = electrical(tmp_path)
     assert found == []

@@ -26,6 +26,7 @@ def rate(x: np.ndarray) -> np.ndarray:
     return np.asarray(np.gradient(x, PERIOD))
 
 
+@pytest.mark.slow
 def test_two_lines_of_no_stage_are_both_found_and_are_no_delay(tmp_path: Path) -> None:
     """A motor's slots, and a third of them, in a file without a gear table."""
     t, x, u = motion(LONG)
@@ -46,6 +47,7 @@ def test_an_effort_at_the_end_of_its_range_is_not_believed(tmp_path: Path) -> No
     assert any("end of its range" in r for r in data["reasons"])
 
 
+@pytest.mark.slow
 def test_a_gain_that_falls_with_the_effort_is_a_function_of_it(tmp_path: Path) -> None:
     """A motor that saturates: 5 % of its force at 4 N."""
     t, x, u = motion(LONG)
@@ -54,6 +56,7 @@ def test_a_gain_that_falls_with_the_effort_is_a_function_of_it(tmp_path: Path) -
     assert data["error"]["torque"]["after"] < 0.5 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_a_spring_is_a_function_of_the_place_and_no_loop(tmp_path: Path) -> None:
     t, x, u = motion(LONG)
     data = answer(tmp_path, FORCE, (t, x, u + 6.0 * x))

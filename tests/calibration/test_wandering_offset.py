@@ -26,6 +26,7 @@ def files(seed: int, size: float, drag: float = 0.0) -> list[tuple[np.ndarray, .
     return out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_walk_gets_no_name_and_is_told(tmp_path: Path, seed: int) -> None:
     data = answer(tmp_path, FORCE, *files(seed, 0.5))
@@ -36,6 +37,7 @@ def test_a_walk_gets_no_name_and_is_told(tmp_path: Path, seed: int) -> None:
     assert "slow_offset" not in str(data["calibrated"]) + str(data["not_identifiable"])
 
 
+@pytest.mark.slow
 def test_a_brake_beside_a_walk_keeps_its_name_and_size(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, *files(4, 0.5, drag=0.8))
     top = data["effects"][0]

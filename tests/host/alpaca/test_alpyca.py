@@ -26,6 +26,7 @@ def until(condition: Callable[[], bool], limit_s: float = 60.0) -> None:
         sleep(0.05)
 
 
+@pytest.mark.slow
 def test_discovery_finds_the_server_and_its_devices(live: AlpacaLive) -> None:
     assert live.address in discovery.search_ipv4()  # as patient as the client is by itself
     devices = management.configureddevices(live.address)

@@ -44,6 +44,7 @@ def test_the_devices_are_those_of_the_network(final: AlpacaLive) -> None:
     assert kinds == ["Telescope", "Focuser", "Dome", "ObservingConditions", "SafetyMonitor"]
 
 
+@pytest.mark.slow
 def test_the_dome_turns_opens_stops_and_says_what_it_cannot(dome: Dome) -> None:
     assert dome.InterfaceVersion == 3 and dome.ShutterStatus == ShutterState.shutterClosed
     assert dome.CanSetAzimuth and dome.CanSetShutter and dome.CanSlave and not dome.CanPark
@@ -89,6 +90,7 @@ def test_a_slaved_dome_follows_a_slew_and_refuses_to_be_sent_elsewhere(final: Al
     assert not dome.Slaved
 
 
+@pytest.mark.slow
 def test_the_weather_is_read_and_rain_closes_the_shutter(final: AlpacaLive, dome: Dome) -> None:
     weather, monitor = ObservingConditions(final.address, 0), SafetyMonitor(final.address, 0)
     assert monitor.IsSafe is False  # not connected

@@ -30,6 +30,7 @@ def looked(rig: Rig, live: Live, seconds: float) -> list[str]:
     return [text for _, text in list(live.events.kept)[before:]]
 
 
+@pytest.mark.slow
 def test_a_night_in_words(final: Rig) -> None:
     live = Live(final.telescope, BusMirror([], [], lambda _: None))
     first = looked(final, live, 1.0)
@@ -60,6 +61,7 @@ def test_a_night_in_words(final: Rig) -> None:
         final.run(lambda t: t.house.shutter(True))
 
 
+@pytest.mark.slow
 def test_the_tracking_strip_is_not_ruined_by_a_slew(final: Rig) -> None:
     live = Live(final.telescope, BusMirror([], [], lambda _: None))
     assert rms_text(live.samples) == "rms of 120 s: RA –, Dec –"

@@ -57,6 +57,7 @@ def guided(rig: Rig, direction: str, seconds: float) -> tuple[float, float]:
     return farthest - target, unsettled_s
 
 
+@pytest.mark.slow
 def test_pulses_of_any_direction_and_length_neither_overshoot_nor_linger(tracking: Rig) -> None:
     draw = Random(25)
     pulses = [*EDGES, *((draw.choice("nsew"), round(10 ** draw.uniform(-1, 0.7), 2)) for _ in range(20))]

@@ -145,6 +145,7 @@ def test_sync_aligns_and_refuses_another_part_of_the_sky(rig: Rig) -> None:
         rig.do(lambda t: t.drive.sync(rig.up(hour_angle_h=1.0, dec_deg=29.0)))
 
 
+@pytest.mark.slow
 def test_the_moon_is_slower_than_the_stars(rig: Rig) -> None:
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=0.0, dec_deg=10.0), wake=True))
     rig.do(lambda t: t.drive.set_rates(DriveRate.LUNAR))

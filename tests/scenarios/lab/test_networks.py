@@ -98,6 +98,7 @@ def test_P13_the_stations_measure_what_the_scenario_says_and_hold_unsafe() -> No
     assert (mast["Unsafe"], mast["Windy"]) == (1, 0)  # held for 300 s
 
 
+@pytest.mark.slow
 def test_P13_the_dome_turns_the_shorter_way_and_closes_in_bad_weather() -> None:
     site = Site(WEATHER_MAST={"rain": [{"at": 45.0, "value": 1}]})
     dome = DOME.device("DOME")

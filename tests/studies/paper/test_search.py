@@ -227,6 +227,7 @@ def distance_of(x):
     return float(np.sum((x - vector(DRIVE)) ** 2))
 
 
+@pytest.mark.slow
 def test_a_batch_gives_costs_in_its_order_and_says_which_point_failed():
     plants = models(BASES, DRIVE | {"kp": 9.0, "ki": 1.0}, "test")
     points = [Point(plants, QUICK[:1], stop_at, ()) for stop_at in (0.5, 1.0)]

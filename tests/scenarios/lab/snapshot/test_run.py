@@ -119,6 +119,7 @@ def test_a_damaged_file_is_refused(tmp_path: Path) -> None:
             read(file)
 
 
+@pytest.mark.slow
 def test_a_board_of_ones_own_is_in_it_while_its_file_stays(tmp_path: Path, schmidt_process: Command) -> None:
     """The page's example; the class comes from the file, whose digest the snapshot carries."""
     blocks = re.findall(r"```\w+\n(.*?)```", (ROOT / "docs" / "guides" / "new-board.md").read_text(), re.S)
