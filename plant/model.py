@@ -24,6 +24,7 @@ from plant.parts import (
     Function,
     Gear,
     Motor,
+    MountErrors,
     Number,
     Numerics,
     PlantModel,
@@ -45,6 +46,7 @@ __all__ = [
     "Gear",
     "ModelError",
     "Motor",
+    "MountErrors",
     "Number",
     "Numerics",
     "PlantModel",
@@ -57,6 +59,7 @@ __all__ = [
     "loads",
     "numbers",
     "with_effects",
+    "with_mount_errors",
     "with_value",
 ]
 
@@ -132,7 +135,8 @@ def _plain(part: Any) -> Any:
     if isinstance(part, tuple):
         return [_plain(child) for child in part]
     if dataclasses.is_dataclass(part):
-        return {field.name: _plain(getattr(part, field.name)) for field in dataclasses.fields(part)}
+        given = {field.name: getattr(part, field.name) for field in dataclasses.fields(part)}
+        return {name: _plain(value) for name, value in given.items() if value is not None}
     return part
 
 
@@ -214,3 +218,8 @@ def with_effects(model: PlantModel, axis: str, effects: Sequence[EffectModel]) -
     """Return the model with this list of effects on `axis` (`ra` or `dec`)."""
     part = dataclasses.replace(getattr(model.axes, axis), effects=tuple(effects))
     return dataclasses.replace(model, axes=dataclasses.replace(model.axes, **{axis: part}))
+
+
+def with_mount_errors(model: PlantModel) -> PlantModel:
+    """Return the model with errors of its mount: typical ones where its file declares none."""
+    return model if model.mount is not None else dataclasses.replace(model, mount=MountErrors())

@@ -171,6 +171,55 @@ class FocusModel:
     lvdt_nonlinearity: Number = field(metadata=bounds("1", -0.1, 0.1))
 
 
+def _typical(value: float, reason: str) -> Number:
+    return Number(value, "arcsec", f"ASSUMPTION: typical of a 50 cm mount; {reason}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MountErrors:
+    """What stands between the axes and the sky (plant/mount.py). A number that is not given is typical.
+
+    Signs are Wallace's: what the axes read less where the telescope looks. So a pointing model finds these
+    numbers under the names in brackets.
+    """
+
+    hour_angle_index: Number = field(
+        default=_typical(240.0, "a zero set by eye, IH"), metadata=bounds("arcsec", -3600.0, 3600.0)
+    )
+    declination_index: Number = field(
+        default=_typical(-180.0, "a zero set by eye, ID"), metadata=bounds("arcsec", -3600.0, 3600.0)
+    )
+    polar_azimuth: Number = field(
+        default=_typical(90.0, "aligned by drift, MA"), metadata=bounds("arcsec", -3600.0, 3600.0)
+    )
+    polar_altitude: Number = field(
+        default=_typical(-120.0, "aligned by drift, ME"), metadata=bounds("arcsec", -3600.0, 3600.0)
+    )
+    collimation: Number = field(
+        default=_typical(60.0, "0.3 mm at the plate holder's 1 m, CH"),
+        metadata=bounds("arcsec", -1800.0, 1800.0),
+    )
+    non_perpendicularity: Number = field(
+        default=_typical(-30.0, "bearings bored within 0.15 mm over 1 m, NP"),
+        metadata=bounds("arcsec", -1800.0, 1800.0),
+    )
+    tube_flexure: Number = field(
+        default=_typical(-20.0, "a steel tube; below zero it droops, TF"),
+        metadata=bounds("arcsec", -300.0, 300.0),
+    )
+    fork_flexure: Number = field(
+        default=_typical(12.0, "half of the tube's, FO"), metadata=bounds("arcsec", -300.0, 300.0)
+    )
+    axis_flexure: Number = field(
+        default=_typical(8.0, "held at both ends by the yoke, DAF"),
+        metadata=bounds("arcsec", -300.0, 300.0),
+    )
+    refraction: Number = field(
+        default=_typical(2.0, "4 % of 46 arcsec at 1950 m: air 10 K off; times tan z, TX"),
+        metadata=bounds("arcsec", -60.0, 60.0),
+    )
+
+
 @dataclass(frozen=True)
 class Axes:
     """The two axes."""
@@ -191,3 +240,5 @@ class PlantModel:
     controller: Controller
     axes: Axes
     focus: FocusModel
+    mount: MountErrors | None = None
+    """None: axes perpendicular, on the pole, stiff."""

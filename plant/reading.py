@@ -5,7 +5,7 @@ word.
 import dataclasses
 import difflib
 import math
-from typing import Any, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 import yaml
 
@@ -109,14 +109,14 @@ class Reader:
         """Return a part: numbers by their declared units, nested parts, text."""
         hints = get_type_hints(kind)
         specs = dataclasses.fields(kind)
-        optional = [s.name for s in specs if s.name in ("effects", "description")]
+        optional = [s.name for s in specs if s.name == "description" or s.default is not dataclasses.MISSING]
         required = [s.name for s in specs if s.name not in optional]
         given = self.fields(node, path, required, optional)
         values: dict[str, Any] = {}
         for spec in specs:
             here = f"{path}.{spec.name}".lstrip(".")
             if spec.name not in given:
-                values[spec.name] = () if spec.name == "effects" else ""
+                values[spec.name] = "" if spec.name == "description" else spec.default
             elif spec.metadata:
                 meta = spec.metadata
                 values[spec.name] = self.number(
@@ -127,7 +127,8 @@ class Reader:
             elif hints[spec.name] is str:
                 values[spec.name] = self.scalar(given[spec.name], here)
             else:
-                values[spec.name] = self.part(given[spec.name], here, hints[spec.name])
+                inner = get_args(hints[spec.name]) or (hints[spec.name],)  # of an optional part, its kind
+                values[spec.name] = self.part(given[spec.name], here, inner[0])
         return kind(**values)
 
     def effects(self, node: yaml.Node, path: str) -> tuple[EffectModel, ...]:
