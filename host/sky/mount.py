@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bus.units import ARCSEC_PER_TURN
+from host.sky.pointmodel import PointingModel
 
 STEPS_PER_TURN = 1 << 29
 """RCN 829, 29 bit (paper, section 3.2)."""
@@ -54,12 +55,32 @@ def scale_from_limits(low_rad: float, high_rad: float, zero_steps: int = CENTRE_
 
 @dataclass(frozen=True)
 class Mount:
-    """The two axes and where the telescope is parked."""
+    """The two axes, where the telescope is parked (angles of the axes), and what they look at.
+
+    model: None for axes that look where they stand.
+    """
 
     ra: AxisScale
     dec: AxisScale
     park_hour_angle_rad: float
     park_declination_rad: float
+    model: PointingModel | None = None
+
+    def axes(self, hour_angle_rad: float, declination_rad: float) -> tuple[float, float]:
+        """Angles of both axes, rad, that look at an observed place."""
+        if self.model is None:
+            return hour_angle_rad, declination_rad
+        return self.model.axes(hour_angle_rad, declination_rad)
+
+    def steps(self, hour_angle_rad: float, declination_rad: float) -> tuple[int, int]:
+        """Encoder readings at which the telescope looks at an observed place."""
+        ra, dec = self.axes(hour_angle_rad, declination_rad)
+        return self.ra.steps(ra), self.dec.steps(dec)
+
+    def place(self, ra_steps: int, dec_steps: int) -> tuple[float, float]:
+        """Observed hour angle and declination, rad, that the telescope looks at."""
+        ra, dec = self.ra.angle_rad(ra_steps), self.dec.angle_rad(dec_steps)
+        return (ra, dec) if self.model is None else self.model.sky(ra, dec)
 
 
 def limits_mount(

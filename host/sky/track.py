@@ -7,7 +7,7 @@ from host.sky.observed import Clock, Observed, Rates, observe, rates
 from host.sky.site import Site
 
 _REFRESH_S = 5.0
-"""Between two exact places the rates carry the place on: below 0.001″ of error at altitude 20°."""
+"""Between two exact places the rates carry the axes on: below 0.001″ of error at altitude 20°."""
 
 
 class StarTrack:
@@ -17,7 +17,7 @@ class StarTrack:
         self.star = star
         self._site, self._clock, self._mount = site, clock, mount
         self._at_s = -1e9
-        self._place = Observed(0.0, 0.0, 0.0, 0.0)
+        self._axes = 0.0, 0.0
         self._rates = Rates(0.0, 0.0)
 
     def rates(self, t_s: float) -> Rates:
@@ -30,13 +30,24 @@ class StarTrack:
         self._renew(t_s)
         since = (t_s - self._at_s) * ARCSEC
         return (
-            self._mount.ra.steps(self._place.hour_angle_rad + since * self._rates.hour_angle_arcsec_s),
-            self._mount.dec.steps(self._place.declination_rad + since * self._rates.declination_arcsec_s),
+            self._mount.ra.steps(self._axes[0] + since * self._rates.hour_angle_arcsec_s),
+            self._mount.dec.steps(self._axes[1] + since * self._rates.declination_arcsec_s),
         )
 
     def _renew(self, t_s: float) -> None:
         if abs(t_s - self._at_s) > _REFRESH_S / 2:
             # Half a period ahead, so that the exact place lies in the middle of its use.
             self._at_s = t_s + _REFRESH_S / 2
-            self._place = observe(self.star, self._site, self._clock, self._at_s)
+            place = observe(self.star, self._site, self._clock, self._at_s)
             self._rates = rates(self.star, self._site, self._clock, self._at_s)
+            self._axes = self._mount.axes(place.hour_angle_rad, place.declination_rad)
+            if self._mount.model is not None:
+                self._rates = self._of_axes(place, self._rates)
+
+    def _of_axes(self, place: Observed, sky: Rates) -> Rates:
+        """What the axes turn at while the place moves at these rates, over a second either way."""
+        step = sky.hour_angle_arcsec_s * ARCSEC, sky.declination_arcsec_s * ARCSEC
+        ahead = self._mount.axes(place.hour_angle_rad + step[0], place.declination_rad + step[1])
+        behind = self._mount.axes(place.hour_angle_rad - step[0], place.declination_rad - step[1])
+        ra, dec = ((a - b) / (2 * ARCSEC) for a, b in zip(ahead, behind, strict=True))
+        return Rates(ra, dec)

@@ -13,7 +13,9 @@ from host.sky.angles import format_degrees
 from host.sky.apparent import equatorial, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.mount import STEP_ARCSEC
-from host.sky.observed import Observed
+from host.sky.observed import Observed, observe
+from host.sky.pointfit import Sighting, TooFewStars
+from host.sky.pointmodel import PointingModel
 from host.sky.track import StarTrack
 from host.sky.visibility import BelowHorizon, Unreachable
 from host.telescope.jobs import Activity, Job
@@ -168,11 +170,14 @@ class Drive:
     def set_park(self) -> None:
         """Park where the telescope points now, from now on."""
         ra, dec, _ = self.readings()
-        place = self.observatory.observed(ra, dec)
-        self.observatory.set_park(place.hour_angle_rad, place.declination_rad)
+        mount = self.observatory.mount
+        self.observatory.set_park(mount.ra.angle_rad(ra), mount.dec.angle_rad(dec))
 
     def sync(self, star: Star) -> tuple[float, float]:
-        """The telescope points at this star: align the encoders. Returns the offsets found, ″."""
+        """The telescope points at this star: align the encoders. Returns the offsets found, ″.
+
+        The star is kept for a pointing model.
+        """
         if self.activity in _MOVING:
             raise Refused(Reason.STATE, "the axes are moving")
         ra, dec, t_s = self.readings()
@@ -185,12 +190,36 @@ class Drive:
             raise Refused(
                 Reason.STATE, f"the encoders say {far} from there: not the same star, or the clock is wrong"
             )
+        place = observe(star, about.site, about.clock, t_s)
+        about.stars += (
+            Sighting(
+                hour_angle_rad=place.hour_angle_rad, declination_rad=place.declination_rad,
+                ra_steps=ra, dec_steps=dec,
+            ),
+        )  # fmt: skip
         about.align(*offsets)
         text = f"aligned: hour angle {arcsec[0]:.1f}″, declination {arcsec[1]:.1f}″"
         self.logs.status(self.client.now_ns, "HOST", text)
         if self.activity is Activity.TRACKING:
             self._follow(star)
         return arcsec
+
+    def fit_model(self) -> PointingModel:
+        """The pointing model of the stars that the telescope was synchronised on; moves nothing."""
+        try:
+            return self.observatory.fit()
+        except TooFewStars as error:
+            raise Refused(Reason.STATE, str(error)) from None
+
+    def apply_model(self, model: PointingModel | None) -> None:
+        """Point by a model, or by the encoders alone; tracking goes on where the telescope is."""
+        if self.activity in _MOVING:
+            raise Refused(Reason.STATE, "the axes are moving")
+        self.observatory.apply(model)
+        terms = "none" if model is None else " ".join(f"{t.name}={t.arcsec:.1f}″" for t in model.terms)
+        self.logs.status(self.client.now_ns, "HOST", f"pointing model: {terms}")
+        if self.activity is Activity.TRACKING:
+            self._lock_on()
 
     # --- the ticking thread ---
     def tick(self) -> None:

@@ -6,6 +6,8 @@ from host.sky.apparent import Place, apparent_of_observed, horizontal
 from host.sky.catalogue import Star
 from host.sky.mount import AxisScale, Mount
 from host.sky.observed import Clock, Observed
+from host.sky.pointfit import Sighting, fit
+from host.sky.pointmodel import PointingModel
 from host.sky.site import Site
 from host.sky.visibility import HORIZON_RAD, check_reachable
 
@@ -20,17 +22,16 @@ class Observatory:
     mount: Mount
     horizon_rad: float = HORIZON_RAD
     name: str = "Nainital"
+    stars: tuple[Sighting, ...] = ()
+    """Stars that the telescope was synchronised on, for a pointing model."""
 
     def observed(self, ra_steps: int, dec_steps: int) -> Observed:
         """Where encoder readings point: observed hour angle, declination, altitude, azimuth."""
-        mount = self.mount
-        return horizontal(mount.ra.angle_rad(ra_steps), mount.dec.angle_rad(dec_steps), self.site)
+        return horizontal(*self.mount.place(ra_steps, dec_steps), self.site)
 
     def apparent(self, ra_steps: int, dec_steps: int, t_s: float) -> Place:
         """Apparent place of date that encoder readings latched at `t_s` point to."""
-        mount = self.mount
-        hour_angle, declination = mount.ra.angle_rad(ra_steps), mount.dec.angle_rad(dec_steps)
-        return apparent_of_observed(hour_angle, declination, self.site, self.clock, t_s)
+        return apparent_of_observed(*self.mount.place(ra_steps, dec_steps), self.site, self.clock, t_s)
 
     def check(self, star: Star, t_s: float) -> None:
         """Raise `Unreachable` unless the star is above the horizon limit and within the soft limits."""
@@ -50,8 +51,16 @@ class Observatory:
         mount = self.mount
         self.mount = replace(mount, ra=changed) if axis == "ra" else replace(mount, dec=changed)
 
+    def fit(self) -> PointingModel:
+        """The pointing model of the stars so far; raises TooFewStars."""
+        return fit(self.stars, self.mount, self.site.latitude_rad)
+
+    def apply(self, model: PointingModel | None) -> None:
+        """Point by a model, or by the encoders alone."""
+        self.mount = replace(self.mount, model=model)
+
     def set_park(self, hour_angle_rad: float, declination_rad: float) -> None:
-        """Park here from now on."""
+        """Park here from now on: angles of the axes."""
         self.mount = replace(
             self.mount, park_hour_angle_rad=hour_angle_rad, park_declination_rad=declination_rad
         )

@@ -106,7 +106,7 @@ class GroundTrack(StarTrack):
 
     def __init__(self, place: Observed, site: Site, clock: Clock, mount: Mount) -> None:
         super().__init__(Star("altitude and azimuth", 0.0, 0.0), site, clock, mount)
-        self._steps = (mount.ra.steps(place.hour_angle_rad), mount.dec.steps(place.declination_rad))
+        self._steps = mount.steps(place.hour_angle_rad, place.declination_rad)
 
     def rates(self, t_s: float) -> Rates:
         """Nothing moves."""

@@ -1,0 +1,140 @@
+"""A pointing model: a few terms that take the sky to the axes and back, and its file."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bus.units import ARCSEC_PER_RAD
+from host.sky.pointterms import SKY_SIDE, TERMS, ZEROS, Array
+
+FORMAT = "schmidt-pointing 1"
+_NEAR_RAD = 1e-10
+"""The way back ends when it moves by less, 0.00002″."""
+_MOST_TURNS = 50
+"""Three turns do; near the pole, where a cone of 1′ hides all within 1′, it takes more."""
+
+
+class PointingFileError(ValueError):
+    """A file of a pointing model that cannot be used: one line of what is wrong."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Term:
+    """A fitted coefficient in arcsec, and half of its 95 % interval."""
+
+    name: str
+    arcsec: float
+    within_arcsec: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointingModel:
+    """Terms (host/sky/pointterms.py) at a latitude, and how well they fit: rms of the distance on the sky, ″.
+
+    before: without the model, but for the zeros of both axes. held_out: of stars that were not fitted.
+    """
+
+    latitude_rad: float
+    terms: tuple[Term, ...]
+    stars: int
+    before_arcsec: float
+    after_arcsec: float
+    held_out_arcsec: float
+
+    def axes(self, hour_angle_rad: float, declination_rad: float) -> tuple[float, float]:
+        """Angles of both axes, rad, that look at an observed hour angle and declination."""
+        ra, dec = self.axes_many(np.array(hour_angle_rad), np.array(declination_rad))
+        return float(ra), float(dec)
+
+    def axes_many(self, hour_angle_rad: Array, declination_rad: Array) -> tuple[Array, Array]:
+        """The same of many places: all of one shape."""
+        h, d = self._moved(hour_angle_rad, declination_rad, True)
+        h, d = self._back(h, d, False)
+        return h + self._zero("IH"), d + self._zero("ID")
+
+    def sky(self, ra_rad: float, dec_rad: float) -> tuple[float, float]:
+        """Observed hour angle and declination, rad, that the axes at these angles look at."""
+        h, d = np.array(ra_rad - self._zero("IH")), np.array(dec_rad - self._zero("ID"))
+        h, d = self._moved(h, d, False)
+        h, d = self._back(h, d, True)
+        return float(h), float(d)
+
+    def save(self, path: Path) -> None:
+        """Write the model as JSON."""
+        text = json.dumps({"format": FORMAT} | asdict(self), indent=1)
+        path.write_text(text + "\n", encoding="utf-8")
+
+    def _zero(self, name: str) -> float:
+        return sum(term.arcsec for term in self.terms if term.name == name) / ARCSEC_PER_RAD
+
+    def _moved(self, h: Array, d: Array, sky_side: bool) -> tuple[Array, Array]:
+        """Terms of the sky taken from the sky to the mount, or the mount's from the mount to the sky."""
+        return _angles(_vector(h, d) + self._shift(h, d, sky_side), h)
+
+    def _back(self, h: Array, d: Array, sky_side: bool) -> tuple[Array, Array]:
+        """The way back: a fixed point."""
+        place = _vector(h, d)
+        for _ in range(_MOST_TURNS):
+            shift = self._shift(h, d, sky_side)
+            before = h, d
+            h, d = _angles(place * np.sqrt(1 + np.sum(shift**2, axis=0)) - shift, h)
+            moved = np.max(np.abs((h - before[0]) * np.cos(d))), np.max(np.abs(d - before[1]))
+            if max(moved) < _NEAR_RAD:
+                break
+        return h, d
+
+    def _shift(self, h: Array, d: Array, sky_side: bool) -> Array:
+        """Along the sphere, (3, ...): reading less sky of the sky's terms, the opposite of the mount's."""
+        sign = 1.0 if sky_side else -1.0
+        west, north = np.zeros_like(h), np.zeros_like(d)
+        for term in self.terms:
+            if term.name not in ZEROS and (term.name in SKY_SIDE) == sky_side:
+                x, y = TERMS[term.name](h, d, self.latitude_rad)
+                west = west + term.arcsec / ARCSEC_PER_RAD * x
+                north = north + term.arcsec / ARCSEC_PER_RAD * y
+        sine, cosine = np.sin(h), np.cos(h)
+        along = np.stack([-sine, cosine, np.zeros_like(h)])
+        upward = np.stack([-np.sin(d) * cosine, -np.sin(d) * sine, np.cos(d)])
+        shift: Array = sign * (west * along + north * upward)
+        return shift
+
+
+def _vector(h: Array, d: Array) -> Array:
+    return np.stack([np.cos(d) * np.cos(h), np.cos(d) * np.sin(h), np.sin(d)])
+
+
+def _angles(vector: Array, near_rad: Array) -> tuple[Array, Array]:
+    """Hour angle, within half a turn of another, and declination of a vector of any length, rad."""
+    x, y, z = vector
+    h = near_rad + np.remainder(np.arctan2(y, x) - near_rad + np.pi, 2 * np.pi) - np.pi
+    return h, np.arctan2(z, np.hypot(x, y))
+
+
+def load(path: Path) -> PointingModel:
+    """Read a model; raises PointingFileError."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise PointingFileError(f"{path}: cannot be read: {error}") from None
+    if not isinstance(data, dict) or data.pop("format", None) != FORMAT:
+        raise PointingFileError(f"{path}: expected a JSON object with the format {FORMAT!r}")
+    try:
+        terms = tuple(Term(**each) for each in data.pop("terms"))
+        model = PointingModel(terms=terms, **data)
+        values = [
+            model.latitude_rad,
+            *(value for each in terms for value in (each.arcsec, each.within_arcsec)),
+        ]
+        if not all(math.isfinite(value) for value in values):
+            raise ValueError("a number is not finite")
+    except (KeyError, TypeError, ValueError) as error:
+        raise PointingFileError(f"{path}: not a pointing model: {error}") from None
+    for each in terms:
+        if each.name not in TERMS:
+            raise PointingFileError(f"{path}: no term is called {each.name!r}; there are {', '.join(TERMS)}")
+    return model
