@@ -177,7 +177,7 @@ def _typical(value: float, reason: str) -> Number:
 
 @dataclass(frozen=True, kw_only=True)
 class MountErrors:
-    """What stands between the axes and the sky (plant/mount.py). A number that is not given is typical.
+    """Errors between the axes and the sky (plant/mount.py). A number that is not given is typical.
 
     Signs are Wallace's: what the axes read less where the telescope looks. So a pointing model finds these
     numbers under the names in brackets.

@@ -45,7 +45,7 @@ class StarTrack:
                 self._rates = self._of_axes(place, self._rates)
 
     def _of_axes(self, place: Observed, sky: Rates) -> Rates:
-        """What the axes turn at while the place moves at these rates, over a second either way."""
+        """Rates of the axes while the place moves at these, over a second either way."""
         step = sky.hour_angle_arcsec_s * ARCSEC, sky.declination_arcsec_s * ARCSEC
         ahead = self._mount.axes(place.hour_angle_rad + step[0], place.declination_rad + step[1])
         behind = self._mount.axes(place.hour_angle_rad - step[0], place.declination_rad - step[1])

@@ -12,6 +12,7 @@ from host.logs.sensors import readings
 from host.procedures.manual import AXES
 from plant.model import PlantModel
 from scenarios.lab.cables import Cables
+from scenarios.lab.eye import Eye
 from scenarios.lab.faults import Faults
 from scenarios.lab.network import Network
 from scenarios.lab.networks import SERIAL, in_order
@@ -35,7 +36,8 @@ class Session:
         self.serial = [self.recorder.link(device) for device in SERIAL]
         for link in self.serial:
             self.network.uarts[link.device.name].sink = link.receive
-        self.programme = Programme(scenario, self.client, self.recorder.ascii)
+        self.eye = Eye(self.plant, scenario)
+        self.programme = Programme(scenario, self.client, self.recorder.ascii, self.eye)
         self.faults = Faults(self.network, scenario.seed)
         self.faults.schedule(scenario.faults)
         self.ticked: Callable[[int], None] | None = None
@@ -67,7 +69,8 @@ class Session:
 
     def adopt(self, network: Network) -> None:
         """Go on with another network, one that has been where this host is."""
-        self.network, self.plant = network, network.plant
+        self.network = network
+        self.plant = self.eye.plant = network.plant
         self.recorder.adopt(network.plant)
         self.link._send = network.hid.write
 

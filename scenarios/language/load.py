@@ -4,9 +4,11 @@ import dataclasses
 import datetime as dt
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from bus.units import ARCSEC_PER_RAD
+from host.sky import pointmodel
 from host.sky.mount import limits_mount
 from host.sky.observed import Clock
 from host.sky.site import NAINITAL, Site, standard_pressure_hpa
@@ -195,13 +197,18 @@ def _site(document: Document, data: dict[str, Any]) -> Site:
 
 
 def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, Any]) -> model.Scenario:
-    given = {key: value / ARCSEC_PER_RAD for key, value in data.get("mount", {}).items()}
+    said = data.get("mount", {})
+    given = {key: value / ARCSEC_PER_RAD for key, value in said.items() if key != "pointing_model"}
     low = given.get("declination_low", model.DECLINATION_LOW_RAD)
     high = given.get("declination_high", model.DECLINATION_HIGH_RAD)
     park = min(max(scenario.site.latitude_rad, low), high)
     horizon = data.get("site", {}).get("horizon")
     try:
         mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
+        if "pointing_model" in said:
+            path = Path(said["pointing_model"])
+            beside = document.file.parent / path
+            mount = dataclasses.replace(mount, model=pointmodel.load(path if path.is_file() else beside))
     except ValueError as error:
         raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
     for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):

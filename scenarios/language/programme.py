@@ -10,12 +10,15 @@ from host.client import Client, ClientError, Procedure
 from host.logs.ascii import AsciiLogs
 from host.procedures import focus, manual, power
 from host.procedures.pointing import CLASSES, Pointing
+from host.procedures.pointing_run import Eye, Visit, directions, visit
 from host.sky.catalogue import Star
+from host.sky.pointfit import TooFewStars, fit
+from host.sky.pointmodel import PointingModel
 from host.sky.track import StarTrack
 from host.sky.visibility import Unreachable, check_reachable
 from scenarios.language import configure
 from scenarios.language.model import Scenario, Step
-from scenarios.language.targets import target_of
+from scenarios.language.targets import STARS, target_of
 
 
 @dataclass(frozen=True)
@@ -29,18 +32,23 @@ class Record:
     star: Star | None = None
     focus_goal: float | None = None
     """Where a focus step sends the housing, half steps."""
+    visits: tuple[Visit, ...] = ()
+    """Stars of a pointing run."""
+    model: PointingModel | None = None
+    """The pointing model of the visits."""
 
 
 class Programme:
     """Starts and advances the steps; called once per tick of the client."""
 
-    def __init__(self, scenario: Scenario, client: Client, logs: AsciiLogs) -> None:
+    def __init__(self, scenario: Scenario, client: Client, logs: AsciiLogs, eye: Eye) -> None:
         self.records = [Record(step) for step in scenario.steps]
         self.pointing = Pointing(client, scenario.mount)
         self.failed = False
         self._scenario = scenario
         self._client = client
         self._logs = logs
+        self._eye = eye
         self._running: dict[int, Procedure] = {}
         self._waiting = list(range(len(self.records)))
         self._before = [self._predecessors(index) for index in self._waiting]
@@ -176,6 +184,8 @@ class Programme:
             case "track":
                 self._note(index, star=self.pointing.track.star if self.pointing.track else None)
                 return self.pointing.follow(given["for"])
+            case "pointing_run":
+                return self._pointing_run(index, given.get("stars", STARS), given.get("fit", True))
             case "move":
                 return manual.hold_button(
                     client, given["axis"], given["class"], given["direction"], given["for"]
@@ -204,6 +214,22 @@ class Programme:
             case "display":
                 return client.ask(_device(client, "DISPLAY"), Opcode.BRIGHTNESS, given["brightness"])
         raise AssertionError(f"the schema knows {step.action!r}, the programme does not")
+
+    def _pointing_run(self, index: int, count: int, fits: bool) -> Procedure:
+        """Look at stars all over the sky; then point by the model that they give."""
+        scenario = self._scenario
+        where = directions(count, scenario, float(index))
+        visits = yield from visit(self.pointing, scenario, where, self._eye)
+        self._note(index, visits=visits)
+        if not fits:
+            return
+        try:
+            model = fit([each.sighting for each in visits], scenario.mount, scenario.site.latitude_rad)
+        except TooFewStars as error:
+            raise ClientError(str(error)) from None
+        mount = replace(scenario.mount, model=model)
+        self._scenario, self.pointing.mount = replace(scenario, mount=mount), mount
+        self._note(index, model=model)
 
 
 def _device(client: Client, name: str) -> Device:

@@ -10,6 +10,8 @@ from scenarios.language.model import Scenario
 
 _GOTO_S = 60.0
 """What a goto is taken to last when the time of later steps is estimated."""
+STARS = 40
+"""Of a pointing run that says no number: twice the 20 coordinates of ten terms. ASSUMPTION."""
 
 
 _PROPER_MOTION = 20_000.0
@@ -40,7 +42,7 @@ def target_of(given: Any, where: str) -> Star:
 def check_targets(scenario: Scenario) -> None:
     """Refuse a scenario with a target that is out of reach when it is to be reached or while it is tracked.
 
-    Times are estimated: waiting and tracking as stated, a minute for every goto.
+    Times are estimated: waiting and tracking as stated, a minute for every goto and star of a pointing run.
     """
     t_s = 0.0
     aim: tuple[Star, str] | None = None
@@ -57,4 +59,7 @@ def check_targets(scenario: Scenario) -> None:
                 check_reachable(target, scenario, t_s, stay_s)
             except Unreachable as error:
                 raise ScenarioError(f"{where}: {error}") from None
+        if step.action == "pointing_run":
+            stay_s = _GOTO_S * step.arguments.get("stars", STARS)
+            aim = None
         t_s += _GOTO_S if step.action in ("goto", "park") else stay_s

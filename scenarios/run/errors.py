@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
+from host.client import TICK_NS
 from host.rates import rate_arcsec_s
 from host.sky.catalogue import Star
 from scenarios.language.programme import Record
@@ -14,6 +15,8 @@ from scenarios.run.outcome import Array, Outcome
 MEAN_S = 1.0
 PHASE_S = 1.0
 """Boards were switched on within the same second (scenarios/lab/network.py)."""
+LOOK_S = 0.25
+"""Before a star of a pointing run was noted it had been on target for a second."""
 PIECE_S = 1800.0
 """Long windows are looked at in pieces of at most this length."""
 _ROWS_PER_MEAN = round(MEAN_S / 0.01)
@@ -23,13 +26,20 @@ class NoData(ValueError):
     """A window in which nothing was recorded."""
 
 
-def pointing_errors(
-    outcome: Outcome, record: Record, low_s: float, high_s: float, source: str
-) -> tuple[Array, Array, Array]:
-    """Time and the error of both axes in ″ of the axis, star less telescope."""
-    if record.star is None:
+def looks(record: Record, low_s: float, high_s: float) -> list[tuple[Star, float, float]]:
+    """Which star the telescope was on between which times: of a pointing run, while it looked at each."""
+    if record.star is not None:
+        return [(record.star, low_s, high_s)]
+    if not record.visits:
         raise NoData(f"step {record.step.name!r} has no target")
-    star = record.star
+    tick_s = TICK_NS * 1e-9  # in which it looks, and begins to leave
+    return [(each.star, each.t_s - LOOK_S, each.t_s - tick_s) for each in record.visits]
+
+
+def pointing_errors(
+    outcome: Outcome, star: Star, low_s: float, high_s: float, source: str
+) -> tuple[Array, Array, Array]:
+    """Time and the error of hour angle and declination in ″, star less telescope."""
     parts = [_pointing_piece(outcome, star, *piece, source) for piece in _pieces(low_s, high_s)]
     t, ra, dec = (np.concatenate(column) for column in zip(*parts, strict=True))
     if not len(t):
@@ -44,15 +54,12 @@ def _pointing_piece(
         rows = outcome.host(low_s, high_s)
         good = ~np.isnan(rows["ra_error_arcsec"])
         return rows["t_s"][good], rows["ra_error_arcsec"][good], rows["dec_error_arcsec"][good]
-    t, hour_angle, _ = outcome.truth("ra", low_s, high_s)
-    t_dec, declination, _ = outcome.truth("dec", low_s, high_s)
-    count = min(len(t), len(t_dec))
-    t = t[:count]
-    if not count:
+    t, hour_angle, declination = outcome.pointed(low_s, high_s)
+    if not len(t):
         return t, t, t
     star_ha, star_dec = outcome.star_places(star, t)
-    off = np.remainder(star_ha - hour_angle[:count] + np.pi, 2 * np.pi) - np.pi
-    return t, off * ARCSEC_PER_RAD, (star_dec - declination[:count]) * ARCSEC_PER_RAD
+    off = np.remainder(star_ha - hour_angle + np.pi, 2 * np.pi) - np.pi
+    return t, off * ARCSEC_PER_RAD, (star_dec - declination) * ARCSEC_PER_RAD
 
 
 def rate_errors(

@@ -13,7 +13,7 @@ from scenarios.lab.faults.evidence import Evidence
 from scenarios.language.model import Expectation
 from scenarios.language.programme import Record
 from scenarios.language.units import BASE
-from scenarios.run.errors import NoData, pointing_errors, rate_errors
+from scenarios.run.errors import NoData, looks, pointing_errors, rate_errors
 from scenarios.run.outcome import Array, Outcome
 
 
@@ -94,15 +94,15 @@ def pointing_error(outcome: Outcome, given: dict[str, Any]) -> float:
     """Telescope against the star's observed place, ″; `sky` is the angle between them."""
     parts = []
     for record, low_s, high_s in _windows(outcome, given, "pointing_error"):
-        ra, dec = pointing_errors(outcome, record, low_s, high_s, given.get("source", "truth"))[1:]
-        match given.get("axis", "sky"):
-            case "ra":
-                parts.append(ra)
-            case "dec":
-                parts.append(dec)
-            case _:
-                assert record.star is not None
-                parts.append(np.hypot(ra * np.cos(record.star.declination_rad), dec))
+        for star, begin_s, end_s in looks(record, low_s, high_s):
+            ra, dec = pointing_errors(outcome, star, begin_s, end_s, given.get("source", "truth"))[1:]
+            match given.get("axis", "sky"):
+                case "ra":
+                    parts.append(ra)
+                case "dec":
+                    parts.append(dec)
+                case _:
+                    parts.append(np.hypot(ra * np.cos(star.declination_rad), dec))
     return _statistic(np.concatenate(parts), given)
 
 

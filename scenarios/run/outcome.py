@@ -11,6 +11,8 @@ from host.logs import traces
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe_many
+from plant.mount import sky
+from plant.parts import MountErrors
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Record
@@ -32,6 +34,8 @@ class Outcome:
     """(t s, load of the second before, frames so far), once a simulated second."""
     faults: list[Evidence] = field(default_factory=list)
     """Of all there were, whether they acted."""
+    errors: MountErrors | None = None
+    """Of the plant's mount."""
     _places: dict[tuple[Star, tuple[float, float]], tuple[Array, Array, Array]] = field(
         default_factory=dict, repr=False
     )
@@ -51,6 +55,18 @@ class Outcome:
         rows = traces.read(self.folder / f"truth-{axis}.parquet", ("angle", "rate"), low_s, high_s)
         scale = getattr(self.scenario.mount, axis)
         return rows["t_s"], rows["angle"] - scale.zero_steps * _RAD_PER_STEP, rows["rate"]
+
+    def pointed(self, low_s: float, high_s: float) -> tuple[Array, Array, Array]:
+        """Time s, true hour angle and declination that the telescope looks at, rad."""
+        t, hour_angle, _ = self.truth("ra", low_s, high_s)
+        t_dec, declination, _ = self.truth("dec", low_s, high_s)
+        count = min(len(t), len(t_dec))
+        t, hour_angle, declination = t[:count], hour_angle[:count], declination[:count]
+        if self.errors is not None:
+            hour_angle, declination = sky(
+                hour_angle, declination, self.scenario.site.latitude_rad, self.errors
+            )
+        return t, hour_angle, declination
 
     def overview(self, axis: str, first: str = "rate") -> tuple[Array, Array, Array]:
         """The whole run in a few thousand points: time, true angle and rate as `truth` gives them.

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from host.logs.canformats import FORMATS, convert
 from host.logs.files import LogError, write_file
 from scenarios.language.model import Scenario
+from scenarios.language.targets import STARS
 from scenarios.progress import shown
 
 if TYPE_CHECKING:
@@ -153,6 +154,7 @@ def _conclude(
 ) -> Result:
     from scenarios.run.evaluate import judge
     from scenarios.run.outcome import Outcome
+    from scenarios.run.pointing import write_runs
 
     network, recorder = session.network, session.recorder
     simulated_s = network.queue.now_ns * 1e-9
@@ -171,7 +173,11 @@ def _conclude(
         "silent_faults": sum(each.first_ns is None for each in session.faults.evidence),
         "interrupted": interrupted,
     }
-    outcome = Outcome(recorder.folder, session.scenario, records, counters, bus, session.faults.evidence)
+    outcome = Outcome(
+        recorder.folder, session.scenario, records, counters, bus, session.faults.evidence,
+        session.plant.model.mount,
+    )  # fmt: skip
+    write_runs(outcome)
     verdicts = judge(outcome)
     summary = _summary(session, outcome, verdicts)
     text = json.dumps(summary, indent=2, ensure_ascii=False)
@@ -223,4 +229,6 @@ def bar(scenario: Scenario) -> Iterator[Show]:
 
 
 def _estimate_s(action: str, arguments: dict[str, Any]) -> float:
+    if action == "pointing_run":
+        return 40.0 * float(arguments.get("stars", STARS))
     return float(arguments.get("for", 40.0 if action in ("goto", "park") else 1.0))

@@ -11,7 +11,7 @@ from plant.model import PlantModel
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.file import read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
-from scenarios.lab.snapshot.tape import Tape, listeners
+from scenarios.lab.snapshot.tape import SEEN, Tape, listeners
 from scenarios.language.model import Scenario
 
 __all__ = ["Order", "Progress", "begun", "parts", "read", "resume"]
@@ -90,8 +90,10 @@ def resume(whole: dict[str, Any], folder: Path) -> Session:
     session = Session(scenario, model, folder)
     session.link._send = _nobody
     calls = listeners(session) | {"tick": session.work}
+    session.eye.replay(arguments for kind, arguments in whole["heard"] if kind == SEEN)
     for kind, arguments in whole["heard"]:
-        calls[kind](*arguments)
+        if kind != SEEN:
+            calls[kind](*arguments)
     session.forget_rows()
     for trace, rows in zip((session.recorder.host, session.recorder.focus), whole["rows"], strict=True):
         if rows:

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from scenarios.lab.session import Session
 
 Heard = list[tuple[str, tuple[Any, ...]]]
-"""(what, arguments), in order: "usb", "tick", "truth", or the name of a board on RS232."""
+"""(what, arguments), in order: "usb", "tick", "truth", SEEN, or the name of a board on RS232."""
+SEEN = "seen"
 
 
 class Ear:
@@ -39,10 +40,15 @@ class Tape:
             network.uarts[link.device.name].sink = self.ears[link.device.name]
         session.plant._sink = self.ears["truth"]
         session.ticked = self.tick
+        session.eye.told = self.seen
 
     def tick(self, t_ns: int) -> None:
         """The host's clock."""
         self.heard.append(("tick", (t_ns,)))
+
+    def seen(self, hour_angle_rad: float, declination_rad: float) -> None:
+        """An offset of a star in the field."""
+        self.heard.append((SEEN, (hour_angle_rad, declination_rad)))
 
 
 def listeners(session: Session) -> dict[str, Callable[..., None]]:

@@ -13,6 +13,7 @@ from host.sky.observed import observe_many
 from scenarios.language.programme import Record
 from scenarios.run.errors import NoData, pointing_errors, rate_errors
 from scenarios.run.outcome import Outcome
+from scenarios.run.report.pointing_run import pointing_run
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def pointing(outcome: Outcome) -> Figure | None:
         view = axes(figure, len(records), 1, index + 1, ylabel="error, arcsec", xlabel="time in step, s")
         for source, style in (("encoder", {"lw": 0.5, "alpha": 0.55}), ("truth", {"lw": 1.1})):
             try:
-                t, ra, dec = pointing_errors(outcome, record, *window, source)
+                t, ra, dec = pointing_errors(outcome, record.star, *window, source)
             except NoData:
                 continue
             ra = ra * np.cos(record.star.declination_rad)
@@ -178,6 +179,7 @@ def bus(outcome: Outcome) -> Figure | None:
 
 FIGURES: dict[str, tuple[str, Callable[[Outcome], Figure | None]]] = {
     "pointing": ("Pointing", pointing),
+    "pointing-run": ("Pointing run", pointing_run),
     "tracking": ("Tracking", tracking),
     "motion": ("Motion", motion),
     "sky": ("Sky", sky),

@@ -1,0 +1,35 @@
+"""Files of pointing runs: their stars, and the last model."""
+
+import csv
+import io
+import math
+
+from host.logs.files import write_file
+from scenarios.run.outcome import Outcome
+
+COLUMNS = (
+    "step", "t_s", "hour_angle_deg", "declination_deg", "ra_reading_deg", "dec_reading_deg",
+)  # fmt: skip
+"""Of pointing-stars.csv: observed place that the telescope was seen to look at; angles of both encoders."""
+
+
+def write_runs(outcome: Outcome) -> None:
+    """Write pointing-stars.csv and pointing-model.json, where there was a pointing run."""
+    mount = outcome.scenario.mount
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(COLUMNS)
+    for record in outcome.records:
+        for visit in record.visits:
+            seen = visit.sighting
+            angles = (
+                seen.hour_angle_rad,
+                seen.declination_rad,
+                mount.ra.angle_rad(seen.ra_steps),
+                mount.dec.angle_rad(seen.dec_steps),
+            )
+            rows.writerow([record.step.name, f"{visit.t_s:.2f}", *(f"{math.degrees(a):.7f}" for a in angles)])
+        if record.model is not None:
+            record.model.save(outcome.folder / "pointing-model.json")
+    if any(record.visits for record in outcome.records):
+        write_file(outcome.folder / "pointing-stars.csv", text.getvalue())

@@ -1,0 +1,85 @@
+"""The figure of a pointing run: residuals on the sky, before its model and after."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import erfa
+import numpy as np
+
+from bus.units import ARCSEC_PER_RAD
+from host.sky.pointfit import fit
+from host.sky.pointmodel import PointingModel
+from host.sky.pointterms import ZEROS
+from scenarios.language.programme import Record
+from scenarios.run.outcome import Array, Outcome
+from scenarios.run.report.style import COLOURS, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ARROW_DEG = 14.0
+"""Length of the longest arrow on the chart, degrees of zenith distance."""
+_SMALL_RAD = 1e-4
+"""Step on the sky that shows the direction of an arrow on the chart."""
+
+
+def pointing_run(outcome: Outcome) -> Figure | None:
+    """Residuals of every star as arrows on the sky, north up, before and after; its own scale each."""
+    record = next((each for each in reversed(outcome.records) if each.model is not None), None)
+    if record is None:
+        return None
+    assert record.model is not None
+    seen = [each.sighting for each in record.visits]
+    zeros = fit(seen, outcome.scenario.mount, record.model.latitude_rad, ZEROS)
+    figure = new_figure(4.9)
+    parts = (
+        ("zeros of both axes", zeros, COLOURS["bad"]),
+        (f"model of {len(record.model.terms)} terms", record.model, COLOURS["ok"]),
+    )
+    for number, (name, model, colour) in enumerate(parts, 1):
+        view = figure.add_subplot(1, 2, number)
+        x, y, east, north = _arrows(outcome, record, model)
+        size = np.hypot(east, north)
+        scale = float(np.max(size)) / _ARROW_DEG
+        view.quiver(x, y, east, north, color=colour, angles="xy", scale_units="xy", scale=scale, width=0.005)
+        view.plot(x, y, ".", color="#6b7785", ms=3)
+        for distance in (30, 60, 90):
+            around = np.linspace(0, 2 * np.pi, 181)
+            view.plot(distance * np.cos(around), distance * np.sin(around), color="#bbb", lw=0.5)
+            view.annotate(f"{90 - distance}°", (0.71 * distance, 0.71 * distance), color="#888", fontsize=7)
+        for text, place in (("N", (0, 95)), ("S", (0, -95)), ("E", (-95, 0)), ("W", (95, 0))):
+            view.annotate(text, place, ha="center", va="center")
+        view.set_aspect("equal")
+        view.set_xlim(-105, 105)
+        view.set_ylim(-105, 105)
+        view.set_axis_off()
+        rms = float(np.sqrt(np.mean(size**2)))
+        view.set_title(f"{name}:\nrms {rms:.2f}″, longest arrow {float(np.max(size)):.2f}″")
+    return figure
+
+
+def _arrows(outcome: Outcome, record: Record, model: PointingModel) -> tuple[Array, Array, Array, Array]:
+    """Places on the chart; reading less model there, ″, in the chart's directions."""
+    seen = [visit.sighting for visit in record.visits]
+    mount = outcome.scenario.mount
+    h = np.array([each.hour_angle_rad for each in seen])
+    d = np.array([each.declination_rad for each in seen])
+    ra, dec = model.axes_many(h, d)
+    west = (np.array([mount.ra.angle_rad(each.ra_steps) for each in seen]) - ra) * np.cos(d)
+    north = np.array([mount.dec.angle_rad(each.dec_steps) for each in seen]) - dec
+    size = np.hypot(west, north)
+    latitude = outcome.scenario.site.latitude_rad
+    x, y = _chart(h, d, latitude)
+    share = _SMALL_RAD / np.where(size > 0, size, 1.0)
+    x_end, y_end = _chart(h + west * share / np.cos(d), d + north * share, latitude)
+    length = np.hypot(x_end - x, y_end - y)
+    size = size * ARCSEC_PER_RAD / np.where(length > 0, length, 1.0)
+    return x, y, (x_end - x) * size, (y_end - y) * size
+
+
+def _chart(h: Array, d: Array, latitude_rad: float) -> tuple[Array, Array]:
+    """Degrees of zenith distance, west right and north up, as one looks up."""
+    azimuth, altitude = erfa.hd2ae(h, d, latitude_rad)
+    zenith = 90 - np.degrees(altitude)
+    return -zenith * np.sin(azimuth), zenith * np.cos(azimuth)
