@@ -1,4 +1,6 @@
-"""Maintenance console 1 (H4): encoder offsets from a reference star."""
+"""Maintenance console 1 (H4): encoder offsets from a reference star, a pointing model from many."""
+
+from collections.abc import Callable
 
 from nicegui import ui
 
@@ -9,6 +11,8 @@ from host.console.shell import OLD, Shell, box, button, stale, table
 from host.procedures.pointing import ENCODERS
 from host.sky.catalogue import STARS, star
 from host.sky.mount import CENTRE_STEPS, STEP_ARCSEC
+from host.sky.pointmodel import PointingModel
+from host.sky.pointterms import TEXTS
 from host.telescope.state import AXES
 
 
@@ -36,6 +40,7 @@ def alignment(shell: Shell) -> None:
             shell.control(button("Align on this star", on_click=align))
         with box("Encoder offsets"):
             fill = table(("axis", "reading, steps", "zero, steps", "offset from the maker’s, ″"))
+        show_model = _model(shell)
         with box("Where it points"):
             here = ui.label("–").classes("mid")
         paddle(shell)
@@ -52,5 +57,54 @@ def alignment(shell: Shell) -> None:
         place = pointing(shell.telescope)
         stale(here, not now.stale.isdisjoint(ENCODERS))
         here.set_text(f"RA {place.right_ascension}, Dec {place.declination}")
+        show_model()
 
     shell.each(refresh)
+
+
+def _model(shell: Shell) -> Callable[[], None]:
+    """Box of the pointing model; returns what brings it up to date."""
+    found: list[PointingModel] = []
+    with box("Pointing model"):
+        state = ui.label().classes("small")
+        quality = ui.label("not fitted").classes("small")
+        fill = table(("term", "what", "″", "± (95 %)"))
+
+        async def fit() -> None:
+            model = await shell.attempt(shell.desk.do(lambda t: t.drive.fit_model()))
+            if model is None:
+                return
+            found[:] = [model]
+            quality.set_text(
+                f"rms on the sky: {model.before_arcsec:.1f}″ without, {model.after_arcsec:.2f}″ with the "
+                f"model, {model.held_out_arcsec:.2f}″ on stars held out"
+            )
+            fill([
+                (each.name, TEXTS[each.name], f"{each.arcsec:+.2f}", f"{each.within_arcsec:.2f}")
+                for each in model.terms
+            ])  # fmt: skip
+
+        async def use(model: PointingModel | None) -> None:
+            await shell.attempt(shell.desk.do(lambda t: t.drive.apply_model(model)))
+
+        async def apply() -> None:
+            if found:
+                await use(found[0])
+            else:
+                shell.say("fit a model first", bad=True)
+
+        async def off() -> None:
+            await use(None)
+
+        with ui.row():
+            shell.control(button("Fit", on_click=fit))
+            shell.control(button("Apply", on_click=apply))
+            shell.control(button("Without model", on_click=off))
+
+    def refresh() -> None:
+        about = shell.telescope.observatory
+        model = about.mount.model
+        using = "no model" if model is None else f"a model of {len(model.terms)} terms, {model.stars} stars"
+        state.set_text(f"{len(about.stars)} stars aligned on; the telescope points by {using}")
+
+    return refresh
