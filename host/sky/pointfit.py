@@ -20,6 +20,8 @@ _SIGNIFICANT = 3.6
 """A coefficient over its standard deviation: eight candidates that are nothing pass it once in 400 fits."""
 _NEW = 1e-3
 """Share of a column that the columns before must leave: less, and the sky seen cannot tell them apart."""
+_APART = 0.05
+"""Least singular value of the six columns: six stars drawn over the sky had 0.09 and more. ASSUMPTION."""
 _FOLDS = 3
 _INTERVAL = 1.96
 """Standard deviations of a 95 % interval of a normal error."""
@@ -78,7 +80,7 @@ def fit(
         np.array([mount.dec.angle_rad(each.dec_steps) for each in sightings]),
         latitude_rad,
     )
-    if np.linalg.matrix_rank(stars.columns(GEOMETRY), tol=0.05) < len(GEOMETRY):
+    if np.linalg.matrix_rank(stars.columns(GEOMETRY), tol=_APART) < len(GEOMETRY):
         raise TooFewStars("the stars stand too close together; take some all over the sky")
     names = _chosen(stars) if names is None else names
     values = _solve(stars, names)

@@ -45,6 +45,17 @@ def test_a_night_of_the_guides_prints_what_the_page_shows(
 
 
 @pytest.mark.slow
+def test_the_run_of_the_pointing_guide_prints_what_the_page_shows(tmp_path: Path) -> None:
+    """The verdicts of the example scenario: other stars, and a star that is tracked."""
+    step = next(steps("pointing-model.md"))
+    done = run(step, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[:-1] == list(step.shown)
+    names = {path.name for path in (tmp_path / "out" / "pointing-model").iterdir()}
+    assert {"pointing-run.png", "pointing-model.json", "pointing-stars.csv"} <= names
+
+
+@pytest.mark.slow
 def test_the_check_of_the_guide_prints_what_the_page_shows(tmp_path: Path) -> None:
     step = next(steps("check-a-board.md"))
     done = run(step, tmp_path)
