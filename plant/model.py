@@ -28,6 +28,7 @@ from plant.parts import (
     Number,
     Numerics,
     PlantModel,
+    Stops,
     Supply,
 )
 from plant.reading import ModelError, Reader, nearest
@@ -50,6 +51,7 @@ __all__ = [
     "Number",
     "Numerics",
     "PlantModel",
+    "Stops",
     "Supply",
     "default_files",
     "dump",

@@ -115,6 +115,19 @@ class Encoders:
 
 
 @dataclass(frozen=True)
+class Stops:
+    """Hard stops of an axis: true angles where its buffers begin, on the scale of the absolute encoder.
+
+    Stiffness and damping are of one buffer, at the axis. A buffer pushes and never pulls.
+    """
+
+    low: Number = field(metadata=bounds("rad", -10.0, 10.0))
+    high: Number = field(metadata=bounds("rad", -10.0, 10.0))
+    stiffness: Number = field(metadata=bounds("N m/rad", 1e4, 1e9))
+    damping: Number = field(metadata=bounds("N m s/rad", 0.0, 1e6))
+
+
+@dataclass(frozen=True)
 class Function:
     """A smooth function found in data (effect `unknown`): knots (x, y) in SI units.
 
@@ -144,7 +157,10 @@ class EffectModel:
 
 @dataclass(frozen=True)
 class AxisModel:
-    """One axis. `inertia` is the load alone: the rotors come on top, rotor_inertia * ratio^2 each."""
+    """One axis. `inertia` is the load alone: the rotors come on top, rotor_inertia * ratio^2 each.
+
+    stops: None, it turns without end.
+    """
 
     gear: Gear
     friction: Friction
@@ -152,6 +168,7 @@ class AxisModel:
     encoders: Encoders
     inertia: Number = field(metadata=bounds("kg m2", 1.0, 1e6))
     effects: tuple[EffectModel, ...] = ()
+    stops: Stops | None = None
 
 
 @dataclass(frozen=True)

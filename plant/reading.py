@@ -13,7 +13,7 @@ from plant.effects import REGISTRY
 from plant.effects.base import STAGES, Effect
 from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import KINDS, STOPS
-from plant.parts import AxisModel, EffectModel, Function, Number
+from plant.parts import AxisModel, EffectModel, Function, Number, Stops
 from plant.units import UNITS, factor
 
 MAX_KNOTS = 32
@@ -124,12 +124,21 @@ class Reader:
                 )
             elif kind is AxisModel and spec.name == "effects":
                 values[spec.name] = self.effects(given[spec.name], here)
+            elif spec.name == "stops":
+                values[spec.name] = self.stops(given[spec.name], here)
             elif hints[spec.name] is str:
                 values[spec.name] = self.scalar(given[spec.name], here)
             else:
                 inner = get_args(hints[spec.name]) or (hints[spec.name],)  # of an optional part, its kind
                 values[spec.name] = self.part(given[spec.name], here, inner[0])
         return kind(**values)
+
+    def stops(self, node: yaml.Node, path: str) -> Stops:
+        """Return an axis' hard stops, low below high."""
+        found: Stops = self.part(node, path, Stops)
+        if found.low.si >= found.high.si:
+            raise self.fail(node, path, "low must lie below high")
+        return found
 
     def effects(self, node: yaml.Node, path: str) -> tuple[EffectModel, ...]:
         """Return the list of effects."""

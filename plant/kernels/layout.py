@@ -59,6 +59,7 @@ DELAY_ON = 77  # 1: keep the readings of every step
 DECLARED_FRICTION = 78  # friction parameters as declared
 FRICTION_SIZE = 8
 F_SIGMA0, F_SIGMA1, F_SIGMA2, F_COULOMB, F_STICTION, F_RATE, F_EXPONENT, F_DECAY = range(FRICTION_SIZE)
+STOP_MIDDLE, STOP_REACH = 86, 87  # hard stops: middle of the travel, half of it, rad
 
 # --- signals: what an effect may depend on
 SIGNALS = 88
@@ -95,4 +96,6 @@ TRUTH_SIZE = len(TRUTH_COLUMNS)
 TRUTH_ROWS = 256
 DELAYS = TRUTH + TRUTH_SIZE * TRUTH_ROWS
 DELAY_ROWS = 512
-WIDTH = DELAYS + OUT_SIZE * DELAY_ROWS
+STOP_STIFFNESS = DELAYS + OUT_SIZE * DELAY_ROWS  # of one buffer, N m/rad; 0: no hard stops
+STOP_DAMPING = STOP_STIFFNESS + 1  # N m s/rad
+WIDTH = STOP_DAMPING + 1

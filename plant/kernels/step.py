@@ -54,7 +54,11 @@ def axis_step(w: Floats, t: float, h: float) -> None:
     w[at.SUPPLY_CURRENT] = motor_step(w, 0, voltage, h, at.SUMS) + motor_step(w, 1, voltage, h, at.SUMS_OF_B)
 
     brake = torque(middle, w[at.BRISTLE], w[at.STRIBECK], w, friction)
-    acceleration = (drive + w[AXIS_TORQUE] - brake) / w[at.INERTIA]
+    # a buffer pushes as a train's teeth do, once its play, half of the travel, is used up
+    stop = train(
+        w[at.ANGLE] - w[at.STOP_MIDDLE], middle, w[at.STOP_STIFFNESS], w[at.STOP_DAMPING], w[at.STOP_REACH]
+    )
+    acceleration = (drive + w[AXIS_TORQUE] - brake - stop) / w[at.INERTIA]
     new_rate = rate + h * acceleration
     g = stribeck(new_rate, w, friction)
     w[at.BRISTLE] = relax(w[at.BRISTLE], new_rate, g, h)

@@ -22,7 +22,8 @@ RATIO = 113 / 27 * 123 / 21 * 250 / 17
 def _motion(t, y, p, duty):  # type: ignore[no-untyped-def]
     """dy/dt of: angle, rate, bristle, (angle, rate, current) of motors A and B; SI units."""
     (inertia, rotor, stiffness, damping, play, resistance, inductance, constant, voltage,
-     sigma0, sigma1, sigma2, coulomb, stiction, stribeck, exponent, ratio) = p  # fmt: skip
+     sigma0, sigma1, sigma2, coulomb, stiction, stribeck, exponent, ratio,
+     end, buffer, buffer_damping) = p  # fmt: skip
     d = np.zeros(9)
     angle, rate, z = y[0], y[1], y[2]
     total = 0.0
@@ -48,6 +49,8 @@ def _motion(t, y, p, duty):  # type: ignore[no-untyped-def]
     g = (coulomb + (stiction - coulomb) * np.exp(-((abs(rate) / stribeck) ** exponent))) / sigma0
     slip = rate - abs(rate) * z / g
     d[0] = rate
+    if angle > end:
+        total -= max(0.0, buffer * (angle - end) + buffer_damping * rate)
     d[1] = (total - sigma0 * z - sigma1 * slip - sigma2 * rate) / inertia
     d[2] = slip
     return d
@@ -58,17 +61,20 @@ def rates(
 ) -> Floats:
     """Rate of the RA axis, rad/s, every `sample_s` from `sample_s` on. manoeuvre: (s, duty A, duty B).
 
-    Effects, drag and sigma1's decay are not written down here: the model must have none.
+    Effects, drag, the low stop and sigma1's decay are not written down here: the model must have none.
     """
     axis, motor, friction = model.axes.ra, model.axes.ra.motor, model.axes.ra.friction
     assert not axis.effects and not motor.drag.si and not friction.bristle_decay.si
     resistance = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
     play = axis.gear.backlash.si / 2.0
+    stops = axis.stops
+    buffer = (np.inf, 0.0, 0.0) if stops is None else (stops.high.si, stops.stiffness.si, stops.damping.si)
     p = np.array([
         axis.inertia.si, motor.rotor_inertia.si, axis.gear.stiffness.si / 2.0, axis.gear.damping.si / 2.0,
         play, resistance, motor.inductance.si, motor.torque_constant.si, model.supply.voltage.si,
         friction.bristle_stiffness.si, friction.bristle_damping.si, friction.viscous.si, friction.coulomb.si,
         friction.stiction.si, friction.stribeck_rate.si, friction.stribeck_exponent.si, RATIO,
+        *buffer,
     ])  # fmt: skip
     y = np.zeros(9)
     y[3], y[6] = RATIO * play, -RATIO * play
