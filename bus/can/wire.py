@@ -81,6 +81,10 @@ class Wire:
         """Have `call(t_end_ns, frame, sender)` made for every good frame; a tap does not acknowledge."""
         self._taps.append(call)
 
+    def untap(self, call: Tap) -> None:
+        """Make `call` no more; not from within a tap."""
+        self._taps.remove(call)
+
     def disturb(self, call: Disturb | None) -> None:
         """Ask `call(t_sof_ns, frame, sender)` at the start of every frame for a bit to invert; None:
         quiet again."""

@@ -33,9 +33,11 @@ from plant.plant import Plant
 from scenarios.lab.drive import axis_config
 from scenarios.lab.networks import FINAL, NetworkConfig, NetworkError, NodeConfig, devices_of
 from scenarios.lab.nodes import BOARDS, Site, pins_of
+from scenarios.lab.powerstages import PowerStages
 
 if TYPE_CHECKING:
     from boards.canopen import Voice
+    from scenarios.lab.chain import Chain
 
 CRYSTAL_PPM = 50.0
 """Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
@@ -63,6 +65,11 @@ class Network:
     uarts: dict[str, Uart]
     debug: dict[str, DebugPort] = field(default_factory=dict)
     voices: dict[str, "Voice"] = field(default_factory=dict)
+    stages: PowerStages = field(init=False)
+    chain: "Chain | None" = None
+
+    def __post_init__(self) -> None:
+        self.stages = PowerStages(self)
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`."""

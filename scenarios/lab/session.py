@@ -37,6 +37,8 @@ class Session:
         for link in self.serial:
             self.network.uarts[link.device.name].sink = link.receive
         self.eye = Eye(self.plant, scenario)
+        if self.network.chain is not None:
+            self.network.chain.told = self.chain_says
         self.programme = Programme(scenario, self.client, self.recorder.ascii, self.eye)
         self.faults = Faults(self.network, scenario.seed)
         self.faults.schedule(scenario.faults)
@@ -66,6 +68,10 @@ class Session:
                 self.focus_rows += self._focus_rows
             self._host_rows.clear()
             self._focus_rows.clear()
+
+    def chain_says(self, t_ns: int, text: str) -> None:
+        """A contact of the safety chain on the observer's PC (ASSUMPTION): a line in the error log."""
+        self.recorder.ascii.error(t_ns, "CHAIN", text)
 
     def adopt(self, network: Network) -> None:
         """Go on with another network, one that has been where this host is."""

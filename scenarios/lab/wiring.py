@@ -6,7 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bus.time import generator
+from bus.units import ARCSEC_PER_RAD
 from host.procedures.manual import AXES
+from host.sky.mount import STEP_ARCSEC
+from scenarios.lab.chain import SWITCHES, chained
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
@@ -20,18 +23,24 @@ _FOCUS_START = 5
 """The focus is found at most this many electrical periods from the middle. ASSUMPTION."""
 _HALF_STEPS_PER_PERIOD = 8
 """The rotor rests where the phase that the board starts with holds it."""
+_STEP_RAD = STEP_ARCSEC / ARCSEC_PER_RAD
 
 
 def powered(scenario: Scenario, model: PlantModel) -> Network:
-    """Plant, boards and bus of a scenario, parked and powered up; nothing goes wrong with them yet.
+    """Plant, boards, bus and safety chain of a scenario, parked and powered up; nothing goes wrong yet.
 
     Its steps are not run: whoever is on the bus commands.
     """
     from plant.plant import Plant
+    from plant.stops import with_stops
 
-    pins = Plant(model, scenario.seed, start_steps(scenario))
-    config = config_from(scenario.network, soft_limits(scenario), scenario.file.parent)
-    return build(config, pins, scenario.seed)
+    limits = soft_limits(scenario)
+    soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
+    pins = Plant(with_stops(model, soft_rad), scenario.seed, start_steps(scenario))
+    config = config_from(scenario.network, limits, scenario.file.parent)
+    made = build(config, pins, scenario.seed)
+    made.chain = chained(made, soft_rad, scenario.network.get("chain", SWITCHES))
+    return made
 
 
 def wired(scenario: Scenario, model: PlantModel) -> tuple[Network, Faults]:

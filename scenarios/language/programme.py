@@ -196,6 +196,8 @@ class Programme:
                 return manual.open_loop(client, given["axis"], given["effort"], given["for"])
             case "stop":
                 return manual.stop(client, given.get("axis", "both"))
+            case "power_off":
+                return power.power_off(client)
             case "focus":
                 goal, procedure = _focus(client, given)
                 self._note(index, focus_goal=goal)

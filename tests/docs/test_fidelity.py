@@ -26,7 +26,9 @@ from host import client
 from host.sky.site import NAINITAL
 from plant import loop, model
 from plant.effects import REGISTRY
+from plant.stops import BEYOND_RAD
 from plant.units import to_si
+from scenarios.lab.chain import DROP_NS, FED_NS
 from scenarios.lab.faults.table import KINDS
 from scenarios.lab.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
 from scenarios.language import model as scenario_model
@@ -76,6 +78,8 @@ FIGURES = {
     "| P1 | Dec axis |": f"inertia {DEC.inertia.si:g} kg m²",
     "| P1 | both trains | stiffness": f"{RA.gear.stiffness.si * 1e3:.3g}".replace("e+0", "e") + " / ",
     "| P4 | loop |": f"R + {LOOP_OHM:g} Ω",
+    "| P4 | safety chain |": f"watchdogs of {FED_NS // 10**6} ms on demand; a contactor cuts both drives "
+    f"{DROP_NS // 10**6} ms later",
     "| P4 | supply |": f"{PLANT.supply.voltage.si:g} V",
     "| P5 | bearings, Dec |": f"by {DEC.friction.viscous.si / RA.friction.viscous.si:.2f}",
     "| P6 | disturbances |": f"{len(REGISTRY) - 1} named effects",
@@ -89,6 +93,7 @@ FIGURES = {
     "| B9 | all: crystal |": f"±{CRYSTAL_PPM:g} ppm, ±{CRYSTAL_DRIFT_PPM_PER_HOUR:g} ppm/h",
     "| P1 | site |": f"height {NAINITAL.height_m:g} m, {NAINITAL.temperature_c:g} °C, "
     f"{NAINITAL.humidity:.0%} humidity",
+    "| P1 | mount: hard stops |": f"buffers {BEYOND_RAD / to_si(1, 'deg'):.0f}° beyond",
     "| P1 | mount | travel": f"±{scenario_model.HOUR_ANGLE_LIMIT_RAD / to_si(1, 'deg'):.0f}°",
 }
 """How a row begins, and a figure that it must hold."""

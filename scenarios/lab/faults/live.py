@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bus.time import generator
-from scenarios.lab.faults.drives import Drives
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.lab.faults.kind import Active, Kind
 from scenarios.lab.faults.parameter import FaultError
@@ -41,9 +40,7 @@ class Faults:
     def __init__(self, network: Network, seed: int) -> None:
         self._network = network
         self._seed = seed
-        self.place = Place(
-            network=network, drives=Drives(network), random=np.random.default_rng(0), evidence=Evidence("")
-        )
+        self.place = Place(network=network, random=np.random.default_rng(0), evidence=Evidence(""))
         self._next = 0
         self._active: dict[int, tuple[Running, Active]] = {}
         self.evidence: list[Evidence] = []

@@ -5,17 +5,18 @@ from typing import Any
 
 from bus.units import ARCSEC_PER_RAD
 from plant.kernels import layout as at
-from scenarios.lab.faults.drives import AXES
 from scenarios.lab.faults.evidence import Watched
 from scenarios.lab.faults.kind import Active
+from scenarios.lab.faults.parameter import FaultError
 from scenarios.lab.faults.place import Place
+from scenarios.lab.powerstages import AXES
 
 
 class Staged:
     """The power stage of an axis gives other duties than are wanted."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
-        self._drives, self.given, self.evidence = place.drives, given, place.evidence
+        self._drives, self.given, self.evidence = place.network.stages, given, place.evidence
         self._queue = place.network.queue
         self._drives.add(given["axis"], self, t_ns)
 
@@ -48,6 +49,22 @@ class MosfetShort(_Motor):
     """The switch conducts all the time."""
 
     duty = 1.0
+
+
+class EmergencyStop:
+    """The button of the safety chain (`scenarios/lab/chain.py`) is pressed while the fault is on."""
+
+    def __init__(self, place: Place, _given: Mapping[str, Any], t_ns: int) -> None:
+        chain = place.network.chain
+        if chain is None:
+            raise FaultError("emergency_stop: this network has no safety chain (network.chain)")
+        self._chain = chain
+        if chain.press(t_ns):
+            place.evidence.act(t_ns, "safety chain")
+
+    def clear(self, t_ns: int) -> None:
+        """The button is pulled out again; the chain stays open until both axes are OFF."""
+        self._chain.release(t_ns)
 
 
 class _Driven(Staged):

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from scenarios.lab.faults.drives import Drives
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.lab.faults.layers import Laid, Stacks, chained, last, turned
 from scenarios.lab.faults.parameter import FaultError
@@ -54,7 +53,6 @@ class Place:
     """
 
     network: Network
-    drives: Drives
     random: np.random.Generator
     evidence: Evidence
     layers: Stacks = field(default_factory=lambda: Stacks(chained))

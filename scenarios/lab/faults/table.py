@@ -252,6 +252,14 @@ KINDS: tuple[Kind, ...] = (
         _MOVED,
     ),
     _actuator(
+        "emergency_stop",
+        "the button of the safety chain is pressed: both drives lose the supply of their power stages, the "
+        "boards keep theirs",
+        (),
+        onplant.EmergencyStop,
+        "the chain stays open until both axes are OFF, and " + _MOVED,
+    ),
+    _actuator(
         "weak_supply",
         "the motors' supply has this share of its voltage",
         (Parameter("factor", "share that is left", "fraction", default=0.7, low=0.0, high=1.5), _EITHER),

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from scenarios.lab.session import Session
 
 Heard = list[tuple[str, tuple[Any, ...]]]
-"""(what, arguments), in order: "usb", "tick", "truth", SEEN, or the name of a board on RS232."""
+"""(what, arguments), in order: "usb", "tick", "truth", "chain", SEEN, or the name of a board on RS232."""
 SEEN = "seen"
 
 
@@ -39,6 +39,8 @@ class Tape:
         for link in session.serial:
             network.uarts[link.device.name].sink = self.ears[link.device.name]
         session.plant._sink = self.ears["truth"]
+        if network.chain is not None:
+            network.chain.told = self.ears["chain"]
         session.ticked = self.tick
         session.eye.told = self.seen
 
@@ -56,5 +58,6 @@ def listeners(session: Session) -> dict[str, Callable[..., None]]:
     calls: dict[str, Callable[..., None]] = {
         "usb": session.link.receive,
         "truth": session.recorder.take_truth,
+        "chain": session.chain_says,
     }
     return calls | {link.device.name: link.receive for link in session.serial}

@@ -38,6 +38,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "sensor_intermittent": {"sensor": "ra.absolute", "probability": "50 %"},
     "motor_open": {"axis": "ra", "motor": "a"},
     "mosfet_short": {"axis": "ra", "motor": "a"},
+    "emergency_stop": {},
     "weak_supply": {"factor": "50 %"},
     "friction_change": {"axis": "ra", "factor": 3.0},
     "load_change": {"axis": "ra", "factor": 3.0},

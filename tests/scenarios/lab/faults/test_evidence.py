@@ -20,6 +20,7 @@ ON = {
     "crystal_drift": "timer interrupt of POSITION_RA",
     "endat_line": "transfer of POSITION_RA", "serial_noise": "RS232 packet of POSITION_RA",
     "pwm_stuck": DUTIES, "motor_open": DUTIES, "mosfet_short": DUTIES, "weak_supply": DUTIES,
+    "emergency_stop": "safety chain",
     "friction_change": SAMPLE, "load_change": SAMPLE, "play_change": SAMPLE,
 }  # fmt: skip
 """What each acts on first; the sensors' on a sample, all others on a frame."""
@@ -68,6 +69,10 @@ def shorted(lab: Lab) -> None:
     lab.faults.start("mosfet_short", **EXAMPLES["mosfet_short"])
 
 
+def pressed(lab: Lab) -> None:
+    lab.faults.start("emergency_stop")
+
+
 def at_rest(_lab: Lab) -> None:
     """Nobody commands: the motors have no duty."""
 
@@ -84,8 +89,8 @@ CANNOT: dict[str, Callable[[Lab], None]] = {
     "late_interrupts": HEARD, "frame_loss": HEARD, "deaf_controller": off("AXIS_RA"), "endat_line": HEARD,
     "serial_noise": HEARD, "pwm_stuck": at_rest, "sensor_stuck": HEARD, "sensor_noise": HEARD,
     "sensor_bias": HEARD, "sensor_scale": HEARD, "sensor_delayed": HEARD, "sensor_intermittent": HEARD,
-    "motor_open": at_rest, "mosfet_short": shorted, "weak_supply": at_rest, "friction_change": UNREAD,
-    "load_change": UNREAD, "play_change": UNREAD,
+    "motor_open": at_rest, "mosfet_short": shorted, "emergency_stop": pressed, "weak_supply": at_rest,
+    "friction_change": UNREAD, "load_change": UNREAD, "play_change": UNREAD,
 }  # fmt: skip
 """What keeps each from acting, arguments being the same."""
 

@@ -28,6 +28,9 @@ faults:
     until: 1 s
   - reset: {node: FOCUS, every: 700 ms}
     at: 200 ms
+  - emergency_stop: {}
+    at: 1.2 s
+    until: 1.6 s
 """
 
 

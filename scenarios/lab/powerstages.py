@@ -1,13 +1,13 @@
-"""The power stages between an axis board's PWM and its motors, and what is wrong with them."""
+"""The power stages between an axis board's PWM and its motors, what is wrong with them, and their supply."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
 from plant.kernels import layout as at
-from scenarios.lab.faults.evidence import Evidence
 
 if TYPE_CHECKING:
+    from scenarios.lab.faults.evidence import Evidence
     from scenarios.lab.network import Network
 
 
@@ -21,13 +21,14 @@ class Stage(Protocol):
 
 
 class _Axis:
-    """One axis while something is wrong with it."""
+    """One axis while something is wrong with it. dead: without supply, whatever its switches do."""
 
     def __init__(self, network: Network, axis: str) -> None:
         self._name = axis
         self._pwm = getattr(network.boards[f"AXIS_{axis.upper()}"], "pwm")  # noqa: B009 - Board has none
         self._below = self._pwm.drive
         self.stages: list[Stage] = []
+        self.dead = False
         view, place = network.plant.view, AXES[axis] * at.WIDTH + at.DUTY
         self._wanted = (view[place], view[place + 1])
         self._pwm.drive = self.drive
@@ -44,7 +45,7 @@ class _Axis:
             before, duties = duties, stage.duties(duties)
             if duties != before:
                 stage.evidence.act(t_ns, f"duties of {self._name}")
-        self._below(t_ns, *duties)
+        self._below(t_ns, *((0.0, 0.0) if self.dead else duties))
 
     def leave(self) -> None:
         self._pwm.drive = self._below
@@ -54,7 +55,7 @@ AXES = {"ra": 0, "dec": 1}
 """Axis to its row of the plant's world."""
 
 
-class Drives:
+class PowerStages:
     """All axes with a stage that is not as it should be."""
 
     def __init__(self, network: Network) -> None:
@@ -63,16 +64,27 @@ class Drives:
 
     def add(self, axis: str, stage: Stage, t_ns: int) -> None:
         """From now on, whatever the board has commanded before."""
-        if axis not in self._axes:
-            self._axes[axis] = _Axis(self._network, axis)
-        self._axes[axis].stages.append(stage)
-        self._axes[axis].again(t_ns)
+        self._at(axis).stages.append(stage)
+        self._at(axis).again(t_ns)
 
     def remove(self, axis: str, stage: Stage, t_ns: int) -> None:
         """The switches obey again."""
+        self._axes[axis].stages.remove(stage)
+        self._settle(axis, t_ns)
+
+    def supply(self, axis: str, on: bool, t_ns: int) -> None:
+        """The supply of both motors of an axis is cut, or is back."""
+        self._at(axis).dead = not on
+        self._settle(axis, t_ns)
+
+    def _at(self, axis: str) -> _Axis:
+        if axis not in self._axes:
+            self._axes[axis] = _Axis(self._network, axis)
+        return self._axes[axis]
+
+    def _settle(self, axis: str, t_ns: int) -> None:
         one = self._axes[axis]
-        one.stages.remove(stage)
         one.again(t_ns)
-        if not one.stages:
+        if not one.stages and not one.dead:
             one.leave()
             del self._axes[axis]
