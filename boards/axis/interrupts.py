@@ -8,6 +8,8 @@ their own. 20 000 ADC interrupts a second would add nothing to the last conversi
 from typing import Final
 
 from boards.core import Source
+from boards.core.resources import COMMANDS, DSPIC30F3011, Ledger, line
+from bus.protocol import HARMONICS, Device
 
 FCY_HZ: Final = 30_000_000
 
@@ -28,3 +30,15 @@ HARMONIC_CYCLES: Final = 120
 two products and sums (35)."""
 FRICTION_CYCLES: Final = 60
 """The friction model: two 32-bit products, sums."""
+PARAMETERS: Final = 42
+"""Rows of the parameter table, 32 bits each."""
+LEDGER: Final = Ledger(
+    chip=DSPIC30F3011,
+    buffers=COMMANDS | line(Device.AXIS_RA) | {"parameters": 4 * PARAMETERS},
+    table=TABLE,
+    fcy_hz=FCY_HZ,
+    window_ns=5_000_000,
+    extra_cycles=HARMONICS * HARMONIC_CYCLES + FRICTION_CYCLES,
+)
+"""More RAM than the chip has: samples and packets of nine columns do not fit (FIDELITY.md, B1). Lock, blend
+and bias book no cycles."""

@@ -34,7 +34,7 @@ WARNING_NS: Final = 10_000_000_000
 """How long the health bits FOREIGN and RANGE stand after the last cause. ASSUMPTION: long enough to be asked
 for, and one bad frame does not keep a telescope from being powered for the rest of the night."""
 _LONG_AGO: Final = -WARNING_NS
-_INBOX: Final = 8
+INBOX: Final = 8
 """Commands the firmware keeps until it serves them, ASSUMPTION (the chip itself holds two)."""
 
 
@@ -214,7 +214,7 @@ class Board:
         self._take_command(0, data)
 
     def _take_command(self, _now_ns: int, data: bytes) -> None:
-        if len(self.inbox) >= _INBOX:
+        if len(self.inbox) >= INBOX:
             self.drop()
             return
         self.inbox.append(data)

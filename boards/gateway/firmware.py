@@ -4,12 +4,14 @@ from collections import deque
 from typing import Final
 
 from boards.core import PeriodicBoard, Place, answer
+from boards.core.resources import COMMANDS, PIC18F4550, Ledger
 from boards.gateway.interrupts import FCY_HZ, TABLE
 from boards.silicon.can import FULL_MASK
 from boards.silicon.hid import FRAME_NS, HidEndpoint, next_frame_ns
 from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
+    FRAME_BYTES,
     HEARTBEAT_BASE,
     MEASUREMENT_BASE,
     REPLY_BASE,
@@ -27,6 +29,16 @@ _REPORTS: Final = 16
 """Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
 _COMMANDS: Final = 64
 """Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
+LEDGER: Final = Ledger(
+    chip=PIC18F4550,
+    buffers=COMMANDS
+    | {"ring": RING_SLOTS * FRAME_BYTES, "to the bus": _COMMANDS * FRAME_BYTES, "reports": _REPORTS * 64},
+    table=TABLE,
+    fcy_hz=FCY_HZ,
+    window_ns=FRAME_NS,
+)
+"""More RAM than the chip has, by the reports: a chip would hold two, and USB repeat the others (FIDELITY.md,
+B7)."""
 _BASE_MASK: Final = 0x700
 _END: Final = MEASUREMENT_BASE + 0x80
 """Beyond the last measurement: a device type has seven bits."""

@@ -7,6 +7,7 @@ a QEI. Cycles are estimated from instruction counts.
 from typing import Final
 
 from boards.core import Source
+from boards.core.resources import COMMANDS, PIC18F4431, Ledger
 
 FCY_HZ: Final = 10_000_000
 
@@ -16,3 +17,5 @@ TABLE: Final = (
     # 60 us: SPI read, dispatch, SPI load
     Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
 )
+
+LEDGER: Final = Ledger(chip=PIC18F4431, buffers=COMMANDS, table=TABLE, fcy_hz=FCY_HZ, window_ns=10_000_000)

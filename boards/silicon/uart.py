@@ -11,7 +11,7 @@ BAUD: Final = 115_200
 would be the minimum for the bare five columns (hardware.md 2.1)."""
 BITS_PER_BYTE: Final = 10
 """Start, eight data, stop."""
-_BUFFERS: Final = 2
+BUFFERS: Final = 2
 """Packets the firmware keeps: one leaving, one waiting."""
 
 Sink = Callable[[int, bytes], None]
@@ -43,7 +43,7 @@ class Uart:
     def send(self, t_ns: int, packet: bytes) -> bool:
         """Start sending at `t_ns`, or when the packet before is through; False (and counted) when both
         buffers are full."""
-        if len(self._packets) >= _BUFFERS:
+        if len(self._packets) >= BUFFERS:
             self.dropped += 1
             return False
         self._packets.append(packet)
