@@ -24,7 +24,7 @@ _SOCKETCAN = {
     errno.ENODEV: "sudo ip link add dev {0} type vcan && sudo ip link set {0} up",
     errno.ENETDOWN: "sudo ip link set {0} up",
 }
-"""What to do where Linux refuses a SocketCAN channel."""
+"""A remedy by the error number with which Linux refuses a SocketCAN channel."""
 
 
 class SpecError(ValueError):
