@@ -131,10 +131,11 @@ class Name:
         """Whether a report may print it: the plant's effect has it, the plant file where the name changes a
         number of it, or `observed` says what it is. A harmonic ends in its number, a time from the start of
         every run in IN_RUN."""
-        plain = parameter.removesuffix(IN_RUN).rstrip("0123456789").removesuffix("_")
+        known = parameter.removesuffix(IN_RUN)
+        plain = known.rstrip("0123456789").removesuffix("_")
         plants = {p.name for p in REGISTRY[self.name].parameters}
         written = set(self.changed.numbers.values()) if self.changed is not None else set()
-        return plain in plants | written or any(fnmatch(parameter, pattern) for pattern in self.observed)
+        return plain in plants | written or any(fnmatch(known, pattern) for pattern in self.observed)
 
     def retold(self, f: Finding, quotients: Mapping[str, float]) -> Finding:
         """`f` of the coefficients as they are now; `quotients` (before over now) by their names."""

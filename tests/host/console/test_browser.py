@@ -22,6 +22,8 @@ _BARE = """() => {
   }
 }"""
 """A place of the chart with nothing near it."""
+FRAMEWORK = ["#popup"]
+"""NiceGUI's own notice of a lost connection, which a busy machine may show."""
 KEYS = ("Move N ↑", "Move S ↓", "Move E ←", "Move W →")
 
 
@@ -32,7 +34,7 @@ def test_axe_finds_nothing_on_any_page(browser: Any, served: Consoles, path: str
     page = opened(browser, served, path)
     found = []
     for mode in ("night", "day"):
-        found += Axe().run(page).response["violations"]
+        found += Axe().run(page, {"exclude": [FRAMEWORK]}).response["violations"]
         assert page.evaluate(_OVER) == []
         page.wait_for_timeout(500)  # plots are drawn anew once a second
         shot(page, f"{path.strip('/') or 'main'}-{mode}")
