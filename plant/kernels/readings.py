@@ -3,6 +3,7 @@
 from plant.compiled import Floats, inner
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
+from plant.kernels.stage import peak_current
 
 # errors of the readings, from the effects of the last step
 INCREMENTAL = at.SUMS + int(Hook.INCREMENTAL)
@@ -38,11 +39,14 @@ def read(w: Floats) -> None:
         turned = w[motor + at.M_ANGLE] - half * speed - w[at.TACH_ZERO + m]
         w[o + at.OUT_TACH_A + 2 * m] = turned * w[at.TACH_SCALE]
         w[o + at.OUT_TACH_A + 2 * m + 1] = speed * NANO * w[at.TACH_SCALE]
-        duty = w[at.DUTY + m]
         # sampled at the PWM's falling edge, where the ripple peaks
-        current = w[motor + at.M_CURRENT]
-        if current > 0.0:
-            current += w[at.RIPPLE] * duty * (1.0 - duty)
+        if w[at.PULSE] > 0.0:
+            current = peak_current(w, m, w[at.TORQUE_CONSTANT] * speed * (1.0 - 2.0 * m))
+        else:
+            duty = w[at.DUTY + m]
+            current = w[motor + at.M_CURRENT]
+            if current > 0.0:
+                current += w[at.RIPPLE] * duty * (1.0 - duty)
         w[o + at.OUT_CURRENT_A + m] = current + (w[CURRENT_A] if m == 0 else w[CURRENT_B])
 
 
