@@ -12,6 +12,8 @@ from scenarios.studies.paper.starts import Benches
 SECONDS, SETTLE, EDGE = 60.0, 4.0, 5.0
 CORNER_HZ = 0.05
 """Slower errors are drifts: the speed that an open loop happens to settle at, and the balance of the axis."""
+PRINTED_RATIO = 14.5 / 7.5
+"""Smallest ratio of two peaks that are printed as 15 % and 7 %, in whole per cent (paper 4, Fig. 6)."""
 
 
 def fast_peak(rate: Array, setpoint: float) -> float:
@@ -25,15 +27,14 @@ def fast_peak(rate: Array, setpoint: float) -> float:
 def measure(benches: Benches) -> Figures:
     """High-passed peaks in open and closed loop."""
     found: Figures = {}
-    over = []
+    open_peak = closed_peak = 0.0
     for speed in OPENED:
         run = high_speed(benches("low"), speed, SECONDS + 2 * EDGE, SETTLE, SECONDS + 2 * EDGE)
         assert run.opened is not None
         opened, closed = (fast_peak(log.rate, speed) for log in (run.opened, run.closed))
         found[f"peak {speed:g}"] = opened
-        over.append(opened - closed)
-    found["over"] = min(over)
-    return found
+        open_peak, closed_peak = max(open_peak, opened), max(closed_peak, closed)
+    return found | {"closed": closed_peak, "ratio": open_peak / closed_peak}
 
 
 ROW = Experiment(
@@ -43,8 +44,8 @@ ROW = Experiment(
             Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=15.0, words=f"peak at {v:g}″/s", scale=2.0)
             for v in OPENED
         ),
-        Limit(figure="over", unit="points", low=0.0, high=EVER, words="points above the closed loop",
-            scale=1.0),
+        Limit(figure="ratio", unit="1", low=PRINTED_RATIO, high=EVER, words="largest peak, open over closed",
+            scale=0.3),
     ),
-    measure=measure,
+    measure=measure, beside=(("closed", "% peak of the closed loop"),),
 )  # fmt: skip
