@@ -36,13 +36,19 @@ def electrical_problem(
     w = _windings(frame, m, effort, np.concatenate(spins))
     assert w.counter is not None
     volts = np.split(w.duty * w.supply, 2)
-    conducts = [_conducts(frame, m, key, v, declared) for key, v in zip("ab", volts, strict=True)]
+    driving_volts, opened = volts, 1.0 - w.duty
+    if declared.diode_drop:
+        driving_volts = [v - declared.diode_drop * o for v, o in zip(volts, np.split(opened, 2), strict=True)]
+        # an open switch takes itself and the sense resistor out of the declared loop
+        volts = np.split(np.concatenate(volts) + declared.switch * opened * w.current, 2)
+    conducts = [_conducts(frame, m, key, v, declared) for key, v in zip("ab", driving_volts, strict=True)]
     problem = m.problem(
         held,
         [
             ("resistance", "ohm", w.at(w.current)),
             ("torque_constant", "N m/A", w.rate),
             ("electrical_lag", "s", w.at(np.concatenate([np.gradient(v, frame.period_s) for v in volts]))),
+            *([("diode_drop", "V", w.at(opened))] if declared.diode_drop else []),
         ],
         channel="E",
         unit="V",
