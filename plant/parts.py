@@ -86,7 +86,11 @@ class Friction:
 
 @dataclass(frozen=True)
 class Motor:
-    """One of the two equal motors with its switch and sense resistor; `drag` is viscous, at the rotor."""
+    """One of the two equal motors with its switch and sense resistor; `drag` is viscous, at the rotor.
+
+    diode_drop: forward voltage of the freewheel diodes, with which the power stage is solved period by period
+    (plant/kernels/stage.py). None: duty times supply drives the current.
+    """
 
     torque_constant: Number = field(metadata=bounds("N m/A", 0.01, 10.0))
     resistance: Number = field(metadata=bounds("ohm", 0.05, 100.0))
@@ -95,6 +99,7 @@ class Motor:
     drag: Number = field(metadata=bounds("N m s/rad", 0.0, 1.0))
     switch_resistance: Number = field(metadata=bounds("ohm", 0.0, 10.0))
     sense_resistance: Number = field(metadata=bounds("ohm", 0.0, 10.0))
+    diode_drop: Number | None = field(default=None, metadata=bounds("V", 0.01, 1.5))
 
     @property
     def loop(self) -> float:

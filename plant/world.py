@@ -53,6 +53,9 @@ def build(model: PlantModel, seed: int, start_angles: Mapping[str, float]) -> ND
         if row[at.INERTIA] <= 0.0:
             raise ValueError(f"plant model: axes.{name}.effects: more swings than the axis' inertia")
         write(row, axis.effects, constants(axis), seed, name)
+        if axis.motor.diode_drop is not None:
+            row[at.DIODE_DROP] = axis.motor.diode_drop.si
+            row[at.PULSE] = 1.0 / (model.controller.pwm_frequency.si * axis.motor.inductance.si)
         if axis.stops is not None:
             _put(row, axis.stops)
     return world

@@ -11,7 +11,7 @@ from calibration.inputs.run import Run
 from plant.effects import REGISTRY
 from plant.effects.signals import Hook
 from plant.model import PlantModel, default_files, load
-from plant.parts import AxisModel, EffectModel
+from plant.parts import EffectModel
 
 # a log whose note starts with this was made by the emulator: its plant file is what is declared
 OWN = "schmidt"
@@ -106,13 +106,6 @@ def _from_rig(rig: Rig, preload: str, stiffness: str | None) -> Declared:
     )
 
 
-def _diode_drop(part: AxisModel) -> float:
-    """V that a plant's power stage has while its switch is open; 0 where it solves none."""
-    diodes = [e.parameters for e in part.effects if e.enabled and e.name == "diode_braking"]
-    whole = [p for p in diodes if "share" not in p or p["share"].si >= 1.0]
-    return sum(p["drop"].si for p in whole if "drop" in p)
-
-
 def declared_numbers(runs: list[Run], plant: Path | None, rig: Rig | None = None) -> Declared:
     """From `plant`; without it, for the emulator's own logs, from the project's plant file.
 
@@ -135,7 +128,7 @@ def declared_numbers(runs: list[Run], plant: Path | None, rig: Rig | None = None
         resistance=motor.loop,
         lines=tuple((e.name, stage, e.harmonic) for e, stage in waves if stage),
         ripple=0.5 / (motor.inductance.si * model.controller.pwm_frequency.si) if own else None,
-        diode_drop=_diode_drop(part),
+        diode_drop=motor.diode_drop.si if motor.diode_drop is not None else 0.0,
         switch=motor.loop - motor.resistance.si,
         gear_lag_s=gear.damping.si / gear.stiffness.si if own else 0.0,
         own=own,

@@ -1,8 +1,4 @@
-"""The lagging motor drives current through its freewheel diode and brakes.
-
-With a whole `share` and a `drop` the plant solves the power stage itself (plant/kernels/stage.py). Then every
-motor's current runs down through the diode while its switch is open.
-"""
+"""The lagging motor drives current through its freewheel diode and brakes."""
 
 from plant.compiled import Floats
 from plant.effects.base import CATALOGUE, Effect, Parameter, Term
@@ -28,14 +24,7 @@ EFFECT = Effect(
         Parameter(
             "share", "1", 0.0, 1.0, 1.0, "hardware.md 2.3: 0 is the paper's superposition, 1 the real diode"
         ),
-        Parameter(
-            "drop",
-            "V",
-            0.0,
-            1.5,
-            0.0,
-            "ASSUMPTION: forward voltage of a silicon diode; a stage that switches",
-        ),
+        Parameter("drop", "V", 0.0, 1.5, 0.0, "ASSUMPTION: forward voltage of the freewheel diode"),
     ),
     source="hardware.md 2.3; " + CATALOGUE,
     terms=(Term(Hook.SWITCH, formula),),

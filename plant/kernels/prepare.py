@@ -81,8 +81,6 @@ def prepare(w: Floats, n: Numbers) -> None:
     w[at.RIPPLE] = n.voltage / (2.0 * n.inductance * n.pwm_frequency)
     w[at.DIODE] = n.diode
     w[at.DIODE_DROP] = n.diode_drop
-    if n.diode >= 1.0 and n.diode_drop > 0.0:
-        w[at.PULSE] = 1.0 / (n.pwm_frequency * n.inductance)
     w[at.TEMPERATURE] = n.temperature
     w[at.WARMING] = n.warming
 

@@ -15,8 +15,9 @@ from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.declaredplant import declared_numbers
 from calibration.statistics.regression import gls
 from plant.loop import Excitation, simulate
-from plant.model import load
+from plant.model import dump
 from tests.calibration.logs import write_log
+from tests.plant.bench import switching
 
 ROWS = 9000
 # arcsec/s per row, both ways: neither motor reaches the end of its converter
@@ -24,21 +25,23 @@ WANTED = 2000.0 * np.sin(np.arange(ROWS) * 0.01 * 2 * np.pi / 20.0)
 
 
 def test_the_drop_of_the_diode_is_found_beside_resistance_and_constant(tmp_path: Path) -> None:
-    model = load("low_preload_bridge")
+    model = switching("low_preload_bridge")
     log = simulate(model, "ra", ROWS * 0.01, Excitation(setpoint=WANTED, start_steps=3e8), seed=3)
     path = tmp_path / "run1.log"
     write_log(path, log)
     run = read_axis_log(path, path.read_text(encoding="utf-8"))
+    file = tmp_path / "plant.yaml"
+    dump(model, file)
     runs = [replace(run, header=run.header | {"note": "schmidt, plant low_preload_bridge"})]
     frame = build_frame(runs)
-    declared = declared_numbers(runs, None)
+    declared = declared_numbers(runs, file)
     assert declared.ripple is not None
     undo_sampling(frame, declared.ripple)
     e = electrical_problem(frame, motion_of(frame, WIDTH), np.zeros(ROWS, dtype=bool), declared)
     assert e is not None
     p = e.problem
     fit = p.named(p.fit())
-    assert fit["diode_drop"].value == pytest.approx(0.7, rel=0.1)  # the plant file's
+    assert fit["diode_drop"].value == pytest.approx(0.7, rel=0.1)  # the plant's
     assert fit["resistance"].value == pytest.approx(declared.resistance, rel=0.1)
     bare = np.delete(p.base, p.place("diode_drop"), axis=1)
     without = gls(p.y, bare, p.train, p.ar_order, p.block)

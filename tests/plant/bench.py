@@ -2,12 +2,14 @@
 vectors.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from plant import model
 from plant.kernels import layout as at
-from plant.model import EffectModel, PlantModel
+from plant.model import EffectModel, Number, PlantModel
 from plant.plant import Plant
 
 SECOND = 1_000_000_000
@@ -16,6 +18,18 @@ SECOND = 1_000_000_000
 def bare(name: str = "low_preload") -> PlantModel:
     """Return a plant model without effects."""
     return model.with_effects(model.with_effects(model.load(name), "ra", ()), "dec", ())
+
+
+def switching(name: str, drop_v: float = 0.7) -> PlantModel:
+    """Return a plant model whose motors have freewheel diodes: its power stage is solved."""
+    base = model.load(name)
+    drop = Number(drop_v, "V", "ASSUMPTION: a silicon diode")
+    axes = {
+        axis: replace(part, motor=replace(part.motor, diode_drop=drop))
+        for axis in ("ra", "dec")
+        for part in [getattr(base.axes, axis)]
+    }
+    return replace(base, axes=replace(base.axes, **axes))
 
 
 def with_effect(effect: EffectModel, base: PlantModel | None = None) -> PlantModel:

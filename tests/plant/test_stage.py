@@ -13,7 +13,7 @@ from plant.kernels.stage import peak_current, stage
 from plant.model import PlantModel
 from plant.plant import Plant
 from plant.units import ARCSEC
-from tests.plant.bench import SECOND, changed
+from tests.plant.bench import SECOND, changed, switching
 from tests.plant.stage import Circuit, run
 
 STEPS = 3000
@@ -31,8 +31,8 @@ POINTS = list(itertools.product(DUTIES, RATES, SUPPLIES))
 
 
 def bridge(motor: str = "fitted") -> PlantModel:
-    """The bridge plant with one of the motors."""
-    return changed(model.load("low_preload_bridge"), **MOTORS[motor])
+    """The bridge plant with one of the motors and its power stage."""
+    return changed(switching("low_preload_bridge"), **MOTORS[motor])
 
 
 def row(motor: str) -> Floats:
@@ -131,11 +131,6 @@ def test_P4_a_short_pulse_drives_next_to_nothing_through_a_diode() -> None:
     assert mean == pytest.approx(24.0 * 24.7 * on**2 / (2 * drop * inductance * period), rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("share", "drop", "staged"), [(1.0, 0.7, True), (0.5, 0.7, False), (1.0, 0.0, False)]
-)
-def test_P4_only_a_whole_diode_with_a_drop_makes_a_stage(share: float, drop: float, staged: bool) -> None:
-    m = bridge()
-    diode = f"effects__{len(m.axes.ra.effects) - 1}__"
-    w = Plant(changed(m, **{f"{diode}share": share, f"{diode}drop": drop}), 1).world[0]
-    assert (w[at.PULSE] > 0.0) == staged
+def test_P4_a_plant_without_a_declared_drop_has_no_stage() -> None:
+    assert Plant(model.load("low_preload_bridge"), 1).world[0][at.PULSE] == 0.0
+    assert row("fitted")[at.PULSE] > 0.0

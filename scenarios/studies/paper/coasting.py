@@ -17,22 +17,19 @@ from scenarios.studies.paper.scales import ARCSEC, CONTROL_PERIOD_S, COUNT_RATE,
 
 STEP_S = 0.25e-3
 """s: a tenth of what the fastest swing (rotor on its train, about 25 Hz) takes for one radian."""
-HALVINGS = 40
-"""Of the interval 0 to 1 of a duty: to 1e-12."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
     """Data sheets of one drive.
 
-    torque_constant: N m/A. winding: ohm; switch: ohm, with the sense resistor. inductance: H. diode_drop: V,
-    infinite without a diode. rotor: kg m2, of a rotor at the axis. stiffness: N m/rad, of one train.
-    voltage: V, of the supply. split: share of the duty for the lagging motor.
+    torque_constant: N m/A. resistance: ohm. inductance: H. diode_drop: V, infinite without a diode.
+    rotor: kg m2, of a rotor at the axis. stiffness: N m/rad, of one train. voltage: V, of the supply.
+    split: share of the duty for the lagging motor.
     """
 
     torque_constant: float
-    winding: float
-    switch: float
+    resistance: float
     inductance: float
     diode_drop: float
     rotor: float
@@ -49,8 +46,7 @@ def drive(plant: PlantModel) -> Drive:
     drops = [e.parameters["drop"].si for e in axis.effects if e.name == "diode_braking"]
     return Drive(
         torque_constant=motor.torque_constant.si,
-        winding=motor.resistance.si,
-        switch=motor.switch_resistance.si + motor.sense_resistance.si,
+        resistance=motor.loop,
         inductance=motor.inductance.si,
         diode_drop=drops[0] if drops else float("inf"),
         rotor=motor.rotor_inertia.si * GEAR_RATIO**2,
@@ -60,29 +56,10 @@ def drive(plant: PlantModel) -> Drive:
     )
 
 
-def current(sheet: Drive, duty: Array, emf: Array) -> tuple[Array, Array]:
-    """Return what a motor's current tends to, A, below zero where none flows, and its resistance, ohm.
-
-    duty: 0..1. emf: V, against the supply. While the switch is open the current runs down through winding and
-    diode. Without a diode the paper's superposition holds.
-    """
-    if sheet.diode_drop == float("inf"):
-        loop = np.full_like(emf, sheet.winding + sheet.switch)
-        return (duty * sheet.voltage - np.maximum(emf, 0.0)) / loop, loop
-    resistance = sheet.winding + duty * sheet.switch
-    return (duty * (sheet.voltage + sheet.diode_drop) - sheet.diode_drop - emf) / resistance, resistance
-
-
-def held_duty(sheet: Drive, torque: Array, w: Array) -> Array:
-    """Return the duty at which both motors together hold a torque, N m at the axis, at a speed, rad/s."""
-    emf = sheet.torque_constant * GEAR_RATIO
-    low, high = np.zeros_like(w), np.ones_like(w)
-    for _ in range(HALVINGS):
-        duty = 0.5 * (low + high)
-        pull, brake = current(sheet, duty, emf * w)[0], current(sheet, sheet.split * duty, -emf * w)[0]
-        enough = np.maximum(0.0, pull) - np.maximum(0.0, brake) >= torque / emf
-        low, high = np.where(enough, low, duty), np.where(enough, duty, high)
-    return high
+def opposing(emf: Array, drop: float) -> Array:
+    """Return the voltage against the current, V: the EMF of a motor that turns as it pulls; of one that is
+    turned against its pull what drives current through the diode (negative)."""
+    return np.asarray(np.where(emf >= 0.0, emf, np.minimum(0.0, emf + drop)), dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,21 +80,23 @@ def coast(sheet: Drive, friction: FrictionFit, axis: Coasting, setpoints: Array,
     damping, late_s = axis.damping, axis.late_s
     k, n, load = sheet.torque_constant, GEAR_RATIO, axis.inertia - 2.0 * sheet.rotor
     emf = k * n
-    fade = -STEP_S / sheet.inductance
+    decay = float(np.exp(-sheet.resistance * STEP_S / sheet.inductance))
     w = np.array(setpoints, dtype=np.float64)
     lead_w, lag_w = w.copy(), w.copy()
-    duty = held_duty(sheet, friction.torque(w), w)
-    lead_i = np.maximum(0.0, current(sheet, duty, emf * w)[0])
-    lag_i = np.maximum(0.0, current(sheet, sheet.split * duty, -emf * w)[0])
+    # before: both duties in the ratio of the split, together what friction takes
+    braking = np.maximum(0.0, emf * w - sheet.diode_drop) / sheet.resistance
+    held = friction.torque(w) / emf + braking + emf * w / sheet.resistance
+    duty_v = held * sheet.resistance / (1.0 - sheet.split)
+    lead_i, lag_i = (duty_v - emf * w) / sheet.resistance, sheet.split * duty_v / sheet.resistance + braking
     lead_x, lag_x = emf * lead_i / sheet.stiffness, -emf * lag_i / sheet.stiffness
     per_log, per_tick = round(LOG_PERIOD_S / STEP_S), round(CONTROL_PERIOD_S / STEP_S)
     travelled = np.zeros((samples * per_log, w.size))
     for step in range(samples * per_log):
         on = min(1.0, max(0.0, late_s / STEP_S - step))
-        lead_goal, lead_r = current(sheet, on * duty, emf * lead_w)
-        lag_goal, lag_r = current(sheet, on * sheet.split * duty, -emf * lag_w)
-        lead_i = np.maximum(0.0, lead_goal + (lead_i - lead_goal) * np.exp(lead_r * fade))
-        lag_i = np.maximum(0.0, lag_goal + (lag_i - lag_goal) * np.exp(lag_r * fade))
+        lead_goal = (on * duty_v - opposing(emf * lead_w, sheet.diode_drop)) / sheet.resistance
+        lag_goal = (on * sheet.split * duty_v - opposing(-emf * lag_w, sheet.diode_drop)) / sheet.resistance
+        lead_i = np.maximum(0.0, lead_goal + (lead_i - lead_goal) * decay)
+        lag_i = np.maximum(0.0, lag_goal + (lag_i - lag_goal) * decay)
         push = np.maximum(0.0, sheet.stiffness * lead_x + damping * (lead_w - w))
         pull = np.maximum(0.0, -sheet.stiffness * lag_x - damping * (lag_w - w))
         before = w

@@ -155,8 +155,7 @@ def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
 
 RIGID = Drive(
     torque_constant=1e-6,
-    winding=1.0,
-    switch=0.0,
+    resistance=1.0,
     inductance=1e-4,
     diode_drop=float("inf"),
     rotor=4.0,

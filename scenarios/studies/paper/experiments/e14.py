@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from scenarios.studies.paper.coasting import drive
 from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
 from scenarios.studies.paper.friction_map import data_sheet, ripple_free
 from scenarios.studies.paper.runs import BROKEN_AWAY, break_away
@@ -20,15 +19,7 @@ def measure(benches: Benches) -> Figures:
     held = slice(end - 40, end)
     current = ripple_free(log, data_sheet(benches.plants["high"]))[0][held]
     duty = log.effort[held] / EFFORT_SCALE
-    sheet = drive(benches.plants["high"])
-    volts, switch_open = duty * sheet.voltage, 0.0
-    if sheet.diode_drop < float("inf"):  # then neither switch nor sense resistor is in the current's way
-        volts, switch_open = volts - (1.0 - duty) * sheet.diode_drop, 1.0 - float(duty.mean())
-    siemens = float(current @ volts / (volts @ volts))
-    return {
-        "stall": siemens * sheet.voltage / (1.0 + siemens * switch_open * sheet.switch),
-        "break-away current": float(current[-5:].mean()),
-    }
+    return {"stall": float(current @ duty / (duty @ duty)), "break-away current": float(current[-5:].mean())}
 
 
 ROW = Experiment(
