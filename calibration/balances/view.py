@@ -179,7 +179,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     )
     _motion(view, sigma)
     view.run = _runs(view, label)
-    _choose_rows(view)
+    choose_rows(view)
     return view
 
 
@@ -296,7 +296,7 @@ def _runs(view: View, label: Array) -> NDArray[np.int64]:
     return np.asarray(np.cumsum(change), dtype=np.int64)
 
 
-def _choose_rows(view: View) -> None:
+def choose_rows(view: View) -> None:
     """Rows that are fitted: one per filter width, and no more than can be fitted in time."""
     period = view.rig.analyse_period_s
     step = round(period / view.period_s) if period else round(view.sigma)

@@ -11,6 +11,7 @@ from calibration.balances.pickup import pick_up
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
+from calibration.decide.coherent import APART, coherence
 from calibration.decide.parameters import finding_of
 from calibration.decide.rules import clear, displaced, leave_out
 from calibration.decide.select import select
@@ -94,7 +95,9 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
     places += [Place(f"the turn of {name}", "axis_angle", v.x[v.rows] % turn) for name, turn in turns]
     most, place, how = _most(shapes, places, share)
     if most <= limits.LEAST_SHARE:
-        return found
+        alone = coherence(e, rows, p.session, int(np.ceil(APART * v.sigma / v.step)) or 1)
+        shown = alone > limits.LEAST_SHARE
+        return replace(found, domain="time", where="over time alone", share=alone) if shown else found
     return replace(found, domain=place.domain, where=f"over {place.words}{how}", share=most)
 
 
@@ -167,7 +170,6 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
     little = scene.force and bool(floor) and left_over(s, scene, floor) is None
     if little and s.chosen:  # the names leave what is not called missing either
         return s, s, []
-    below = little and s.held.before <= floor
     for _ in range(MOST[scene.force]):
         scene.model = np.asarray(together.columns @ together.after.beta)
         offered = smooth_functions(scene)
@@ -177,8 +179,8 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         beside_names = replace(s.problem, base=together.columns, base_phases=own)
         more = select(beside_names, offered, most=1)
         s.refused += more.refused
-        # below the floor of a coarse sensor most of what is left must go with it
-        if not more.chosen or (below and not clear(more)):
+        # what the floor may hold is no function of anything, unless most of it goes with that
+        if not more.chosen or (little and not clear(more)):
             break
         kept = leave_out(s, displaced(more.chosen[0])) if not findings else s
         s, names = kept, together if kept is s else kept

@@ -7,6 +7,7 @@ import numpy as np
 
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
+from calibration.decide.residual import MOST_LEFT, part_left
 from calibration.decide.rules import dominant
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import CLEAR_SHARE, REMAINDER
@@ -60,11 +61,14 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
     before = Selection.of(problem).held.before
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
-    alone = late[0].held.before
-    if before <= plain_loop.floor and alone**2 > (1 - CLEAR_SHARE) * before**2:
-        p = delay.parameters["delay"]
-        what = f"channel_delay of {channel}, {1e3 * p.value:.2g} ms, was close"
+    alone, floor = late[0].held.before, plain_loop.floor
+    why = ""
+    if before <= floor and alone**2 > (1 - CLEAR_SHARE) * before**2:
         why = "the declared model is at the floor without it"
+    elif floor and part_left(before, now, floor) > MOST_LEFT:
+        why = "it leaves most of what is above the floor"
+    if why:
+        what = f"channel_delay of {channel}, {1e3 * delay.parameters['delay'].value:.2g} ms, was close"
         return Timed(plain_loop, found, close=f"{what} ({why}): quicker turns and a quieter effort")
     telling = was**2 - now**2 > max(EARNS * was**2, least)
     if telling or (simpler and now < was):

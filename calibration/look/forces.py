@@ -26,6 +26,7 @@ from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, left_by_the_declared, timed
 from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Options, Spectrum, calibrated, missing_of
+from calibration.look.onefilter import one_filter
 from calibration.look.search import find, scene_of
 from calibration.names import NAMES
 from calibration.names.scene import Scene
@@ -46,6 +47,7 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
         return problem_of(view, records, options.hold_out, delay_s)
 
     if view.dynamic:
+        one_filter(view, made)
         fade(view, _sharpest(view, made))
     problem = made()
     if few := _few_values(records, response, problem):

@@ -131,7 +131,9 @@ class Balance:
         s, p = self.selection, self.selection.problem
         power = least_share(p) if not s.chosen and s.looked_at else 0.0
         few = f"{p.train.sum() * p.period_s:.3g} s to fit show only what is {100 * power:.0f} % of it"
-        refused = [] if s.chosen else [r for r in s.refused if r.why.startswith(SHORT)]
+        at_the_floor = 0 < self.times <= 1  # what hides below it needs a better sensor, no longer log
+        why_not = [] if s.chosen or at_the_floor else s.refused
+        refused = [r for r in why_not if r.why.startswith(SHORT)]
         said = [*([few] if power > WEAK else []), *(f"{r.what}: {r.why}" for r in refused)]
         return [f"channel {self.key}: {x}" for x in said]
 
