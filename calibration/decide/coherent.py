@@ -1,4 +1,4 @@
-"""What no logged quantity explains, yet goes on from row to row: by elimination a function of time alone."""
+"""A residual of no domain that yet goes on from row to row: by elimination a function of time alone."""
 
 import numpy as np
 from numpy.typing import NDArray
