@@ -33,7 +33,7 @@ _USUAL = {
     2: 14000, 3: 150, 4: PARK - (1 << 22), 5: PARK + (1 << 22), 6: 51380, 14: 20 << 8, 15: 3000, 40: 40 << 8,
 }  # fmt: skip
 """Values of parameters with which the axis can be moved."""
-_NO_AXIS = ("wrong_bitrate", "endat_line", "serial_noise", "weak_supply")
+_NO_AXIS = ("wrong_bitrate", "endat_line", "serial_noise", "weak_supply", "emergency_stop")
 
 
 class Difference(AssertionError):
