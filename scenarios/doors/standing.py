@@ -18,7 +18,7 @@ from scenarios.lab.snapshot.freeze import restore
 from scenarios.lab.snapshot.outside import Nobody, nothing
 from scenarios.language.model import Scenario
 
-_OF_A_RUN = ("session", "can", "recorder", "usb", "truth", *(device.name for device in SERIAL))
+_OF_A_RUN = ("session", "can", "recorder", "usb", "truth", "chain", *(device.name for device in SERIAL))
 """What the snapshot of a run names as outside of it (`snapshot/run.py`)."""
 
 
