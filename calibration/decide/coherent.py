@@ -10,6 +10,8 @@ from calibration.arrays import Array, Mask
 LAGS = 50
 # standard deviations of a Gaussian filter, after which it carries exp(-4), 2 %, over. arithmetic
 APART = 4.0
+# pairs of rows, to compare at all. ASSUMPTION: chance correlates 200 of white noise by a tenth of LEAST_SHARE
+FEWEST = 200
 
 
 def coherence(e: Array, rows: Mask, session: NDArray[np.int64], first: int) -> float:
@@ -20,7 +22,7 @@ def coherence(e: Array, rows: Mask, session: NDArray[np.int64], first: int) -> f
     most = 0.0
     for lag in range(first, first + LAGS):
         both = rows[lag:] & rows[:-lag] & (session[lag:] == session[:-lag])
-        if both.sum() < 4 * LAGS:
+        if both.sum() < FEWEST:
             break
         most = max(most, float(np.corrcoef(e[lag:][both], e[:-lag][both])[0, 1]) ** 2)
     return most

@@ -17,12 +17,14 @@ FEWEST_STARS = 6
 STARS_PER_TERM = 3
 """Stars for each term beyond those six: so a run of 20, the shortest planned, can hold ten. ASSUMPTION."""
 _SIGNIFICANT = 3.6
-"""A coefficient over its standard deviation: eight candidates that are nothing pass it once in 400 fits."""
+"""A coefficient over its standard deviation: eight candidates that are nothing pass it once in 400 fits, as a
+normal error does so with 3.2e-4."""
 _NEW = 1e-3
-"""Share of a column that the columns before must leave: less, and the sky seen cannot tell them apart."""
+"""Share of a column that those before must leave, or the sky seen cannot tell them apart. ASSUMPTION."""
 _APART = 0.05
 """Least singular value of the six columns: six stars drawn over the sky had 0.09 and more. ASSUMPTION."""
 _FOLDS = 3
+"""Parts of the stars, each held out in turn. ASSUMPTION: a run of 20 keeps 13 for ten terms."""
 _INTERVAL = 1.96
 """Standard deviations of a 95 % interval of a normal error."""
 _TURNS = 3

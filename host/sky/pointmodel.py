@@ -115,12 +115,12 @@ def _angles(vector: Array, near_rad: Array) -> tuple[Array, Array]:
     return h, np.arctan2(z, np.hypot(x, y))
 
 
-def load(path: Path) -> PointingModel:
-    """Read a model; raises PointingFileError."""
+def parsed(text: str, path: Path) -> PointingModel:
+    """The model of a file's text; raises PointingFileError, which names the path."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise PointingFileError(f"{path}: cannot be read: {error}") from None
+        data = json.loads(text)
+    except (RecursionError, ValueError) as error:
+        raise PointingFileError(f"{path}: is not JSON: {error}") from None
     if not isinstance(data, dict) or data.pop("format", None) != FORMAT:
         raise PointingFileError(f"{path}: expected a JSON object with the format {FORMAT!r}")
     try:

@@ -12,6 +12,7 @@ from host.sky import pointmodel
 from host.sky.mount import limits_mount
 from host.sky.observed import Clock
 from host.sky.site import NAINITAL, Site, standard_pressure_hpa
+from plant.yamltext import read_text
 from scenarios.language import model
 from scenarios.language.document import Document, ScenarioError
 from scenarios.language.units import parse
@@ -196,6 +197,15 @@ def _site(document: Document, data: dict[str, Any]) -> Site:
         raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
 
 
+def _model(path: Path) -> pointmodel.PointingModel:
+    try:
+        text = read_text(path)
+    except (OSError, ValueError) as error:
+        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error
+        raise pointmodel.PointingFileError(f"{path}: {reason}") from None
+    return pointmodel.parsed(text, path)
+
+
 def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, Any]) -> model.Scenario:
     said = data.get("mount", {})
     given = {key: value / ARCSEC_PER_RAD for key, value in said.items() if key != "pointing_model"}
@@ -208,7 +218,7 @@ def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, An
         if "pointing_model" in said:
             path = Path(said["pointing_model"])
             beside = document.file.parent / path
-            mount = dataclasses.replace(mount, model=pointmodel.load(path if path.is_file() else beside))
+            mount = dataclasses.replace(mount, model=_model(path if path.exists() else beside))
     except ValueError as error:
         raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
     for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):

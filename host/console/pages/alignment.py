@@ -105,6 +105,6 @@ def _model(shell: Shell) -> Callable[[], None]:
         about = shell.telescope.observatory
         model = about.mount.model
         using = "no model" if model is None else f"a model of {len(model.terms)} terms, {model.stars} stars"
-        state.set_text(f"{len(about.stars)} stars aligned on; the telescope points by {using}")
+        state.set_text(f"Stars aligned on: {len(about.stars)}; the telescope points by {using}")
 
     return refresh

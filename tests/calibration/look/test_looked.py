@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from calibration.decide.accept import SHORT
 from calibration.decide.residual import Place
 from calibration.decide.select import select
-from calibration.decide.selection import Selection
+from calibration.decide.selection import Refusal, Selection
 from calibration.finding import Finding, Parameter
 from calibration.look.looked import Balance, Looked, Missing, calibrated, missing_over, unnamed_where_missing
 from tests.calibration.decide import made
@@ -78,3 +79,9 @@ def test_a_drive_says_what_its_balances_say(quiet: Selection) -> None:
     found = Looked(title="a drive", balances=[one, two], remarks=["a leap"], not_identifiable=["sigma_1"])
     assert list(found.calibrated) == ["coulomb"] and found.unsure == ["sigma_1"]
     assert found.said[:2] == ["a leap", "the offset wanders"] and "still missing in torque" in found.said[2]
+
+
+def test_at_its_floor_a_balance_asks_for_no_longer_log(quiet: Selection) -> None:
+    close = replace(quiet, refused=[Refusal("play", f"{SHORT}: it lowers the held-out mean square")])
+    assert [x for x in balance(close, floor=0.5).short if "play" in x]
+    assert not [x for x in balance(close, floor=2.0).short if "play" in x]

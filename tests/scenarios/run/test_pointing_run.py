@@ -2,6 +2,7 @@
 
 import csv
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +64,8 @@ def go(scenario: Scenario, folder: Path, way: runner.Way) -> runner.Result:
 def test_a_run_makes_a_model_that_holds_on_other_stars(tmp_path: Path, seed: int) -> None:
     result = go(made(HEAD + RUN, tmp_path, seed), tmp_path, runner.Way())
     assert result.passed, result.verdicts
-    model = pointmodel.load(tmp_path / "pointing-model.json")
+    saved = tmp_path / "pointing-model.json"
+    model = pointmodel.parsed(saved.read_text(encoding="utf-8"), saved)
     assert model.stars == 24
     assert model.held_out_arcsec < 10
     declared = MountErrors()
@@ -153,7 +155,18 @@ def test_errors_of_the_mount_are_off_unless_asked_for(tmp_path: Path) -> None:
 
 def test_a_model_file_of_a_scenario_is_checked(tmp_path: Path) -> None:
     text = SHORT + "mount: {pointing_model: model.json}\n"
-    with pytest.raises(ScenarioError, match=r"mount: .*model.json: cannot be read"):
-        convert(parse(text, tmp_path / "short.yaml"))
+    file = tmp_path / "model.json"
+    for make, said in (
+        (lambda: None, "there is no such file"),
+        (lambda: os.mkfifo(file), "it is no regular file"),
+        (lambda: file.write_text("[" * 100_000), "is not JSON"),
+        (lambda: file.write_text("{}"), "expected a JSON object with the format"),
+    ):
+        file.unlink(missing_ok=True)
+        make()
+        with pytest.raises(ScenarioError, match=rf"mount: .*model.json: .*{said}") as caught:
+            convert(parse(text, tmp_path / "short.yaml"))
+        assert "\n" not in str(caught.value)
+    file.unlink()
     plain(MA=60.0).save(tmp_path / "model.json")
     assert convert(parse(text, tmp_path / "short.yaml")).mount.model == plain(MA=60.0)
