@@ -1,8 +1,5 @@
 """The CANopen part: the boards' own voice passes, and each way of being wrong is found."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +16,7 @@ from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.network import build
 from scenarios.lab.networks import NetworkConfig
+from tests.conformance.kit import run_kit
 
 PDO = "boards.canopen.pdo"
 Patch = pytest.MonkeyPatch
@@ -56,22 +54,7 @@ publish("kit", made.wire)
 
 
 def test_the_kit_runs_them_with_its_option(tmp_path: Path) -> None:
-    (tmp_path / "conftest.py").write_text(KIT)
-    options = [
-        "--can",
-        "schmidt:kit",
-        "--board",
-        "display:0x51",
-        "--can-canopen",
-        "--can-stamps",
-        "0",
-        "-p",
-        "no:cacheprovider",
-    ]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "bus.kit", "-c", "/dev/null", *options, str(tmp_path)],
-        capture_output=True, text=True, check=False, env=os.environ | {"SCHMIDT_PURE": "1"},
-    )  # fmt: skip
+    done = run_kit(KIT, tmp_path, "--can-canopen")
     assert f"{len(CANOPEN)} passed" in done.stdout, done.stdout + done.stderr
 
 

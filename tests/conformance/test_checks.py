@@ -2,8 +2,6 @@
 should."""
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +17,7 @@ from bus.kit import CHECKS
 from bus.outside.external import SpecError, open_bus
 from bus.outside.pythoncan import SchmidtBus
 from bus.time import EventQueue
+from tests.conformance.kit import run_kit
 
 DISPLAY = p.Device.DISPLAY
 SECOND_NS = 1_000_000_000
@@ -381,21 +380,7 @@ def test_kit_and_command_end_alike(name: str, value: int, code: int, tmp_path: P
     setattr(FakeDisplay(wire), name, value)
     with SchmidtBus(wire) as bus:
         assert check(bus, None, Settings(stamps_s=0.0), [board_of(DISPLAY)]) == code
-    (tmp_path / "conftest.py").write_text(KIT.format(name=name, value=value))
-    options = [
-        "--can",
-        "schmidt:kit",
-        "--board",
-        "display:0x51",
-        "--can-stamps",
-        "0",
-        "-p",
-        "no:cacheprovider",
-    ]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "bus.kit", "-c", "/dev/null", *options, str(tmp_path)],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    done = run_kit(KIT.format(name=name, value=value), tmp_path)
     assert done.returncode == code, done.stdout + done.stderr
     assert ("1 warning" in done.stdout) == (name == "health")
 
