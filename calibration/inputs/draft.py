@@ -89,7 +89,8 @@ def draft(path: Path) -> str:
     """The text of a rig file. Raises CalibrationInputError where the log has no two columns of numbers, or
     needs no rig file."""
     loose = read_loose(path)
-    columns = {c: x for c, x in loose.columns.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}
+    finite = {c: np.where(np.isfinite(x), x, np.nan) for c, x in loose.columns.items()}
+    columns = {c: x for c, x in finite.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}
     d = _Draft({c: _filled(x) for c, x in columns.items()})
     d.unsaid += [f"{c!r} holds one number, or none" for c in loose.columns if c not in columns]
     d.unsaid += [f"{c!r} holds words" for c in loose.words]

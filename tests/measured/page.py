@@ -15,6 +15,8 @@ MEANT_S = 20.0
 """What a calibration should take, processor time (docs/results/speed.md)."""
 MOST = 4
 """Harmonics that a cell of the table lists."""
+GROUPS = 3
+"""Names that it lists, so that it has no more words than a sentence may."""
 
 
 class Source(NamedTuple):
@@ -104,7 +106,7 @@ def _named(effects: Sequence[str]) -> str:
         shown = ", ".join(place for place in places[:MOST] if place)
         rest = f" and {len(places) - MOST} more" if len(places) > MOST else ""
         words.append(" ".join(filter(None, (name, shown))) + rest + others)
-    return "; ".join(words[:MOST]) + (f"; {len(words) - MOST} more" if len(words) > MOST else "")
+    return "; ".join(words[:GROUPS]) + (f"; {len(words) - GROUPS} more" if len(words) > GROUPS else "")
 
 
 def _row(a: Answer) -> str:
@@ -138,8 +140,8 @@ def _missed(rows: Sequence[Answer]) -> list[str]:
     if slow:
         longest = max(slow, key=lambda a: a.seconds)
         lines.append(
-            f"- {len(slow)} logs took more processor time than the {MEANT_S:.0f} s that are meant. "
-            f"The longest is `{longest.key}`, with {longest.seconds:.0f} s."
+            f"- {', '.join(f'`{a.key}`' for a in slow)}: more processor time than is meant, "
+            f"{longest.seconds:.0f} s at most."
         )
     return lines
 

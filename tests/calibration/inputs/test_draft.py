@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from calibration.command import calibrate
@@ -149,11 +149,23 @@ WORDS = st.sampled_from(
 )
 
 
+ENDLESS = {"inf", "infinity"}
+
+
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(head=st.lists(st.one_of(ODD, WORDS), min_size=4, max_size=4), order=st.permutations(range(4)))
 def test_any_header_makes_a_draft_that_loads(tmp_path: Path, head: list[str], order: list[int]) -> None:
     columns = [COLUMNS[k][:400] for k in order]
+    assume(not ENDLESS & {word.strip().lower().lstrip("+-") for word in head})
     drafted(write(tmp_path / "a.csv", head, columns))
+
+
+def test_a_number_without_end_is_drafted_and_refused_with_its_row(tmp_path: Path) -> None:
+    log = write(tmp_path / "a.csv", ["", "", "", "INF"])  # no words: a row of numbers
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(draft(log), encoding="utf-8")
+    with pytest.raises(CalibrationInputError, match="is infinite in data row 1"):
+        read_drive([log], load_rig(rig))
 
 
 @pytest.mark.parametrize(
