@@ -6,7 +6,7 @@ import socket
 from typing import Any
 
 from fastapi import FastAPI
-from nicegui import Client, ui
+from nicegui import Client, core, ui
 from nicegui import app as nicegui_app
 
 from host.console.live import Live
@@ -31,6 +31,9 @@ _COME_BACK_S = 30.0
 """How long the server keeps the page of a browser whose connection is gone. Within that it goes on as it was;
 after it the page is loaded anew, and what was typed or pressed meanwhile is lost. (NiceGUI's own 3 s are less
 than a busy laptop is silent, or the dome's wireless network.) Keys held down are let go at once."""
+_PING_S, _SILENT_S = 2, 5
+"""A page is asked this often, and is gone when it says nothing for so long. NiceGUI's own 4 s and 2 s notice
+a dead link hardly sooner, but drop a browser that a busy machine holds up for two seconds, and its click."""
 
 
 class _Counter(logging.Handler):
@@ -65,6 +68,7 @@ class Consoles:
             ui.page(path, reconnect_timeout=_COME_BACK_S)(_page(self.live, build))
         web = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         ui.run_with(web, title="Schmidt telescope", dark=True, language="en-US", binding_refresh_interval=1.0)
+        nicegui_app.on_startup(_patient)
         self._app = Guard(web, token)
         self._refused = _Counter()
         for name in _LOGGERS:
@@ -88,6 +92,10 @@ class Consoles:
             await answer(self._app, listener)
         finally:
             sampling.cancel()
+
+
+def _patient() -> None:
+    core.sio.eio.ping_interval, core.sio.eio.ping_timeout = _PING_S, _SILENT_S
 
 
 def _page(live: Live, build: Any) -> Any:

@@ -1,5 +1,6 @@
 """Commands that take longer than five seconds say how far they are, in a log as well."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,10 @@ def test_calibrate_says_what_is_left(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     log.write_bytes(b"0" * 2_000_000)
     done = CliRunner().invoke(cli, ["calibrate", str(log), "--out", str(tmp_path)])
     assert done.exit_code == 0
-    assert "schmidt: calibrating: 0 %, reading" in done.stderr and " s left" in done.stderr
+    assert (
+        re.search(r"^schmidt: calibrating: \d+ %, reading", done.stderr, re.MULTILINE)
+        and " s left" in done.stderr
+    )
 
 
 def test_conformance_counts_boards(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -130,7 +130,8 @@ def choose(page: Any, label: str, name: str) -> None:
 
 
 def press(page: Any, name: str) -> None:
-    """Click a button."""
+    """Click a button; while the notice of a lost connection stands, nobody would."""
+    page.wait_for_function("document.querySelector('#popup')?.ariaHidden !== 'false'")
     page.get_by_role("button", name=name, exact=True).click()
 
 
