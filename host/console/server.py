@@ -33,7 +33,7 @@ after it the page is loaded anew, and what was typed or pressed meanwhile is los
 than a busy laptop is silent, or the dome's wireless network.) Keys held down are let go at once."""
 _PING_S, _SILENT_S = 2, 5
 """A page is asked this often, and is gone when it says nothing for so long. NiceGUI's own 4 s and 2 s notice
-a dead link hardly sooner. They drop a browser that a busy machine holds up for two seconds, with its click."""
+a dead link hardly sooner. They drop a browser that a busy machine holds up for two seconds, and its click."""
 
 
 class _Counter(logging.Handler):

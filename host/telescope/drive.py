@@ -14,8 +14,9 @@ from host.sky.apparent import equatorial, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.mount import STEP_ARCSEC
 from host.sky.observed import Observed, observe
-from host.sky.pointfit import Sighting, TooFewStars
+from host.sky.pointfit import TooFewStars
 from host.sky.pointmodel import PointingModel
+from host.sky.pointstars import Sighting
 from host.sky.track import StarTrack
 from host.sky.visibility import BelowHorizon, Unreachable
 from host.telescope.jobs import Activity, Job

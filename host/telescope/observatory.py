@@ -6,8 +6,9 @@ from host.sky.apparent import Place, apparent_of_observed, horizontal
 from host.sky.catalogue import Star
 from host.sky.mount import AxisScale, Mount
 from host.sky.observed import Clock, Observed
-from host.sky.pointfit import Sighting, fit
+from host.sky.pointfit import fit
 from host.sky.pointmodel import PointingModel
+from host.sky.pointstars import Sighting
 from host.sky.site import Site
 from host.sky.visibility import HORIZON_RAD, check_reachable
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from host.sky.pointread import is_run
 from scenarios.commands.options import PATH
 from scenarios.commands.parts import need
 
@@ -31,8 +32,16 @@ RIG_S, RIG_PER_MEGABYTE_S = 2.0, 2.0
 def calibrate(
     logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None, out: Path
 ) -> None:
-    """Find what the model lacks in measured LOGS and write the corrected plant."""
+    """Find what the model lacks in measured LOGS and write the corrected plant.
+
+    Of a pointing run (TPOINT's .dat, or CSV): the missing terms, and the model."""
     need("calibrate")
+    if any(is_run(log) for log in logs):
+        from scenarios.commands.stars import calibrate_stars
+
+        if len(logs) > 1 or rig or hold_out or plant:
+            raise click.UsageError("a pointing run is calibrated alone, with --out only")
+        sys.exit(calibrate_stars(logs[0], out))
     from calibration.command import calibrate as command
     from scenarios.progress import stages
 

@@ -17,6 +17,7 @@ def write_runs(outcome: Outcome) -> None:
     """Write pointing-stars.csv and pointing-model.json, where there was a pointing run."""
     mount = outcome.scenario.mount
     text = io.StringIO()
+    text.write(f"# latitude_deg: {math.degrees(outcome.scenario.site.latitude_rad):.6f}\n")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(COLUMNS)
     for record in outcome.records:

@@ -8,10 +8,10 @@ import erfa
 import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
-from host.sky.pointfit import fit
+from host.sky.pointfit import fit_stars
 from host.sky.pointmodel import PointingModel
+from host.sky.pointstars import Stars, stars_of
 from host.sky.pointterms import ZEROS
-from scenarios.language.programme import Record
 from scenarios.run.outcome import Array, Outcome
 from scenarios.run.report.style import COLOURS, new_figure
 
@@ -25,21 +25,26 @@ _SMALL_RAD = 1e-4
 
 
 def pointing_run(outcome: Outcome) -> Figure | None:
-    """Residuals of every star as arrows on the sky, north up, before and after; its own scale each."""
+    """Of the run's last model: residuals of every star before and after it."""
     record = next((each for each in reversed(outcome.records) if each.model is not None), None)
     if record is None:
         return None
     assert record.model is not None
     seen = [each.sighting for each in record.visits]
-    zeros = fit(seen, outcome.scenario.mount, record.model.latitude_rad, ZEROS)
+    return residuals(stars_of(seen, outcome.scenario.mount, record.model.latitude_rad), record.model)
+
+
+def residuals(stars: Stars, model: PointingModel) -> Figure:
+    """Residuals of every star as arrows on the sky, north up, before and after; its own scale each."""
+    zeros = fit_stars(stars, ZEROS)
     figure = new_figure(4.9)
     parts = (
         ("zeros of both axes", zeros, COLOURS["bad"]),
-        (f"model of {len(record.model.terms)} terms", record.model, COLOURS["ok"]),
+        (f"model of {len(model.terms)} terms", model, COLOURS["ok"]),
     )
-    for number, (name, model, colour) in enumerate(parts, 1):
+    for number, (name, each, colour) in enumerate(parts, 1):
         view = figure.add_subplot(1, 2, number)
-        x, y, east, north = _arrows(outcome, record, model)
+        x, y, east, north = _arrows(stars, each)
         size = np.hypot(east, north)
         scale = float(np.max(size)) / _ARROW_DEG
         view.quiver(x, y, east, north, color=colour, angles="xy", scale_units="xy", scale=scale, width=0.005)
@@ -59,17 +64,13 @@ def pointing_run(outcome: Outcome) -> Figure | None:
     return figure
 
 
-def _arrows(outcome: Outcome, record: Record, model: PointingModel) -> tuple[Array, Array, Array, Array]:
+def _arrows(stars: Stars, model: PointingModel) -> tuple[Array, Array, Array, Array]:
     """Places on the chart; reading less model there, ″, in the chart's directions."""
-    seen = [visit.sighting for visit in record.visits]
-    mount = outcome.scenario.mount
-    h = np.array([each.hour_angle_rad for each in seen])
-    d = np.array([each.declination_rad for each in seen])
+    h, d, latitude = stars.h, stars.d, stars.latitude_rad
     ra, dec = model.axes_many(h, d)
-    west = (np.array([mount.ra.angle_rad(each.ra_steps) for each in seen]) - ra) * np.cos(d)
-    north = np.array([mount.dec.angle_rad(each.dec_steps) for each in seen]) - dec
+    west = (np.remainder(stars.ra - ra + np.pi, 2 * np.pi) - np.pi) * np.cos(d)
+    north = stars.dec - dec
     size = np.hypot(west, north)
-    latitude = outcome.scenario.site.latitude_rad
     x, y = _chart(h, d, latitude)
     share = _SMALL_RAD / np.where(size > 0, size, 1.0)
     x_end, y_end = _chart(h + west * share / np.cos(d), d + north * share, latitude)

@@ -11,8 +11,9 @@ import pytest
 from bus.units import ARCSEC, ARCSEC_PER_RAD
 from host.sky import pointmodel
 from host.sky.catalogue import star
-from host.sky.pointfit import FEWEST_STARS, Sighting, TooFewStars, fit
+from host.sky.pointfit import FEWEST_STARS, TooFewStars, fit
 from host.sky.pointmodel import PointingFileError, PointingModel
+from host.sky.pointstars import Sighting
 from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from host.sky.site import NAINITAL
 from host.sky.track import StarTrack

@@ -74,6 +74,7 @@ def test_a_run_makes_a_model_that_holds_on_other_stars(tmp_path: Path, seed: int
     assert terms["MA"] == pytest.approx(declared.polar_azimuth.value, abs=3)
     assert terms["ME"] == pytest.approx(declared.polar_altitude.value, abs=3)
     with (tmp_path / "pointing-stars.csv").open() as file:
+        assert file.readline() == "# latitude_deg: 29.366667\n"
         rows = list(csv.DictReader(file))
     assert [row["step"] for row in rows] == ["run"] * 24 + ["check"] * 8
     assert (tmp_path / "pointing-run.png").read_bytes().startswith(b"\x89PNG")

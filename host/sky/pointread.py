@@ -1,0 +1,152 @@
+"""Pointing runs as files: TPOINT's format of right ascensions and sidereal times, and CSV."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from pathlib import Path
+
+import erfa
+import numpy as np
+
+from host.sky.pointstars import Stars
+
+HOUR_ANGLE, DECLINATION = "hour_angle_deg", "declination_deg"
+AXES = ("ra_reading_deg", "dec_reading_deg")
+"""Columns of a CSV run, as pointing-stars.csv has them: where the star was seen, observed place, and what the
+encoders read. Every other column of numbers is a variable that errors may depend on."""
+LABEL = "step"
+"""A column of text."""
+_LATITUDE = re.compile(r"#\s*latitude_deg\s*:\s*(\S+)\s*$")
+_SKIPPED = ("", "END")
+_RECORD = 14
+"""Numbers of a record: three each of both places of the star and of the telescope, two of sidereal time."""
+_HPA_MOST = 1100.0
+"""Air pressure, hPa; more is no pressure. ASSUMPTION: the highest ever measured is 1084."""
+
+
+class PointingRunError(ValueError):
+    """A pointing run that cannot be read: file, line, and what is wrong."""
+
+
+def is_run(path: Path) -> bool:
+    """Whether a file is a pointing run: by its name (`.dat`, `.tpt`), or a CSV by its columns."""
+    if path.suffix.lower() in (".dat", ".tpt"):
+        return path.is_file()
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return False
+    with path.open(encoding="utf-8", errors="replace") as file:
+        head = next((line for line in file if not line.startswith("#")), "")
+    return {HOUR_ANGLE, DECLINATION, *AXES} <= {each.strip() for each in head.split(",")}
+
+
+def read(path: Path) -> Stars:
+    """The stars of a run; raises PointingRunError."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise PointingRunError(f"{path}: is not UTF-8 text") from None
+    return _csv(path, lines) if path.suffix.lower() == ".csv" else _tpoint(path, lines)
+
+
+def _csv(path: Path, lines: list[str]) -> Stars:
+    latitude = next((found[1] for line in lines if (found := _LATITUDE.match(line))), None)
+    if latitude is None:
+        raise PointingRunError(
+            f"{path}: the latitude is missing; write a first line '# latitude_deg: 29.367'"
+        )
+    first = next(number for number, line in enumerate(lines) if not line.startswith("#"))
+    every = [each.strip() for each in lines[first].split(",")]
+    names = [each for each in every if each != LABEL]
+    rows = []
+    for number, row in enumerate(csv.reader(lines[first + 1 :]), first + 2):
+        if row and not row[0].startswith("#"):
+            if len(row) != len(every):
+                raise PointingRunError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
+            rows.append(
+                [_number(path, number, each) for name, each in zip(every, row, strict=True) if name != LABEL]
+            )
+    table = dict(zip(names, np.array(rows).reshape(-1, len(names)).T, strict=True))
+    angles = [np.radians(table.pop(each)) for each in (HOUR_ANGLE, DECLINATION, *AXES)]
+    return Stars(
+        h=angles[0], d=angles[1], ra=angles[2], dec=angles[3],
+        latitude_rad=math.radians(_number(path, 1, latitude)), others=table,
+    )  # fmt: skip
+
+
+def _tpoint(path: Path, lines: list[str]) -> Stars:
+    """Caption, options, site, then a star a line: right ascension and declination of the star and of the
+    telescope, and local sidereal time. Air pressure other than 0: the star's place is without refraction."""
+    body = [(number, line.split()) for number, line in enumerate(lines, 1)][1:]
+    for number, words in body:
+        if words and words[0].startswith(":") and "ALTAZ" in " ".join(words).upper():
+            raise PointingRunError(f"{path}:{number}: only equatorial mounts have these terms, not ALTAZ")
+    body = [(number, words) for number, words in body if words and not words[0].startswith((":", "!"))]
+    body = [(number, words) for number, words in body if words[0].upper() not in _SKIPPED]
+    if not body:
+        raise PointingRunError(f"{path}: a TPOINT file has a caption, then a line of the site, then stars")
+    number, words = body[0]
+    site = [_number(path, number, each) for each in words]
+    if len(site) < 6:
+        raise PointingRunError(
+            f"{path}:{number}: the site is latitude in three parts, date in three parts, …"
+        )
+    latitude = _sexagesimal(words[:3], site[:3], path, number)
+    a, b = _refraction(path, number, site[6:])
+    stars = [_star(path, line, words, math.radians(latitude), a, b) for line, words in body[1:]]
+    if not stars:
+        raise PointingRunError(f"{path}: there are no stars after the site")
+    h, d, ra, dec = np.array(stars).T
+    return Stars(h=h, d=d, ra=ra, dec=dec, latitude_rad=math.radians(latitude), others={})
+
+
+def _refraction(path: Path, number: int, air: list[float]) -> tuple[float, float]:
+    """Constants of tan z and its cube, rad. air: temperature C, pressure hPa, height m, humidity 0 to 1,
+    wavelength um, as far as they are there."""
+    if len(air) < 2 or air[1] == 0:
+        return 0.0, 0.0
+    if not 0 < air[1] < _HPA_MOST:
+        raise PointingRunError(f"{path}:{number}: pressure {air[1]:g} hPa is outside 0 to {_HPA_MOST:g}")
+    humidity, wavelength = [*air[3:5], 0.5, 0.55][:2] if len(air) >= 5 else (0.5, 0.55)
+    a, b = erfa.refco(air[1], air[0], min(max(humidity, 0.0), 1.0), wavelength)
+    return float(a), float(b)
+
+
+def _star(
+    path: Path, number: int, words: list[str], latitude_rad: float, a: float, b: float
+) -> tuple[float, float, float, float]:
+    """Observed hour angle and declination, and those of the axes, rad."""
+    if len(words) < _RECORD:
+        raise PointingRunError(f"{path}:{number}: a star has {_RECORD} numbers, here are {len(words)}")
+    parts = [_number(path, number, each) for each in words[:_RECORD]]
+    places = [_sexagesimal(words[k : k + 3], parts[k : k + 3], path, number) for k in (0, 3, 6, 9)]
+    sidereal = parts[12] + parts[13] / 60
+    h, ra = (math.radians(15 * (sidereal - place)) for place in (places[0], places[2]))
+    d, dec = math.radians(places[1]), math.radians(places[3])
+    azimuth, altitude = erfa.hd2ae(h, d, latitude_rad)
+    if altitude <= 0:
+        raise PointingRunError(f"{path}:{number}: this star is below the horizon; check latitude and time")
+    tangent = 1 / math.tan(altitude)
+    h, d = (
+        float(each) for each in erfa.ae2hd(azimuth, altitude + a * tangent + b * tangent**3, latitude_rad)
+    )
+    return math.remainder(h, 2 * math.pi), d, math.remainder(ra, 2 * math.pi), dec
+
+
+def _sexagesimal(words: list[str], parts: list[float], path: Path, number: int) -> float:
+    """Whole, minutes, seconds; the sign stands before the whole, also before a 0."""
+    if not (0 <= parts[1] < 60 and 0 <= parts[2] < 60):
+        raise PointingRunError(f"{path}:{number}: {' '.join(words)} is not whole, minutes and seconds")
+    size = abs(parts[0]) + parts[1] / 60 + parts[2] / 3600
+    return -size if words[0].startswith("-") else size
+
+
+def _number(path: Path, number: int, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise PointingRunError(f"{path}:{number}: {text!r} is not a number")
+    return value
