@@ -54,7 +54,6 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python -m bus.protocol.page --check
-	$(BIN)/python -m scenarios.run.publish --check
 	$(BIN)/python -m docs.generate --check
 
 paper: $(READY)

@@ -1,18 +1,22 @@
-"""`python -m docs.generate [--check]`: write the pages made from code, or say which differ from it."""
+"""`python -m docs.generate [--check]`: write the pages and the schema made from code, or say which differ."""
 
 import sys
 from pathlib import Path
 
-from docs.generate import api, commands, effects, fields, parameters
+from docs.generate import api, commands, effects, fields, language, parameters
+from scenarios.language.validate import SCHEMA_FILE
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 PAGES = {
     "api.md": api.page,
     "commands.md": commands.page,
     "effects.md": effects.page,
+    "faults.md": language.faults_page,
     "parameters.md": parameters.page,
     "rig-fields.md": fields.rig_page,
     "scenario-fields.md": fields.scenario_page,
+    "scenarios.md": language.scenarios_page,
+    str(SCHEMA_FILE): language.schema,
 }
 
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from docs.generate.language import language
 from docs.generate.text import MADE, linked, table
-from scenarios.language.validate import schema
 
 _SCENARIO = """# Fields of a scenario
 
@@ -105,7 +105,7 @@ def _page(head: str, rules: dict[str, Any], source: str) -> str:
 
 def scenario_page() -> str:
     """The page of a scenario's fields, Markdown."""
-    return _page(_SCENARIO, schema(), "`scenarios/scenario.schema.json`")
+    return _page(_SCENARIO, language(), "`scenarios/scenario.schema.json`")
 
 
 def rig_page() -> str:

@@ -1,6 +1,6 @@
 """Expectations against what a run left: one function per kind, in a table.
 
-Schema and page are made from the table (`scenarios/run/publish.py`); nothing else knows a kind.
+Schema and page are made from the table (`docs/generate/language.py`); nothing else knows a kind.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,19 +1,18 @@
-"""`python -m scenarios.run.publish [--check]`: what is published from the tables of faults and expectations.
+"""What is published from the tables of faults and expectations.
 
 The schema's part on each, the tables of docs/reference/faults.md, and that of expectations in scenarios.md.
 """
 
 import json
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from scenarios.lab.faults import catalogue
+from docs.generate import faults
 from scenarios.language.validate import SCHEMA_FILE
 from scenarios.run.evaluate import KINDS, STATISTICS, Kind
 
-DOCS = Path(__file__).parents[2] / "docs"
+REFERENCE = Path(__file__).parents[1] / "reference"
 _HEAD = "| expectation | of | limit in | further fields |\n|---|---|---|---|\n"
 _WINDOW: dict[str, Any] = {
     "during": {
@@ -66,32 +65,27 @@ def _row(name: str, kind: Kind) -> str:
     return f"| `{name}` | {kind.text}{steps} | {kind.limit or 'number'} | {fields} |\n".replace("|  |", "| |")
 
 
-def published() -> dict[Path, str]:
-    """File to the text it should have."""
-    language = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
-    language["$defs"] |= {"fault": catalogue.definition(), "expectation": definition()}
-    faults, scenarios = (DOCS / "reference" / name for name in ("faults.md", "scenarios.md"))
-    tables = catalogue.tables()
-    before, _, rest = scenarios.read_text(encoding="utf-8").partition(_HEAD)
+def language() -> dict[str, Any]:
+    """The schema of scenarios as it should be."""
+    found: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+    found["$defs"] |= {"fault": faults.definition(), "expectation": definition()}
+    return found
+
+
+def schema() -> str:
+    """The text of the schema."""
+    return json.dumps(language(), indent=1, ensure_ascii=False) + "\n"
+
+
+def faults_page() -> str:
+    """The page of faults: what stands before its tables is written by hand."""
+    tables = faults.tables()
+    written = (REFERENCE / "faults.md").read_text(encoding="utf-8")
+    return written.partition(tables[: tables.index("\n") + 1])[0] + tables
+
+
+def scenarios_page() -> str:
+    """The page of the language: all but the table of expectations is written by hand."""
+    before, _, rest = (REFERENCE / "scenarios.md").read_text(encoding="utf-8").partition(_HEAD)
     rows = "".join(_row(name, kind) for name, kind in KINDS.items())
-    return {
-        SCHEMA_FILE: json.dumps(language, indent=1, ensure_ascii=False) + "\n",
-        faults: faults.read_text(encoding="utf-8").partition(tables[: tables.index("\n") + 1])[0] + tables,
-        scenarios: before + _HEAD + rows + "\n" + rest.partition("\n\n")[2],
-    }
-
-
-def main(arguments: list[str]) -> int:
-    """Write what has changed, or with --check say what would."""
-    stale = {file: text for file, text in published().items() if file.read_text(encoding="utf-8") != text}
-    if "--check" not in arguments:
-        for file, text in stale.items():
-            file.write_text(text, encoding="utf-8")
-    elif stale:
-        names = ", ".join(file.name for file in stale)
-        print(f"{names}: not as the tables of faults and expectations; run python -m scenarios.run.publish")
-    return 1 if stale and "--check" in arguments else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    return before + _HEAD + rows + "\n" + rest.partition("\n\n")[2]
