@@ -30,13 +30,13 @@ def row(document: Document, beside: Path, folder: Path) -> Document:
     """Calibrate into `folder`; the verdict, how many effects it names, and the error of every held-out
     channel before and after. Raises ValueError as `schmidt calibrate` does."""
     from calibration.command import calibrate
-    from scenarios.campaign.plantfile import write
+    from plant.model import dump
 
     given = document[FIELD]
     plant = None
     if "plant" in document:
         plant = folder / "declared.yaml"
-        write(declared(document, beside), plant)
+        dump(declared(document, beside), plant)
     rig = beside / given["rig"] if "rig" in given else None
     logs = [beside / name for name in given["logs"]]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):

@@ -23,11 +23,11 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.campaign.plantfile import write
 from scenarios.progress import shown
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.starts import STARTS
 from tests.studies.paper.objective import READINGS, Enough, Objective
+from tests.studies.paper.plantfile import write
 from tests.studies.paper.space import SPACE, bounds, values, vector
 from tests.studies.paper.together import pricer
 
