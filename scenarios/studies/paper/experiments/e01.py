@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.measures import means, peak_percent
 from scenarios.studies.paper.runs import TRACKING, tracking
 from scenarios.studies.paper.starts import Benches
@@ -22,10 +22,4 @@ def measure(benches: Benches) -> Figures:
     }
 
 
-ROW = Experiment(
-    id="E1",
-    limits=(
-        Limit(figure="peak", unit="%", low=10.0, high=25.0, words="peak of 5 ms counts", scale=8.0),
-    ),
-    measure=measure, beside=(("true peak", "%"), ("true peak of 1 s means", "%"), ("true rms", "″/s")),
-)  # fmt: skip
+ROW = row("E1", measure)

@@ -1,7 +1,7 @@
 """E2: tracking speed, high preload."""
 
 from scenarios.studies.paper.bench import Bench
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.stickslip import stick_slips
 from scenarios.studies.paper.measures import peak_percent
 from scenarios.studies.paper.runs import TRACKING, tracking
@@ -28,14 +28,4 @@ def measure(benches: Benches) -> Figures:
     }
 
 
-ROW = Experiment(
-    id="E2",
-    limits=(
-        Limit(figure="peak", unit="%", low=100.0, high=1000.0, words="peak of 5 ms counts", scale=300.0),
-        Limit(figure="high", unit="1", low=3.0, high=EVER, words="stick-slip cycles", scale=2.0),
-        Limit(figure="low", unit="1", low=0.0, high=0.0, words="cycles at low preload", scale=2.0),
-        Limit(figure="viscous", unit="1", low=0.0, high=0.0, words="cycles without Coulomb friction",
-            scale=2.0),
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E2", measure)

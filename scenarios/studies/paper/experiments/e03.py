@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.measures import peak_percent
 from scenarios.studies.paper.runs import HIGH, high_speed
@@ -30,14 +30,4 @@ def measure(benches: Benches) -> Figures:
     return found
 
 
-ROW = Experiment(
-    id="E3",
-    limits=(
-        *(
-            Limit(figure=f"peak {v:g}", unit="%", low=1.5, high=7.0, words=f"peak at {v:g}″/s", scale=1.0)
-            for v in HIGH
-        ),
-        Limit(figure="ripple", unit="1", low=-EVER, high=1.0, words="ripple, closed over open", scale=0.3),
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E3", measure)

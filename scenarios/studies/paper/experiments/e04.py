@@ -1,6 +1,6 @@
 """E4: closed loop at 1 to 3 deg/s."""
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.measures import peak_percent
 from scenarios.studies.paper.runs import SLOW_SLEW, slow_slew
 from scenarios.studies.paper.starts import Benches
@@ -14,14 +14,4 @@ def measure(benches: Benches) -> Figures:
     }
 
 
-ROW = Experiment(
-    id="E4",
-    limits=tuple(
-        Limit(
-            figure=f"peak {v / 3600:g}", unit="%", low=0.0, high=1.0, words=f"peak at {v / 3600:g}°/s",
-            scale=0.3,
-        )
-        for v in SLOW_SLEW
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E4", measure)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.runs import OPENED, high_speed
 from scenarios.studies.paper.scales import LOG_PERIOD_S
@@ -12,8 +12,6 @@ from scenarios.studies.paper.starts import Benches
 SECONDS, SETTLE, EDGE = 60.0, 4.0, 5.0
 CORNER_HZ = 0.05
 """Slower errors are drifts: the speed that an open loop happens to settle at, and the balance of the axis."""
-PRINTED_RATIO = 14.5 / 7.5
-"""Smallest ratio of two peaks that are printed as 15 % and 7 %, in whole per cent (paper 4, Fig. 6)."""
 
 
 def fast_peak(rate: Array, setpoint: float) -> float:
@@ -37,15 +35,4 @@ def measure(benches: Benches) -> Figures:
     return found | {"closed": closed_peak, "ratio": open_peak / closed_peak}
 
 
-ROW = Experiment(
-    id="E5",
-    limits=(
-        *(
-            Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=15.0, words=f"peak at {v:g}″/s", scale=2.0)
-            for v in OPENED
-        ),
-        Limit(figure="ratio", unit="1", low=PRINTED_RATIO, high=EVER, words="largest peak, open over closed",
-            scale=0.3),
-    ),
-    measure=measure, beside=(("closed", "% peak of the closed loop"),),
-)  # fmt: skip
+ROW = row("E5", measure)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.log import Log
 from scenarios.studies.paper.measures import line_amplitude, peak_percent, stalled, strongest_line
 from scenarios.studies.paper.runs import LOW, low_speed
@@ -46,17 +46,4 @@ def measure(benches: Benches) -> Figures:
     }
 
 
-ROW = Experiment(
-    id="E6",
-    limits=(
-        Limit(figure="lowest", unit="″/s", low=80.0, high=115.0, words="lowest open-loop speed", scale=15.0),
-        Limit(figure="nearest", unit="″/s", low=0.0, high=15.0, words="off 100″/s", scale=10.0),
-        Limit(figure="line", unit="Hz", low=0.04, high=0.06, words="strongest slow line", scale=0.01),
-        Limit(figure="left", unit="1", low=0.0, high=0.3, words="left of it by the loop", scale=0.1),
-        Limit(figure="narrower", unit="points", low=0.0, high=EVER, words="error band narrower by",
-            scale=5.0),
-        Limit(figure="order a step up", unit="1", low=0.85, high=1.15, words="line's order one step up",
-            scale=0.1),
-    ),
-    measure=measure, beside=(("mean", "″/s"), ("amplitude", "″/s"), ("speed a step up", "″/s")),
-)  # fmt: skip
+ROW = row("E6", measure)

@@ -1,12 +1,11 @@
 """E7: torque-velocity map and Table 2."""
 
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.frictionmap import friction_map
 from scenarios.studies.paper.experiments.noise import Noise
-from scenarios.studies.paper.published import TABLE_2, TABLE_2_TOLERANCE
+from scenarios.studies.paper.published import TABLE_2
 from scenarios.studies.paper.starts import Benches
 
-NAMES = {"viscous": "σ2", "coulomb": "Tc", "stiction": "Ts", "stribeck_rate": "vs"}
 REGION = (0.25, 3.0)
 """Of vs: where the Stribeck effect does most of its falling."""
 
@@ -33,19 +32,4 @@ def measure(benches: Benches) -> Figures:
     return found
 
 
-ROW = Experiment(
-    id="E7",
-    limits=(
-        *(
-            Limit(
-                figure=f"{preload} {name}", unit="%", low=-bound, high=bound,
-                words=f"{preload} {NAMES[name]}", scale=bound,
-            )
-            for preload in TABLE_2
-            for name, bound in TABLE_2_TOLERANCE.items()
-        ),
-        Limit(figure="region", unit="points", low=4.0, high=EVER, words="points in the Stribeck region",
-            scale=2.0),
-    ),
-    measure=measure, beside=(("low exponent", "1"), ("high exponent", "1")),
-)  # fmt: skip
+ROW = row("E7", measure)

@@ -1,7 +1,7 @@
 """E8: run-down and moment of inertia."""
 
 from scenarios.studies.paper.coasting import drive
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.frictionmap import friction_map
 from scenarios.studies.paper.experiments.noise import Noise
 from scenarios.studies.paper.published import INERTIA
@@ -34,12 +34,4 @@ def measure(benches: Benches) -> Figures:
     return found
 
 
-ROW = Experiment(
-    id="E8",
-    limits=(
-        Limit(figure="off 1", unit="%", low=-5.0, high=5.0, words="J of the plant", scale=5.0),
-        Limit(figure="off 0.8", unit="%", low=-5.0, high=5.0, words="J of the plant with 0.8 J", scale=5.0),
-        Limit(figure="off 1.2", unit="%", low=-5.0, high=5.0, words="J of the plant with 1.2 J", scale=5.0),
-    ),
-    measure=measure, beside=(("J 1", "kg m²"),),
-)  # fmt: skip
+ROW = row("E8", measure)

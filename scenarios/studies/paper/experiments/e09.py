@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.linear import linear_axis, simulate_loop
 from scenarios.studies.paper.runs import STEP_TO, step
 from scenarios.studies.paper.scales import LOG_PERIOD_S
@@ -29,11 +29,4 @@ def measure(benches: Benches) -> Figures:
     }
 
 
-ROW = Experiment(
-    id="E9",
-    limits=(
-        Limit(figure="difference", unit="%", low=0.0, high=5.0, words="rms of the difference", scale=1.5),
-        Limit(figure="effort", unit="%", low=-20.0, high=20.0, words="settled effort off", scale=8.0),
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E9", measure)

@@ -2,7 +2,7 @@
 
 from math import exp, log
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.identify import identify
 from scenarios.studies.paper.starts import Benches
 from scenarios.studies.paper.tuning import RULES, Gains
@@ -28,13 +28,4 @@ def measure(benches: Benches) -> Figures:
     } | found
 
 
-ROW = Experiment(
-    id="E10",
-    limits=(
-        Limit(figure="nearest", unit="1", low=1.0, high=1.5, words="factor to the nearest rule", scale=0.4),
-        Limit(figure="second", unit="1", low=1.0, high=2.0, words="factor to the second", scale=0.6),
-    ),
-    measure=measure, beside=(
-        ("gain", "counts/step"), ("lag", "ms"), ("dead time", "ms"), *((name, "factor") for name in RULES),
-    ),
-)  # fmt: skip
+ROW = row("E10", measure, tuple((name, "factor") for name in RULES))

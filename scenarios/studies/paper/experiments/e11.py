@@ -1,7 +1,7 @@
 """E11: low gains give stick-slip."""
 
 from scenarios.studies.paper.bench import Bench
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.stickslip import stick_slips
 from scenarios.studies.paper.runs import TRACKING, tracking
 from scenarios.studies.paper.starts import Benches, viscous_only
@@ -26,13 +26,4 @@ def measure(benches: Benches) -> Figures:
     return {"most": max(found.values()), "own": float(cycles(benches("low")))} | found
 
 
-ROW = Experiment(
-    id="E11",
-    limits=(
-        Limit(figure="most", unit="1", low=3.0, high=EVER, words="stick-slip cycles with low gains",
-            scale=2.0),
-        Limit(figure="own", unit="1", low=0.0, high=0.0, words="cycles with the plant file's gains",
-            scale=2.0),
-    ),
-    measure=measure, beside=tuple((f"at {factor:g}", "cycles") for factor in FACTORS),
-)  # fmt: skip
+ROW = row("E11", measure, tuple((f"at {factor:g}", "cycles") for factor in FACTORS))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.friction_map import data_sheet, steady_point
 from scenarios.studies.paper.published import TABLE_2
 from scenarios.studies.paper.runs import HIGH, map_run
@@ -21,11 +21,4 @@ def measure(benches: Benches) -> Figures:
     return {"slope": slope / TABLE_2["low"]["viscous"], "rise": float(torque[-1] / torque[0] - 1.0) * 100.0}
 
 
-ROW = Experiment(
-    id="E12",
-    limits=(
-        Limit(figure="slope", unit="1", low=0.5, high=1.5, words="slope over σ2", scale=0.2),
-        Limit(figure="rise", unit="%", low=0.0, high=EVER, words="rise of the torque", scale=2.0),
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E12", measure)

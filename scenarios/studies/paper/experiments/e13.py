@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.measures import means
 from scenarios.studies.paper.runs import HIGH, LOW, SLOW_SLEW, TRACKING
@@ -36,14 +36,8 @@ def measure(benches: Benches) -> Figures:
     return {"worst": max(found.values()), "worst raw": max(raw.values())} | found | raw
 
 
-ROW = Experiment(
-    id="E13",
-    limits=(
-        Limit(figure="worst", unit="1", low=0.0, high=1.0, words="largest rms over what is allowed",
-            scale=0.4),
-        Limit(figure="worst raw", unit="1", low=0.0, high=1.0, words="largest rms without means of 1 s",
-            scale=0.4),
-    ),
-    measure=measure,
+ROW = row(
+    "E13",
+    measure,
     beside=tuple((f"{of} {speed:g}", "of the allowed") for of in ("at", "raw") for speed in SPEEDS),
-)  # fmt: skip
+)

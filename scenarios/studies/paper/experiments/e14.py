@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.friction_map import data_sheet, ripple_free
 from scenarios.studies.paper.runs import BROKEN_AWAY, break_away
 from scenarios.studies.paper.scales import EFFORT_SCALE
 from scenarios.studies.paper.starts import Benches
-
-RATED_A = 6.0
 
 
 def measure(benches: Benches) -> Figures:
@@ -22,11 +20,4 @@ def measure(benches: Benches) -> Figures:
     return {"stall": float(current @ duty / (duty @ duty)), "break-away current": float(current[-5:].mean())}
 
 
-ROW = Experiment(
-    id="E14",
-    limits=(
-        Limit(figure="stall", unit="A", low=0.9 * RATED_A, high=1.1 * RATED_A,
-            words="stalled current at full duty", scale=3.0),
-    ),
-    measure=measure, beside=(("break-away current", "A"),),
-)  # fmt: skip
+ROW = row("E14", measure)

@@ -1,6 +1,6 @@
 """E15: one pair of gains for both preloads."""
 
-from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
+from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.measures import peak_percent
 from scenarios.studies.paper.starts import Benches
 
@@ -17,11 +17,4 @@ def measure(benches: Benches) -> Figures:
     return found
 
 
-ROW = Experiment(
-    id="E15",
-    limits=tuple(
-        Limit(figure=f"peak {v:g}", unit="%", low=0.0, high=25.0, words=f"peak at {v:g}″/s", scale=5.0)
-        for v in SPEEDS
-    ),
-    measure=measure,
-)  # fmt: skip
+ROW = row("E15", measure)

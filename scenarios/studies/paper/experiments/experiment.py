@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -22,8 +22,8 @@ class Limit:
 
     figure: str
     unit: str
-    low: float
-    high: float
+    low: float = -EVER
+    high: float = EVER
     words: str
     scale: float = 1.0
 
@@ -64,8 +64,8 @@ class Said(NamedTuple):
 
 
 @cache
-def _rows() -> dict[str, dict[str, str]]:
-    found: dict[str, dict[str, str]] = yaml.safe_load(ROWS.read_text(encoding="utf-8"))
+def _rows() -> dict[str, dict[str, Any]]:
+    found: dict[str, dict[str, Any]] = yaml.safe_load(ROWS.read_text(encoding="utf-8"))
     return found
 
 
@@ -81,4 +81,15 @@ class Experiment:
     @property
     def said(self) -> Said:
         """Its words, from rows.yaml."""
-        return Said(**_rows()[self.id])
+        return Said(**{word: _rows()[self.id][word] for word in Said._fields})
+
+
+def row(
+    name: str, measure: Callable[[Benches], Figures], beside: tuple[tuple[str, str], ...] = ()
+) -> Experiment:
+    """The experiment of this name in rows.yaml. beside: more of these figures, whose names code makes."""
+    told = _rows()[name]
+    limits = tuple(Limit(**each) for each in told["limits"])
+    return Experiment(
+        id=name, limits=limits, measure=measure, beside=(*map(tuple, told.get("beside", ())), *beside)
+    )
