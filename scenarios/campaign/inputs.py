@@ -10,6 +10,8 @@ from scenarios.language.document import ScenarioError
 from scenarios.language.validate import nearest
 
 Document = dict[str, Any]
+_WORDS = {"parameter": "firmware parameter"}
+"""Kinds that a message calls by another name."""
 _LEVELS = 5
 """Grid points of a distribution when the campaign does not say how many."""
 
@@ -33,12 +35,14 @@ class Input:
 def read(given: dict[str, Any], where: str, base: Document) -> Input:
     """An input from its checked block; raises ScenarioError. base: the scenario it will change."""
     kind = next(word for word in _PUTS if word in given)
-    put, default_name, scale = _PUTS[kind](given[kind], where, base)
+    put, default_name, number = _PUTS[kind](given[kind], where, base)
     draw, values = _distribution(given, where, kind)
     name = str(given.get("name", default_name))
     if "times" not in given:
         return Input(name, draw, put, values)
-    return Input(name, draw, lambda document, value: put(document, scale() * value), values)
+    if number is None:
+        raise ScenarioError(f"{where}: a {_WORDS.get(kind, kind)} has no value to multiply; use `is`")
+    return Input(name, draw, lambda document, value: put(document, number * value), values)
 
 
 def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
@@ -89,7 +93,8 @@ def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
     return lambda share: float(law.ppf(share))
 
 
-Put = tuple[Callable[[Document, Any], None], str, Callable[[], float]]
+Put = tuple[Callable[[Document, Any], None], str, float | None]
+"""What writes a value, the name of its column, and the number that `times` multiplies, if there is one."""
 
 
 def _plant(path: Any, where: str, base: Document) -> Put:
@@ -110,25 +115,25 @@ def _plant(path: Any, where: str, base: Document) -> Put:
         given = named(document.get("plant", DEFAULT_PLANT))
         document["plant"] = {**given, "overrides": {**given.get("overrides", {}), str(path): float(value)}}
 
-    return put, str(path), lambda: number
+    return put, str(path), number
 
 
 def _parameter(given: Any, where: str, base: Document) -> Put:
     """A firmware parameter of a board, by number."""
     node, number = given["node"], given["number"]
     put = _at("network", "nodes", node, "parameters", str(number), read=int)
-    return put, f"{node} parameter {number}", lambda: _none(where, "a firmware parameter")
+    return put, f"{node} parameter {number}", None
 
 
 def _seed(_given: Any, where: str, base: Document) -> Put:
     """The scenario's seed: crystals, encoders' fractions, noise, lost frames."""
-    return _at("seed", read=int), "seed", lambda: _none(where, "a seed")
+    return _at("seed", read=int), "seed", None
 
 
 def _start(axis: Any, where: str, base: Document) -> Put:
     """Where an axis of the telescope stands at first, degrees."""
     put = _at("start", axis, read=lambda value: f"{float(value)!r} deg")
-    return put, f"start, {str(axis).replace('_', ' ')}", lambda: _none(where, "a start")
+    return put, f"start, {str(axis).replace('_', ' ')}", None
 
 
 def _at(*path: str, read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
@@ -149,7 +154,7 @@ def _fault(_given: Any, where: str, base: Document) -> Put:
         if value != "none":
             document["faults"] = [*document.get("faults", []), copy.deepcopy(value)]
 
-    return put, "fault", lambda: _none(where, "a fault")
+    return put, "fault", None
 
 
 def _field(path: Any, where: str, base: Document) -> Put:
@@ -166,11 +171,7 @@ def _field(path: Any, where: str, base: Document) -> Put:
         put(copy.deepcopy(base), 0)
     except (KeyError, IndexError, TypeError):
         raise ScenarioError(f"{where}: the scenario has no field {path!r}") from None
-    return put, str(path), lambda: _none(where, "a field")
-
-
-def _none(where: str, what: str) -> float:
-    raise ScenarioError(f"{where}: {what} has no value to multiply; use `is`")
+    return put, str(path), None
 
 
 _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {

@@ -23,7 +23,7 @@ WORST = "worst.yaml"
 def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     """Draw and write everything from the table. wall_s, made: of this call, for the figures of speed."""
     columns = table.read(folder / table.TABLE)
-    limits, units = ({}, {}) if plan.calibrates else (_limits(plan), _units(plan))
+    limits, units = ({}, {}) if plan.calibrates else _expected(plan)
     metrics = [name for name in columns if name.startswith("metric: ")]
     found = _influences(plan, columns, metrics)
     groups = _groups(plan, columns)
@@ -56,16 +56,17 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     write_file(folder / "report.html", text)
 
 
-def _limits(plan: Plan) -> dict[str, tuple[float, bool]]:
-    return {e.name: (e.limit, e.upper) for e in load(_document(plan, plan.base)).expectations}
-
-
-def _units(plan: Plan) -> dict[str, str]:
-    """What each expectation is measured in; nothing for a bare number."""
+def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]]:
+    """Limit of each expectation, and what it is measured in; no unit for a bare number."""
     from scenarios.run.evaluate import KINDS
 
-    units = {e.name: KINDS[e.kind].unit for e in load(_document(plan, plan.base)).expectations}
-    return {name: unit for name, unit in units.items() if unit != "1"}
+    data = {word: value for word, value in plan.base.items() if word != "_folder"}
+    expected = load(Document(plan.scenario, data, {})).expectations
+    units = {e.name: KINDS[e.kind].unit for e in expected}
+    return (
+        {e.name: (e.limit, e.upper) for e in expected},
+        {name: unit for name, unit in units.items() if unit != "1"},
+    )
 
 
 def _again(plan: Plan) -> str:
@@ -83,11 +84,6 @@ def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
     order = np.argsort(np.array(columns["index"]))
     found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
     return [each for each in found if each is not None]
-
-
-def _document(plan: Plan, data: dict[str, Any]) -> Document:
-    data = {word: value for word, value in data.items() if word != "_folder"}
-    return Document(plan.scenario, data, {})
 
 
 def _influences(plan: Plan, columns: Columns, metrics: list[str]) -> list[Influence]:

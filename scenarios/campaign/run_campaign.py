@@ -1,13 +1,9 @@
 """`schmidt campaign`: plan, run, gather, report."""
 
-import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
-from typing import NoReturn
 
 from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
@@ -46,7 +42,7 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
             yield case.key, _job(planned, case, out)
 
     status = COMPLETE
-    with _interruptible(), shown("runs", planned.count, before) as advance:
+    with shown("runs", planned.count, before) as advance:
         try:
             for done in each(task, waiting(), jobs=options.jobs, scheduler=options.scheduler):
                 if done.value is None:
@@ -95,17 +91,3 @@ def _other_version(row: Row, ours: str) -> str:
         f"the worker on {row['machine']} runs another version (schmidt {row['version']}): "
         f"the digest of its probe is {row['probe'][:12]}, here it is {ours[:12]}"
     )
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """SIGTERM ends a campaign as Ctrl-C does."""
-
-    def stop(_signal: int, _frame: FrameType | None) -> NoReturn:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

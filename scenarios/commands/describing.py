@@ -1,29 +1,12 @@
 """Commands that say what is there: conformance, eds, protocol, effects."""
 
 import sys
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, SPEED, Number, filled, network
-
-
-@dataclass(frozen=True, kw_only=True)
-class CheckOptions:
-    """Options of `schmidt conformance`. channel: of a bus elsewhere; None: the network in this process."""
-
-    scenario: Path | None
-    network: str | None
-    channel: str | None
-    json_file: Path | None
-    speed: float
-    tolerance: float
-    stamps: float
-    boards: tuple[str, ...]
-    motion: bool
-    flood: bool
-    canopen: bool
+from scenarios.commands.options import PATH, SPEED, Number, network
 
 
 @click.command(short_help="Check boards, emulated or real, against the protocol.")
@@ -39,6 +22,7 @@ class CheckOptions:
 @click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Speed the boards are served at.")
 @click.option(
     "--tolerance",
+    "period_tolerance",
     type=Number(min=0, max=1, min_open=True),
     default=0.02,
     show_default=True,
@@ -46,6 +30,7 @@ class CheckOptions:
 )
 @click.option(
     "--stamps",
+    "stamps_s",
     type=Number(min=0),
     default=0.001,
     show_default=True,
@@ -57,22 +42,19 @@ class CheckOptions:
 )
 @click.option("--flood", is_flag=True, help="Fill the bus, too: boards will report what they had to drop.")
 @click.option("--canopen", is_flag=True, help="Check what a CANopen master expects, and nothing else.")
-@filled(CheckOptions)
-def conformance(options: CheckOptions) -> None:
+def conformance(
+    scenario: Path | None,
+    network: str | None,
+    channel: str | None,
+    json_file: Path | None,
+    boards: tuple[str, ...],
+    **settings: Any,
+) -> None:
     """Check boards, emulated or real, against the protocol; SCENARIO or --network says which boards."""
     from bus.conformance import Settings
     from scenarios.commands.checking import command
 
-    settings = Settings(
-        period_tolerance=options.tolerance,
-        stamps_s=options.stamps,
-        speed=options.speed,
-        motion=options.motion,
-        flood=options.flood,
-        canopen=options.canopen,
-    )
-    where = options.scenario, options.network
-    sys.exit(command(options.channel, options.json_file, options.boards, settings, *where))
+    sys.exit(command(channel, json_file, boards, Settings(**settings), scenario, network))
 
 
 @click.command(short_help="Write CANopen data sheets of the boards.")

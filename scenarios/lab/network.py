@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from boards.axis import AxisBoard, AxisPeers, AxisPins
 from boards.axis.settings import settings as programmed
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from boards.canopen import Voice
     from scenarios.lab.chain import Chain
 
+Firmware = TypeVar("Firmware")
 CRYSTAL_PPM = 50.0
 """Largest rate error of a board's crystal, ASSUMPTION: tolerance of ordinary crystals."""
 CRYSTAL_DRIFT_PPM_PER_HOUR = 0.2
@@ -121,7 +122,7 @@ class _Wiring:
         self.site = Site(plant, self.boards)
 
     def place(self, name: str, device_type: int) -> Place:
-        oscillator = crystal(self.seed, name, self.config.nodes.get(name, NodeConfig()))
+        oscillator = crystal(self.seed, name, self.config.node(name))
         return Place(
             name=name, device_type=device_type, queue=self.queue, wire=self.wire, oscillator=oscillator
         )
@@ -157,23 +158,23 @@ class _Wiring:
 
     def memory(self, device: Device) -> Memory | None:
         """Of a board that runs compiled C; None: it runs its own firmware."""
-        file = self.config.nodes.get(device.name, NodeConfig()).firmware
-        if file is None:
-            return None
-        try:
-            return (IsolatedMemory if self.config.isolated else Memory)(file)
-        except FirmwareError as error:
-            raise NetworkError(f"network: nodes.{device.name}.firmware: {error}") from None
+        file = self.config.node(device.name).firmware
+        make = IsolatedMemory if self.config.isolated else Memory
+        return None if file is None else self._loaded(device, lambda: make(file))
 
     def binary(self, device: Device) -> Board | None:
         """A board that runs a program for an AVR; None: it runs something else."""
-        file = self.config.nodes.get(device.name, NodeConfig()).firmware
+        file = self.config.node(device.name).firmware
         if file is None or file.suffix != _AVR:
             return None
         from boards.avr import AvrBoard
 
+        return self._loaded(device, lambda: AvrBoard(self.of(device), file))
+
+    @staticmethod
+    def _loaded(device: Device, load: Callable[[], Firmware]) -> Firmware:
         try:
-            return AvrBoard(self.of(device), file)
+            return load()
         except FirmwareError as error:
             raise NetworkError(f"network: nodes.{device.name}.firmware: {error}") from None
 
@@ -214,7 +215,7 @@ class _Wiring:
 
     def declared(self, device: Device) -> Board:
         board = next(each for each in (*self.config.extra, *BOARDS) if device.name in each.KIND.nodes)
-        given = self.config.nodes.get(device.name, NodeConfig()).inputs
+        given = self.config.node(device.name).inputs
         try:
             pins = pins_of(board, device.name, self.site, given)
             return board(self.of(device), pins)
@@ -252,7 +253,7 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     boards = wiring.boards
     _check_firmware(config)
     for device in wiring.devices:
-        if kind_of(device) is None and config.nodes.get(device.name, NodeConfig()).inputs:
+        if kind_of(device) is None and config.node(device.name).inputs:
             raise NetworkError(f"network: nodes.{device.name}.inputs: this board has no inputs")
         if kind_of(device) is not None:
             boards[device.name] = wiring.declared(device)
@@ -273,7 +274,7 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
     uarts = {name: uart for name, board in boards.items() if (uart := uart_of(board)) is not None}
     for name, board in boards.items():
         board.begin()
-        _set_parameters(board, config.nodes.get(name, NodeConfig()))
+        _set_parameters(board, config.node(name))
     debug = {name: DebugPort(board, wiring.wire) for name, board in boards.items()}
     voices: dict[str, Any] = {}
     if config.canopen:

@@ -73,6 +73,10 @@ class NetworkConfig:
     canopen: bool = False
     isolated: bool = False
 
+    def node(self, name: str) -> NodeConfig:
+        """What is set on a board."""
+        return self.nodes.get(name, NodeConfig())
+
 
 def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
     """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
