@@ -5,7 +5,6 @@ import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +16,10 @@ from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.own import CAMPAIGNS, located
 from scenarios.language.units import parse
-from scenarios.language.validate import check
+from scenarios.language.validate import check, schema
 
 SCHEMA_FILE = Path(__file__).with_name("campaign.schema.json")
+"""The published JSON schema of campaign files."""
 MOST = 1_000_000
 """Planned runs of one campaign. That many runs of five seconds are two months of one core, and its table and
 report take some 3 GB. Beyond that there would be minutes of planning without a word."""
@@ -96,7 +96,7 @@ def load(file: Path) -> Plan:
     """
     file = located(file, CAMPAIGNS)
     document = read(file)
-    check(document, schema())
+    check(document, schema(SCHEMA_FILE))
     data = document.data
     scenario = file.parent / data["scenario"] if "scenario" in data else file
     plain = _base(data, scenario)
@@ -190,13 +190,6 @@ def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> np
         mixed[:, column] = other[:, column]
         blocks.append(mixed)
     return np.concatenate(blocks)
-
-
-@cache
-def schema() -> dict[str, Any]:
-    """The published JSON schema of campaign files."""
-    loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
-    return loaded
 
 
 def _text(value: object) -> str:

@@ -26,9 +26,9 @@ _TYPES = {
 
 
 @cache
-def schema() -> dict[str, Any]:
-    """The published JSON schema of the scenario language."""
-    loaded: dict[str, Any] = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+def schema(file: Path = SCHEMA_FILE) -> dict[str, Any]:
+    """A published JSON schema, of the scenario language unless another is meant."""
+    loaded: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     return loaded
 
 
