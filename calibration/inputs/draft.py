@@ -177,29 +177,10 @@ def _by_name(d: _Draft) -> None:
 
 def _by_motion(d: _Draft) -> None:
     """Position and rate: the one is the other's slope."""
-    if "position" not in d.roles and "velocity" in d.roles:
-        v = d.roles["velocity"]
-        unit = v.unit.removesuffix("/s") if v.unit.endswith("/s") else "units"
-        d.roles["position"] = _Role(
-            v.column,
-            unit,
-            np.cumsum(v.x) * d.period_s,
-            v.scale,
-            "there is none: the speed's integral",
-            {"integrated": True},
-        )
-        return
-    if "position" not in d.roles and d.left:
+    if not d.roles.keys() & {"position", "velocity"} and d.left:
         d.put("position", *_smoothest(d))
-    elif "position" not in d.roles:
-        d.roles["position"] = _Role(
-            "",
-            "turn",
-            np.arange(9.0),
-            1.0,
-            "there is none; give the speed",
-            {"steps": [[0, 1.0]], "integrated": True},
-        )
+    if "position" not in d.roles:
+        d.roles["position"] = _integral(d)
         return
     p = d.roles["position"]
     if length := counter_length(p.x / p.scale):
@@ -209,13 +190,23 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        by_side = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))[
-            0
-        ]  # friction goes with it, too
+        # friction goes with it, too
+        by_side, _ = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:
         _scaled(d, d.roles["velocity"], p, rate)
+
+
+def _integral(d: _Draft) -> _Role:
+    """A position that no column shows: of the speed, or of one that the rig file has to say."""
+    v, more = d.roles.get("velocity"), {"integrated": True}
+    if v is None:
+        steps = {"steps": [[0, 1.0]], **more}
+        return _Role("", "turn", np.arange(9.0), why="there is none; give the speed", more=steps)
+    unit = v.unit.removesuffix("/s") if v.unit.endswith("/s") else "units"
+    why, x = "there is none: the speed's integral", np.cumsum(v.x) * d.period_s
+    return _Role(v.column, unit, x, v.scale, why, more)
 
 
 def _smoothest(d: _Draft) -> tuple[str | int, str, float, str]:
