@@ -9,6 +9,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import rules
+from calibration.decide.oneline import one_line
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import NOISE_SHARE
@@ -83,6 +84,7 @@ def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[
         if not any(c.name in searched for c in s.candidates) and k > 0:
             break
     assert s is not None
+    s = one_line(s, scene)
     s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved)))
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
