@@ -10,6 +10,7 @@ from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
 from calibration.finding import UNKNOWN, Finding, of_columns
 from calibration.names.gravity_imbalance import gravity
+from calibration.names.lines import on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene, candidate
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
@@ -59,10 +60,11 @@ def spline_columns(x: Array, knots: int) -> Array:
 
 def domains(s: Scene) -> list[tuple[str, Array]]:
     """Name and fitted-row values of everything that an effect may be a smooth function of: nothing that is
-    the response itself, which explains it without saying why."""
+    the response itself, which explains it without saying why; and no place that along one speed is a time."""
     v, at = s.view, s.view.rows
     speed = [] if v.response.is_speed else [("velocity", v.speed[at])]
-    out: list[tuple[str, Array]] = [("axis_angle", v.x[at]), *speed, ("time", v.clock[at])]
+    place = [] if s.span > 0 and on_clock(s, KNOTS / s.span) else [("axis_angle", v.x[at])]
+    out: list[tuple[str, Array]] = [*place, *speed, ("time", v.clock[at])]
     if s.both:
         since = v.since[at]
         unit = float(np.quantile(np.abs(since), 0.5)) * 0.05 + 1e-30
