@@ -17,8 +17,8 @@ PAGES = "\n".join(
     for p in ROOT.glob(f"docs/{f}/*.md")
     if p.name != "api.md"  # names what there is
 )
-LOADED_BY_FOLDER = ("plant.effects.", "calibration.names.", "boards.")
-"""Files that are found where they stand (plant/effects/__init__.py, calibration/names, a board's package)."""
+LOADED_BY_FOLDER = ("plant.effects.", "calibration.names.", "boards.", "scenarios.studies.paper.experiments.")
+"""Found where they stand (plant/effects/__init__.py, calibration/names, a board's package, paper's rows)."""
 
 
 FOR_FOREIGN_FIRMWARE = {"Mcp2515Controller", "CarrierLvdt"}
