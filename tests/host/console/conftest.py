@@ -117,16 +117,21 @@ def state(page: Any, pattern: str) -> None:
 
 
 def choose(page: Any, label: str, name: str) -> None:
-    """Pick from a list."""
+    """Pick from a list; once more where a busy machine has closed it in between, as anybody would."""
     field = page.get_by_label(label, exact=True)
-    field.click()
-    option = page.get_by_role("option", name=name, exact=True)
-    if label == "Name":  # a long list: only what is in view is there, and what is typed changes it
-        field.fill(name)
-        page.wait_for_function("document.querySelectorAll('[role=option]').length < 10")
-        page.wait_for_timeout(500)
-    option.click()
-    option.wait_for(state="hidden")
+    for _ in range(3):
+        field.click()
+        option = page.get_by_role("option", name=name, exact=True)
+        if label == "Name":  # a long list: only what is in view is there, and what is typed changes it
+            field.fill(name)
+            page.wait_for_function("document.querySelectorAll('[role=option]').length < 10")
+            page.wait_for_timeout(500)
+        option.click()
+        option.wait_for(state="hidden")
+        page.wait_for_timeout(300)
+        if label != "Name" or field.input_value() == name:
+            return
+    raise AssertionError(f"{name} was not taken")
 
 
 def press(page: Any, name: str) -> None:
