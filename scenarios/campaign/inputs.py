@@ -94,7 +94,7 @@ def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
 
 
 Put = tuple[Callable[[Document, Any], None], str, float | None]
-"""What writes a value, the name of its column, and the number that `times` multiplies, if there is one."""
+"""Writer of a value, name of its column, and the number that `times` multiplies, if there is one."""
 
 
 def _plant(path: Any, where: str, base: Document) -> Put:

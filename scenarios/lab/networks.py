@@ -74,7 +74,7 @@ class NetworkConfig:
     isolated: bool = False
 
     def node(self, name: str) -> NodeConfig:
-        """What is set on a board."""
+        """Settings of a board."""
         return self.nodes.get(name, NodeConfig())
 
 
