@@ -28,10 +28,12 @@ RIG_S, RIG_PER_MEGABYTE_S = 2.0, 2.0
     help="Name of a run that is not fitted to, only tested on (repeatable; default: chosen).",
 )
 @click.option("--plant", type=PATH, help="Plant file that the drive is declared by (axis logs).")
+@click.option("--terms", metavar="IH,ID,...", help="Terms a mount is declared to have (pointing runs).")
 @click.option("--out", type=PATH, required=True, help="Output folder.")
 def calibrate(
-    logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None, out: Path
-) -> None:
+    logs: tuple[Path, ...], rig: Path | None, hold_out: tuple[str, ...], plant: Path | None,
+    terms: str | None, out: Path,
+) -> None:  # fmt: skip
     """Find what the model lacks in measured LOGS and write the corrected plant.
 
     Of a pointing run (TPOINT's .dat, or CSV): the missing terms, and the model."""
@@ -40,8 +42,10 @@ def calibrate(
         from scenarios.commands.stars import calibrate_stars
 
         if len(logs) > 1 or rig or hold_out or plant:
-            raise click.UsageError("a pointing run is calibrated alone, with --out only")
-        sys.exit(calibrate_stars(logs[0], out))
+            raise click.UsageError("a pointing run is calibrated alone, with --terms and --out only")
+        sys.exit(calibrate_stars(logs[0], terms, out))
+    if terms is not None:
+        raise click.UsageError("--terms is for a pointing run (docs/guides/pointing-model.md)")
     from calibration.command import calibrate as command
     from scenarios.progress import stages
 

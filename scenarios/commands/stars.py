@@ -9,29 +9,33 @@ from rich.table import Table
 
 from host.sky.pointfind import Answer, Lack, find
 from host.sky.pointread import read
-from host.sky.pointterms import GEOMETRY, TEXTS
+from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from scenarios.run.report.pointing_run import residuals
 
 _WIDE = 120
 """Columns where there is no terminal. ASSUMPTION: the table fits."""
 
 
-def calibrate_stars(path: Path, out: Path) -> int:
+def calibrate_stars(path: Path, terms: str | None, out: Path) -> int:
     """Write report.json, pointing-model.json and pointing-run.png into `out`, and tell what is missing.
 
-    Raises PointingRunError and TooFewStars, a line each.
+    terms: names of the declared ones, with commas; None: those of geometry. Raises ValueError, a line.
     """
+    declared = GEOMETRY if terms is None else tuple(each.strip() for each in terms.split(","))
+    for name in declared:
+        if name not in TERMS:
+            raise ValueError(f"--terms: no term is called {name!r}; there are {', '.join(TERMS)}")
     stars = read(path)
-    answer = find(stars)
+    answer = find(stars, declared)
     out.mkdir(parents=True, exist_ok=True)
-    (out / "report.json").write_text(json.dumps(report(answer), indent=1) + "\n", encoding="utf-8")
+    (out / "report.json").write_text(json.dumps(report(answer, declared), indent=1) + "\n", encoding="utf-8")
     answer.model.save(out / "pointing-model.json")
     residuals(stars, answer.model).savefig(out / "pointing-run.png")
-    _show(answer, out)
+    _show(answer, declared, out)
     return 0
 
 
-def report(answer: Answer) -> dict[str, Any]:
+def report(answer: Answer, declared: tuple[str, ...]) -> dict[str, Any]:
     """The fields of report.json (docs/sources/log-format.md) that a pointing run has."""
     return {
         "verdict": answer.verdict,
@@ -44,7 +48,7 @@ def report(answer: Answer) -> dict[str, Any]:
         "calibrated": {
             each.name: _value(each.arcsec, each.within_arcsec)
             for each in answer.model.terms
-            if each.name in GEOMETRY
+            if each.name in declared
         },
         "not_identifiable": list(answer.confounded),
         "unseen_below": {
@@ -68,7 +72,7 @@ def _value(value: float, within: float | None) -> dict[str, Any]:
     return {"value": value, "unit": "arcsec", "low": low, "high": high}
 
 
-def _show(answer: Answer, out: Path) -> None:
+def _show(answer: Answer, declared: tuple[str, ...], out: Path) -> None:
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
         console.width = _WIDE
@@ -77,7 +81,7 @@ def _show(answer: Answer, out: Path) -> None:
     console.print(f"{answer.verdict}: {names}; {errors}", soft_wrap=True)
     table = Table("term", "what", "size (95 % interval)", box=None, pad_edge=False)
     for each in answer.model.terms:
-        mark = "" if each.name in GEOMETRY else " (missing)"
+        mark = "" if each.name in declared else " (missing)"
         table.add_row(each.name + mark, TEXTS[each.name], f"{each.arcsec:+.1f}″ ± {each.within_arcsec:.1f}″")
     for lack in answer.lacks:
         if lack.over is not None:

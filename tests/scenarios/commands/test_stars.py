@@ -39,6 +39,19 @@ def test_what_is_of_drives_is_refused(tmp_path: Path, words: list[str]) -> None:
     assert done.exit_code == 2 and "a pointing run is calibrated alone" in done.output
 
 
+def test_a_term_of_geometry_is_missing_where_it_is_not_declared(tmp_path: Path) -> None:
+    stars = tmp_path / "stars.dat"
+    stars.write_text(tpoint(run(7201, ratio=0.0)))
+    words = ["calibrate", str(stars), "--terms", "IH,ID,CH,MA,ME", "--out", str(tmp_path)]
+    done = CliRunner().invoke(cli, words)
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("found: NP; ")
+    done = CliRunner().invoke(cli, [*words[:3], "IH,XX", *words[4:]])
+    assert str(done.exception).startswith("--terms: no term is called 'XX'; there are IH, ID, ")
+    done = CliRunner().invoke(cli, ["calibrate", "log.csv", "--terms", "IH", "--out", str(tmp_path)])
+    assert done.exit_code == 2 and "--terms is for a pointing run" in done.output
+
+
 def test_too_few_stars_are_one_line(tmp_path: Path) -> None:
     stars = tmp_path / "stars.dat"
     stars.write_text(f"x\n29 22 00 2026 03 03\n{STAR}\n")
