@@ -154,8 +154,7 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     names = list(dict.fromkeys(f.name for f in named))
     taken = f"{100 * (1 - left.part):.0f} % of what is above the floor"
     note = f"{', '.join(names)} would take {taken} only: {size}"
-    beyond = left.domain if left.share * left.part > 1 - left.part else None
-    most = replace(_unknown(beyond or first.domain, channel, left, note), equivalent=names)
+    most = replace(_unknown(first.domain, channel, left, note), equivalent=names)
     return [most, *[f for f in findings if f.name == UNKNOWN]]
 
 

@@ -21,15 +21,6 @@ def test_names_that_leave_most_above_the_floor_become_unknown_where_they_lived()
     assert "position_friction would take 30 %" in gone[0].note
 
 
-def test_what_is_left_has_the_domain_of_what_holds_more_of_it() -> None:
-    """A line takes 37 %; nine tenths of the others go on from row to row."""
-    named = [Finding("bearing_pass", "T", "axis_angle", share=0.3)]
-    gone = settle(named, Left(7.1, 0.63, "time", "over time alone", 0.9), "T")
-    assert [(f.name, f.domain, f.equivalent) for f in gone] == [("unknown", "time", ["bearing_pass"])]
-    kept = settle(named, Left(7.1, 0.63, "time", "over time alone", 0.2), "T")
-    assert [(f.name, f.domain) for f in kept] == [("unknown", "axis_angle")]
-
-
 def test_what_nobody_named_is_unknown_only_where_it_has_a_domain() -> None:
     assert settle([], Left(4.0, 1.0), "T") == [] and settle([], None, "T") == []
     found = settle([], Left(4.0, 1.0, "time", "over time", 0.5), "T")
