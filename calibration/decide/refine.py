@@ -1,6 +1,8 @@
 """Nonlinear parameters (a time constant, an onset, a resonance), and onsets that no fitted row saw."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -10,60 +12,74 @@ from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.heldout import Model, compare
 from calibration.statistics.regression import Fit
+from calibration.statistics.surrogate import basis
 from calibration.statistics.whitening import Whitener
 
 Shape = Callable[[Array], Array]
 
 
-def refine(p: Problem, base: Array, residual: Array, c: Candidate, w: Whitener) -> Candidate:
-    """Move nonlinear parameters to where the candidate takes most off the whitened training residual."""
-    if c.shape is None:
-        return c
-    at, taken = c.point, _taken(p, base, residual, c.shape, w)
-    best = taken(at)
-    reach = np.array(c.steps) * limits.REFINE_REACH
-    for _ in range(limits.REFINE_ROUNDS):
-        for k in range(len(at)):
-            for offset in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS):
-                trial = at.copy()
-                trial[k] += offset
-                value = taken(trial)
-                if value > best:
-                    best, at = value, trial
-        reach /= limits.REFINE_REACH
-    return c.moved(at)
+@dataclass(frozen=True)
+class Rest:
+    """The fitted rows `train` of a residual (n,) beside a base (n, p), through a filter."""
 
+    train: Mask
+    base: Array
+    residual: Array
+    through: Whitener
 
-def polish(p: Problem, base: Array, residual: Array, c: Candidate, w: Whitener) -> Candidate:
-    """Move nonlinear parameters that depend on each other (onset and ramp) together, of chosen effects."""
-    if c.shape is None or len(c.steps) < 2:
-        return c
-    from scipy.optimize import minimize
+    @cached_property
+    def white(self) -> Array:
+        """The whitened residual of the fitted rows."""
+        return self.through.whiten(self.residual, self.train)
 
-    at, taken = c.point, _taken(p, base, residual, c.shape, w)
-    simplex = np.vstack([at, at + np.diag(c.steps)])
-    ends = {"maxfev": limits.POLISH_EVALUATIONS, "fatol": 1e-6, "xatol": 1e-6}
-    options = {"initial_simplex": simplex, **ends}
-    found = minimize(lambda q: -taken(q), at, method="Nelder-Mead", options=options)
-    return c.moved(found.x) if -found.fun > taken(at) else c
+    @cached_property
+    def basis(self) -> Array:
+        """Orthonormal columns that span the whitened base."""
+        return basis(self.through.whiten(self.base, self.train))
 
-
-def _taken(p: Problem, base: Array, residual: Array, shape: Shape, w: Whitener) -> Callable[[Array], float]:
-    """What a shape takes off the whitened training residual, over its nonlinear parameters."""
-    e, b = w.whiten(residual, p.train), w.whiten(base, p.train)
-    q, _ = np.linalg.qr(b / np.maximum(np.linalg.norm(b, axis=0), 1e-300))
-
-    def taken(at: Array) -> float:
-        x = w.whiten(shape(at), p.train)
-        x = x - q @ (q.T @ x)
-        gram, c = x.T @ x, x.T @ e
+    def taken(self, columns: Array) -> float:
+        """Squares of the whitened residual that columns (n, k) take beside the base."""
+        x = self.through.whiten(columns, self.train)
+        x = x - self.basis @ (self.basis.T @ x)
+        gram, c = x.T @ x, x.T @ self.white
         if np.trace(gram) <= 0:
             return 0.0
         if len(c) == 1:
             return float(c[0] ** 2 / gram[0, 0])
         return float(c @ np.linalg.pinv(gram, rcond=1e-9, hermitian=True) @ c)
 
-    return taken
+
+def refine(rest: Rest, c: Candidate) -> Candidate:
+    """Move nonlinear parameters to where the candidate takes most off the whitened training residual."""
+    if (shape := c.shape) is None:
+        return c
+    at = c.point
+    best = rest.taken(shape(at))
+    reach = np.array(c.steps) * limits.REFINE_REACH
+    for _ in range(limits.REFINE_ROUNDS):
+        for k in range(len(at)):
+            for offset in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS):
+                trial = at.copy()
+                trial[k] += offset
+                value = rest.taken(shape(trial))
+                if value > best:
+                    best, at = value, trial
+        reach /= limits.REFINE_REACH
+    return c.moved(at)
+
+
+def polish(rest: Rest, c: Candidate) -> Candidate:
+    """Move nonlinear parameters that depend on each other (onset and ramp) together, of chosen effects."""
+    if (shape := c.shape) is None or len(c.steps) < 2:
+        return c
+    from scipy.optimize import minimize
+
+    at = c.point
+    simplex = np.vstack([at, at + np.diag(c.steps)])
+    ends = {"maxfev": limits.POLISH_EVALUATIONS, "fatol": 1e-6, "xatol": 1e-6}
+    options = {"initial_simplex": simplex, **ends}
+    found = minimize(lambda q: -rest.taken(shape(q)), at, method="Nelder-Mead", options=options)
+    return c.moved(found.x) if -found.fun > rest.taken(shape(at)) else c
 
 
 def slopes(c: Candidate, beta: Array) -> Array:

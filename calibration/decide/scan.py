@@ -12,10 +12,10 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.heldout import HeldOut
-from calibration.decide.refine import refine
+from calibration.decide.refine import Rest, refine
 from calibration.finding import UNKNOWN
 from calibration.statistics.regression import Fit, under
-from calibration.statistics.surrogate import taken_away
+from calibration.statistics.surrogate import basis, taken_away
 from calibration.statistics.tails import wald_log10
 from calibration.statistics.thresholds import SURE_Z
 from calibration.statistics.whitening import Whitener
@@ -144,10 +144,10 @@ def _share(p: Problem, null: Fit, base: Array, candidates: list[Candidate], whit
     def rows(x: Array) -> Array:
         return null.whitener.whiten(x, train) if white else np.asarray(x[train])
 
-    e = rows(null.residual)
+    e, q = rows(null.residual), basis(rows(base))
     taken, widths = [], []
     for some in few(candidates):
-        part, width = taken_away(e, rows(base), [rows(c.columns) for c in some])
+        part, width = taken_away(e, q, [rows(c.columns) for c in some])
         taken += part
         widths += width
     share = np.array(taken) / max(float(np.sum(e**2)), 1e-300)
@@ -174,7 +174,8 @@ def fit_with(
 
 def _fits_beside(p: Problem, base: Array, null: Fit, some: Sequence[Candidate]) -> list[Fitted]:
     """Candidates refined and fitted in full, but for those that physics refuses."""
-    moved = (refine(p, base, null.residual, c, null.whitener) for c in some)
+    rest = Rest(p.train, base, null.residual, null.whitener)
+    moved = (refine(rest, c) for c in some)
     return [(c, fit) for c in moved if (fit := _fit_beside(p, base, c)) is not None]
 
 

@@ -8,7 +8,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import SHORT, equivalents, refuse, scores, too_small
-from calibration.decide.refine import polish, settled
+from calibration.decide.refine import Rest, polish, settled
 from calibration.decide.rules import (
     below_surrogates,
     leave_out,
@@ -20,7 +20,7 @@ from calibration.decide.rules import (
 from calibration.decide.scan import Contender, few, fit_with, look
 from calibration.decide.selection import NO_SCORES, Refusal, Selection
 from calibration.statistics.regression import under
-from calibration.statistics.surrogate import Scores, orthonormal_blocks, score, together
+from calibration.statistics.surrogate import Scores, basis, orthonormal_blocks, score, together
 
 
 def select(
@@ -45,11 +45,12 @@ def gate(s: Selection, candidates: list[Candidate], rng: np.random.Generator) ->
         return NO_SCORES
     p, w = s.problem, s.after.whitener
     e, noise, base = (w.whiten(x, p.train) for x in (s.before.residual, s.after.residual, p.base))
+    own = basis(base)
     signs = rng.choice([-1.0, 1.0], size=(limits.DRAWS, len(range(0, len(e), p.block))))
     parts = []
     for some in few(candidates):  # all at once would be the largest array of the whole analysis
         x = w.whiten(np.hstack([c.columns for c in some]), p.train)
-        q, widths = orthonormal_blocks(x, base, [c.width for c in some])
+        q, widths = orthonormal_blocks(x, own, [c.width for c in some])
         parts.append(score(e, noise, q, widths, p.block, signs))
     return together(parts, limits.GATE_LEVEL)
 
@@ -152,7 +153,8 @@ def _polished(s: Selection, k: int) -> Selection:
         return s
     others = s.without(k)
     base = others.columns
-    better = polish(p, base, others.after.residual, pick.candidate, pick.fit.whitener)
+    rest = Rest(p.train, base, others.after.residual, pick.fit.whitener)
+    better = polish(rest, pick.candidate)
     found = fit_with(p, base, better)
     if found is None:
         return s

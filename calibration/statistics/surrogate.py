@@ -23,25 +23,23 @@ class Scores:
     surrogate_max: Array
 
 
-def orthonormal_blocks(x: Array, base: Array, widths: list[int]) -> tuple[Array, list[int]]:
-    """Candidates' columns orthonormal beside the base, and how many remain: what is there is dropped."""
-    q = _basis(base)
+def orthonormal_blocks(x: Array, q: Array, widths: list[int]) -> tuple[Array, list[int]]:
+    """Candidates' columns orthonormal beside a basis, and how many remain: what is there is dropped."""
     rest = x - q @ (q.T @ x)
     parts = [rest[:, at] @ turn for at, turn in _blocks(x, q, widths)]
     return np.hstack([x[:, :0], *parts]), [part.shape[1] for part in parts]
 
 
-def taken_away(e: Array, base: Array, blocks: list[Array]) -> tuple[list[float], list[int]]:
-    """Squares of `e` (n,) that blocks (n, k) take beside the base (n, p), and how many columns count."""
-    q = _basis(base)
-    x = np.hstack([base[:, :0], *blocks])
+def taken_away(e: Array, q: Array, blocks: list[Array]) -> tuple[list[float], list[int]]:
+    """Squares of `e` (n,) that blocks (n, k) take beside a basis (n, p), and how many columns count."""
+    x = np.hstack([q[:, :0], *blocks])
     along = x.T @ (e - q @ (q.T @ e))
     turned = [along[at] @ turn for at, turn in _blocks(x, q, [b.shape[1] for b in blocks])]
     return [float(np.sum(a**2)) for a in turned], [len(a) for a in turned]
 
 
-def _basis(base: Array) -> Array:
-    """Orthonormal columns that span the base's."""
+def basis(base: Array) -> Array:
+    """Orthonormal columns (n, p) that span the base's."""
     return np.asarray(np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))[0])
 
 

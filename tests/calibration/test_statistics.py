@@ -16,7 +16,7 @@ from calibration.decide.scan import look
 from calibration.decide.thresholds import FOLDS
 from calibration.statistics.orders import order_spectrum, peaks
 from calibration.statistics.regression import gls
-from calibration.statistics.surrogate import orthonormal_blocks, score, taken_away, together
+from calibration.statistics.surrogate import basis, orthonormal_blocks, score, taken_away, together
 from calibration.statistics.whitening import Whitener, fit_ar
 
 
@@ -65,7 +65,7 @@ def test_the_surrogate_threshold_holds_its_level_on_coloured_noise() -> None:
                 for f in np.linspace(0.1, 5, 60)
             ]
         )
-        q, widths = orthonormal_blocks(columns, np.ones((n, 1)), [2] * 60)
+        q, widths = orthonormal_blocks(columns, basis(np.ones((n, 1))), [2] * 60)
         signs = rng.choice([-1.0, 1.0], size=(200, n // 200))
         s = together([score(e, e, q, widths, 200, signs)], 0.99)
         alarms += s.value.max() > s.threshold
@@ -193,8 +193,8 @@ def test_what_blocks_take_away_is_the_same_from_inner_products_and_from_columns(
     base, e = rng.standard_normal((500, 3)), rng.standard_normal(500)
     blocks = [rng.standard_normal((500, k)) for k in (1, 2, 3)]
     blocks.append(np.column_stack([blocks[0], 2 * blocks[0], base[:, 1]]))  # a twin, and one of the base
-    q, widths = orthonormal_blocks(np.hstack(blocks), base, [b.shape[1] for b in blocks])
+    q, widths = orthonormal_blocks(np.hstack(blocks), basis(base), [b.shape[1] for b in blocks])
     parts = np.split((q.T @ e) ** 2, np.cumsum(widths)[:-1])
-    taken, kept = taken_away(e, base, blocks)
+    taken, kept = taken_away(e, basis(base), blocks)
     assert kept == widths == [1, 2, 3, 1]
     assert taken == pytest.approx([p.sum() for p in parts])
