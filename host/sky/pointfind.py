@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from host.sky.pointfit import NEW, SIGNIFICANT, fit_stars, held_out
+from host.sky.pointfit import SIGNIFICANT, beside, fit_stars, held_out, significance
 from host.sky.pointmodel import PointingModel
 from host.sky.pointsmooth import Smooth, chance, functions
 from host.sky.pointstars import Stars, rms
@@ -64,7 +64,7 @@ def find(stars: Stars, declared: tuple[str, ...] = GEOMETRY) -> Answer:
         smooth = _smooth(stars, names)
     if smooth:
         model = fit_stars(stars, names)
-    lacks = [_term(stars, model, names, declared, smooth, name) for name in names if name not in declared]
+    lacks = [_term(stars, model, names, smooth, name) for name in names if name not in declared]
     lacks += [_unknown(stars, names, each) for each in smooth]
     unseen, confounded = _limits(stars, names)
     twins = any(lack.equivalent for lack in lacks)
@@ -106,20 +106,15 @@ def _held_out(stars: Stars, names: tuple[str, ...], smooth: tuple[Smooth, ...]) 
 
 def _stands(stars: Stars, names: tuple[str, ...], smooth: tuple[Smooth, ...], name: str) -> bool:
     """Whether a term is significant beside everything else."""
-    column = stars.columns((name,))
-    others = _design(stars, tuple(each for each in names if each != name), smooth)
-    basis, _ = np.linalg.qr(others)
-    new = (column - basis @ (basis.T @ column))[:, 0]
-    residuals = stars.left(tuple(each for each in names if each != name))
+    others = tuple(each for each in names if each != name)
+    basis, _ = np.linalg.qr(_design(stars, others, smooth))
+    residuals = stars.left(others)
     residuals = residuals - basis @ (basis.T @ residuals)
-    size = float(new @ residuals) / float(new @ new)
-    rest = residuals - size * new
-    deviation = np.sqrt(rest @ rest / (len(rest) - others.shape[1] - 1) / (new @ new))
-    return abs(size) > SIGNIFICANT * float(deviation)
+    return significance(stars.columns((name,))[:, 0], basis, residuals) > SIGNIFICANT
 
 
 def _term(
-    stars: Stars, model: PointingModel, names: tuple[str, ...], declared: tuple[str, ...],
+    stars: Stars, model: PointingModel, names: tuple[str, ...],
     smooth: tuple[Smooth, ...], name: str,
 ) -> Lack:  # fmt: skip
     """A term that is missing, with those that could stand in its place."""
@@ -166,9 +161,8 @@ def _limits(stars: Stars, names: tuple[str, ...]) -> tuple[dict[str, float], tup
     for name in TERMS:
         if name in names:
             continue
-        column = stars.columns((name,))[:, 0]
-        new = column - basis @ (basis.T @ column)
-        if new @ new < NEW * (column @ column):
+        new = beside(stars.columns((name,))[:, 0], basis)
+        if new is None:
             confounded.append(name)
         else:
             unseen[name] = SIGNIFICANT * float(deviation / np.sqrt(new @ new))

@@ -83,19 +83,28 @@ def _candidate(stars: Stars, names: tuple[str, ...]) -> str | None:
     """The most significant term that is left, if it is significant."""
     residuals = stars.left(names)
     basis, _ = np.linalg.qr(stars.columns(names))
-    scores: dict[str, float] = {}
-    for name in TERMS:
-        column = stars.columns((name,))[:, 0]
-        new = column - basis @ (basis.T @ column)
-        if name in names or new @ new < NEW * (column @ column):
-            continue
-        value = float(new @ residuals) / float(new @ new)
-        rest = residuals - value * new
-        deviation = float(np.sqrt(rest @ rest / (len(rest) - len(names) - 1) / (new @ new)))
-        scores[name] = abs(value) / max(deviation, 1e-12)
+    columns = {name: stars.columns((name,))[:, 0] for name in TERMS if name not in names}
+    scores = {name: significance(column, basis, residuals) for name, column in columns.items()}
     # DAF is HCEC and NP: equal scores differ by rounding, and the first of the table is taken.
     found = max(scores, key=lambda each: round(scores[each], 6), default="")
     return found if scores.get(found, 0.0) > SIGNIFICANT else None
+
+
+def beside(column: Array, basis: Array) -> Array | None:
+    """Part of a column (2 n,) that an orthonormal basis does not hold; None: this sky cannot tell the two."""
+    new: Array = column - basis @ (basis.T @ column)
+    return None if new @ new < NEW * (column @ column) else new
+
+
+def significance(column: Array, basis: Array, residuals: Array) -> float:
+    """A column's coefficient over its standard deviation, beside a basis that residuals are free of."""
+    new = beside(column, basis)
+    if new is None:
+        return 0.0
+    value = float(new @ residuals) / float(new @ new)
+    rest = residuals - value * new
+    deviation = float(np.sqrt(rest @ rest / (len(rest) - basis.shape[1] - 1) / (new @ new)))
+    return abs(value) / max(deviation, 1e-12)
 
 
 def held_out(design: Array, residuals: Array) -> float:

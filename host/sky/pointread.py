@@ -19,6 +19,10 @@ encoders read. Every other column of numbers is a variable that errors may depen
 LABEL = "step"
 """A column of text."""
 _LATITUDE = re.compile(r"#\s*latitude_deg\s*:\s*(\S+)\s*$")
+_OTHERS = ("#", "PHD2")
+"""An axis log and a guide log begin so, whatever the file is called; TPOINT's caption does not."""
+_LINE = 200
+"""Characters of a first line that are looked at."""
 _SKIPPED = ("", "END")
 _RECORD = 14
 """Numbers of a record: three each of both places of the star and of the telescope, two of sidereal time."""
@@ -31,12 +35,12 @@ class PointingRunError(ValueError):
 
 
 def is_run(path: Path) -> bool:
-    """Whether a file is a pointing run: by its name (`.dat`, `.tpt`), or a CSV by its columns."""
-    if path.suffix.lower() in (".dat", ".tpt"):
-        return path.is_file()
-    if path.suffix.lower() != ".csv" or not path.is_file():
+    """Whether a file is a pointing run: `.dat` or `.tpt` without another's head, or a CSV by its columns."""
+    if path.suffix.lower() not in (".dat", ".tpt", ".csv") or not path.is_file():
         return False
     with path.open(encoding="utf-8", errors="replace") as file:
+        if path.suffix.lower() != ".csv":
+            return not file.readline(_LINE).startswith(_OTHERS)
         head = next((line for line in file if not line.startswith("#")), "")
     return {HOUR_ANGLE, DECLINATION, *AXES} <= {each.strip() for each in head.split(",")}
 

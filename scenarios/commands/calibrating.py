@@ -38,10 +38,10 @@ def calibrate(
 
     Of a pointing run (TPOINT's .dat, or CSV): the missing terms, and the model."""
     need("calibrate")
-    if any(is_run(log) for log in logs):
+    if rig is None and any(is_run(log) for log in logs):
         from scenarios.commands.stars import calibrate_stars
 
-        if len(logs) > 1 or rig or hold_out or plant:
+        if len(logs) > 1 or hold_out or plant:
             raise click.UsageError("a pointing run is calibrated alone, with --terms and --out only")
         sys.exit(calibrate_stars(logs[0], terms, out))
     if terms is not None:

@@ -76,7 +76,9 @@ def test_a_csv_keeps_its_other_columns(tmp_path: Path) -> None:
 
 def test_another_csv_is_no_pointing_run(tmp_path: Path) -> None:
     assert not is_run(written(tmp_path, "t,position\n0,1\n", "log.csv"))
-    assert not is_run(tmp_path / "stars.dat")
+    assert not is_run(written(tmp_path, "# format: axis-log 1\n", "log.dat"))
+    assert not is_run(written(tmp_path, "PHD2 version 2.6\n", "guide.dat"))
+    assert not is_run(tmp_path / "none.dat")
 
 
 @pytest.mark.parametrize(

@@ -31,12 +31,19 @@ def test_a_missing_term_is_told_and_written(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "pointing-run.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("words", [["--hold-out", "a"], ["--rig", "r.yaml"], ["two.dat"]])
+@pytest.mark.parametrize("words", [["--hold-out", "a"], ["--plant", "p.yaml"], ["two.dat"]])
 def test_what_is_of_drives_is_refused(tmp_path: Path, words: list[str]) -> None:
     stars = tmp_path / "stars.dat"
     stars.write_text("x\n")
     done = CliRunner().invoke(cli, ["calibrate", str(stars), *words, "--out", str(tmp_path)])
     assert done.exit_code == 2 and "a pointing run is calibrated alone" in done.output
+
+
+def test_a_table_of_a_drive_may_be_called_dat(tmp_path: Path) -> None:
+    log = tmp_path / "log.dat"
+    log.write_text("t x\n0 1\n")
+    words = ["calibrate", str(log), "--rig", str(tmp_path / "none.yaml"), "--out", str(tmp_path)]
+    assert "none.yaml" in str(CliRunner().invoke(cli, words).exception)
 
 
 def test_a_term_of_geometry_is_missing_where_it_is_not_declared(tmp_path: Path) -> None:
