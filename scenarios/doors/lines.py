@@ -29,6 +29,8 @@ class Feed:
 
     def until(self, now_ns: int) -> bytes:
         """The bytes whose stop bit is over by `now_ns` and that have not been handed out."""
+        if not self._packets:
+            return b""
         found = bytearray()
         while self._packets:
             start_ns, packet = self._packets[0]

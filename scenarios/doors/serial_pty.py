@@ -23,8 +23,11 @@ class Source(Protocol):
 
 
 class PtyPort:
-    """One line. heard, lost: bytes that went to a reader, and that it was too slow for. take: gets what a
-    program sends, None: the line has no receiver, it goes nowhere."""
+    """One line.
+
+    number: its file descriptor. heard, lost: bytes that went to a reader, and that it was too slow for.
+    take: gets what a program sends, None: the line has no receiver, it goes nowhere.
+    """
 
     def __init__(self, link: Path, feed: Source, take: Callable[[bytes], None] | None = None) -> None:
         self.link = link
@@ -33,19 +36,17 @@ class PtyPort:
         self.heard = 0
         self.lost = 0
         self.in_use = False
-        self._master, slave = os.openpty()
+        self.number, slave = os.openpty()
         try:
-            os.set_blocking(self._master, False)
+            os.set_blocking(self.number, False)
             tty.setraw(slave)
             target = os.ttyname(slave)
         finally:
             os.close(slave)  # from now on POLLHUP tells that nobody has the port open
-        self._poll = select.poll()
-        self._poll.register(self._master, select.POLLIN)
         try:
             self._name(target)
         except OSError:
-            os.close(self._master)
+            os.close(self.number)
             raise
 
     def _name(self, target: str) -> None:
@@ -55,19 +56,20 @@ class PtyPort:
             raise DoorError(f"{self.link} exists and is no symbolic link; another folder?")
         self.link.symlink_to(target)
 
-    def poll(self, now_ns: int) -> None:
-        """Put on the line what is through by now; a port that nobody has open hears nothing."""
+    def poll(self, now_ns: int, state: int) -> None:
+        """Put on the line what is through by now; a port that nobody has open hears nothing.
+
+        state: the events of `number`, as poll(2) has them.
+        """
         data = self.feed.until(now_ns)
-        events = self._poll.poll(0)
-        state = events[0][1] if events else 0
         if state & select.POLLHUP:
             if self.in_use:
                 self.in_use = False
-                tty.setraw(self._master)
+                tty.setraw(self.number)
             return
         if not self.in_use:
             self.in_use = True
-            termios.tcflush(self._master, termios.TCIOFLUSH)  # what the last reader left
+            termios.tcflush(self.number, termios.TCIOFLUSH)  # what the last reader left
         if state & select.POLLIN:
             self._swallow()
         if data:
@@ -75,7 +77,7 @@ class PtyPort:
 
     def _write(self, data: bytes) -> None:
         try:
-            count = os.write(self._master, data)
+            count = os.write(self.number, data)
         except BlockingIOError:
             count = 0
         self.heard += count
@@ -83,7 +85,7 @@ class PtyPort:
 
     def _swallow(self) -> None:
         try:
-            data = os.read(self._master, _CHUNK)
+            data = os.read(self.number, _CHUNK)
         except OSError:  # the reader has just gone
             return
         if self.take is not None and data:
@@ -91,7 +93,7 @@ class PtyPort:
 
     def close(self) -> None:
         """Take the port and its name away."""
-        os.close(self._master)
+        os.close(self.number)
         if self.link.is_symlink():
             self.link.unlink()
 
@@ -106,6 +108,7 @@ class PtyDoor:
         self._folder = Path(folder)
         self._live = live
         self.ports: list[PtyPort] = []
+        self._poll = select.poll()  # one look at all of them: most have nothing to say
         self._close = ExitStack()
 
     def open(self) -> None:
@@ -115,6 +118,8 @@ class PtyDoor:
             for name in self._names():
                 port = PtyPort(self._folder / name, *self._ends(name))
                 self._close.callback(port.close)
+                self._poll.register(port.number, select.POLLIN)
+                self._close.callback(self._poll.unregister, port.number)
                 self.ports.append(port)
         except (OSError, ValueError) as error:
             self.close()
@@ -136,8 +141,9 @@ class PtyDoor:
 
     def poll(self, now_ns: int) -> None:
         """Every line, byte by byte."""
+        states = dict(self._poll.poll(0))
         for port in self.ports:
-            port.poll(now_ns)
+            port.poll(now_ns, states.get(port.number, 0))
 
     def close(self) -> None:
         """Remove all of them."""
