@@ -55,7 +55,7 @@ def measure(quick: bool, say: Console) -> dict[str, Any]:
         stage("ticks of a served network")
         served = serving.punctuality(15 if quick else 120, native)
         stage("a network stepped by a host")
-        stepped = serving.stepped(5 if quick else 30, native)
+        stepped = serving.stepped(5 if quick else 30, native, step_ms=5)
     return {
         "begun": begun,
         "machine": {"name": history.machine(), "cores": os.cpu_count(), "load": os.getloadavg()},

@@ -1,4 +1,4 @@
-"""Two rows of docs/results/speed.md: `python -m tests.benchmarks.rows`, minutes of a quiet machine."""
+"""Rows of docs/results/speed.md: `python -m tests.benchmarks.rows`, minutes of a quiet machine."""
 
 import os
 import subprocess
@@ -23,10 +23,14 @@ def main() -> int:
     except BuildError as error:
         print(f"only the plain way is measured: {error}", file=sys.stderr)
         native = False
-    rates = {way: each["times_real_time"] for way, each in serving.stepped(30, native).items()}
-    figures = ", ".join(f"{way} {rate:.0f} ×" for way, rate in rates.items())
-    print(f"| a network stepped by a host in another process, times real time by CPU | {figures} | ≥ 30 × |")
-    return int(done.returncode != 0 or min(rates.values()) < 30)
+    missed = done.returncode != 0
+    for step_ms in (5, 20):  # an interrupt of the boards; a host's loop of fifty turns a second
+        found = serving.stepped(30, native, step_ms)
+        rates = {way: each["times_real_time"] for way, each in found.items()}
+        figures = ", ".join(f"{way} {rate:.0f} ×" for way, rate in rates.items())
+        print(f"| a host in another process steps by {step_ms} ms: times real time by CPU | {figures} | ≥ 30 × |")
+        missed |= min(rates.values()) < 30
+    return int(missed)
 
 
 if __name__ == "__main__":

@@ -60,16 +60,16 @@ def punctuality(seconds: int, native: bool) -> dict[str, dict[str, float]]:
     return found
 
 
-def stepped(seconds: int, native: bool) -> dict[str, dict[str, float]]:
-    """By way: times real time of a network that a host in another process steps by 5 ms, hearing every frame.
+def stepped(seconds: int, native: bool, step_ms: int) -> dict[str, dict[str, float]]:
+    """By way: times real time of a network that a host in another process steps, hearing every frame.
 
     By CPU time of both processes together: what they would do on one core that is theirs.
     """
     ways = {"plain": True} | ({"compiled": False} if native else {})
-    return {way: _stepped(seconds, pure) for way, pure in ways.items()}
+    return {way: _stepped(seconds, pure, step_ms) for way, pure in ways.items()}
 
 
-def _stepped(seconds: int, pure: bool) -> dict[str, float]:
+def _stepped(seconds: int, pure: bool, step_ms: int) -> dict[str, float]:
     with (
         tempfile.TemporaryDirectory() as folder,
         _served(pure, Path(folder), "--clock", "steps", "--serial", f"pty:{folder}/ports") as (
@@ -80,7 +80,7 @@ def _stepped(seconds: int, pure: bool) -> dict[str, float]:
         with Stepped(str(port)) as clock:
             clock.step("1 s")
             cpu, began_s = _cpu_s(process.pid), time.process_time()
-            frames = sum(len(clock.step("5 ms")) for _ in range(200 * seconds))
+            frames = sum(len(clock.step(f"{step_ms} ms")) for _ in range(1000 * seconds // step_ms))
             cpu, own = _cpu_s(process.pid) - cpu, time.process_time() - began_s
         ask(port, "stop")
     return {"times_real_time": seconds / (cpu + own), "host_cpu_s": own, "frames": frames}
