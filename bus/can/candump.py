@@ -36,9 +36,11 @@ class _Digest(Protocol):
 
 def line(t_ns: int, frame: Frame, channel: str = "can0") -> str:
     """One line without its end; the time is cut to microseconds as candump has it."""
-    name = f"{frame.identifier:08X}" if frame.extended else f"{frame.identifier:03X}"
+    us = t_ns // 1000
+    name = "%08X" if frame.extended else "%03X"
     body = f"R{len(frame.data)}" if frame.remote else frame.data.hex().upper()
-    return f"({t_ns // 1_000_000_000}.{t_ns // 1000 % 1_000_000:06d}) {channel} {name}#{body}"
+    parts = (us // _US_PER_S, us % _US_PER_S, channel, name % frame.identifier, body)
+    return "(%d.%06d) %s %s#%s" % parts  # noqa: UP031  mypyc calls format() for every f-string with a width
 
 
 def parsed(text: str) -> tuple[int, Frame] | None:
