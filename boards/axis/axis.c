@@ -11,6 +11,7 @@ _Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
 
 #define INT32_TOP INT32_C(0x7FFFFFFF)
 #define Q16 INT32_C(65536)
+#define SHARE_SHIFT 5 /* counter.py */
 #define Q18 INT64_C(262144)
 #define UNITS_PER_STEP INT32_C(55125) /* Q18 counts in a step of the absolute encoder, exactly */
 #define COUNTS_PER_TURN INT32_C(112896000)
@@ -74,6 +75,7 @@ struct board {
     uint32_t ticks;
     int16_t velocity, effort, effort_command;
     uint16_t poscnt, counter;
+    int32_t share_q16;                                      /* of the counter torque, smoothed */
     uint8_t device, mode, selected, near_ticks;
     uint8_t fault, fixed, reached, watching, blending;      /* fixed: the effort is commanded */
     uint8_t first, waiting, late, late_reply[8];            /* inbox and a reply that found no buffer */
@@ -725,7 +727,8 @@ static int16_t drive_fine(struct board *b, int64_t setpoint_q16) { /* duties fin
         effort = limited(effort + compensation_q16(b, (int32_t)setpoint_q16), (int64_t)b->settings[PWM_STEPS] * Q16);
     size = size_of(effort);
     if (b->p[SPREAD]) {
-        lag = share_of(b, size * b->p[SPLIT] / 100);
+        b->share_q16 += (int32_t)(share_of(b, size * b->p[SPLIT] / 100) - b->share_q16) >> SHARE_SHIFT;
+        lag = b->share_q16;
     } else {
         size = (size + Q16 / 2) / Q16 * Q16;
         counter_follow(b, (int16_t)(size / Q16));
@@ -861,6 +864,7 @@ void board_reset(struct board *b) {
     b->auxiliary_rate_q8 = 0;
     pi_start(b, 0, 0, 0);
     b->counter = 0;
+    b->share_q16 = 0;
     b->effort = 0;
     fix_effort(b, 0);
     b->velocity = 0;

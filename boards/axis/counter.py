@@ -10,18 +10,26 @@ its rounding.
 from typing import Final
 
 _PERCENT: Final = 100
+SHARE_SHIFT: Final = 5
+"""Time constant of the finer share, 2**5 ticks: 160 ms. A share that follows at once swings with the loop at
+3 to 8 Hz, where wind pushes. Chosen on wind of 3 and 10 N m among 2**3, 2**5, 2**7 (`objective`)."""
 
 
 class CounterTorque:
     """split: share of the effort, percent. register: PWM steps. fade: speed, counts/5 ms, at which the share
     has fallen to nothing; 0: never."""
 
-    __slots__ = ("fade", "register", "split")
+    __slots__ = ("_share_q16", "fade", "register", "split")
 
     def __init__(self, split: int, fade: int) -> None:
         self.split = split
         self.fade = fade
+        self.start()
+
+    def start(self) -> None:
+        """No share yet."""
         self.register = 0
+        self._share_q16 = 0
 
     def follow(self, effort: int, velocity: int) -> int:
         """Move the register for an effort (PWM steps); returns by how much, with the effort's sign."""
@@ -37,7 +45,11 @@ class CounterTorque:
         return now - register if effort >= 0 else register - now
 
     def share_q16(self, effort_q16: int, velocity: int) -> int:
-        """The same share without whole steps, of a size in Q16: more effort is never less torque."""
+        """The same share without whole steps, of a size in Q16, smoothed over `SHARE_SHIFT`. In one tick more
+        effort is never less torque."""
         share = effort_q16 * self.split // _PERCENT
         fade = self.fade
-        return share * max(0, fade - abs(velocity)) // fade if fade else share
+        if fade:
+            share = share * max(0, fade - abs(velocity)) // fade
+        self._share_q16 += (share - self._share_q16) >> SHARE_SHIFT
+        return self._share_q16

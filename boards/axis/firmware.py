@@ -104,7 +104,7 @@ class AxisBoard(PeriodicBoard):
         self.tach_b.forget()
         self.auxiliary.forget()
         self.pi.start(0, 0, 0)
-        self.counter.register = 0
+        self.counter.start()
         self.effort = 0
         self.effort_command = 0
         self.velocity = 0

@@ -40,5 +40,5 @@ LEDGER: Final = Ledger(
     window_ns=5_000_000,
     extra_cycles=HARMONICS * HARMONIC_CYCLES + FRICTION_CYCLES,
 )
-"""More RAM than the chip has: samples and packets of nine columns do not fit (FIDELITY.md, B1). Lock, blend
-and bias book no cycles."""
+"""More RAM than the chip has: samples and packets of nine columns do not fit (FIDELITY.md, B1). Lock, blend,
+bias and smoothed share book no cycles."""

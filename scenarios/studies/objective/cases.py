@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from bus.protocol import AxisParameter
 from plant.model import with_effects
 from plant.parts import EffectModel, PlantModel
+from scenarios.studies.objective.wind import SPEEDS_M_S, wind
 
 EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
 """At the catalogue's default size (`schmidt effects NAME`)."""
@@ -24,12 +25,15 @@ class Case:
     """Parameters of the firmware that are left out: the steps of a ladder."""
     compensated: bool = False
     high: bool = False
+    wind_m_s: float = 0.0
 
     def plant(self, low: PlantModel, high: PlantModel) -> PlantModel:
         """The plant with the effects added to those it has."""
         model = high if self.high else low
-        added = tuple(EffectModel(name) for name in self.effects)
-        return with_effects(model, "ra", model.axes.ra.effects + added)
+        added = [EffectModel(name) for name in self.effects]
+        if self.wind_m_s:
+            added.append(wind(self.wind_m_s))
+        return with_effects(model, "ra", (*model.axes.ra.effects, *added))
 
 
 def cases(compensation: bool) -> tuple[Case, ...]:
@@ -43,6 +47,10 @@ def cases(compensation: bool) -> tuple[Case, ...]:
     rows.append(Case(name="with all four, the paper's firmware", effects=EFFECTS, firmware="paper"))
     rows.append(Case(name="high preload, the paper's firmware", firmware="paper", high=True))
     rows.append(Case(name="high preload, spread duty, bias, lock, blend", high=True))
+    for speed in SPEEDS_M_S:
+        name = f"wind of {speed:g} m/s"
+        rows.append(Case(name=f"{name}, the paper's firmware", firmware="paper", wind_m_s=speed))
+        rows.append(Case(name=name, wind_m_s=speed))
     return tuple(rows)
 
 

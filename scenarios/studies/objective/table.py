@@ -25,7 +25,7 @@ class Row(NamedTuple):
     wander: list[float]
     lost: int
     judged: bool
-    """Whether the objective is asked of it: not of the paper's firmware, nor of high preload."""
+    """Whether the objective is asked of it: not of the paper's firmware, of high preload, nor in wind."""
 
     @property
     def worst(self) -> float:
@@ -65,7 +65,7 @@ def measure(
                 case=case.name, mode=mode, peaks=[each.peak for each in held],
                 rms=[each.rms for each in held], wander=[each.wander for each in held],
                 lost=sum(each.lost for each in held),
-                judged=case.firmware != "paper" and not case.high and not case.without,
+                judged=case.firmware != "paper" and not (case.high or case.without or case.wind_m_s),
             )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.axis.compensator import Compensator
+from boards.axis.counter import CounterTorque
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE, TABLE
 from boards.core.interrupts import InterruptController
@@ -32,10 +33,18 @@ def put(lab: Lab, number: int, value: int) -> None:
 
 @given(st.integers(0, 3000 * ONE), st.integers(0, 3000 * ONE), st.integers(10, 25))
 def test_B1_more_effort_is_never_less_net_torque(one: int, other: int, split: int) -> None:
-    lab = Lab()
-    lab.axis.counter.split = split
     low, high = sorted((one, other))
-    assert low - lab.axis.counter.share_q16(low, 0) <= high - lab.axis.counter.share_q16(high, 0)
+    lesser, greater = CounterTorque(split, 0), CounterTorque(split, 0)
+    for effort in (one, other):  # the same past
+        assert lesser.share_q16(effort, 0) == greater.share_q16(effort, 0)
+    assert low - lesser.share_q16(low, 0) <= high - greater.share_q16(high, 0)
+
+
+def test_B1_the_share_settles_at_its_percentage_of_the_effort() -> None:
+    counter = CounterTorque(10, 0)
+    shares = [counter.share_q16(130 * ONE, 0) for _ in range(400)]
+    assert 0.03 < shares[0] / (13 * ONE) < 0.04  # 2**-5 of the way in a tick
+    assert abs(shares[-1] - 13 * ONE) <= 32
 
 
 def test_B1_the_fraction_reaches_the_switches(lab: Lab) -> None:
@@ -44,7 +53,9 @@ def test_B1_the_fraction_reaches_the_switches(lab: Lab) -> None:
     lab.run(3.0)
     wanted = lab.axis.pi.effort_q16 / ONE / 3000
     assert wanted * 3000 % 1
-    assert lab.plant.duties == pytest.approx((wanted, wanted / 10), abs=1e-6)
+    lead, lag = lab.plant.duties
+    assert lead == pytest.approx(wanted, abs=1e-6)
+    assert lag == pytest.approx(wanted / 10, abs=0.01 * wanted)  # the share is smoothed, the effort moves
 
 
 def test_B1_off_again_is_the_papers_firmware(lab: Lab) -> None:
