@@ -44,10 +44,16 @@ class Device:
     members: Mapping[str, Member]
     actions: Mapping[str, Act] = {}
     unique_id: str
+    number = "0"
 
     def __init__(self, desk: AsyncDesk) -> None:
         self.desk = desk
         self.connected = False
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"Schmidt {self.kind}"
 
     @property
     def now(self) -> Snapshot:
@@ -145,7 +151,7 @@ COMMON = (
     Member("DriverInfo", lambda _device, _: "schmidt, the Schmidt telescope's host program", always=True),
     Member("DriverVersion", lambda _device, _: importlib.metadata.version("schmidt"), always=True),
     Member("InterfaceVersion", lambda device, _: device.interface_version, always=True),
-    Member("Name", lambda device, _: f"Schmidt {device.kind}", always=True),
+    Member("Name", lambda device, _: device.name, always=True),
     Member("SupportedActions", lambda device, _: list(device.actions), always=True),
     Member("DeviceState", _device_state),
     Member("Action", put=lambda device, given: device.act(given)),

@@ -3,20 +3,25 @@
 import importlib.metadata
 import itertools
 import socket
+from collections.abc import Sequence
 
+import numpy as np
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from bus.protocol.nodes import DOME, WEATHER
+from host.alpaca.camera import CameraDevice
 from host.alpaca.device import Device
 from host.alpaca.dome import DomeDevice
 from host.alpaca.errors import AlpacaError, Malformed
 from host.alpaca.focuser import FocuserDevice
+from host.alpaca.imagebytes import picture
 from host.alpaca.observing import ObservingConditionsDevice, SafetyMonitorDevice
 from host.alpaca.parameters import Parameters
 from host.alpaca.telescope import TelescopeDevice
+from host.camera.camera import Camera
 from host.guard import Guard
 from host.telescope import AsyncDesk, Telescope
 from host.web import answer
@@ -25,16 +30,20 @@ _BODY_BYTES = 1 << 16
 
 
 class Alpaca:
-    """Telescope 0 and focuser 0; dome 0 and what the weather stations tell, where the network has them."""
+    """Telescope 0 and focuser 0; dome 0 and what the weather stations tell, where the network has them.
 
-    def __init__(self, telescope: Telescope) -> None:
+    Camera 0 is the telescope's, camera 1 the guider's; they need an emulated sky.
+    """
+
+    def __init__(self, telescope: Telescope, cameras: Sequence[Camera] = ()) -> None:
         desk = AsyncDesk(telescope)
         devices: list[Device] = [TelescopeDevice(desk), FocuserDevice(desk)]
         if telescope.house.expected(DOME):
             devices.append(DomeDevice(desk))
         if telescope.house.expected(WEATHER):
             devices += [ObservingConditionsDevice(desk), SafetyMonitorDevice(desk)]
-        self.devices = {device.kind: device for device in devices}
+        devices += [CameraDevice(desk, camera, number) for number, camera in enumerate(cameras)]
+        self.devices = {(device.kind, device.number): device for device in devices}
         self.requests = 0
         self._numbers = itertools.count(1)
         app = Starlette(
@@ -57,8 +66,8 @@ class Alpaca:
         """One property or method."""
         self.requests += 1
         where, put = request.path_params, request.method == "PUT"
-        device = self.devices.get(where["kind"])
-        if device is None or where["number"] != "0":
+        device = self.devices.get((where["kind"], where["number"]))
+        if device is None:
             return PlainTextResponse(f"no {where['kind'][:40]} {where['number'][:10]}", 400)
         member = device.members.get(where["member"])
         if member is None or (member.put if put else member.get) is None:
@@ -77,6 +86,8 @@ class Alpaca:
             return PlainTextResponse(str(error), 400)
         except AlpacaError as error:
             number, message = error.number, str(error)
+        if isinstance(value, np.ndarray):
+            return picture(value, request.headers.get("accept", ""), transaction, next(self._numbers))
         return self._answer(transaction, value, number, message)
 
     def _answer(self, transaction: int, value: object, number: int = 0, message: str = "") -> Response:
@@ -112,9 +123,9 @@ class Alpaca:
     async def _configured(self, request: Request) -> Response:
         value = [
             {
-                "DeviceName": f"Schmidt {device.kind}",
+                "DeviceName": device.name,
                 "DeviceType": type(device).__name__.removesuffix("Device"),
-                "DeviceNumber": 0,
+                "DeviceNumber": int(device.number),
                 "UniqueID": device.unique_id,
             }
             for device in self.devices.values()

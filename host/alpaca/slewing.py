@@ -139,7 +139,8 @@ async def _move_axis(device: SlewingDevice, given: Parameters) -> None:
         await device.do(lambda t: t.paddle.release(_AXES[axis]))
 
 
-async def _pulse(device: SlewingDevice, given: Parameters) -> None:
+async def pulse(device: Device, given: Parameters) -> None:
+    """PulseGuide, of a telescope or a camera."""
     direction = int(within("Direction", given.integer("Direction"), 0, 3))
     milliseconds = within("Duration", given.integer("Duration"), 0, _LONGEST_PULSE_MS)
     if device.now.parked:
@@ -152,7 +153,7 @@ MEMBERS = (
     Member("FindHome", put=missing_put("FindHome")),
     Member("MoveAxis", put=_move_axis),
     Member("Park", put=_park),
-    Member("PulseGuide", put=_pulse),
+    Member("PulseGuide", put=pulse),
     Member("SetPark", put=_set_park),
     Member("SlewToAltAz", put=_slew_ground(wait=True)),
     Member("SlewToAltAzAsync", put=_slew_ground(wait=False)),

@@ -17,6 +17,8 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 @doors(*ON_NETWORK, *ON_HOST)
 @runs
 @click.option("--logs", type=PATH, help="Folder of the host's four logs.")
+@click.option("--stars", type=PATH, help="The cameras' stars: a CSV with name, ra, dec, magnitude.")
+@click.option("--frames", type=PATH, metavar="DIR", help="Folder for the cameras' frames as FITS files.")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
 @click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
 @click.option(
@@ -48,6 +50,7 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 def serve(options: ServeOptions) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
     need(*_extras(options), *(() if options.record is None else ("parquet",)))
+    need(*(() if options.frames is None else ("camera",)))
     if options.snapshots is not None or options.begun is not None:
         from scenarios.native.finder import plain
 

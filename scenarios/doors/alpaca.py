@@ -1,4 +1,4 @@
-"""`--alpaca [HOST:]PORT`: ASCOM Alpaca telescope and focuser, and their discovery."""
+"""`--alpaca [HOST:]PORT`: ASCOM Alpaca telescope, focuser and cameras, and their discovery."""
 
 from host.alpaca import discovery
 from host.alpaca.server import Alpaca
@@ -12,7 +12,7 @@ class AlpacaDoor(ServerDoor):
 
     def __init__(self, spec: str, host: Host) -> None:
         super().__init__(f"--alpaca {spec}", host)
-        self.alpaca = Alpaca(host.pc.telescope)
+        self.alpaca = Alpaca(host.pc.telescope, host.pc.cameras)
         self._address = address(spec, "--alpaca")
         self._found = "discovery off"
 

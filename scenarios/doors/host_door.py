@@ -14,6 +14,7 @@ from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.looks import Looks
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import dated
 from scenarios.doors.pipe_messages import (
@@ -69,6 +70,7 @@ class HostProcess:
         self._sent_ns = 0
         self._bus_s = 0.0
         self._watching = False
+        self._looks = Looks(served)
         self.doors: list[tuple[str, str]] = []
         """(name, state) of its doors, as it last said."""
         self.lost = 0
@@ -124,6 +126,7 @@ class HostProcess:
         if self._waiting and self._served.pacer.speed > 1.0 and now_ns - self._sent_ns > 2 * TICK_NS:
             self._let_it_catch_up(_BUS_S)
         self._bus.poll()
+        self._looks.poll(now_ns)
         if self._waiting or not self._ready:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
                 if self._process is not None:
@@ -136,7 +139,7 @@ class HostProcess:
         lines = [(name, data) for name, feed in self._feeds if (data := feed.until(now_ns))]
         bus = self._bus_state()
         if reports or lines or bus is not None or now_ns - self._sent_ns >= TICK_NS:
-            self._send(Slice(now_ns, reports, lines, bus))
+            self._send(Slice(now_ns, reports, lines, bus, self._looks.taken()))
             self._waiting, self._asked_s, self._sent_ns = True, monotonic(), now_ns
             if self._served.steps is not None:
                 self._let_it_catch_up(_SILENT_S)
@@ -185,6 +188,7 @@ class HostProcess:
             self._out(said.data)
         elif isinstance(said, Taken):
             self._waiting, self._watching, self.doors = False, said.watching, said.doors
+            self._looks.wanted = said.looking
             self._record(said.recording)
         elif isinstance(said, Wish):
             self._bus.wish(

@@ -12,12 +12,15 @@ class OptionError(ValueError):
 @dataclass(frozen=True, kw_only=True)
 class DoorOptions:
     """asked: specs as written, by the door's name in `scenarios.doors.table`. token: for clients of other
-    machines; None: made up. logs: folder of the host's logs. runs: of what a console records."""
+    machines; None: made up. logs: folder of the host's logs. runs: of what a console records. stars: a CSV
+    of the cameras' sky; None: a synthetic one. frames: folder of their FITS files; None: none are written."""
 
     asked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     token: str | None = None
     logs: Path | None = None
     runs: Path = Path("out/console")
+    stars: Path | None = None
+    frames: Path | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from bus.protocol import Device
+from host.camera.camera import Camera
 from host.client import TICK_NS, Client
 from host.console.views import BusView
 from host.link import HidLink
@@ -56,6 +57,8 @@ class TelescopePc:
         self.link = HidLink(send)
         client = Client(self.link, self.journal, in_order(devices))
         self.telescope = Telescope(client, self.observatory, self.journal)
+        self.cameras: tuple[Camera, ...] = ()
+        """Of an emulated sky; a real telescope's cameras have programs of their own."""
         self._log_ns = round(scenario.status_period_s * 1e9)
         self._next_log_ns = 0
         self._next_ns = 0

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bus.protocol import Device
+from host.camera.look import Look
 from host.console.views import FaultKind, Node
 from scenarios.doors.options import DoorOptions
 from scenarios.language.model import Scenario
@@ -38,20 +39,23 @@ class BusState(NamedTuple):
 
 class Slice(NamedTuple):
     """To the host: simulated time has come this far, and this has come over the cables since. lines: (board,
-    bytes) of RS232 lines that are recorded. bus: None when nobody looks at it."""
+    bytes) of RS232 lines that are recorded. bus: None when nobody looks at it. looks: where the telescope
+    truly looked, for a camera whose shutter is open."""
 
     now_ns: int
     reports: list[tuple[int, bytes]]
     lines: list[tuple[str, bytes]]
     bus: BusState | None
+    looks: list[Look]
 
 
 class Taken(NamedTuple):
     """From the host: that slice is done with. Until then no other is sent. watching: somebody looks at the
-    bus; recording: somebody wants the lines; doors: (name, state) of each."""
+    bus; recording: somebody wants the lines; looking: a shutter is open; doors: (name, state) of each."""
 
     watching: bool
     recording: bool
+    looking: bool
     doors: list[tuple[str, str]]
 
 

@@ -6,6 +6,7 @@ from threading import Lock
 
 from host.outside import Outside
 from scenarios.doors.busmirror import BusMirror
+from scenarios.doors.cameras import cameras
 from scenarios.doors.keeper import Keeper
 from scenarios.doors.pc import TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
@@ -25,6 +26,7 @@ class PipedHost:
         self._now_ns = 0
         options = settings.options
         self.pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
+        self.pc.cameras = cameras(settings.scenario, options)
         self.outside = Outside()
         self.bus = BusMirror(settings.boards, settings.kinds, self._send)
         self.runs = RecordedRuns(options.runs, settings.headers, self.pc.journal)
@@ -51,7 +53,7 @@ class PipedHost:
             return
         told = self._told()
         self._close()
-        self._send(Taken(False, False, told))
+        self._send(Taken(False, False, False, told))
 
     def _take(self, message: object) -> bool:
         """A message; False when it is the last."""
@@ -63,8 +65,12 @@ class PipedHost:
                 self.runs.receive(message.now_ns, board, data)
             if message.bus is not None:
                 self.bus.state = message.bus
+            for look in message.looks:
+                for camera in self.pc.cameras:
+                    camera.take(look)
             self.pc.poll(self._now_ns)
-            self._send(Taken(self.bus.watching, self.runs.recording, self._told()))
+            looking = any(camera.looking for camera in self.pc.cameras)
+            self._send(Taken(self.bus.watching, self.runs.recording, looking, self._told()))
         elif isinstance(message, Done):
             self.bus.done(message)
         return not isinstance(message, Close)

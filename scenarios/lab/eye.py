@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
+from host.camera.look import Look
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
 
 NOISE_ARCSEC = 0.3
 """Standard deviation of a solved place in each coordinate. ASSUMPTION: seeing of 2″ over some 50 stars."""
+
+
+_UP_RAD = 1e-5
+"""A step of the declination axis, which shows what is up in a picture."""
 
 
 class Eye:
@@ -45,7 +50,7 @@ class Eye:
             off = self._known.popleft()
         else:
             place = observe(star, self._scenario.site, self._scenario.clock, t_ns * 1e-9)
-            hour_angle, declination = self._looks_at(t_ns)
+            _, hour_angle, declination, *_ = look(self.plant, self._scenario, t_ns)
             off = (
                 math.remainder(place.hour_angle_rad - hour_angle, 2 * math.pi) + west / math.cos(declination),
                 place.declination_rad - declination + north,
@@ -54,14 +59,18 @@ class Eye:
             self.told(*off)
         return off
 
-    def _looks_at(self, t_ns: int) -> tuple[float, float]:
-        mount, rad = self._scenario.mount, 2 * math.pi / STEPS_PER_TURN
-        ra = self.plant.ra.truth(t_ns)[0] - mount.ra.zero_steps * rad
-        dec = self.plant.dec.truth(t_ns)[0] - mount.dec.zero_steps * rad
-        errors = self.plant.model.mount
-        if errors is None:
-            return ra, dec
-        from plant.mount import sky
 
-        hour_angle, declination = sky(ra, dec, self._scenario.site.latitude_rad, errors)
-        return float(hour_angle), float(declination)
+def look(plant: Plant, scenario: Scenario, t_ns: int) -> Look:
+    """Where the true telescope looks, the mount's errors included, and where its focus truly is."""
+    mount, rad = scenario.mount, 2 * math.pi / STEPS_PER_TURN
+    ra = plant.ra.truth(t_ns)[0] - mount.ra.zero_steps * rad
+    dec = plant.dec.truth(t_ns)[0] - mount.dec.zero_steps * rad
+    focus_m, errors = plant.focus.position_m(t_ns), plant.model.mount
+    if errors is None:
+        return Look(t_ns, ra, dec, 0.0, focus_m)
+    from plant.mount import sky
+
+    hour_angles, declinations = sky([ra, ra], [dec, dec + _UP_RAD], scenario.site.latitude_rad, errors)
+    west = (hour_angles[1] - hour_angles[0]) * math.cos(declinations[0])
+    roll = math.atan2(west, declinations[1] - declinations[0])
+    return Look(t_ns, float(hour_angles[0]), float(declinations[0]), roll, focus_m)

@@ -3,7 +3,10 @@
 from pathlib import Path
 
 from host.outside import Outside
+from scenarios.doors.cameras import cameras
 from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.looks import Looks
+from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import TelescopePc
 
 
@@ -14,8 +17,18 @@ class HostInProcess:
         self._plug = served.usb.plug("the host")
         self.pc = TelescopePc(served.scenario, self._plug.write, served.network.devices, logs)
         self.outside = Outside()
+        self.looks = Looks(served)
+        self._scenario = served.scenario
+
+    def open_cameras(self, options: DoorOptions) -> None:
+        self.pc.cameras = cameras(self._scenario, options)
 
     def poll(self, now_ns: int) -> None:
+        self.looks.wanted = any(camera.looking for camera in self.pc.cameras)
+        self.looks.poll(now_ns)
+        for look in self.looks.taken():
+            for camera in self.pc.cameras:
+                camera.take(look)
         for t_ns, report in self._plug.reports():
             self.pc.link.receive(t_ns, report)
         self.pc.poll(now_ns)

@@ -5,6 +5,7 @@ import threading
 from pathlib import Path
 from time import monotonic, sleep
 
+from scenarios.doors.options import DoorOptions
 from tests.host.telescope.conftest import START, Rig
 
 
@@ -17,8 +18,11 @@ class Live(Rig):
         speed: float = 20.0,
         start: dt.datetime = START,
         network: str = "lab",
+        cameras: bool = False,
     ) -> None:
         super().__init__(logs, start, network)
+        if cameras:
+            self.host.open_cameras(DoorOptions(asked={"alpaca": ("0",)}))
         self.outside = self.host.outside
         self.speed = speed
         self._end = threading.Event()

@@ -1,0 +1,161 @@
+"""ICameraV4: the telescope's camera and the guide camera, on the emulated sky."""
+
+from collections.abc import Callable
+
+from host.alpaca.device import Device, Get, Member, Put, fixed, missing, missing_put, table
+from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, within
+from host.alpaca.parameters import Parameters
+from host.alpaca.slewing import pulse
+from host.camera.camera import Camera, Frame, Order, State
+from host.camera.light import Window
+from host.camera.readout import Counts
+from host.telescope import AsyncDesk
+
+MOST_BINNING = 4
+LONGEST_S = 3600.0
+"""ASSUMPTION: an hour, as the looks of an exposure are kept in memory."""
+
+
+class CameraDevice(Device):
+    """Windows are in binned pixels, from the upper left. Exposures take simulated time."""
+
+    kind = "camera"
+    interface_version = 4
+
+    def __init__(self, desk: AsyncDesk, camera: Camera, number: int) -> None:
+        super().__init__(desk)
+        self.camera, self.model, self.number = camera, camera.model, str(number)
+        self.description = f"{camera.model.name} with {camera.model.sensor}, emulated"
+        self.unique_id = f"8ad6c6f4-0b0e-4f0b-9c52-5c1d5f1d001{number}"
+        self.binning = 1
+        self.window = {"StartX": 0, "StartY": 0, "NumX": self.model.width, "NumY": self.model.height}
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return self.model.name
+
+    @property
+    def frame(self) -> Frame:
+        """The last one, or INVALID_OPERATION."""
+        found = self.camera.frame
+        if found is None:
+            raise AlpacaError(INVALID_OPERATION, self.camera.error or "there is no frame; expose one first")
+        return found
+
+    def done(self) -> int:
+        """Percent of the exposure."""
+        return int(self.camera.done * 100)
+
+    def state(self) -> dict[str, object]:
+        """Operational properties."""
+        return {
+            "CameraState": int(self.camera.state), "CCDTemperature": self.model.temperature_c,
+            "ImageReady": self.camera.frame is not None, "IsPulseGuiding": self.now.pulse_guiding,
+            "PercentCompleted": self.done(),
+        }  # fmt: skip
+
+    def checked(self) -> Window:
+        """The window in pixels of the detector, or INVALID_VALUE."""
+        b, w = self.binning, self.window
+        wide, high = self.model.width // b, self.model.height // b
+        for start, size, most in (("StartX", "NumX", wide), ("StartY", "NumY", high)):
+            if not (w[start] >= 0 and w[size] >= 1 and w[start] + w[size] <= most):
+                raise AlpacaError(
+                    INVALID_VALUE,
+                    f"{start} {w[start]} and {size} {w[size]} leave the {most} bins of the detector",
+                )
+        return Window(left=w["StartX"] * b, top=w["StartY"] * b, width=w["NumX"] * b, height=w["NumY"] * b)
+
+
+def _of(read: Callable[[CameraDevice], object]) -> Get:
+    return lambda device, _: read(device)
+
+
+def _array(device: CameraDevice, _: Parameters) -> Counts:
+    return device.frame.counts
+
+
+def _started(device: CameraDevice) -> str:
+    return device.camera.clock.iso(device.frame.start_s).rstrip("Z")
+
+
+def _set_window(name: str) -> Put:
+    async def put(device: CameraDevice, given: Parameters) -> None:
+        device.window[name] = given.integer(name)
+
+    return put
+
+
+def _set_binning(name: str) -> Put:
+    async def put(device: CameraDevice, given: Parameters) -> None:
+        device.binning = int(within(name, given.integer(name), 1, MOST_BINNING))
+
+    return put
+
+
+async def _start(device: CameraDevice, given: Parameters) -> None:
+    low = device.model.shortest_s
+    seconds, lit = within("Duration", given.number("Duration"), 0, LONGEST_S), given.truth("Light")
+    if lit:
+        within("Duration", seconds, low, LONGEST_S)
+    window = device.checked()
+    if device.camera.state in (State.EXPOSING, State.READING):
+        raise AlpacaError(INVALID_OPERATION, "an exposure is under way; abort it first")
+    device.camera.start(Order(seconds=max(seconds, low), window=window, binning=device.binning, lit=lit))
+
+
+async def _abort(device: CameraDevice, _: Parameters) -> None:
+    device.camera.abort()
+
+
+async def _stop(device: CameraDevice, _: Parameters) -> None:
+    device.camera.stop()
+
+
+async def _set_mode(_device: CameraDevice, given: Parameters) -> None:
+    within("ReadoutMode", given.integer("ReadoutMode"), 0, 0)
+
+
+_CAN = ("AbortExposure", "PulseGuide", "StopExposure")
+_CANNOT = ("AsymmetricBin", "FastReadout", "GetCoolerPower", "SetCCDTemperature")
+_MISSING = (
+    "BayerOffsetX", "BayerOffsetY", "CoolerPower", "Gains", "GainMax", "GainMin", "HeatSinkTemperature",
+    "OffsetMax", "OffsetMin", "Offsets",
+)  # fmt: skip
+_MISSING_PUT = ("CoolerOn", "FastReadout", "Gain", "Offset", "SetCCDTemperature", "SubExposureDuration")
+CameraDevice.members = table(
+    *(Member(f"Can{what}", fixed(True)) for what in _CAN),
+    *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
+    *(Member(name, missing(name)) for name in _MISSING),
+    *(Member(name, missing(name), missing_put(name)) for name in _MISSING_PUT),
+    *(Member(name, _of(lambda d: d.binning), _set_binning(name)) for name in ("BinX", "BinY")),
+    *(Member(f"Max{name}", fixed(MOST_BINNING)) for name in ("BinX", "BinY")),
+    *(Member(name, _of(lambda d, name=name: d.window[name]), _set_window(name)) for name in (  # type: ignore[misc]
+        "StartX", "StartY", "NumX", "NumY")),
+    *(Member(name, _of(lambda d, name=name: d.state()[name])) for name in (  # type: ignore[misc]
+        "CameraState", "CCDTemperature", "ImageReady", "IsPulseGuiding", "PercentCompleted")),
+    Member("CameraXSize", _of(lambda d: d.model.width)),
+    Member("CameraYSize", _of(lambda d: d.model.height)),
+    Member("ElectronsPerADU", _of(lambda d: d.model.gain_e_adu)),
+    Member("ExposureMax", fixed(LONGEST_S)),
+    Member("ExposureMin", _of(lambda d: d.model.shortest_s)),
+    Member("ExposureResolution", fixed(0.0)),
+    Member("FullWellCapacity", _of(lambda d: d.model.full_well_e)),
+    Member("HasShutter", fixed(True)),
+    Member("ImageArray", _array),
+    Member("ImageArrayVariant", _array),
+    Member("LastExposureDuration", _of(lambda d: d.frame.seconds)),
+    Member("LastExposureStartTime", _of(_started)),
+    Member("MaxADU", _of(lambda d: d.model.most_adu)),
+    Member("PixelSizeX", _of(lambda d: d.model.pixel_m * 1e6)),
+    Member("PixelSizeY", _of(lambda d: d.model.pixel_m * 1e6)),
+    Member("ReadoutMode", fixed(0), _set_mode),
+    Member("ReadoutModes", fixed(["normal"])),
+    Member("SensorName", _of(lambda d: d.model.sensor)),
+    Member("SensorType", fixed(0)),
+    Member("AbortExposure", put=_abort),
+    Member("PulseGuide", put=pulse),
+    Member("StartExposure", put=_start),
+    Member("StopExposure", put=_stop),
+)  # fmt: skip

@@ -1,0 +1,130 @@
+"""The stars of a field: a catalogue of one's own, or a synthetic sky with bright stars in their places."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from bus.time import generator
+from bus.units import ARCSEC_PER_RAD
+from host.sky.catalogue import STARS
+from host.sky.listed import read
+
+Array = npt.NDArray[np.float64]
+FAINTEST: Final = 14.0
+"""Magnitude at which the synthetic sky ends. ASSUMPTION: some thousand stars on the large detector."""
+BRIGHTEST: Final = 4.0
+"""Where it begins; brighter stars have names. ASSUMPTION."""
+_AT_10, _SLOPE = 7.9, 0.43
+"""Stars brighter than 10 mag per square degree, and the decimal growth per magnitude: the mean sky of Allen,
+Astrophysical Quantities (1973), section 117, to a quarter between 8 and 14 mag."""
+_CELL = math.radians(1.0)
+_MAS_PER_RAD = ARCSEC_PER_RAD * 1000
+_MAGNITUDES = {
+    "Alpheratz": 2.07, "Polaris": 1.97, "Mirfak": 1.79, "Aldebaran": 0.87, "Rigel": 0.18, "Capella": 0.08,
+    "Bellatrix": 1.64, "Elnath": 1.65, "Betelgeuse": 0.45, "Sirius": -1.44, "Castor": 1.58, "Procyon": 0.40,
+    "Pollux": 1.16, "Regulus": 1.36, "Dubhe": 1.81, "Denebola": 2.14, "Alioth": 1.76, "Spica": 0.98,
+    "Arcturus": -0.05, "Antares": 1.06, "Vega": 0.03, "Altair": 0.76, "Deneb": 1.25, "Fomalhaut": 1.17,
+}  # fmt: skip
+"""V of the stars to align on (Hipparcos, ESA 1997, field H5)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stars:
+    """Places in the ICRS at J2000.0, rad; proper motions in rad/yr, that in RA without the cosine."""
+
+    right_ascension: Array
+    declination: Array
+    pm_ra: Array
+    pm_dec: Array
+    parallax_arcsec: Array
+    magnitude: Array
+
+    def near(self, right_ascension: float, declination: float, radius: float) -> "Stars":
+        """Those within a radius, rad."""
+        kept = separation(self.right_ascension, self.declination, right_ascension, declination) <= radius
+        return Stars(**{name: column[kept] for name, column in vars(self).items()})
+
+
+class Sky(Protocol):
+    """All stars there are."""
+
+    def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
+        """Those within a radius, all rad."""
+
+
+def separation(ra: Array, dec: Array, ra0: float, dec0: float) -> Array:
+    """Angles between places, rad (haversine)."""
+    half = np.sin((dec - dec0) / 2) ** 2 + np.cos(dec) * math.cos(dec0) * np.sin((ra - ra0) / 2) ** 2
+    return np.asarray(2 * np.arcsin(np.sqrt(np.clip(half, 0, 1))))
+
+
+def stars(ra: npt.ArrayLike, dec: npt.ArrayLike, magnitude: npt.ArrayLike) -> Stars:
+    """Stars without proper motions."""
+    columns = [np.asarray(each, dtype=float) for each in (ra, dec, magnitude)]
+    none = np.zeros_like(columns[0])
+    return Stars(
+        right_ascension=columns[0], declination=columns[1], magnitude=columns[2],
+        pm_ra=none, pm_dec=none, parallax_arcsec=none,
+    )  # fmt: skip
+
+
+def from_file(path: Path) -> Stars:
+    """A CSV with columns name, ra, dec, magnitude (`host.sky.listed`); raises ValueError with its line."""
+    found = read(path)
+    for each in found:
+        if each.magnitude is None:
+            raise ValueError(f"{path}: {each.star.name} has no magnitude; a camera needs one")
+    return stars(
+        [each.star.right_ascension_rad for each in found],
+        [each.star.declination_rad for each in found],
+        [each.magnitude or 0.0 for each in found],
+    )
+
+
+def bright() -> Stars:
+    """The stars to align on, with their proper motions."""
+    named = list(STARS.values())
+    dec = np.array([star.declination_rad for star in named])
+    return Stars(
+        right_ascension=np.array([star.right_ascension_rad for star in named]),
+        declination=dec,
+        pm_ra=np.array([star.pm_ra_mas_yr for star in named]) / _MAS_PER_RAD / np.cos(dec),
+        pm_dec=np.array([star.pm_dec_mas_yr for star in named]) / _MAS_PER_RAD,
+        parallax_arcsec=np.array([star.parallax_mas for star in named]) / 1000,
+        magnitude=np.array([_MAGNITUDES[star.name] for star in named]),
+    )
+
+
+class SyntheticSky:
+    """The same stars for everybody, cell by cell of about a square degree."""
+
+    def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
+        """Synthetic and bright stars within a radius, all rad."""
+        reach = radius + 2 * _CELL
+        found = [bright()]
+        low, high = (math.floor((declination + side * reach) / _CELL) for side in (-1, 1))
+        for band in range(low, high + 1):
+            middle = (band + 0.5) * _CELL
+            if abs(middle) > math.pi / 2:
+                continue
+            count = max(1, round(2 * math.pi * math.cos(middle) / _CELL))
+            ra = (np.arange(count) + 0.5) * 2 * math.pi / count
+            away = separation(ra, np.full(count, middle), right_ascension, declination)
+            found += [self._cell(band, int(k), count) for k in np.flatnonzero(away <= reach)]
+        names = vars(found[0])
+        joined = Stars(**{name: np.concatenate([vars(each)[name] for each in found]) for name in names})
+        return joined.near(right_ascension, declination, radius)
+
+    def _cell(self, band: int, number: int, count: int) -> Stars:
+        random = generator(0, f"sky {band} {number}")
+        low, high = math.sin(band * _CELL), math.sin((band + 1) * _CELL)
+        area_deg2 = (high - low) * 2 * math.pi / count * math.degrees(1) ** 2
+        expected = _AT_10 * 10 ** (_SLOPE * (FAINTEST - 10)) * area_deg2
+        share = random.uniform(10 ** (_SLOPE * (BRIGHTEST - FAINTEST)), 1.0, random.poisson(expected))
+        ra = (number + random.uniform(0, 1, len(share))) * 2 * math.pi / count
+        dec = np.arcsin(random.uniform(low, high, len(share)))
+        return stars(ra, dec, FAINTEST + np.log10(share) / _SLOPE)
