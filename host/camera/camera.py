@@ -37,7 +37,7 @@ class Order:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """What an exposure has left. counts: rows from the top, in ADU; looks: from opening to closing."""
+    """An exposure as it was read out. counts: rows from the top, in ADU; looks: from opening to closing."""
 
     model: CameraModel
     order: Order

@@ -21,8 +21,10 @@ def write(frame: Frame, site: Site, clock: Clock, folder: Path) -> Path:
 
 
 def header(frame: Frame, site: Site, clock: Clock) -> fits.Header:
-    """Keywords of a frame. RA, DEC and the WCS: where the middle of the detector truly looked at half time,
-    ICRS, degrees; distortion by refraction is not in it (below 0.001 of a field's size)."""
+    """Keywords of a frame. RA, DEC and the WCS are of the true place at half time, ICRS, degrees.
+
+    The WCS is linear: refraction bends a field by less than a thousandth of its size.
+    """
     model, order = frame.model, frame.order
     middle = frame.looks[len(frame.looks) // 2]
     ra, dec = (math.degrees(angle) for angle in catalogued(middle, site, clock))

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from bus.units import ARCSEC_PER_RAD
 
 PHOTONS_M2_S = 8.8e9
-"""Photons of a star of V = 0 above the air, per m² and s, in the V band: about 1000 per cm², s and Å over
-890 Å (Bessell 1979, PASP 91, 589)."""
+"""Photons of a star of V = 0 above the air in the V band, per m² and s.
+
+Source: Bessell 1979, PASP 91, 589: about 1000 per cm², s and Å. The band is 890 Å wide.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +39,7 @@ class CameraModel:
 
     @property
     def pixel_rad(self) -> float:
-        """What a pixel spans in the middle of the field, rad."""
+        """Angle of a pixel in the middle of the field, rad."""
         return self.pixel_m / self.focal_length_m
 
     @property

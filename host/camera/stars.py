@@ -19,8 +19,10 @@ FAINTEST: Final = 14.0
 BRIGHTEST: Final = 4.0
 """Where it begins; brighter stars have names. ASSUMPTION."""
 _AT_10, _SLOPE = 7.9, 0.43
-"""Stars brighter than 10 mag per square degree, and the decimal growth per magnitude: the mean sky of Allen,
-Astrophysical Quantities (1973), section 117, to a quarter between 8 and 14 mag."""
+"""Stars brighter than 10 mag per square degree, and the decimal growth per magnitude.
+
+Source: the mean sky of Allen, Astrophysical Quantities (1973), section 117. Error: a quarter.
+"""
 _CELL = math.radians(1.0)
 _MAS_PER_RAD = ARCSEC_PER_RAD * 1000
 _MAGNITUDES = {
