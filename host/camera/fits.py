@@ -36,6 +36,8 @@ def header(frame: Frame, site: Site, clock: Clock) -> fits.Header:
     found["INSTRUME"] = (model.sensor, model.name)
     found["TELESCOP"] = "schmidt"
     found["DATE-OBS"] = (clock.iso(frame.start_s).rstrip("Z"), "UTC, shutter open")
+    days, fraction = clock.julian(frame.start_s)
+    found["MJD-OBS"] = (days - 2400000.5 + fraction, "the same in days")
     found["EXPTIME"] = (frame.seconds, "s")
     found["IMAGETYP"] = "Light Frame" if order.lit else "Dark Frame"
     found["GAIN"] = (model.gain_e_adu, "electrons per ADU")

@@ -1,11 +1,12 @@
 """alpyca on the cameras of a live network: frames in both formats, windows, refusals, and where stars are."""
 
 import array
+import json
 from collections.abc import Iterator
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
-import requests
 from alpaca.camera import Camera, CameraStates
 from alpaca.exceptions import InvalidOperationException, InvalidValueException, NotImplementedException
 from alpaca.telescope import GuideDirections
@@ -38,7 +39,8 @@ def test_a_frame_comes_in_both_formats(skies: AlpacaLive) -> None:
     camera.BinX, camera.StartX, camera.NumX, camera.StartY, camera.NumY = 2, 100, 300, 50, 200
     counts = exposed(camera, 5.0)
     assert counts.shape == (200, 300) and counts.max() > np.median(counts) + 500
-    answer = requests.get(f"http://{skies.address}/api/v1/camera/1/imagearray", timeout=30).json()
+    with urlopen(f"http://{skies.address}/api/v1/camera/1/imagearray", timeout=30) as said:
+        answer = json.load(said)
     assert (answer["Rank"], answer["Type"]) == (2, 2)
     assert np.array_equal(np.array(answer["Value"]).T, counts)
     assert camera.LastExposureDuration == pytest.approx(5.0, abs=1e-6)
