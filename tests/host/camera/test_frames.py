@@ -8,11 +8,11 @@ import pytest
 
 from bus.time import generator
 from host.camera.camera import Frame, Order, expose
-from host.camera.light import Window
+from host.camera.light import Window, light
 from host.camera.look import Look
 from host.camera.models import GUIDE, MAIN, CameraModel
 from host.camera.seeing import Wander
-from host.camera.stars import SyntheticSky
+from host.camera.stars import SyntheticSky, stars
 from host.sky.catalogue import STARS
 from host.sky.observed import Clock, observe
 from host.sky.site import NAINITAL
@@ -22,17 +22,22 @@ SIDEREAL_RAD_S = 7.2921159e-5
 START_S = 100.0
 
 
-def frame(
-    seconds: float, west_rad_s: float = 0.0, focus_m: float = 0.0, seed: int = 1, model: CameraModel = GUIDE,
-    size: int = 201,
-) -> Frame:  # fmt: skip
-    """Pollux in the middle of a window; the telescope drifts west of it. Roll is nought."""
+def path(seconds: float, west_rad_s: float = 0.0, focus_m: float = 0.0) -> list[Look]:
     looks = []
     for k in range(int(seconds * 100) + 1):
         t_s = START_S + k * 0.01
         place = observe(STARS["Pollux"], NAINITAL, CLOCK, t_s)
         hour_angle_rad = place.hour_angle_rad + west_rad_s * k * 0.01
         looks.append(Look(round(t_s * 1e9), hour_angle_rad, place.declination_rad, 0.0, focus_m))
+    return looks
+
+
+def frame(
+    seconds: float, west_rad_s: float = 0.0, focus_m: float = 0.0, seed: int = 1, model: CameraModel = GUIDE,
+    size: int = 201,
+) -> Frame:  # fmt: skip
+    """Pollux in the middle of a window; the telescope drifts west of it. Roll is nought."""
+    looks = path(seconds, west_rad_s, focus_m)
     left, top = (model.width - size) // 2, (model.height - size) // 2
     order = Order(seconds=seconds, window=Window(left=left, top=top, width=size, height=size))
     wander = Wander(model.aperture_m, seed, model.name)
@@ -73,6 +78,24 @@ def test_a_bright_star_ends_at_the_full_well() -> None:
     one = frame(5.0, model=MAIN, size=61)
     top = min(MAIN.full_well_e / MAIN.gain_e_adu + MAIN.offset_adu, MAIN.most_adu)
     assert top - 200 < one.counts.max() <= min(top + 200, MAIN.most_adu)
+
+
+def test_a_window_is_a_part_of_the_whole_frame() -> None:
+    def seen(window: Window) -> np.ndarray:
+        wander = Wander(GUIDE.aperture_m, 1, GUIDE.name)
+        return light(GUIDE, path(0.5), window, SyntheticSky(), NAINITAL, CLOCK, wander)
+
+    whole = seen(Window(left=0, top=0, width=GUIDE.width, height=GUIDE.height))
+    part = seen(Window(left=1000, top=20, width=280, height=150))
+    assert np.allclose(part, whole[20:170, 1000:], atol=1e-6)
+    assert part.max() > 2 * np.median(part)  # there is a star in it
+
+
+def test_a_sky_without_a_star_there_is_dark() -> None:
+    far = stars([0.0], [-1.5], [5.0])
+    window = Window(left=0, top=0, width=40, height=30)
+    image = light(GUIDE, path(0.5), window, far, NAINITAL, CLOCK, Wander(GUIDE.aperture_m, 1, GUIDE.name))
+    assert image.shape == (30, 40) and np.ptp(image) == 0
 
 
 def test_the_same_seed_is_the_same_frame() -> None:
