@@ -36,6 +36,6 @@ def final(tmp_path_factory: pytest.TempPathFactory) -> Iterator[AlpacaLive]:
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[AlpacaLive]:
-    made = AlpacaLive(tmp_path_factory.mktemp("alpaca"))
+    made = AlpacaLive(tmp_path_factory.mktemp("alpaca"), cameras=True)
     yield made
     made.close()
