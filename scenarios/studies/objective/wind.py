@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from plant.effects.wind_torque import EFFECT
 from plant.parts import EffectModel, Number
 
 AIR_KG_M3: Final = 1.0
@@ -26,4 +27,4 @@ def wind(speed_m_s: float) -> EffectModel:
     }
     source = f"wind of {speed_m_s:g} m/s, scenarios/studies/objective/wind.py"
     numbers = {name: Number(value, unit, source) for name, (value, unit) in values.items()}
-    return EffectModel("wind_torque", parameters=numbers)
+    return EffectModel(EFFECT.name, parameters=numbers)
