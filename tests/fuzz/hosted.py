@@ -90,7 +90,7 @@ def alpaca(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
 
     hosted = Hosted(served)
     door = Alpaca(hosted.telescope)
-    members = [(kind, name) for kind, device in door.devices.items() for name in device.members]
+    members = [(kind, name) for (kind, _), device in door.devices.items() for name in device.members]
     found = {"accepted": 0, "refused": 0}
 
     def one(_number: int) -> None:
