@@ -40,7 +40,7 @@ def look_at_volts(view: View, balance: Problem) -> Balance | None:
     declared, residual = p.plain_fit(p.train)
     own = replace(view, response=Response("voltage", "V"))
     scene = Scene(own, p, declared, residual, np.zeros((len(p.y), 0)), windings=b.windings)
-    s = leave_out(signed(select(p, offered(scene))), worth_little)
+    s = leave_out(signed(select(p, offered(scene), around=True)), worth_little)
     s, together, more = beyond_names(s, scene)
     final = p.by_name(s.after.beta)
     quotients = {n: declared[n] / x for n, x in final.items() if declared[n] * x > 0}
@@ -80,7 +80,7 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
     pair = Pair(frame=frame, motion=m, motor=np.repeat([0.0, 1.0], len(m.pick)))
     scene = scene_of_balance(pair, p, p.fit().residual, declared)
     scene.windings = w
-    s = result.selections["E"] = select(p, offered(scene), result.rng)
+    s = result.selections["E"] = select(p, offered(scene), result.rng, around=True)
     mean_currents(frame, p, s.after)
     fit = p.named(s.after)
     constant, spread = fit["torque_constant"].value, fit["torque_constant"].error

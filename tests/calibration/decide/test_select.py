@@ -178,3 +178,25 @@ def test_a_time_constant_is_refined_between_the_points_of_its_grid() -> None:
     found = parameters_of(s, 0)["time_constant"]
     assert found.value == pytest.approx(26.0, abs=3.0)
     assert found.low is not None and found.high is not None and found.low < 26.0 < found.high
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_name_that_imitates_two_is_found_out_by_searching_around_it(seed: int) -> None:
+    """Beside the imitation, either of the two takes half a per cent of the error; together they take 12 %."""
+    rng = np.random.default_rng(20 + seed)
+    sag, deadband, luck = rng.standard_normal((3, ROWS, 1))
+    have = [term("sag", sag), term("deadband", deadband), term("loss", sag + deadband + 0.32 * luck)]
+    y = 1.2 * (sag + deadband)[:, 0] + rng.standard_normal(ROWS)
+    assert [c.name for c in select(problem(y), have, rng).candidates] == ["loss"]
+    s = select(problem(y), have, rng, around=True)
+    assert {c.name for c in s.candidates} == {"sag", "deadband"}
+    assert [r.why for r in s.refused if r.what == "loss"][-1].endswith("explain it better")
+
+
+def test_what_is_true_alone_stands_against_what_is_around_it() -> None:
+    rng = np.random.default_rng(30)
+    sag, deadband, luck = rng.standard_normal((3, ROWS, 1))
+    loss = sag + deadband + 0.32 * luck
+    have = [term("sag", sag), term("deadband", deadband), term("loss", loss)]
+    s = select(problem(1.2 * loss[:, 0] + rng.standard_normal(ROWS)), have, rng, around=True)
+    assert [c.name for c in s.candidates] == ["loss"]
