@@ -1,7 +1,7 @@
 """Light on a detector: stars along the path of the telescope, through seeing and focus."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +19,14 @@ SKY_MAGNITUDE = 21.0
 """Of a square arcsecond. ASSUMPTION: a dark night without the Moon."""
 _CELL_PX = 0.25
 """The path is gathered in cells of this size; far below an image's width."""
-_STEP_PX, _MOST = 0.5, 4000
-"""Between two samples of a path, and how many it has at most."""
+_STEP_PX, _MOST = 0.5, 100_000
+"""Between two samples of a path, and how many it has at most: 50 000 pixels' way."""
+_PIECE_PX = 500.0
+"""Of a path that has its own stars; of memory, and far below a field's width."""
+_FASTEST_PX_S = 100.0
+"""Beyond this the sky alone is seen. Simplified: a slew's trails of all stars would take minutes to draw."""
+_UNSEEN_E = 0.5
+"""A star that leaves less in a pixel of its trail is left out: far below the noise of a readout."""
 _KNOTS = 24
 """Times at which stars are computed exactly; linear between them."""
 _SIGMAS = 5.0
@@ -34,7 +40,7 @@ _FINE = 8
 
 
 _ERF = (0.254829592, -0.284496736, 1.421413741, -1.453152027, 1.061405429)
-"""Abramowitz and Stegun, 7.1.26: the error function to 1.5e-7."""
+"""Abramowitz and Stegun, 7.1.26: the error function to 1.5e-7. scipy has it, but is not of the base."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,20 +67,36 @@ def light(
     seconds = (looks[-1].t_ns - looks[0].t_ns) * 1e-9
     background = model.zero_point_e_s * 10 ** (-0.4 * SKY_MAGNITUDE) * model.pixel_arcsec**2 * seconds
     image = np.full((window.height, window.width), background)
-    middle = looks[len(looks) // 2]
     disc = _disc(model, looks)
     edge = len(disc) // 2
     sigma = sigma_arcsec(model.aperture_m) / model.pixel_arcsec
     margin = _SIGMAS * sigma + edge
-    found = _near(model, middle, window, margin + _length(looks) / model.pixel_rad, sky, site, clock)
-    x, y = _tracks(model, path, found, site, clock)
-    x, y = x - window.left, y - window.top
-    inside = (x > -margin) & (x < window.width + margin) & (y > -margin) & (y < window.height + margin)
     canvas = np.zeros((window.height + 2 * edge, window.width + 2 * edge))
-    electrons = model.zero_point_e_s * 10 ** (-0.4 * found.magnitude)
-    for k in np.flatnonzero(inside.any(axis=0)):
-        _draw(canvas, x[:, k] + edge, y[:, k] + edge, path[:, 5] * electrons[k], sigma)
+    for piece, length_px in _pieces(model, path):
+        seconds = float(piece[:, 5].sum())
+        if length_px > _FASTEST_PX_S * seconds:
+            continue
+        middle = Look(round(float(piece[len(piece) // 2, 0]) * 1e9), *piece[len(piece) // 2, 1:4])
+        found = _near(model, middle, window, margin + length_px, sky, site, clock)
+        electrons = model.zero_point_e_s * 10 ** (-0.4 * found.magnitude)
+        seen = electrons * seconds / max(length_px, 1.0) > _UNSEEN_E
+        found, electrons = found.where(seen), electrons[seen]
+        x, y = _tracks(model, piece, found, site, clock)
+        x, y = x - window.left, y - window.top
+        inside = (x > -margin) & (x < window.width + margin) & (y > -margin) & (y < window.height + margin)
+        for k in np.flatnonzero(inside.any(axis=0)):
+            rows = inside[:, k]
+            _draw(canvas, x[rows, k] + edge, y[rows, k] + edge, piece[rows, 5] * electrons[k], sigma)
     return image + (_convolved(canvas, disc) if edge else canvas)
+
+
+def _pieces(model: CameraModel, path: Array) -> Iterator[tuple[Array, float]]:
+    """Rows of the path in pieces, and how long each is, px: a slewing telescope passes many fields."""
+    west, north = (each / model.pixel_rad for each in _drift(path))
+    steps = np.hypot(np.diff(west, prepend=west[0]), np.diff(north, prepend=north[0]))
+    number = np.floor(np.cumsum(steps) / _PIECE_PX)
+    for rows in np.split(np.arange(len(path)), np.flatnonzero(np.diff(number)) + 1):
+        yield path[rows], float(steps[rows].sum())
 
 
 def _near(
@@ -119,13 +141,6 @@ def _drift(rows: Array) -> tuple[Array, Array]:
     """How far the telescope has gone against the stars: west and north, rad."""
     west = (rows[:, 1] - rows[0, 1] - _TURN_RAD_S * (rows[:, 0] - rows[0, 0])) * np.cos(rows[:, 2])
     return west, rows[:, 2] - rows[0, 2]
-
-
-def _length(looks: Sequence[Look]) -> float:
-    rows = np.array(looks, dtype=float)
-    rows[:, 0] *= 1e-9
-    west, north = _drift(rows)
-    return float(np.hypot(west, north).max())
 
 
 def _tracks(model: CameraModel, path: Array, found: Stars, site: Site, clock: Clock) -> tuple[Array, Array]:

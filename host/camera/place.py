@@ -9,24 +9,18 @@ import numpy.typing as npt
 
 from host.camera.look import Look
 from host.camera.stars import Array, Stars
-from host.sky.observed import Clock
+from host.sky.observed import Clock, seen_from
 from host.sky.site import Site
 
 
 def observed(found: Stars, site: Site, clock: Clock, t_s: float) -> tuple[Array, Array]:
     """Observed hour angles and declinations of stars at one time, rad."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        air, _ = erfa.apco13(
-            *clock.julian(t_s), site.ut1_minus_utc_s, site.longitude_rad, site.latitude_rad, site.height_m,
-            site.polar_motion_x_rad, site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c,
-            site.humidity, site.wavelength_um,
-        )  # fmt: skip
-        place = erfa.atciq(
-            found.right_ascension, found.declination, found.pm_ra, found.pm_dec, found.parallax_arcsec,
-            np.zeros_like(found.declination), air,
-        )  # fmt: skip
-        _, _, hour_angle, declination, _ = erfa.atioq(*place, air)
+    air = seen_from(site, clock, t_s)
+    place = erfa.atciq(
+        found.right_ascension, found.declination, found.pm_ra, found.pm_dec, found.parallax_arcsec,
+        np.zeros_like(found.declination), air,
+    )  # fmt: skip
+    _, _, hour_angle, declination, _ = erfa.atioq(*place, air)
     return np.asarray(hour_angle), np.asarray(declination)
 
 

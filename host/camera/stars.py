@@ -47,7 +47,12 @@ class Stars:
 
     def near(self, right_ascension: float, declination: float, radius: float) -> "Stars":
         """Those within a radius, rad."""
-        kept = separation(self.right_ascension, self.declination, right_ascension, declination) <= radius
+        return self.where(
+            separation(self.right_ascension, self.declination, right_ascension, declination) <= radius
+        )
+
+    def where(self, kept: npt.NDArray[np.bool_]) -> "Stars":
+        """Some of them."""
         return Stars(**{name: column[kept] for name, column in vars(self).items()})
 
 

@@ -35,6 +35,8 @@ class Listed(NamedTuple):
 
 def read(path: Path) -> list[Listed]:
     """A CSV: notes that begin with #, a head line, objects. Raises ValueError with file and line."""
+    if path.exists() and not path.is_file():  # a pipe or a device may never end
+        raise ValueError(f"{path}: no regular file; a list of objects is a CSV file")
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:

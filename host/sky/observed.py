@@ -9,7 +9,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import erfa
 import numpy as np
@@ -111,11 +111,8 @@ def observe_many(
     )
 
 
-def observe_all(
-    stars: Sequence[Star], site: Site, clock: Clock, t_s: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Altitudes and azimuths of many stars at one time, without their proper motions and parallaxes."""
-    places = np.array([(star.right_ascension_rad, star.declination_rad) for star in stars]).T
+def seen_from(site: Site, clock: Clock, t_s: float) -> Any:
+    """ERFA's parameters of a place at one time, which are the same for all stars (`erfa.apco13`)."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", erfa.ErfaWarning)
         air, _ = erfa.apco13(
@@ -123,6 +120,15 @@ def observe_all(
             site.polar_motion_x_rad, site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c,
             site.humidity, site.wavelength_um,
         )  # fmt: skip
+    return air
+
+
+def observe_all(
+    stars: Sequence[Star], site: Site, clock: Clock, t_s: float
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Altitudes and azimuths of many stars at one time, without their proper motions and parallaxes."""
+    places = np.array([(star.right_ascension_rad, star.declination_rad) for star in stars]).T
+    air = seen_from(site, clock, t_s)
     azimuth, zenith, *_ = erfa.atioq(*erfa.atciqz(*places, air), air)
     return np.pi / 2 - zenith, azimuth
 

@@ -17,6 +17,9 @@ def check(options: DoorOptions) -> None:
         raise OptionError(
             f"serve needs a door: {named((*ON_NETWORK, *ON_HOST), 'or')} (see schmidt serve -h)"
         )
+    for option, given in (("--stars", options.stars), ("--frames", options.frames)):
+        if given is not None and not options.asked.get("alpaca"):
+            raise OptionError(f"{option} needs --alpaca, which has the cameras")
     if isinstance(options, ServeOptions) and options.clock == "steps" and not options.asked.get("control"):
         raise OptionError("--clock steps needs --control: nobody else could step")
 
