@@ -30,8 +30,7 @@ class Filter:
         x = np.asarray(cycles, dtype=float)
         if not self.boxcar:
             return np.asarray(np.exp(-2 * (np.pi * x * self.sigma) ** 2))
-        side = np.arange(self.boxcar) - self.boxcar // 2
-        one = np.mean(np.cos(2 * np.pi * np.multiply.outer(x, side)), axis=-1)
+        one = np.sinc(x * self.boxcar) / np.sinc(x)
         return np.where(np.abs(x) * self.boxcar < UNSEEN_CYCLES, one**2, 0.0)
 
     @property

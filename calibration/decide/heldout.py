@@ -123,7 +123,7 @@ def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
     total = sum(float(since[run == k].max()) + problem.period_s for k in runs)
     longest = min(limits.FOLD_S, total / (limits.FOLDS * limits.PER_FOLD))
     piece = np.floor(since / max(longest, limits.LEAST_PIECE * problem.period_s) + 1e-9).astype(np.int64)
-    rank = np.unique(np.column_stack([order, piece]), axis=0, return_inverse=True)[1].reshape(-1)
+    rank = np.unique(order * (piece.max(initial=0) + 1) + piece, return_inverse=True)[1]
     first = np.array([rank[run == k].min() for k in runs])
     return np.asarray((rank - first[order] + order) % limits.FOLDS, dtype=np.int64)
 

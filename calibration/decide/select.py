@@ -72,8 +72,7 @@ def gate(s: Selection, candidates: list[Candidate], rng: np.random.Generator) ->
     signs = rng.choice([-1.0, 1.0], size=(limits.DRAWS, len(range(0, len(e), p.block))))
     parts = []
     for some in few(candidates):  # all at once would be the largest array of the whole analysis
-        x = w.whiten(np.hstack([c.columns for c in some]), p.train)
-        q, widths = orthonormal_blocks(x, own, [c.width for c in some])
+        q, widths = orthonormal_blocks([w.whiten(c.columns, p.train) for c in some], own)
         parts.append(score(e, noise, q, widths, p.block, signs))
     return together(parts, limits.GATE_LEVEL)
 

@@ -140,10 +140,8 @@ def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = N
     passes = s.view.filter.gain(s.view.speed[s.view.rows] * rate * s.view.period_s)
     pair = pair * (passes > 0)[:, None]  # elsewhere a log has nothing of the line, and its columns alias
     return [
-        replace(
-            blank, columns=np.hstack([pair * (label == k)[:, None] for k in np.unique(label)]), per_run=own
-        )
-        for label, own in s.zeros
+        replace(blank, columns=np.hstack([pair * mask[:, None] for mask in parts]), per_run=own)
+        for parts, own in s.zeros
     ]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.arrays import Array
+from calibration.arrays import Array, Mask
 from calibration.balances.friction import Sliding, sliding_of
 from calibration.balances.motion import acceleration_of, rate_of
 from calibration.balances.problem import Problem
@@ -129,15 +129,18 @@ class Scene:
         shared = {"start": v.clock - v.clock.min()}
         return shared | ({"start_in_run": since_first(v.t, v.file)} if len(np.unique(v.file)) > 1 else {})
 
-    @property
-    def zeros(self) -> list[tuple[NDArray[np.int64], bool]]:
-        """Labels (n_fitted,) of rows that share the position's zero, and whether every label has a zero of
-        its own. Files that are not declared to share it may do so, or not: both are tried."""
+    @cached_property
+    def zeros(self) -> list[tuple[list[Mask], bool]]:
+        """Rows (n_fitted,) that share the position's zero, and whether each such part has a zero of its own.
+        Files that are not declared to share it may do so, or not: both are tried."""
         own = self.problem.session
-        shared = [(np.zeros_like(own), False)]
-        if self.view.rig.runs.get("origin") == "shared" or len(np.unique(own)) < 2:
-            return shared
-        return [*shared, (own, True)]
+        files = [own == k for k in np.unique(own)]
+        shared = [([np.ones(len(own), bool)], False)]
+        return (
+            shared
+            if self.view.rig.runs.get("origin") == "shared" or len(files) < 2
+            else [*shared, (files, True)]
+        )
 
     @property
     def both(self) -> bool:

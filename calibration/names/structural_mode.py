@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.balances.filters import by_piece
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
@@ -79,10 +80,7 @@ def second_mass(a: Array, file: NDArray[np.int64], dt: float, f: float, damping:
     narrow = np.sin(2 * x) / (2 * x)
     w, zeta = np.tan(x) * 2 / dt, damping / narrow
     num, den = bilinear([2 * zeta * w, w * w], [1.0, 2 * zeta * w, w * w], fs=1 / dt)
-    out = np.zeros(len(a))
-    for k in np.unique(file):
-        out[file == k] = lfilter(num, den, a[file == k])
-    return np.asarray(out / narrow)
+    return np.asarray(by_piece(a, file, lambda x: np.asarray(lfilter(num, den, x))) / narrow)
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

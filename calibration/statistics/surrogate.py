@@ -23,18 +23,17 @@ class Scores:
     surrogate_max: Array
 
 
-def orthonormal_blocks(x: Array, q: Array, widths: list[int]) -> tuple[Array, list[int]]:
+def orthonormal_blocks(blocks: list[Array], q: Array) -> tuple[Array, list[int]]:
     """Candidates' columns orthonormal beside a basis, and how many remain: what is there is dropped."""
-    rest = x - q @ (q.T @ x)
-    parts = [rest[:, at] @ turn for at, turn in _blocks(x, q, widths)]
-    return np.hstack([x[:, :0], *parts]), [part.shape[1] for part in parts]
+    turned = [(b, _turn(b, q)) for b in blocks]
+    parts = [b @ turn - q @ (q.T @ (b @ turn)) for b, turn in turned]
+    return np.hstack([q[:, :0], *parts]), [part.shape[1] for part in parts]
 
 
 def taken_away(e: Array, q: Array, blocks: list[Array]) -> tuple[list[float], list[int]]:
     """Squares of `e` (n,) that blocks (n, k) take beside a basis (n, p), and how many columns count."""
-    x = np.hstack([q[:, :0], *blocks])
-    along = x.T @ (e - q @ (q.T @ e))
-    turned = [along[at] @ turn for at, turn in _blocks(x, q, [b.shape[1] for b in blocks])]
+    rest = e - q @ (q.T @ e)
+    turned = [(b.T @ rest) @ _turn(b, q) for b in blocks]
     return [float(np.sum(a**2)) for a in turned], [len(a) for a in turned]
 
 
@@ -43,21 +42,16 @@ def basis(base: Array) -> Array:
     return np.asarray(np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))[0])
 
 
-def _blocks(x: Array, q: Array, widths: list[int]) -> list[tuple[slice, Array]]:
-    """Place of every block in x (n, sum of widths), and what makes it orthonormal beside q (n, p)."""
-    lost, out, end = x.T @ q, [], 0
-    for width in widths:
-        at = slice(end, end + width)
-        end = at.stop
-        whole = x[:, at].T @ x[:, at]
-        gram = whole - lost[at] @ lost[at].T
-        good = np.diag(gram) > KEPT * np.maximum(np.diag(whole), 1e-300)
-        size = np.sqrt(np.diag(gram)[good])
-        w, v = np.linalg.eigh(gram[np.ix_(good, good)] / size[:, None] / size)
-        turn = np.zeros((width, int((w > APART).sum())))
-        turn[good] = v[:, w > APART] / np.sqrt(w[w > APART]) / size[:, None]
-        out.append((at, turn))
-    return out
+def _turn(x: Array, q: Array) -> Array:
+    """What makes a block (n, k) orthonormal beside q (n, p): (k, as many columns as count)."""
+    whole, lost = x.T @ x, x.T @ q
+    gram = whole - lost @ lost.T
+    good = np.diag(gram) > KEPT * np.maximum(np.diag(whole), 1e-300)
+    size = np.sqrt(np.diag(gram)[good])
+    w, v = np.linalg.eigh(gram[np.ix_(good, good)] / size[:, None] / size)
+    turn = np.zeros((len(gram), int((w > APART).sum())))
+    turn[good] = v[:, w > APART] / np.sqrt(w[w > APART]) / size[:, None]
+    return turn
 
 
 def together(parts: list[tuple[Array, Array]], level: float) -> Scores:

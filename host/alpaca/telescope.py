@@ -9,8 +9,8 @@ from host.alpaca.errors import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, wi
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, sidereal_time_rad
 from host.sky.observed import Observed
+from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope import DriveRate
-from host.telescope.tracks import SIDEREAL_ARCSEC_S
 
 APERTURE_M = 0.5
 """Corrector of the 50/80 cm Schmidt (paper, section 1)."""

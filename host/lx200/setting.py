@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from host.lx200 import angles
 from host.lx200.session import Handler, Session
+from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope import DriveRate
-from host.telescope.tracks import SIDEREAL_ARCSEC_S
 
 _SITE_DEG = 0.5
 """A site this far from where the telescope stands is another place, and refused. ASSUMPTION."""

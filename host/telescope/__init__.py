@@ -1,12 +1,12 @@
 """The typed telescope client: what doors, consoles and programs command the telescope by."""
 
+from host.sky.tracks import DriveRate
 from host.telescope.desk import AsyncDesk, PlainDesk
 from host.telescope.jobs import Activity, Job
 from host.telescope.observatory import Observatory
 from host.telescope.refused import Reason, Refused
 from host.telescope.state import AxisState, BoardState, FocusState, Snapshot
 from host.telescope.telescope import Telescope
-from host.telescope.tracks import DriveRate
 
 __all__ = [
     "Activity", "AsyncDesk", "AxisState", "BoardState", "DriveRate", "FocusState", "Job", "Observatory",

@@ -18,11 +18,11 @@ from host.sky.pointfit import TooFewStars
 from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
 from host.sky.track import StarTrack
+from host.sky.tracks import DriveRate, GroundTrack, SkyTrack
 from host.sky.visibility import BelowHorizon, Unreachable
 from host.telescope.jobs import Activity, Job
 from host.telescope.observatory import Observatory
 from host.telescope.refused import Reason, Refused
-from host.telescope.tracks import DriveRate, GroundTrack, SkyTrack
 
 _FOREVER_S = 1e6
 _REST_COUNTS = 2

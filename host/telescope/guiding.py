@@ -4,14 +4,14 @@ from typing import Final
 
 from bus.protocol import Opcode
 from bus.protocol.scales import rate_q16
-from host.client import TICK_NS, Procedure
+from host.client import Procedure
 from host.procedures.power import AXES
+from host.procedures.shifting import TICK_S, Shifting
+from host.sky.tracks import Pulse, SkyTrack
 from host.telescope.drive import Drive
 from host.telescope.jobs import Activity, Job, Side
 from host.telescope.refused import Reason, Refused
-from host.telescope.tracks import Pulse, SkyTrack
 
-_TICK_S: Final = TICK_NS * 1e-9
 _LONGEST_S: Final = 60.0
 """Pulses of an axis that may wait, together. ASSUMPTION: as long as the longest one."""
 _LEAD: Final = (0.0, 2.0)
@@ -59,18 +59,16 @@ class Guider:
     def _guide(self, axis: int, track: SkyTrack) -> Procedure:
         """Rates, tick by tick, that bring the board's target where the pulses want it."""
         pointing, client = self._drive.pointing, self._drive.client
-        made = track.shifted(self._now_s - _TICK_S)[axis]
-        rate, since_s = 0.0, self._now_s
+        shifting = Shifting(track.shifted(self._now_s - TICK_S)[axis], self._now_s)
         while pointing.commanding and self._follows(track):
             yield
         pointing.guided += 1
         try:
             while self._follows(track):
                 now_s = self._now_s
-                made += rate * (now_s - since_s)
                 over = now_s > self._ends_s[axis] + _SETTLE_S
-                wanted = track.shifted(now_s + _TICK_S)[axis] + (0.0 if over else self._lead(axis))
-                rate, since_s = (wanted - made) / _TICK_S, now_s
+                wanted = track.shifted(now_s + TICK_S)[axis] + (0.0 if over else self._lead(axis))
+                rate = shifting.rate(wanted, now_s)
                 base = track.rates(now_s)[axis] + pointing.trims[axis]
                 device = AXES[axis]
                 yield from client.ask(device, Opcode.TRACK_RATE, rate_q16(base + rate))

@@ -6,11 +6,11 @@ from bus.protocol import Opcode, SpeedClass
 from bus.protocol.scales import rate_q16
 from host.client import Procedure
 from host.procedures.manual import AXES
+from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope.drive import Drive
 from host.telescope.guiding import Guider
 from host.telescope.jobs import Activity, Side
 from host.telescope.refused import Reason, Refused
-from host.telescope.tracks import SIDEREAL_ARCSEC_S
 
 CLASS_ARCSEC_S = {
     SpeedClass.SLEW: 7200.0,

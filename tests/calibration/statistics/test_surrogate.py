@@ -20,7 +20,7 @@ def signs(rng: np.random.Generator, draws: int, rows: int, block: int) -> np.nda
 def test_blocks_are_orthonormal_and_at_right_angles_to_the_base(seed: int, widths: list[int]) -> None:
     rng = np.random.default_rng(seed)
     base, x = rng.standard_normal((60, 2)), rng.standard_normal((60, sum(widths)))
-    q, kept = orthonormal_blocks(x, basis(base), widths)
+    q, kept = orthonormal_blocks(np.split(x, np.cumsum(widths)[:-1], axis=1), basis(base))
     assert kept == widths
     assert base.T @ q == pytest.approx(np.zeros((2, sum(widths))), abs=1e-9)
     at = 0
@@ -52,13 +52,13 @@ def test_a_column_of_the_base_and_a_column_twice_count_once_or_not_at_all() -> N
     assert kept == [0, 1, 1]
     assert taken[0] == 0.0
     assert taken[1] == pytest.approx(taken[2])
-    assert orthonormal_blocks(np.hstack(blocks), basis(base), [1, 2, 1])[1] == [0, 1, 1]
+    assert orthonormal_blocks(blocks, basis(base))[1] == [0, 1, 1]
     assert taken_away(e, basis(base), []) == ([], [])
 
 
 def test_scores_of_white_noise_are_uniform_in_p() -> None:
     rng = np.random.default_rng(9)
-    q, widths = orthonormal_blocks(rng.standard_normal((2000, 200)), basis(np.zeros((2000, 0))), [1] * 200)
+    q, widths = orthonormal_blocks(list(rng.standard_normal((200, 2000, 1))), basis(np.zeros((2000, 0))))
     e = rng.standard_normal(2000)
     value = score(e, e, q, widths, 20, signs(rng, 1, 2000, 20))[0]
     assert stats.kstest(10.0**-value, "uniform").pvalue > 0.01
@@ -66,7 +66,7 @@ def test_scores_of_white_noise_are_uniform_in_p() -> None:
 
 def test_the_threshold_is_passed_by_as_many_nulls_as_its_level_says() -> None:
     rng = np.random.default_rng(10)
-    q, widths = orthonormal_blocks(rng.standard_normal((1000, 30)), basis(np.zeros((1000, 0))), [2] * 15)
+    q, widths = orthonormal_blocks(list(rng.standard_normal((15, 1000, 2))), basis(np.zeros((1000, 0))))
     noise = rng.standard_normal(1000)
     scores = together([score(noise, noise, q, widths, 20, signs(rng, 400, 1000, 20))], 0.95)
     passed = np.mean(scores.surrogate_max > scores.threshold)
@@ -79,7 +79,7 @@ def test_the_threshold_is_passed_by_as_many_nulls_as_its_level_says() -> None:
 def test_a_planted_column_is_beyond_the_threshold_and_the_largest() -> None:
     rng = np.random.default_rng(11)
     x = rng.standard_normal((1000, 20))
-    q, widths = orthonormal_blocks(x, basis(np.zeros((1000, 0))), [1] * 20)
+    q, widths = orthonormal_blocks([x[:, [k]] for k in range(20)], basis(np.zeros((1000, 0))))
     noise = rng.standard_normal(1000)
     scores = together([score(noise + 0.5 * x[:, 7], noise, q, widths, 20, signs(rng, 400, 1000, 20))], 0.99)
     assert int(np.argmax(scores.value)) == 7
@@ -89,7 +89,7 @@ def test_a_planted_column_is_beyond_the_threshold_and_the_largest() -> None:
 
 def test_parts_scored_apart_are_scored_as_together() -> None:
     rng = np.random.default_rng(12)
-    q, widths = orthonormal_blocks(rng.standard_normal((400, 8)), basis(np.zeros((400, 0))), [2] * 4)
+    q, widths = orthonormal_blocks(list(rng.standard_normal((4, 400, 2))), basis(np.zeros((400, 0))))
     e, s = rng.standard_normal(400), signs(rng, 50, 400, 20)
     whole = together([score(e, e, q, widths, 20, s)], 0.9)
     apart = together([score(e, e, q[:, k : k + 4], [2, 2], 20, s) for k in (0, 4)], 0.9)
