@@ -5,6 +5,10 @@ from dataclasses import dataclass
 
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
+from calibration.inputs.train import SHAFT
+
+# its stage's kind: what the drive follows runs out of true, no gear
+ENCODER = "encoder_eccentricity"
 
 # s, by definition of the sidereal day
 SIDEREAL_DAY_S = 86164.0905
@@ -12,11 +16,13 @@ SIDEREAL_DAY_S = 86164.0905
 
 @dataclass(frozen=True)
 class Part:
-    """One periodic part: what it is called, turns per second while tracking, and whether it is a worm."""
+    """One periodic part: what it is called, turns per second while tracking, whether it is a worm, and the
+    effect by which it shows."""
 
     name: str
     rate: float
     worm: bool = True
+    effect: str = SHAFT
 
 
 #: mount name in the log -> teeth of its RA worm wheel (makers' data sheets; the periods listed in the PHD2
@@ -55,7 +61,11 @@ def known_mount(runs: list[Run]) -> tuple[int, ...]:
 def parts(runs: list[Run], rig: Rig | None) -> list[Part]:
     """Every periodic part that is known: from the rig, the mount's name, else usual wheels."""
     if rig is not None and rig.stages:
-        return [Part(s.name, 1.0 / s.period_s) for s in rig.stages if s.period_s]
+        return [
+            Part(s.name, 1.0 / s.period_s, effect=s.kind if s.kind == ENCODER else SHAFT)
+            for s in rig.stages
+            if s.period_s
+        ]
     wheels = known_mount(runs) or COMMON
     found = [Part(f"worm of a {n}-tooth wheel", n / SIDEREAL_DAY_S) for n in wheels]
     name = _name(runs)

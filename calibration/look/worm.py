@@ -17,7 +17,6 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
 from calibration.finding import UNKNOWN, Finding
-from calibration.inputs.train import SHAFT
 from calibration.names.candidates import candidate
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
@@ -75,7 +74,7 @@ def part_candidates(problem: Problem, part: Part, counts: tuple[int, ...]) -> li
     """One part with different numbers of harmonics."""
     place: dict[str, Any] = {"stage": part.name, "harmonic": 1, "order": part.rate * SIDEREAL_DAY_S}
     seen = [count for count in counts if part.rate * count < 0.4 / problem.period_s]
-    return [c for count in seen for c in _periodic(problem, SHAFT, part.rate, count, **place)]
+    return [c for count in seen for c in _periodic(problem, part.effect, part.rate, count, **place)]
 
 
 def _periodic(problem: Problem, name: str, rate: float, count: int, **more: Any) -> list[Candidate]:

@@ -11,7 +11,9 @@ from host.sky.track import StarTrack
 
 SIDEREAL_ARCSEC_S = 15.041067
 """Hour angle of the sky per second of UTC (IAU 2006 Earth rotation rate 7.292115e-5 rad/s)."""
-
+GUIDE_ARCSEC_S = 0.5 * SIDEREAL_ARCSEC_S
+"""Guide rate until somebody sets another, and the fastest: half the sidereal rate, as is common. At
+the whole, RA runs west at 30″/s, where friction falls with speed faster than the loop follows. ASSUMPTION."""
 
 RAMP_S = 0.3
 """A pulse's rate comes and goes over this: a step could break an axis out of its friction. ASSUMPTION."""

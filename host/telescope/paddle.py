@@ -6,7 +6,7 @@ from bus.protocol import Opcode, SpeedClass
 from bus.protocol.scales import rate_q16
 from host.client import Procedure
 from host.procedures.manual import AXES
-from host.sky.tracks import SIDEREAL_ARCSEC_S
+from host.sky.tracks import GUIDE_ARCSEC_S, SIDEREAL_ARCSEC_S
 from host.telescope.drive import Drive
 from host.telescope.guiding import Guider
 from host.telescope.jobs import Activity, Side
@@ -25,9 +25,6 @@ LOCKED_ARCSEC_S = 1000.0
 1000″/s (paper, Fig. 12) and would be tens of percent off within ten seconds."""
 DIRECTIONS = {"n": ("dec", 1), "s": ("dec", -1), "e": ("ra", -1), "w": ("ra", 1)}
 """Axis and sign; hour angle grows to the west."""
-GUIDE_ARCSEC_S = 0.5 * SIDEREAL_ARCSEC_S
-"""Guide rate until somebody sets another, and the fastest: half the sidereal rate, as is common. At
-the whole, RA runs west at 30″/s, where friction falls with speed faster than the loop follows. ASSUMPTION."""
 
 
 class Paddle:

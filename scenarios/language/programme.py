@@ -1,14 +1,16 @@
 """The steps of a scenario in their order: which may start, which run, which have ended and when."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from bus.protocol import Device, Opcode
 from host.client import Client, ClientError, Procedure
 from host.logs.ascii import AsciiLogs
 from host.procedures import focus, manual, power
+from host.procedures.autoguide import Guided, Guiding, autoguide
 from host.procedures.pointing import CLASSES, Pointing
 from host.procedures.pointing_run import Eye, Visit, directions, visit
 from host.sky.catalogue import Star
@@ -36,6 +38,8 @@ class Record:
     """Stars of a pointing run."""
     model: PointingModel | None = None
     """The pointing model of the visits."""
+    guided: tuple[Guided, ...] = ()
+    """Exposures of a guide camera so far."""
 
 
 class Programme:
@@ -184,6 +188,10 @@ class Programme:
             case "track":
                 self._note(index, star=self.pointing.track.star if self.pointing.track else None)
                 return self.pointing.follow(given["for"])
+            case "autoguide":
+                self._note(index, star=self.pointing.track.star if self.pointing.track else None)
+                told = partial(self._guided, index)
+                return autoguide(self.pointing, scenario, self._eye, guiding_of(given), told)
             case "pointing_run":
                 return self._pointing_run(index, given.get("stars", STARS), given.get("fit", True))
             case "move":
@@ -217,6 +225,9 @@ class Programme:
                 return client.ask(_device(client, "DISPLAY"), Opcode.BRIGHTNESS, given["brightness"])
         raise AssertionError(f"the schema knows {step.action!r}, the programme does not")
 
+    def _guided(self, index: int, frame: Guided) -> None:
+        self._note(index, guided=(*self.records[index].guided, frame))
+
     def _pointing_run(self, index: int, count: int, fits: bool) -> Procedure:
         """Look at stars all over the sky; then point by the model that they give."""
         scenario = self._scenario
@@ -232,6 +243,16 @@ class Programme:
         mount = replace(scenario.mount, model=model)
         self._scenario, self.pointing.mount = replace(scenario, mount=mount), mount
         self._note(index, model=model)
+
+
+def guiding_of(given: Mapping[str, Any]) -> Guiding:
+    """What an autoguide step asks for."""
+    return Guiding(
+        seconds=given["for"],
+        exposure_s=given.get("exposure", 2.0),
+        aggressiveness=given.get("aggressiveness", 0.7),
+        by_rate=given.get("by") == "rate",
+    )
 
 
 def _device(client: Client, name: str) -> Device:

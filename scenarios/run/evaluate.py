@@ -115,6 +115,15 @@ def tracking_rate_error(outcome: Outcome, given: dict[str, Any]) -> float:
     return _statistic(np.concatenate(parts), given)
 
 
+def guiding_error(outcome: Outcome, given: dict[str, Any]) -> float:
+    """Star less its place in the first exposure, on the sky, as the guide camera saw it, ″."""
+    parts = []
+    for record, low_s, high_s in _windows(outcome, given, "guiding_error"):
+        west, north = np.array([e.off for e in record.guided if low_s <= e.t_s <= high_s]).reshape(-1, 2).T
+        parts.append({"ra": west, "dec": north}.get(given.get("axis", "sky"), np.hypot(west, north)))
+    return _statistic(np.concatenate(parts), given)
+
+
 def focus_error(outcome: Outcome, given: dict[str, Any]) -> float:
     """True focus position less the commanded one, half steps."""
     from host.logs import traces
@@ -203,6 +212,13 @@ KINDS: dict[str, Kind] = {
                 "mean_1s": "their means over 1 s",
             },
         },
+    ),
+    "guiding_error": Kind(
+        guiding_error,
+        "angle",
+        "the star less its place in the first exposure, as the guide camera saw it",
+        ("autoguide",),
+        {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
     ),
     "focus_error": Kind(focus_error, "focus", "true focus position less the commanded one", ("focus",)),
     "bus_load": _counter("bus_load", "mean load of the CAN bus", "fraction"),

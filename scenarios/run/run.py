@@ -153,6 +153,7 @@ def _conclude(
     session: Session, bus: list[tuple[float, float, int]], wall_s: float, interrupted: bool, report: bool
 ) -> Result:
     from scenarios.run.evaluate import judge
+    from scenarios.run.guiding import write_guiding
     from scenarios.run.outcome import Outcome
     from scenarios.run.pointing import write_runs
 
@@ -178,6 +179,7 @@ def _conclude(
         session.plant.model.mount,
     )  # fmt: skip
     write_runs(outcome)
+    write_guiding(outcome)
     verdicts = judge(outcome)
     summary = _summary(session, outcome, verdicts)
     text = json.dumps(summary, indent=2, ensure_ascii=False)

@@ -13,6 +13,7 @@ from host.sky.observed import observe_many
 from scenarios.language.programme import Record
 from scenarios.run.errors import NoData, pointing_errors, rate_errors
 from scenarios.run.outcome import Outcome
+from scenarios.run.report.guiding import guiding
 from scenarios.run.report.pointing_run import pointing_run
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 
@@ -180,6 +181,7 @@ def bus(outcome: Outcome) -> Figure | None:
 FIGURES: dict[str, tuple[str, Callable[[Outcome], Figure | None]]] = {
     "pointing": ("Pointing", pointing),
     "pointing-run": ("Pointing run", pointing_run),
+    "guiding": ("Guiding", guiding),
     "tracking": ("Tracking", tracking),
     "motion": ("Motion", motion),
     "sky": ("Sky", sky),

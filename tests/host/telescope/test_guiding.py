@@ -7,9 +7,8 @@ import pytest
 
 from host.procedures.pointing import ENCODERS
 from host.sky.mount import STEP_ARCSEC
-from host.sky.tracks import RAMP_S, Pulse, SkyTrack
+from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
 from host.telescope import Refused
-from host.telescope.paddle import GUIDE_ARCSEC_S
 from host.telescope.refused import Reason
 from tests.host.telescope.conftest import Rig
 

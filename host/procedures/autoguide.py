@@ -1,0 +1,123 @@
+"""Guiding by a star: a pulse of each axis after every exposure of a guide camera."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from bus.protocol import Opcode
+from bus.protocol.scales import rate_q16
+from bus.units import ARCSEC_PER_RAD
+from host.client import Client, ClientError, Procedure
+from host.procedures.pointing import Pointing
+from host.procedures.pointing_run import Eye
+from host.procedures.power import AXES
+from host.procedures.shifting import TICK_S, Shifting
+from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
+from host.sky.visibility import Standpoint
+
+LEAST_ARCSEC: Final = 0.2
+"""A smaller error is not corrected: 0.1 px of the guide camera. ASSUMPTION: about the noise of a frame."""
+LONGEST_S: Final = 2.5
+"""Of a pulse. ASSUMPTION: what guiding programs allow unless told otherwise."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guiding:
+    """How long to guide, s; exposure, s; the share of an error that a pulse takes out.
+
+    by_rate: RA runs by `SET_RATE`. Its board then looks at the motors and not at the encoder of the axis.
+    """
+
+    seconds: float
+    exposure_s: float
+    aggressiveness: float
+    by_rate: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guided:
+    """An exposure that ended at `t_s`, on the sky, west and north.
+
+    off: star less its place in the first exposure, ″. sent: what the pulses move the telescope by, ″.
+    pulses_s: how long they last.
+    """
+
+    t_s: float
+    off: tuple[float, float]
+    sent: tuple[float, float]
+    pulses_s: tuple[float, float]
+
+
+def autoguide(
+    pointing: Pointing, place: Standpoint, eye: Eye, how: Guiding, told: Callable[[Guided], None]
+) -> Procedure:
+    """Follow the last goto's star by pictures of it alone; the axes go on with it. told: of every exposure.
+
+    Raises ClientError without a star, or when a board refuses.
+    """
+    if pointing.track is None:
+        raise ClientError("autoguide: there is no target yet; go to one first")
+    client = pointing.client
+    track = SkyTrack(pointing.track.star, place.site, place.clock, place.mount)
+    pointing.track, pointing.tracking = track, True
+    opcodes = (Opcode.SET_RATE if how.by_rate else Opcode.TRACK_RATE, Opcode.TRACK_RATE)
+    beside = [_driven(client, axis, opcode, track) for axis, opcode in enumerate(opcodes)]
+    beside.append(_exposures(client, track, eye, how, told))
+    end_ns = client.now_ns + round(how.seconds * 1e9)
+    while client.now_ns < end_ns:
+        for each in beside:
+            next(each)
+        yield
+    pointing.tracking = False
+
+
+def _driven(client: Client, axis: int, opcode: Opcode, track: SkyTrack) -> Procedure:
+    """The star's rate and the pulses', for ever."""
+    shifting, sent = Shifting(track.shifted(_now_s(client))[axis], _now_s(client)), None
+    while True:
+        now_s = _now_s(client)
+        pulse = shifting.rate(track.shifted(now_s + TICK_S)[axis], now_s)
+        rate = rate_q16(track.rates(now_s)[axis] + pulse)
+        if rate == sent:
+            yield
+        else:
+            sent = rate
+            yield from client.ask(AXES[axis], opcode, rate)
+
+
+def _exposures(
+    client: Client, track: SkyTrack, eye: Eye, how: Guiding, told: Callable[[Guided], None]
+) -> Procedure:
+    """One after the other, for ever: where the star was in the middle of each, then pulses."""
+    west = math.cos(track.star.declination_rad)
+    speeds = GUIDE_ARCSEC_S * west, GUIDE_ARCSEC_S
+    first: tuple[float, float] | None = None
+    while True:
+        yield from client.wait(how.exposure_s / 2)
+        angles = eye(track.star, client.now_ns)
+        yield from client.wait(how.exposure_s / 2)
+        seen = angles[0] * west * ARCSEC_PER_RAD, angles[1] * ARCSEC_PER_RAD
+        first = first or seen
+        off = seen[0] - first[0], seen[1] - first[1]
+        ra_s, dec_s = (
+            _pulse_s(each, how.aggressiveness, speed) for each, speed in zip(off, speeds, strict=True)
+        )
+        for axis, seconds in enumerate((ra_s, dec_s)):
+            if seconds:
+                track.guide(Pulse(axis, math.copysign(GUIDE_ARCSEC_S, seconds), _now_s(client), abs(seconds)))
+        sent = ra_s * speeds[0], dec_s * speeds[1]
+        told(Guided(t_s=_now_s(client), off=off, sent=sent, pulses_s=(ra_s, dec_s)))
+        if longest := max(abs(ra_s), abs(dec_s)):
+            yield from client.wait(longest + RAMP_S)
+
+
+def _pulse_s(off: float, aggressiveness: float, speed: float) -> float:
+    """Length of a pulse in whole ms, negative to the east or south."""
+    if abs(off) < LEAST_ARCSEC:
+        return 0.0
+    return math.copysign(min(round(aggressiveness * abs(off) / speed, 3), LONGEST_S), off)
+
+
+def _now_s(client: Client) -> float:
+    return client.now_ns * 1e-9
