@@ -17,6 +17,7 @@ from calibration.decide.tolerance import NEEDED, calibrated_numbers, changes, se
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.axis_result import AxisResult
 from calibration.look.scene import scene_of_pair
+from calibration.look.volts import DENIED, volts_deny
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
 from calibration.statistics.tails import rms
@@ -103,7 +104,11 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
         p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
-    return select(p, candidates, result.rng), whole, moving
+    s = select(p, candidates, result.rng)
+    if denied := {c.name for c, beta in s.fitted if volts_deny(result, c, float(beta[0]))}:
+        result.refused += [("T", name, DENIED) for name in sorted(denied)]
+        s = select(p, [c for c in candidates if c.name not in denied], result.rng)
+    return s, whole, moving
 
 
 def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:
