@@ -24,4 +24,4 @@ def test_volts_deny_a_change_of_the_torque_constant_that_they_would_show(
     name: str, error: float, size: float, denied: bool
 ) -> None:
     result = cast(AxisResult, SimpleNamespace(scale_error=error))
-    assert volts_deny(result, candidate(name, np.ones((3, 1)), "loss"), size) is denied
+    assert volts_deny(result, candidate(name, np.ones((3, 1)), ("size", "1")), size) is denied
