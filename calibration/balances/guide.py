@@ -25,6 +25,8 @@ DRIFT_TURNS = 2.0
 LEAST_DEGREE = 2
 # s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
 SLOWEST_S = 663.0
+# cells of a piece that is held out in turn: the air's motion has changed by the next one. ASSUMPTION
+PIECE = 12
 # of every section, at its end, unless runs are named. ASSUMPTION
 HELD_PART = 0.4
 
@@ -46,12 +48,17 @@ def usable(runs: list[Run], hold_out: list[str]) -> tuple[list[Run], list[str]]:
 
 
 def guide_problem(
-    runs: list[Run], hold_out: list[str], slowest_s: float = SLOWEST_S, quickest_s: float = SLOWEST_S
+    runs: list[Run],
+    hold_out: list[str],
+    slowest_s: float = SLOWEST_S,
+    quickest_s: float = SLOWEST_S,
+    in_turn: bool = False,
 ) -> tuple[Problem, list[str]]:
     """Problem and the names of what is held out: the end of every section, or the sections that are named.
 
     `slowest_s`: longest period looked for; what takes twice as long is drift, a nuisance of fitted and of
-    held-out rows on their own. `quickest_s`: shortest declared period. `session`: where a period keeps its
+    held-out rows on their own. `quickest_s`: shortest declared period. `in_turn`: short pieces all over the
+    log are held out instead, beside one offset and drift. `session`: where a period keeps its
     phase, as a slew turns the worm: a section; the clock where whole sections are held out.
     """
     units = {r.header.get("unit", "arcsec") for r in runs}
@@ -67,9 +74,11 @@ def guide_problem(
     rows = {name: np.concatenate([r[name] for r in sections]) for name in sections[0]}
     y, run, dither = rows["y"], rows["run"], rows["dither"]
     valid = np.isfinite(y)
-    base, offsets, drifts = _nuisances(rows, valid & ~rows["held"], slowest_s)
+    if in_turn:
+        rows["held"] = np.arange(len(y)) // PIECE % 2 == 1
+    base, offsets, drifts = _nuisances(rows, valid if in_turn else valid & ~rows["held"], slowest_s)
     labels = [("offset", unit)] * offsets + [("drift", unit)] * drifts
-    fresh, *_ = _nuisances(rows, valid & rows["held"], slowest_s)
+    fresh = None if in_turn else _nuisances(rows, valid & rows["held"], slowest_s)[0]
     if np.ptp(dither) > 0:
         base = np.column_stack([base, dither - dither.mean()])
         labels.append(("guide_gain_error", "1"))

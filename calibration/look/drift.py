@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from calibration.balances.candidate import Candidate
-from calibration.balances.guide import guide_problem, usable
+from calibration.balances.guide import PIECE, guide_problem, usable
 from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount, parts
 from calibration.balances.problem import Problem
 from calibration.decide.controls import Wrong, controls
@@ -15,6 +15,7 @@ from calibration.decide.residual import Place
 from calibration.decide.withdraw import failed_controls, withdraw
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
+from calibration.look.jumps import with_jumps
 from calibration.look.looked import (
     Balance,
     Looked,
@@ -56,11 +57,15 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         few = f"{frames} frames to fit are too few to say anything (at least {LEAST_ROWS})"
         return Looked.nothing(title, few, NEED)
     s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
-    p, span = s.problem, longest_span(problem)
+    span = longest_span(problem)
+    s, jumped = with_jumps(s, made(mount.periods_s[-1], in_turn=True)[0])
+    if jumped:
+        held_out = [f"every other {PIECE} frames"]
+    p = s.problem
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
-    effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
+    effects, refused = withdraw(merge(findings_of_worms(s, mount, span, jumped)), failed_controls(tried))
     clock, stages = p.domains.get("clock", p.t), {part.name: part.rate for part in mount.parts}
     b = Balance(
         key="position",

@@ -134,9 +134,9 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
     return s
 
 
-def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
-    """Every part and period that was found, with its neighbours within the resolution and a wheel that is
-    assumed in its note; `span` s as in `longest_span`."""
+def findings_of_worms(s: Selection, mount: Mount, span: float, jumped: str) -> list[Finding]:
+    """Every part and period that was found, and jumps, with what is told of them. A part's note has its
+    neighbours within the resolution and a wheel that is assumed; `span` s as in `longest_span`."""
     out = []
     for k in range(len(s.chosen)):
         f = finding_of(s, k)
@@ -148,6 +148,8 @@ def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
         remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
         if f.stage and not mount.named:
             remarks.insert(0, ASSUMED)
+        if f.name == UNKNOWN and not f.frequency:
+            f, remarks = replace(f, parameters={}), [jumped]
         out.append(replace(f, note="; ".join(remarks)))
     return out
 

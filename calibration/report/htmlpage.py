@@ -29,10 +29,9 @@ def summary(data: dict[str, Any]) -> str:
     top = effects[0]
     if verdict == UNKNOWN:
         period = f" with a period of {1 / top['frequency_Hz']:.4g} s" if top["frequency_Hz"] else ""
-        return (
-            f"Something real is left that the catalogue does not name: a function of "
-            f"{top['domain'].replace('_', ' ')}{period} in {CHANNELS.get(top['channel'], top['channel'])}."
-        )
+        of = f"{top['domain'].replace('_', ' ')}{period} in {CHANNELS.get(top['channel'], top['channel'])}"
+        note = f"; {top['note']}" if top["note"] else ""
+        return f"Something real is left that the catalogue does not name: a function of {of}{note}."
     if verdict == "ambiguous":
         others = [f"another {n}" if n == top["name"] else n for n in top["equivalent"]]
         return f"{_say(top)}, which this log cannot tell from {', '.join(others)}."

@@ -1,0 +1,97 @@
+"""Jumps of a position at constant rate: a mirror that tips over, a cable that slips. They never come back."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from calibration.arrays import Array, by_median
+from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Problem
+from calibration.decide.scan import fit_with
+from calibration.decide.selection import Selection
+from calibration.finding import UNKNOWN
+from calibration.look.worm import PART_GAIN
+from calibration.names.candidates import candidate
+from calibration.statistics.regression import solve
+
+# cells before a jump and as many behind it, over which it is measured beside a slope: quiet air shows it over
+# few, seeing over many. ASSUMPTION
+SIDES = (6, 12, 24)
+# robust standard errors of a jump. On sealed guide logs and tables without one (development seeds 1911 to
+# 1913, seeing with bursts and a wander) the largest of up to 3000 places were 3 to 6
+CLEAR = 8.0
+# of a jump's size over many rows, that few rows show at least. ASSUMPTION: half, their own error aside
+SHARP = 0.5
+# of one log. More are no events but a way of moving. ASSUMPTION
+MOST = 12
+
+
+def with_jumps(s: Selection, everywhere: Problem) -> tuple[Selection, str]:
+    """The selection with its jumps as one more effect, where it has some, and what is told of them.
+
+    It is then of `everywhere`, whose held-out rows lie between fitted ones: a jump is not seen again.
+    """
+    found = _found(s)
+    if found is None:
+        return s, ""
+    now, (steps, at_s) = s.on(everywhere), found
+    one = fit_with(everywhere, np.hstack([everywhere.base, now.columns]), steps)
+    if one is None:
+        return s, ""
+    again = now.keep([*now.chosen, one])
+    last = now.held.after if now.chosen else again.held.before
+    share = 1 - (again.held.after / last) ** 2
+    if not share > PART_GAIN:
+        return s, ""
+    again = now.keep([*now.chosen, replace(one, held=replace(again.held, share=share))])
+    sizes = again.sizes(len(now.chosen))
+    told = (f"{size:.3g} {everywhere.unit} at {at:.0f} s" for size, at in zip(sizes, at_s, strict=True))
+    return again, f"jumps: {', '.join(told)}"
+
+
+def _found(s: Selection) -> tuple[Candidate, list[float]] | None:
+    """Steps (n, k) at the k places where what is left jumps by far more than elsewhere, found one by one; and
+    the places, s."""
+    p, places = s.problem, list[int]()
+    nuisances = p.base if p.fresh is None else np.hstack([p.base, p.fresh])
+    while len(places) <= MOST:
+        steps = [((np.arange(len(p.y)) >= at) & (p.run == p.run[at])).astype(float) for at in sorted(places)]
+        x = np.column_stack([nuisances, s.columns, *steps])
+        rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
+        rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
+        clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
+        if clear < CLEAR:
+            at_s = [float(p.t[at]) for at in sorted(places)]
+            sizes = [("size", p.unit)] * len(steps)
+            one = candidate(UNKNOWN, np.column_stack(steps), *sizes, domain="time") if steps else None
+            return None if one is None else (one, at_s)
+        places.append(at)
+    return None
+
+
+def _clearest(rest: Array, run: NDArray[np.int64], side: int) -> tuple[float, int]:
+    """The largest step that few rows show as well, over what is usual, and its row.
+
+    Waves have steps, too, which grow with the rows that are looked at.
+    """
+    sizes, near = (_steps(rest, run, rows) for rows in (side, SIDES[0]))
+    if not np.isfinite(sizes).any():
+        return 0.0, 0
+    usual = by_median(sizes[np.isfinite(sizes)]) or np.inf
+    sharp = near * np.sign(sizes) > SHARP * np.abs(sizes)
+    told = np.where(sharp, np.abs(np.nan_to_num(sizes)), 0.0) / usual
+    return float(told.max()), int(told.argmax())
+
+
+def _steps(rest: Array, run: NDArray[np.int64], side: int) -> Array:
+    """Step before every row (n,), beside an offset and a slope; NaN where rows are missing."""
+    at = np.arange(-side, side) + 0.5
+    weights = np.linalg.pinv(np.column_stack([np.ones(2 * side), at, at > 0]))[2]
+    out = np.full(len(rest), np.nan)
+    if len(rest) > 2 * side:
+        one_run = sliding_window_view(run, 2 * side)
+        found = sliding_window_view(rest, 2 * side) @ weights
+        out[side : side + len(found)] = np.where(one_run[:, 0] == one_run[:, -1], found, np.nan)
+    return out
