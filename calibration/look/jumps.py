@@ -33,10 +33,11 @@ def with_jumps(s: Selection, everywhere: Problem) -> tuple[Selection, str]:
 
     It is then of `everywhere`, whose held-out rows lie between fitted ones: a jump is not seen again.
     """
-    found = _found(s)
+    now = s.on(everywhere)
+    found = _found(now)
     if found is None:
         return s, ""
-    now, (steps, at_s) = s.on(everywhere), found
+    steps, at_s = found
     one = fit_with(everywhere, np.hstack([everywhere.base, now.columns]), steps)
     if one is None:
         return s, ""
@@ -55,10 +56,9 @@ def _found(s: Selection) -> tuple[Candidate, list[float]] | None:
     """Steps (n, k) at the k places where what is left jumps by far more than elsewhere, found one by one; and
     the places, s."""
     p, places = s.problem, list[int]()
-    nuisances = p.base if p.fresh is None else np.hstack([p.base, p.fresh])
     while len(places) <= MOST:
         steps = [((np.arange(len(p.y)) >= at) & (p.run == p.run[at])).astype(float) for at in sorted(places)]
-        x = np.column_stack([nuisances, s.columns, *steps])
+        x = np.column_stack([p.base, s.columns, *steps])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
