@@ -34,7 +34,9 @@ MOUNTS = (
     (r"EQ6|AZ-?EQ|Atlas|CGEM|CPC|LX200|EM-?200|EM-?400", (180,)),
     (r"EQ8", (435,)),
     (r"G11|Gemini|Losmandy", (360,)),
-    (r"CEM60|CEM70", (216,)),
+    (r"CEM60|CEM40", (216,)),
+    (r"CEM70", (248,)),  # owners' logs: 348 s
+    (r"CEM120", (360,)),
     (r"\bAVX|Advanced VX|CEM25", (144,)),
     (r"iEQ45", (256,)),
     (r"CGX|CGE", (180,)),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.balances.recursions import stop_operator
-from calibration.names.candidates import Size, tried
+from calibration.names.candidates import Size, candidate, tried
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, both_ways
@@ -31,17 +31,24 @@ def columns(s: Scene) -> list[Candidate]:
     sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
     sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
     travels = [part * turn for part in TRAVELS if v.resolved < part * turn < s.span]
-    return [
+    alone = s.pair is not None or s.span >= turn or "gravity_cos" in s.declared  # a weight comes round again
+    twins = () if alone else (WEIGHT.name,)
+    looped = [
         tried(
             NAME.name,
             s.shaped(full),
             *sizes,
             at={"width": (travel, s.angle_unit)},
             positive=(0, 1),
-            twins=() if s.pair is not None or s.span >= turn else (WEIGHT.name,),  # it comes round again
+            twins=twins,
         )
         for travel in travels
     ]
+    # a bundle of a rig that hangs freely has hardly a loop
+    free = (
+        [candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins)] if s.pair is None else []
+    )
+    return [*looped, *free]
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

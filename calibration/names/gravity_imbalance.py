@@ -13,6 +13,8 @@ from plant.evaluate import evaluate, signals
 
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
+# likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
+SLOPE_TURN = 1 / 72
 
 
 def gravity(s: Scene) -> Array:
@@ -30,7 +32,7 @@ def columns(s: Scene) -> list[Candidate]:
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
     turns_along = any(g.period and abs(g.period / s.turn - 1) < SAME for g in s.view.rig.stages)
-    twins = (SHAFT,) if turns_along else ()
+    twins = (*((SHAFT,) if turns_along else ()), *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()))
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
     return [replace(one, columns=s.at(gravity(s)))]
 
@@ -44,8 +46,8 @@ def lacks(s: Scene) -> str:
     """An angle, and enough of it."""
     if not s.view.turn:
         return "an angle: give position in rad, deg or turns, or 'turn' (position units per turn)"
-    if s.span < LEAST_TURN * s.view.turn:
-        return f"a motion over at least {LEAST_TURN:.2g} turns"
+    if s.span < SLOPE_TURN * s.view.turn:
+        return f"a motion over at least {SLOPE_TURN:.2g} turns"
     return ""
 
 
