@@ -4,6 +4,7 @@ import numpy as np
 
 from calibration.balances.recursions import stop_operator
 from calibration.names.candidates import Size, candidate, tried
+from calibration.names.gravity_imbalance import LEAST_TURN
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, both_ways
@@ -31,7 +32,8 @@ def columns(s: Scene) -> list[Candidate]:
     sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
     sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
     travels = [part * turn for part in TRAVELS if v.resolved < part * turn < s.span]
-    alone = s.pair is not None or s.span >= turn or "gravity_cos" in s.declared  # a weight comes round again
+    weighed = "gravity_cos" in s.declared
+    alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again
     twins = () if alone else (WEIGHT.name,)
     looped = [
         tried(
@@ -44,11 +46,10 @@ def columns(s: Scene) -> list[Candidate]:
         )
         for travel in travels
     ]
-    # a bundle of a rig that hangs freely has hardly a loop
-    free = (
-        [candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins)] if s.pair is None else []
-    )
-    return [*looped, *free]
+    # a bundle that hangs freely has hardly a loop; beside no declared weight, a longer slope is a weight's
+    if s.pair is None and (weighed or s.span < LEAST_TURN * turn):
+        looped.append(candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins))
+    return looped
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
