@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.guide import PIECE, guide_problem, usable
 from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount, parts
@@ -58,7 +59,9 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         return Looked.nothing(title, few, NEED)
     s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
     span = longest_span(problem)
-    s, jumped = with_jumps(s, made(mount.periods_s[-1], in_turn=True)[0])
+    jumped = ""
+    if not options.hold_out:
+        s, jumped = with_jumps(s, made(mount.periods_s[-1], in_turn=True)[0])
     if jumped:
         held_out = [f"every other {PIECE} frames"]
     p = s.problem
@@ -75,10 +78,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         numbers=calibrated(s, ("offset",)),
         controls=tried,
         not_identifiable=slow,
-        over=lambda c: (
-            clock * (c.frequency or 1.0) % 1.0,
-            f"phase of the period of {1 / (c.frequency or 1.0):.2f} s, turns",
-        ),
+        over=partial(_over, p, clock),
         spectrum=Spectrum(turns=p.t, stages=stages, label="period, s", periods=True),
     )
     near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
@@ -99,6 +99,13 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         refused=refused,
         notes=[*(n for r in runs for n in r.notes), *notes, *([ON_THE_CLOCK] if problem.domains else [])],
     )
+
+
+def _over(p: Problem, clock: Array, c: Candidate) -> tuple[Array, str]:
+    """What an effect is drawn over: its phase, or time."""
+    if not c.frequency:
+        return p.t, "time, s"
+    return clock * c.frequency % 1.0, f"phase of the period of {1 / c.frequency:.2f} s, turns"
 
 
 def wrong_worm(p: Problem, _: int, c: Candidate) -> list[Wrong]:
