@@ -102,7 +102,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
 
 
 def _over(p: Problem, clock: Array, c: Candidate) -> tuple[Array, str]:
-    """What an effect is drawn over: its phase, or time."""
+    """Phase or time, that an effect is drawn over."""
     if not c.frequency:
         return p.t, "time, s"
     return clock * c.frequency % 1.0, f"phase of the period of {1 / c.frequency:.2f} s, turns"
