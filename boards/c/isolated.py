@@ -3,6 +3,7 @@
 Both ends send tuples over a pair of sockets: a call goes one way, what firmware asks meanwhile the other.
 """
 
+import os
 import subprocess
 import sys
 import weakref
@@ -69,6 +70,7 @@ def unbuilt(isolated: bool) -> Memory:
 
 def _end(line: Connection, process: subprocess.Popen[bytes]) -> None:
     line.close()
+    process.kill()  # it has nothing to keep, and may be past ending by itself
     process.wait()
 
 
@@ -93,4 +95,4 @@ def main(fd: int, file: str, flags: tuple[str, ...]) -> None:
             else:
                 memory.bytes = order
     except EOFError:
-        return
+        os._exit(0)  # firmware may have written to the interpreter's own memory, which would be tidied up now
