@@ -94,5 +94,5 @@ def main(fd: int, file: str, flags: tuple[str, ...]) -> None:
                 line.send(memory.bytes)
             else:
                 memory.bytes = order
-    except EOFError:
+    except (EOFError, OSError):
         os._exit(0)  # firmware may have written to the interpreter's own memory, which would be tidied up now

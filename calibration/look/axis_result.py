@@ -40,6 +40,7 @@ class AxisResult:
     calibrated: dict[str, Parameter] = field(default_factory=dict)
     before: dict[str, float] = field(default_factory=dict)  # per channel, where an effect was undone
     refused: list[tuple[str, str, str]] = field(default_factory=list)  # channel, what, why
+    constant_error: float = 0.0  # relative standard error of the torque constant, where volts told it
     scale_error: float = 0.0  # relative standard error of the N m an ampere is worth, where volts told it
     floors: dict[str, float] = field(default_factory=dict)  # per channel, what the sensors leave
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))  # of all channels

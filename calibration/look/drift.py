@@ -14,6 +14,7 @@ from calibration.decide.controls import Wrong, controls
 from calibration.decide.merge import merge
 from calibration.decide.residual import Place
 from calibration.decide.withdraw import failed_controls, withdraw
+from calibration.finding import Finding
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
 from calibration.look.jumps import with_jumps
@@ -57,18 +58,19 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if frames < LEAST_ROWS:
         few = f"{frames} frames to fit are too few to say anything (at least {LEAST_ROWS})"
         return Looked.nothing(title, few, NEED)
-    s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
-    span = longest_span(problem)
-    jumped = ""
+    s, slowest_s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
+    span, jumped = longest_span(problem), list[Finding]()
     if not options.hold_out:
-        s, jumped = with_jumps(s, made(mount.periods_s[-1], in_turn=True)[0])
+        everywhere = made(slowest_s, in_turn=True)[0]
+        s, jumped = with_jumps(s, everywhere, partial(_when, sections, everywhere))
     if jumped:
-        held_out = [f"every other {PIECE} frames"]
+        held_out = [f"every other {PIECE * problem.period_s:.0f} s"]
     p = s.problem
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
-    effects, refused = withdraw(merge(findings_of_worms(s, mount, span, jumped)), failed_controls(tried))
+    effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
+    effects += jumped
     clock, stages = p.domains.get("clock", p.t), {part.name: part.rate for part in mount.parts}
     b = Balance(
         key="position",
@@ -99,6 +101,14 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         refused=refused,
         notes=[*(n for r in runs for n in r.notes), *notes, *([ON_THE_CLOCK] if problem.domains else [])],
     )
+
+
+def _when(sections: list[Run], p: Problem, row: int) -> str:
+    """The time of a row, as its section's table has it."""
+    k = int(p.run[row])
+    section = sections[k]
+    at_s = section.columns["t"][0] + p.t[row] - p.t[p.run == k][0]
+    return f"{at_s:.0f} s" + (f" of {section.name}" if len(sections) > 1 else "")
 
 
 def _over(p: Problem, clock: Array, c: Candidate) -> tuple[Array, str]:

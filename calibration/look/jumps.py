@@ -1,5 +1,6 @@
 """Jumps of a position at constant rate: a mirror that tips over, a cable that slips. They never come back."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -7,11 +8,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from calibration.arrays import Array, by_median
-from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
+from calibration.decide.parameters import finding_of
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
-from calibration.finding import UNKNOWN
+from calibration.finding import UNKNOWN, Finding
 from calibration.look.worm import PART_GAIN
 from calibration.names.candidates import candidate
 from calibration.statistics.regression import solve
@@ -28,47 +29,59 @@ SHARP = 0.5
 MOST = 12
 
 
-def with_jumps(s: Selection, everywhere: Problem) -> tuple[Selection, str]:
-    """The selection with its jumps as one more effect, where it has some, and what is told of them.
+def with_jumps(
+    s: Selection, everywhere: Problem, when: Callable[[int], str]
+) -> tuple[Selection, list[Finding]]:
+    """The selection with its jumps as one more effect, where it has some, and the finding that it is.
 
     It is then of `everywhere`, whose held-out rows lie between fitted ones: a jump is not seen again.
+    when: the time of a row, told.
     """
     now = s.on(everywhere)
-    found = _found(now)
-    if found is None:
-        return s, ""
-    steps, at_s = found
-    one = fit_with(everywhere, np.hstack([everywhere.base, now.columns]), steps)
+    places = _places(now)
+    if not places:
+        return s, []
+    steps = np.column_stack(_steps_at(everywhere, places))
+    sizes = [("size", everywhere.unit)] * len(places)
+    one = fit_with(
+        everywhere,
+        np.hstack([everywhere.base, now.columns]),
+        candidate(UNKNOWN, steps, *sizes, domain="time"),
+    )
     if one is None:
-        return s, ""
+        return s, []
     again = now.keep([*now.chosen, one])
     last = now.held.after if now.chosen else again.held.before
     share = 1 - (again.held.after / last) ** 2
     if not share > PART_GAIN:
-        return s, ""
+        return s, []
     again = now.keep([*now.chosen, replace(one, held=replace(again.held, share=share))])
-    sizes = again.sizes(len(now.chosen))
-    told = (f"{size:.3g} {everywhere.unit} at {at:.0f} s" for size, at in zip(sizes, at_s, strict=True))
-    return again, f"jumps: {', '.join(told)}"
+    k = len(now.chosen)
+    told = (
+        f"{size:.3g} {everywhere.unit} at {when(at)}" for size, at in zip(again.sizes(k), places, strict=True)
+    )
+    return again, [replace(finding_of(again, k), parameters={}, note=f"jumps: {', '.join(told)}")]
 
 
-def _found(s: Selection) -> tuple[Candidate, list[float]] | None:
-    """Steps (n, k) at the k places where what is left jumps by far more than elsewhere, found one by one; and
-    the places, s."""
+def _steps_at(p: Problem, places: list[int]) -> list[Array]:
+    """A step (n,) of its run from each place on."""
+    rows = np.arange(len(p.y))
+    return [((rows >= at) & (p.run == p.run[at])).astype(float) for at in places]
+
+
+def _places(s: Selection) -> list[int]:
+    """Rows where what is left jumps by far more than elsewhere, found one by one; none, where there are more
+    than MOST."""
     p, places = s.problem, list[int]()
     while len(places) <= MOST:
-        steps = [((np.arange(len(p.y)) >= at) & (p.run == p.run[at])).astype(float) for at in sorted(places)]
-        x = np.column_stack([p.base, s.columns, *steps])
+        x = np.column_stack([p.base, s.columns, *_steps_at(p, places)])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
         if clear < CLEAR:
-            at_s = [float(p.t[at]) for at in sorted(places)]
-            sizes = [("size", p.unit)] * len(steps)
-            one = candidate(UNKNOWN, np.column_stack(steps), *sizes, domain="time") if steps else None
-            return None if one is None else (one, at_s)
+            return sorted(places)
         places.append(at)
-    return None
+    return []
 
 
 def _clearest(rest: Array, run: NDArray[np.int64], side: int) -> tuple[float, int]:

@@ -106,7 +106,8 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
         candidates = []  # nothing but that history: no torque effect can be told from it
     s = select(p, candidates, result.rng)
     if denied := {c.name for c, beta in s.fitted if volts_deny(result, c, float(beta[0]))}:
-        result.refused += [("T", name, DENIED) for name in sorted(denied)]
+        fresh = [("T", name, DENIED) for name in sorted(denied)]
+        result.refused += [x for x in fresh if x not in result.refused]
         s = select(p, [c for c in candidates if c.name not in denied], result.rng)
     return s, whole, moving
 

@@ -92,7 +92,8 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
     if spread > SURE_CONSTANT * constant:  # one speed, not apart from the resistance; or no motor at all
         constant = numbers.torque_constant
     else:
-        result.scale_error, quotient["torque_constant"] = spread / abs(constant), w.constant / constant
+        result.scale_error = result.constant_error = spread / abs(constant)
+        quotient["torque_constant"] = w.constant / constant
     left = weakened(s.fitted, clock, quotient["torque_constant"])
     result.scale_error = float(np.hypot(result.scale_error, reading_error(s.fitted)))
     result.collect(s, quotient)
@@ -101,8 +102,11 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
 
 def volts_deny(result: AxisResult, c: Candidate, size: float) -> bool:
     """Whether an effect of the torque is a share of the torque constant that volts would show."""
-    shown = SHOWN * result.scale_error  # 0: volts have not told the constant
-    return NAMES[c.name].beside.of_constant and 0 < shown < abs(size)
+    kept, shown = NAMES[c.name].torque_kept, SHOWN * result.constant_error  # 0: volts have not told it
+    if kept is None or not NAMES[c.name].beside.of_constant:
+        return False
+    lost = 1.0 - float(np.min(kept(c, size, result.frame.one_clock, 1.0)))  # of a ramp, what this log sees
+    return 0 < shown < lost
 
 
 def weakened(

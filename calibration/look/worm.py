@@ -98,9 +98,12 @@ def best_count(problem: Problem, selection: Selection, part: Part) -> int:
     return min(left.values())[1] if left else 1
 
 
-def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> Selection:
-    """The parts that are found; `drifting` gives the problem in which all that takes longer than two of a
-    period, s, is drift: twice the slowest that was found."""
+def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> tuple[Selection, float]:
+    """The parts that are found, and the slowest period, s, beyond which all is drift.
+
+    `drifting` gives the problem in which all that takes longer than two of a period, s, is drift: twice the
+    slowest that was found.
+    """
     slowest, span = mount.periods_s[-1], longest_span(problem)
     seen = [part for part in mount.parts if span * part.rate >= LEAST_TURNS]
     s = _search(problem, mount, seen, span)
@@ -114,7 +117,7 @@ def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) 
             break
         again.refused = s.refused + again.refused
         s, slowest = again, found
-    return s
+    return s, slowest
 
 
 def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Selection:
@@ -134,12 +137,11 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
     return s
 
 
-def findings_of_worms(s: Selection, mount: Mount, span: float, jumped: str) -> list[Finding]:
-    """Every part and period that was found, and jumps, with what is told of them. A part's note has its
-    neighbours within the resolution and a wheel that is assumed; `span` s as in `longest_span`."""
+def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
+    """Every part and period that was found, with its neighbours within the resolution and a wheel that is
+    assumed in its note; `span` s as in `longest_span`."""
     out = []
-    for k in range(len(s.chosen)):
-        f = finding_of(s, k)
+    for f in (finding_of(s, k) for k, c in enumerate(s.candidates) if c.frequency):
         others = [
             part.name
             for part in mount.parts
@@ -148,8 +150,6 @@ def findings_of_worms(s: Selection, mount: Mount, span: float, jumped: str) -> l
         remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
         if f.stage and not mount.named:
             remarks.insert(0, ASSUMED)
-        if f.name == UNKNOWN and not f.frequency:
-            f, remarks = replace(f, parameters={}), [jumped]
         out.append(replace(f, note="; ".join(remarks)))
     return out
 

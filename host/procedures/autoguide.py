@@ -58,17 +58,23 @@ def autoguide(
     """
     if pointing.track is None:
         raise ClientError("autoguide: there is no target yet; go to one first")
-    client = pointing.client
-    track = SkyTrack(pointing.track.star, place.site, place.clock, place.mount)
-    pointing.track, pointing.tracking = track, True
+    client, star = pointing.client, pointing.track.star
+    followed, apart = (SkyTrack(star, place.site, place.clock, place.mount) for _ in range(2))
+    if isinstance(pointing.track, SkyTrack):  # what was guided before stays
+        followed = pointing.track
+    pointing.track, pointing.tracking = followed, True
+    # the encoder of an axis that looks at its motors does not go where the pulses want it
+    tracks = (apart if how.by_rate else followed, followed)
     opcodes = (Opcode.SET_RATE if how.by_rate else Opcode.TRACK_RATE, Opcode.TRACK_RATE)
-    beside = [_driven(client, axis, opcode, track) for axis, opcode in enumerate(opcodes)]
-    beside.append(_exposures(client, track, eye, how, told))
+    driven = [_driven(client, axis, opcodes[axis], tracks[axis]) for axis in (0, 1)]
+    beside = [*driven, _exposures(client, tracks, eye, how, told)]
     end_ns = client.now_ns + round(how.seconds * 1e9)
     while client.now_ns < end_ns:
         for each in beside:
             next(each)
         yield
+    for axis, opcode in enumerate(opcodes):  # a pulse may be under way
+        yield from client.ask(AXES[axis], opcode, rate_q16(followed.rates(_now_s(client))[axis]))
     pointing.tracking = False
 
 
@@ -87,16 +93,22 @@ def _driven(client: Client, axis: int, opcode: Opcode, track: SkyTrack) -> Proce
 
 
 def _exposures(
-    client: Client, track: SkyTrack, eye: Eye, how: Guiding, told: Callable[[Guided], None]
+    client: Client,
+    tracks: tuple[SkyTrack, SkyTrack],
+    eye: Eye,
+    how: Guiding,
+    told: Callable[[Guided], None],
 ) -> Procedure:
     """One after the other, for ever: where the star was in the middle of each, then pulses."""
-    west = math.cos(track.star.declination_rad)
+    star = tracks[0].star
+    west = math.cos(star.declination_rad)
     speeds = GUIDE_ARCSEC_S * west, GUIDE_ARCSEC_S
     first: tuple[float, float] | None = None
     while True:
-        yield from client.wait(how.exposure_s / 2)
-        angles = eye(track.star, client.now_ns)
-        yield from client.wait(how.exposure_s / 2)
+        begin_ns, length_ns = client.now_ns, round(how.exposure_s * 1e9)
+        yield from _until(client, begin_ns + length_ns // 2)
+        angles = eye(star, client.now_ns)
+        yield from _until(client, begin_ns + length_ns)
         seen = angles[0] * west * ARCSEC_PER_RAD, angles[1] * ARCSEC_PER_RAD
         first = first or seen
         off = seen[0] - first[0], seen[1] - first[1]
@@ -105,7 +117,8 @@ def _exposures(
         )
         for axis, seconds in enumerate((ra_s, dec_s)):
             if seconds:
-                track.guide(Pulse(axis, math.copysign(GUIDE_ARCSEC_S, seconds), _now_s(client), abs(seconds)))
+                rate = math.copysign(GUIDE_ARCSEC_S, seconds)
+                tracks[axis].guide(Pulse(axis, rate, _now_s(client), abs(seconds)))
         sent = ra_s * speeds[0], dec_s * speeds[1]
         told(Guided(t_s=_now_s(client), off=off, sent=sent, pulses_s=(ra_s, dec_s)))
         if longest := max(abs(ra_s), abs(dec_s)):
@@ -117,6 +130,12 @@ def _pulse_s(off: float, aggressiveness: float, speed: float) -> float:
     if abs(off) < LEAST_ARCSEC:
         return 0.0
     return math.copysign(min(round(aggressiveness * abs(off) / speed, 3), LONGEST_S), off)
+
+
+def _until(client: Client, t_ns: int) -> Procedure:
+    """The first tick from then on."""
+    while client.now_ns < t_ns:
+        yield
 
 
 def _now_s(client: Client) -> float:

@@ -53,7 +53,7 @@ def check_targets(scenario: Scenario) -> None:
         stay_s = float(step.arguments.get("for", 0.0))
         if step.action == "goto":
             aim = (target_of(step.arguments["target"], step.where), step.where)
-        if step.action in ("goto", "track") and aim is not None:
+        if step.action in ("goto", "track", "autoguide") and aim is not None:
             target, where = aim
             try:
                 check_reachable(target, scenario, t_s, stay_s)

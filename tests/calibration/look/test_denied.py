@@ -23,5 +23,7 @@ from calibration.names.candidates import candidate
 def test_volts_deny_a_change_of_the_torque_constant_that_they_would_show(
     name: str, error: float, size: float, denied: bool
 ) -> None:
-    result = cast(AxisResult, SimpleNamespace(scale_error=error))
+    result = cast(
+        AxisResult, SimpleNamespace(constant_error=error, frame=SimpleNamespace(one_clock=np.arange(3.0)))
+    )
     assert volts_deny(result, candidate(name, np.ones((3, 1)), ("size", "1")), size) is denied

@@ -19,6 +19,7 @@ from scenarios.lab.snapshot.run import Order, read
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
 from scenarios.language.plants import plant_model
+from scenarios.language.targets import check_targets
 from scenarios.run import run as runner
 
 HEAD = """\
@@ -65,15 +66,21 @@ def guided(tmp_path_factory: pytest.TempPathFactory) -> runner.Result:
     return go(HEAD + STEPS, tmp_path_factory.mktemp("guided"))
 
 
-def test_frames_are_where_the_plant_says_that_the_star_stood(guided: runner.Result) -> None:
-    outcome = guided.outcome
-    record = outcome.record("guide")
-    assert guided.passed and len(record.guided) > 15
+def away(result: runner.Result, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of a step: time s, and how far the star truly was west and north of where the telescope looked, ″."""
+    outcome, pollux = result.outcome, star("Pollux")
+    record = outcome.record(name)
     assert record.start_s is not None and record.end_s is not None
     t, hour_angle, declination = outcome.pointed(record.start_s, record.end_s)
-    place = observe_many(star("Pollux"), outcome.scenario.site, outcome.scenario.clock, t)
-    west = np.degrees(place[0] - hour_angle) * 3600 * math.cos(star("Pollux").declination_rad)
-    north = np.degrees(place[1] - declination) * 3600
+    place = observe_many(pollux, outcome.scenario.site, outcome.scenario.clock, t)
+    west = np.degrees(place[0] - hour_angle) * 3600 * math.cos(pollux.declination_rad)
+    return t, west, np.degrees(place[1] - declination) * 3600
+
+
+def test_frames_are_where_the_plant_says_that_the_star_stood(guided: runner.Result) -> None:
+    record = guided.outcome.record("guide")
+    assert guided.passed and len(record.guided) > 15
+    t, west, north = away(guided, "guide")
     middle = np.array([each.t_s - 1.0 for each in record.guided])  # of exposures of 2 s
     for k, true in enumerate((west, north)):
         seen = np.array([each.off[k] for each in record.guided])
@@ -109,6 +116,30 @@ def test_a_snapshot_in_the_middle_goes_on_to_the_same_log(tmp_path: Path) -> Non
     two = runner.run(whole["scenario"], whole["model"], tmp_path / "two", lambda *_: None, way)
     assert two.summary["trace_digest"] == one.summary["trace_digest"]
     assert (tmp_path / "one/guiding.txt").read_bytes() == (tmp_path / "two/guiding.txt").read_bytes()
+
+
+def test_the_axes_go_on_with_the_star_whatever_follows(tmp_path: Path) -> None:
+    steps = "".join(
+        f"  - {{name: {name}, {what}}}\n"
+        for name, what in (
+            ("motors", "autoguide: {for: 61.3 s, by: rate}"),
+            ("rest", "wait: {for: 20 s}"),
+            ("encoders", "autoguide: {for: 30 s}"),
+            ("again", "autoguide: {for: 30 s, exposure: 0.5 s}"),
+            ("follow", "track: {for: 30 s}"),
+        )
+    )
+    result = go(HEAD + "steps:\n  - power_on: {}\n  - goto: {target: Pollux}\n" + steps, tmp_path)
+    assert result.passed and not result.summary["error_log_entries"]
+    names = ("motors", "rest", "encoders", "again", "follow")
+    seen = np.array([[np.median(side[-500:]) for side in away(result, name)[1:]] for name in names])
+    assert np.abs(seen - seen[0]).max() < 3.0  # a pulse that stayed on would make 150″ of the rest
+
+
+def test_guiding_beyond_the_horizon_is_refused(tmp_path: Path) -> None:
+    text = HEAD + "steps:\n  - goto: {target: Pollux}\n  - autoguide: {for: 11 h}\n"
+    with pytest.raises(ScenarioError, match="Pollux"):
+        check_targets(convert(parse(text, tmp_path / "a.yaml")))
 
 
 def test_guiding_without_a_star_is_refused_in_one_line(tmp_path: Path) -> None:
