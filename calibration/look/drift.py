@@ -68,6 +68,8 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     p = s.problem
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
+    if len(slow) > FEW and not mount.named:  # the log names no mount that is known
+        slow = [f"{len(slow)} of the usual worms ({few})"]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
     effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
     effects += jumped
