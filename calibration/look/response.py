@@ -68,7 +68,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
     strange, a = [], agreement
     if a is not None and a.left > STILL_MISSING:
         strange = [
-            f"{a.left:.1f} floors remain between {a.channel} and the position's rate: what makes the column"
+            f"{a.channel} is not the position's rate ({a.left:.1f} floors apart): find out how it is made"
         ]
     needs = [*(x for b in balances for x in b.short), *strange, *(x for b in balances for x in b.needs)]
     lacks = list(dict.fromkeys(needs))[:MOST_NEEDS]
