@@ -136,11 +136,9 @@ class Scene:
         own = self.problem.session
         files = [own == k for k in np.unique(own)]
         shared = [([np.ones(len(own), bool)], False)]
-        return (
-            shared
-            if self.view.rig.runs.get("origin") == "shared" or len(files) < 2
-            else [*shared, (files, True)]
-        )
+        if self.view.rig.runs.get("origin") == "shared" or len(files) < 2:
+            return shared
+        return [*shared, (files, True)]
 
     @property
     def both(self) -> bool:

@@ -106,9 +106,9 @@ def _exposures(
     first: tuple[float, float] | None = None
     while True:
         begin_ns, length_ns = client.now_ns, round(how.exposure_s * 1e9)
-        yield from _until(client, begin_ns + length_ns // 2)
+        yield from client.wait(how.exposure_s / 2)
         angles = eye(star, client.now_ns)
-        yield from _until(client, begin_ns + length_ns)
+        yield from client.wait((begin_ns + length_ns - client.now_ns) * 1e-9)  # of ticks, whole ones pass
         seen = angles[0] * west * ARCSEC_PER_RAD, angles[1] * ARCSEC_PER_RAD
         first = first or seen
         off = seen[0] - first[0], seen[1] - first[1]
@@ -130,12 +130,6 @@ def _pulse_s(off: float, aggressiveness: float, speed: float) -> float:
     if abs(off) < LEAST_ARCSEC:
         return 0.0
     return math.copysign(min(round(aggressiveness * abs(off) / speed, 3), LONGEST_S), off)
-
-
-def _until(client: Client, t_ns: int) -> Procedure:
-    """The first tick from then on."""
-    while client.now_ns < t_ns:
-        yield
 
 
 def _now_s(client: Client) -> float:
