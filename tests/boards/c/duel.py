@@ -33,6 +33,14 @@ _USUAL = {
     2: 14000, 3: 150, 4: PARK - (1 << 22), 5: PARK + (1 << 22), 6: 51380, 14: 20 << 8, 15: 3000, 40: 40 << 8,
 }  # fmt: skip
 """Values of parameters with which the axis can be moved."""
+_SAME = {
+    "near_low": "limits._near_low", "near_high": "limits._near_high", "position": "motion.position",
+    "target": "motion.profile.target", "remaining": "motion.profile.remaining", "speed": "motion.profile.speed",
+    "rate": "motion.rate", "setpoint_q16": "motion.setpoint_q16", "wanted_q16": "motion.wanted_q16",
+    "near_ticks": "motion.near_ticks", "velocity": "velocity", "effort": "effort", "poscnt": "poscnt",
+    "effort_q16": "pi.effort_q16", "kp": "pi.kp_q12", "ki": "pi.ki_q12",
+}  # fmt: skip
+"""State of the C file: the Python board's name of it. A wrong line may lie there long before a frame tells."""
 _NO_AXIS = ("wrong_bitrate", "endat_line", "serial_noise", "weak_supply", "emergency_stop")
 
 
@@ -236,8 +244,22 @@ class Duel:
             for side in self.sides:
                 told += [f"  {side.said[k] if k < len(side.said) else 'nothing'}", f"    {side.state()}"]
             raise Difference("\n".join(told))
+        self.compare_states()
         for side in self.sides:
             side.said.clear()
+
+    def compare_states(self) -> None:
+        """Numbers that both firmwares keep."""
+        python, c = (side.state() for side in self.sides)
+        apart = [
+            f"{one} {c[one]}, {other} {python[other]}"
+            for one, other in _SAME.items()
+            if c[one] != python[other]
+        ]
+        if apart and self.sides[0].network.boards["AXIS_RA"].on:
+            raise Difference(
+                f"after {self.last}, {self.compared} equal frames; C, then Python: {'; '.join(apart)}"
+            )
 
 
 @click.command()

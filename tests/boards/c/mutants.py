@@ -36,8 +36,11 @@ _STEPS = "300"
 _WORST_S = 3600
 UNCOMPILED = "does not compile"
 """A compiler finds these, no duel: they count for nothing."""
-EQUIVALENT = ("b->tach[k].rate_q8 = (0 + 1);",)
-"""Nothing can tell these: there, 1 + (256 d - 1 >> 2) is 64 d, as it is without the 1."""
+EQUIVALENT = (
+    "b->tach[k].rate_q8 = (0 + 1);",  # there, 1 + (256 d - 1 >> 2) is 64 d, as it is without the 1
+    "if (b->remaining < (0 + 1)) wanted = -wanted;",  # nothing remains: the speed wanted is the gap, 0
+)
+"""Nothing can tell these."""
 _FOUND = ("tests.boards.c.duel.Difference", "boards.core.declared.BoardError")
 
 
