@@ -35,12 +35,13 @@ _USUAL = {
 """Values of parameters with which the axis can be moved."""
 _SAME = {
     "near_low": "limits._near_low", "near_high": "limits._near_high", "position": "motion.position",
-    "target": "motion.profile.target", "remaining": "motion.profile.remaining", "speed": "motion.profile.speed",
-    "rate": "motion.rate", "setpoint_q16": "motion.setpoint_q16", "wanted_q16": "motion.wanted_q16",
-    "near_ticks": "motion.near_ticks", "velocity": "velocity", "effort": "effort", "poscnt": "poscnt",
-    "effort_q16": "pi.effort_q16", "kp": "pi.kp_q12", "ki": "pi.ki_q12",
+    "target": "motion.profile.target", "remaining": "motion.profile.remaining",
+    "speed": "motion.profile.speed", "rate": "motion.rate", "setpoint_q16": "motion.setpoint_q16",
+    "wanted_q16": "motion.wanted_q16", "near_ticks": "motion.near_ticks", "velocity": "velocity",
+    "effort": "effort", "poscnt": "poscnt", "effort_q16": "pi.effort_q16", "kp": "pi.kp_q12",
+    "ki": "pi.ki_q12",
 }  # fmt: skip
-"""State of the C file: the Python board's name of it. A wrong line may lie there long before a frame tells."""
+"""State of the C file: the Python board's name of it. A wrong line may show here long before in a frame."""
 _NO_AXIS = ("wrong_bitrate", "endat_line", "serial_noise", "weak_supply", "emergency_stop")
 
 
