@@ -349,7 +349,6 @@ static void take_position(struct board *b, const uint8_t *data) {
 static void motion_off(struct board *b) {
     b->mode = OFF;
     b->setpoint_q16 = b->wanted_q16 = b->rate = 0;
-    b->profile_rate = 0;
     b->selected = 0;
 }
 

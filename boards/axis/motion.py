@@ -117,8 +117,7 @@ class Motion:
         """No set point."""
         self.mode = AxisMode.OFF
         self.setpoint = self._idle
-        self.setpoint_q16 = self.wanted_q16 = 0
-        self.rate = self.profile.rate = 0
+        self.setpoint_q16 = self.wanted_q16 = self.rate = 0
         self.selected = 0
 
     def open_loop(self) -> None:

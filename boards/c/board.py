@@ -28,6 +28,8 @@ _RESET, _TIMER, _FRAME, _CAN, _SENT, _INIT = range(len(ROUTINES))
     _LOST_INTERRUPTS, _COUNT_DROPPED, _DEBUG_LINE,
 ) = range(len(CALLS))  # fmt: skip
 _PWM_PRIORITY: Final = 1 << 16
+_FILTERS: Final = 6
+"""Of an MCP2515."""
 _STATES: Final = ("active", "passive", "bus_off")
 _STAMP_NS: Final = 100_000
 _ALARM, _WRONG_CRC = 1 << 30, 1 << 31
@@ -184,6 +186,8 @@ class FirmwareBoard(PeriodicBoard):
             frame = self._sent.get(a)
             return 0 if frame is None else self.port.withdraw(frame)
         if call == _CAN_FILTER:
+            if a >= _FILTERS:
+                self._lacks(f"acceptance filter {a}")
             self._masks[a >= 2] = b >> 16
             self._filters[a >= 2].append(b & 0xFFFF)
         elif call == _REQUEST_CAN:

@@ -184,7 +184,7 @@ class Board:
     def _receive(self, t_ns: int, frame: Frame) -> None:
         identifier = frame.identifier
         call = self.mail.get(identifier)
-        if call is None or frame.extended:  # an extended identifier is nobody's here
+        if call is None or frame.extended or not self.on:  # an extended identifier is nobody's here
             return
         data, remote = frame.data, frame.remote
         if len(data) == FRAME_BYTES and data[0] == identifier & 0x7F and not remote:

@@ -168,13 +168,14 @@ class Duel:
         self.command(Opcode.SET_CLASS, draw.randint(2, 5), draw.choice((-1, 1)))
 
     def corner(self) -> None:
-        """Fast towards a soft limit that lies near."""
+        """Fast towards a soft limit that lies near, the axis board's own or the encoder board's."""
         draw = self.random
+        whose = draw.choice((RA, RA, Device.POSITION_RA))
         board = self.sides[0].network.boards["AXIS_RA"]
         here, way = board.motion.position, draw.choice((-1, 1))
         for number, away in ((4, -1), (5, 1)):
             limit = here + away * draw.choice((draw.randint(1 << 17, 1 << 20), 1 << 26))
-            self.command(Opcode.SET_PARAMETER, number, max(0, min((1 << 29) - 1, limit)))
+            self.command(Opcode.SET_PARAMETER, number, max(0, min((1 << 29) - 1, limit)), device=whose)
             self.both(0.002)
         self.command(Opcode.POWER, 1)
         self.both(0.002)
@@ -226,11 +227,11 @@ class Duel:
         for side in self.sides:
             side.faults.clear(number)
 
-    def command(self, opcode: int, *arguments: int) -> None:
+    def command(self, opcode: int, *arguments: int, device: Device = RA) -> None:
         """One to both."""
-        self.last = f"{Opcode(opcode).name} {arguments}"
+        self.last = f"{Opcode(opcode).name} {arguments} to {device.name}"
         for side in self.sides:
-            side.node.arrive(Frame(COMMAND_BASE + RA, pack_command(RA, opcode, *arguments)))
+            side.node.arrive(Frame(COMMAND_BASE + device, pack_command(device, opcode, *arguments)))
 
     def both(self, seconds: float) -> None:
         """Let time go on and compare."""

@@ -128,6 +128,12 @@ def test_a_crash_or_a_hang_is_one_line(tmp_path: Path, wrong: str, told: str, is
     assert made.boards["AXIS_DEC"].on and not made.boards["AXIS_RA"].on
 
 
+def test_a_chip_has_six_acceptance_filters(tmp_path: Path) -> None:
+    made = network(tmp_path, "can_filter(6, 0x7FF, 0)")
+    with pytest.raises(BoardError, match="board AXIS_RA has no acceptance filter 6"):
+        made.run_until(2_000_000_000)
+
+
 def test_what_is_written_beyond_the_memory_is_nobodys_in_a_process_of_its_own(tmp_path: Path) -> None:
     made = network(tmp_path, "for (char *end = (char *)b; ; end += 4096) *end = 1", isolated=True)
     with pytest.raises(BoardError, match="board_timer ends with SIG"):

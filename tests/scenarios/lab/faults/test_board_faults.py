@@ -21,8 +21,11 @@ def test_a_board_without_supply_is_silent_and_boots(kind: str, hears: bool) -> N
     assert board.port.online == hears  # too little for the processor, enough for the controller
     assert lab.world(at.DUTY) == 0.0
     assert "AXIS_RA" not in lab.senders(start + 500_000)  # what lay in a buffer may still go
+    heard_ns = board.motion.good_ns
     lab.faults.clear(number)
-    lab.run(BOOT_S)
+    lab.run(0.1)
+    assert board.motion.good_ns == heard_ns  # it boots, and takes nothing that its controller hears
+    lab.run(BOOT_S - 0.1)
     assert board.on
     assert "AXIS_RA" in lab.senders(start + 500_000)
     assert lab.world(at.DUTY) == 0.0  # nobody has switched it on again
