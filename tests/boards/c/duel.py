@@ -38,8 +38,8 @@ _SAME = {
     "target": "motion.profile.target", "remaining": "motion.profile.remaining",
     "speed": "motion.profile.speed", "rate": "motion.rate", "setpoint_q16": "motion.setpoint_q16",
     "wanted_q16": "motion.wanted_q16", "near_ticks": "motion.near_ticks", "velocity": "velocity",
-    "effort": "effort", "poscnt": "poscnt", "effort_q16": "pi.effort_q16", "kp": "pi.kp_q12",
-    "ki": "pi.ki_q12",
+    "effort": "effort", "poscnt": "poscnt", "effort_q16": "pi.effort_q16", "waiting": "inbox",
+    "kp": "pi.kp_q12", "ki": "pi.ki_q12",
 }  # fmt: skip
 """State of the C file: the Python board's name of it. A wrong line may show here long before in a frame."""
 _NO_AXIS = ("wrong_bitrate", "endat_line", "serial_noise", "weak_supply", "emergency_stop")
@@ -70,7 +70,7 @@ class Side:
         if isinstance(board, FirmwareBoard):
             found = members(board.memory.file, board.memory.bytes)
             return {name: value for name, value in found.items() if name != "packet"}
-        return dict(_numbers(board, 3))
+        return {**dict(_numbers(board, 3)), "inbox": len(board.inbox)}
 
 
 def _numbers(owner: Any, depth: int, path: str = "") -> list[tuple[str, Any]]:
@@ -110,7 +110,7 @@ class Duel:
         elif draw < 0.74:
             self.command(Opcode.SET_PARAMETER, *self.parameter())
         elif draw < 0.78:
-            self.random.choice((self.compensate, self.corner, self.settle))()
+            self.random.choice((self.compensate, self.corner, self.settle, self.cut))()
         elif draw < 0.86:
             self.stray()
         elif not self.running or (draw < 0.92 and len(self.running) < 3):
@@ -191,6 +191,16 @@ class Duel:
             here = self.sides[0].network.boards["AXIS_RA"].motion.position
             self.command(Opcode.MOVE_TO, here + draw.randint(-2000, 2000), 3)
             self.both(draw.uniform(0.7, 1.0))
+
+    def cut(self) -> None:
+        """The supply fails while commands wait."""
+        for _ in range(5):
+            self.command(*self.order())
+        numbers = [side.faults.start("node_off", node="AXIS_RA") for side in self.sides]
+        self.both(0.004)
+        for side, number in zip(self.sides, numbers, strict=True):
+            side.faults.clear(number)
+        self.both(0.5)
 
     def stray(self) -> None:
         """Frames that nobody should send, and many commands at once."""
