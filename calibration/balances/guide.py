@@ -1,9 +1,11 @@
 """The drive error of a guided mount as a regression: star offsets, a slow drift per section, the rest."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask, by_median
 from calibration.balances.problem import Problem
@@ -25,10 +27,10 @@ DRIFT_TURNS = 2.0
 LEAST_DEGREE = 2
 # s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
 SLOWEST_S = 663.0
-# cells of a piece that is held out in turn: the air's motion has changed by the next one. ASSUMPTION
-PIECE = 12
-# of every section, at its end, unless runs are named. ASSUMPTION
-HELD_PART = 0.4
+# pieces of the longest section, each held out in its turn, where it has fewer turns. ASSUMPTION
+LEAST_PIECES = 3
+# of such pieces are held out together where there are more. ASSUMPTION
+EVERY = 6
 
 
 def usable(runs: list[Run], hold_out: list[str]) -> tuple[list[Run], list[str]]:
@@ -52,14 +54,12 @@ def guide_problem(
     hold_out: list[str],
     slowest_s: float = SLOWEST_S,
     quickest_s: float = SLOWEST_S,
-    in_turn: bool = False,
 ) -> tuple[Problem, list[str]]:
-    """Problem and the names of what is held out: the end of every section, or the sections that are named.
+    """Problem and the names of what is held out: every other piece in turn, or the sections that are named.
 
-    `slowest_s`: longest period looked for; what takes twice as long is drift, a nuisance of fitted and of
-    held-out rows on their own. `quickest_s`: shortest declared period. `in_turn`: short pieces all over the
-    log are held out instead, beside one offset and drift. `session`: where a period keeps its
-    phase, as a slew turns the worm: a section; the clock where whole sections are held out.
+    `slowest_s`: longest period looked for; what takes twice as long is drift, a nuisance that sections held
+    out have on their own. `quickest_s`: shortest declared period. With the clock as a domain a period keeps
+    its phase from section to section; else a slew turns the worm.
     """
     units = {r.header.get("unit", "arcsec") for r in runs}
     if len(units) > 1:
@@ -74,11 +74,10 @@ def guide_problem(
     rows = {name: np.concatenate([r[name] for r in sections]) for name in sections[0]}
     y, run, dither = rows["y"], rows["run"], rows["dither"]
     valid = np.isfinite(y)
-    if in_turn:
-        rows["held"] = np.arange(len(y)) // PIECE % 2 == 1
-    base, offsets, drifts = _nuisances(rows, valid if in_turn else valid & ~rows["held"], slowest_s)
+    base, offsets, drifts = _nuisances(rows, valid & ~rows["held"], slowest_s)
     labels = [("offset", unit)] * offsets + [("drift", unit)] * drifts
-    fresh = None if in_turn else _nuisances(rows, valid & rows["held"], slowest_s)[0]
+    piece = _pieces(rows["t"], run, slowest_s)
+    fresh = _nuisances(rows, valid & rows["held"], slowest_s)[0] if hold_out else None
     if np.ptp(dither) > 0:
         base = np.column_stack([base, dither - dither.mean()])
         labels.append(("guide_gain_error", "1"))
@@ -91,7 +90,7 @@ def guide_problem(
         base_labels=labels,
         t=rows["t"],
         run=run,
-        session=np.zeros_like(run) if whole else run,
+        session=run if hold_out else piece % EVERY,
         valid=valid,
         held=rows["held"],
         period_s=period,
@@ -104,6 +103,8 @@ def guide_problem(
     bent = bent[np.isfinite(bent)]
     if len(bent):
         problem.floor = by_median(bent - np.median(bent)) / float(np.sqrt(6))
+    if not hold_out:
+        return replace(problem, turned=valid, slow=True), [f"{np.sum(piece == 0) * period:.0f} s at a time, in turn"]
     return problem, names
 
 
@@ -118,10 +119,7 @@ def _sections(runs: list[Run], hold_out: list[str], period: float) -> tuple[list
         near = np.clip(np.searchsorted(r.columns["t"], grid), 1, r.rows - 1)
         segment = r.columns["segment"][near].astype(np.int64) + count
         held = np.full(len(grid), r.among(hold_out))
-        if not hold_out:
-            held[int((1 - HELD_PART) * len(grid)) :] = True
-            names.append(f"{r.name} from {(1 - HELD_PART) * (grid[-1] - grid[0]):.0f} s")
-        elif held.all():
+        if held.all():
             names.append(r.name)
         parts.append(
             {
@@ -145,6 +143,20 @@ def _nuisances(columns: dict[str, Array], rows: Mask, slowest_s: float) -> tuple
     drifts = [x for k in np.unique(run[rows]) for x in _drift(columns["t"], (run == k) & rows, slowest_s).T]
     both = [*offsets, *drifts]
     return np.column_stack(both) if both else np.zeros((len(rows), 0)), len(offsets), len(drifts)
+
+
+def _pieces(t: Array, run: NDArray[np.int64], slowest_s: float) -> NDArray[np.int64]:
+    """Number of every row's piece: a turn of the slowest period long, to see whether the next turn is as
+    the others."""
+    spans = [float(np.ptp(t[run == k])) for k in np.unique(run)]
+    length = min(slowest_s, max(spans) / LEAST_PIECES)
+    out, first = np.zeros(len(t), dtype=np.int64), 0
+    for k, span in zip(np.unique(run), spans, strict=True):
+        here, count = run == k, max(round(span / length), 1)
+        since = (t[here] - t[here].min()) / (span + 1e-9)
+        out[here] = first + np.floor(since * count).astype(np.int64)
+        first += count
+    return out
 
 
 def _drift(t: Array, here: Mask, slowest_s: float) -> Array:

@@ -33,6 +33,7 @@ MOUNTS = (
     (r"Celestron.*AVX/", (180, 144)),  # one driver for the whole family
     (r"EQ6|AZ-?EQ|Atlas|CGEM|CPC|LX200|EM-?200|EM-?400", (180,)),
     (r"EQ8", (435,)),
+    (r"GM-?8", (180,)),
     (r"G11|Gemini|Losmandy", (360,)),
     (r"CEM60|CEM40", (216,)),
     (r"CEM70", (248,)),  # owners' logs: 348 s

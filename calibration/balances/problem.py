@@ -51,6 +51,7 @@ class Problem:
     resolved: tuple[Mask, float] | None = None  # rows that a sensor's coarse steps do not spoil, floor there
     base_phases: tuple[slice, ...] = ()  # columns of `base` whose phase is every run's own
     turned: Mask | None = None
+    slow: bool = False  # declared terms are nuisances, fitted on all rows
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property

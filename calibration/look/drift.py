@@ -7,7 +7,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
-from calibration.balances.guide import PIECE, guide_problem, usable
+from calibration.balances.guide import guide_problem, usable
 from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount, parts
 from calibration.balances.problem import Problem
 from calibration.decide.controls import Wrong, controls
@@ -58,14 +58,10 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if frames < LEAST_ROWS:
         few = f"{frames} frames to fit are too few to say anything (at least {LEAST_ROWS})"
         return Looked.nothing(title, few, NEED)
-    s, slowest_s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
-    span, jumped = longest_span(problem), list[Finding]()
+    s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
+    span, p, jumped = longest_span(problem), s.problem, list[Finding]()
     if not options.hold_out:
-        everywhere = made(slowest_s, in_turn=True)[0]
-        s, jumped = with_jumps(s, everywhere, partial(_when, sections, everywhere))
-    if jumped:
-        held_out = [f"every other {PIECE * problem.period_s:.0f} s"]
-    p = s.problem
+        s, jumped = with_jumps(s, partial(_when, sections, p))
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known

@@ -29,37 +29,26 @@ SHARP = 0.5
 MOST = 12
 
 
-def with_jumps(
-    s: Selection, everywhere: Problem, when: Callable[[int], str]
-) -> tuple[Selection, list[Finding]]:
+def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, list[Finding]]:
     """The selection with its jumps as one more effect, where it has some, and the finding that it is.
 
-    It is then of `everywhere`, whose held-out rows lie between fitted ones: a jump is not seen again.
-    when: the time of a row, told.
+    Held-out rows lie between fitted ones: a jump is not seen again. when: the time of a row, told.
     """
-    now = s.on(everywhere)
-    places = _places(now)
+    p, places = s.problem, _places(s)
     if not places:
         return s, []
-    steps = np.column_stack(_steps_at(everywhere, places))
-    sizes = [("size", everywhere.unit)] * len(places)
-    one = fit_with(
-        everywhere,
-        np.hstack([everywhere.base, now.columns]),
-        candidate(UNKNOWN, steps, *sizes, domain="time"),
-    )
+    steps, sizes = np.column_stack(_steps_at(p, places)), [("size", p.unit)] * len(places)
+    one = fit_with(p, np.hstack([p.base, s.columns]), candidate(UNKNOWN, steps, *sizes, domain="time"))
     if one is None:
         return s, []
-    again = now.keep([*now.chosen, one])
-    last = now.held.after if now.chosen else again.held.before
+    again = s.keep([*s.chosen, one])
+    last = s.held.after if s.chosen else again.held.before
     share = 1 - (again.held.after / last) ** 2
     if not share > PART_GAIN:
         return s, []
-    again = now.keep([*now.chosen, replace(one, held=replace(again.held, share=share))])
-    k = len(now.chosen)
-    told = (
-        f"{size:.3g} {everywhere.unit} at {when(at)}" for size, at in zip(again.sizes(k), places, strict=True)
-    )
+    k = len(s.chosen)
+    again = s.keep([*s.chosen, replace(one, held=replace(again.held, share=share))])
+    told = (f"{size:.3g} {p.unit} at {when(at)}" for size, at in zip(again.sizes(k), places, strict=True))
     return again, [replace(finding_of(again, k), parameters={}, note=f"jumps: {', '.join(told)}")]
 
 

@@ -16,6 +16,7 @@ from calibration.decide.heldout import cross_validate
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
+from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
 
@@ -55,8 +56,9 @@ def harmonics(problem: Problem, rate: float, count: int) -> Array:
     A session with less than LEAST_IN_SESSION turns to fit has none: offset and drift would imitate them.
     """
     at, parts = problem.domains.get("clock", problem.t), []
-    for k in np.unique(problem.session):
-        m = problem.session == k
+    sections = np.zeros_like(problem.run) if "clock" in problem.domains else problem.run
+    for k in np.unique(sections):
+        m = sections == k
         seen = at[m & problem.train]
         if len(seen) and np.ptp(seen) * rate >= LEAST_IN_SESSION:
             phases = [2 * np.pi * h * rate * at for h in range(1, count + 1)]
@@ -98,8 +100,8 @@ def best_count(problem: Problem, selection: Selection, part: Part) -> int:
     return min(left.values())[1] if left else 1
 
 
-def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> tuple[Selection, float]:
-    """The parts that are found, and the slowest period, s, beyond which all is drift.
+def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> Selection:
+    """The parts that are found.
 
     `drifting` gives the problem in which all that takes longer than two of a period, s, is drift: twice the
     slowest that was found.
@@ -117,13 +119,13 @@ def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) 
             break
         again.refused = s.refused + again.refused
         s, slowest = again, found
-    return s, slowest
+    return s
 
 
 def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Selection:
     """Select parts with a few numbers of harmonics and free periods, then give each part its best number."""
     candidates = [c for part in seen for c in part_candidates(problem, part, (1, 2, 5, HARMONICS))]
-    candidates += free_periods(problem, mount.parts, span)
+    candidates += free_periods(problem, mount, span)
     s = settle(problem, candidates, mount.named)
     by_name = {part.name: part for part in seen}
     for chosen in list(s.chosen):
@@ -154,14 +156,22 @@ def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
     return out
 
 
-def free_periods(problem: Problem, known: list[Part], span: float) -> list[Candidate]:
+def free_periods(problem: Problem, mount: Mount, span: float) -> list[Candidate]:
     """Periods that no known part has, between two turns in a section and five frames a turn."""
     if span <= 0:
         return []
-    taken = [h * part.rate for part in known for h in range(1, (HARMONICS if part.worm else 2) + 1)]
+    waves = HARMONICS if mount.named else 1  # of a wheel that is only assumed, the turn alone
+    taken = [h * part.rate for part in mount.parts for h in range(1, (waves if part.worm else 2) + 1)]
     rates = np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span)
     free = [float(rate) for rate in rates if all(abs(rate - k) * span > APART_TURNS for k in taken)]
     return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, 2, domain="time")]
+
+
+def _harmonic_leads(s: Selection, k: int) -> bool:
+    """Whether a part's first harmonic is not its largest, over all sections."""
+    sections = harmonics(s.problem, s.candidates[k].frequency or 0.0, 1).shape[1] // 2
+    sizes = np.hypot(*np.moveaxis(s.sizes(k).reshape(sections, -1, 2), 2, 0)).mean(axis=0)
+    return bool(sizes.argmax() > 0)
 
 
 def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Selection:
@@ -170,13 +180,18 @@ def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Select
     while True:
         s = select(problem, candidates, most=2)
         idle = set()
-        for x in s.chosen:
+        for k, x in enumerate(s.chosen):
             own = named and x.candidate.stage
             part, free = (PART_GAIN, "a part of this mount"), (FREE_GAIN, "a period that was tried")
             least, what = part if own else free
-            if not x.held.share > least:
-                took = f"takes {100 * max(x.held.share, 0.0):.0f} % off the held-out mean square"
-                refused.append(Refusal(x.candidate.say(), f"{took}; {what} must take {100 * least:.0f} %"))
+            took = f"takes {100 * max(x.held.share, 0.0):.0f} % off the held-out mean square"
+            why = f"{took}; {what} must take {100 * least:.0f} %" if not x.held.share > least else ""
+            if not why and x.held.z < LUCK_Z:
+                why = f"{took}, within luck from turn to turn (z = {x.held.z:.1f})"
+            if not why and x.candidate.stage and not named and _harmonic_leads(s, k):
+                why = "a harmonic is larger than the turn itself, on a wheel that is only assumed"
+            if why:
+                refused.append(Refusal(x.candidate.say(), why))
                 idle.add(x.candidate.key)
         if not idle:
             s.refused = refused + s.refused
