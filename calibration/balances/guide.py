@@ -1,6 +1,5 @@
 """The drive error of a guided mount as a regression: star offsets, a slow drift per section, the rest."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -55,7 +54,7 @@ def guide_problem(
     slowest_s: float = SLOWEST_S,
     quickest_s: float = SLOWEST_S,
 ) -> tuple[Problem, list[str]]:
-    """Problem and the names of what is held out: every other piece in turn, or the sections that are named.
+    """Problem and the names of sections that are held out; where none is named, pieces are, in turn.
 
     `slowest_s`: longest period looked for; what takes twice as long is drift, a nuisance that sections held
     out have on their own. `quickest_s`: shortest declared period. With the clock as a domain a period keeps
@@ -74,10 +73,14 @@ def guide_problem(
     rows = {name: np.concatenate([r[name] for r in sections]) for name in sections[0]}
     y, run, dither = rows["y"], rows["run"], rows["dither"]
     valid = np.isfinite(y)
+    held, part, fresh = rows["held"], run, None
+    if hold_out:
+        fresh = _nuisances(rows, valid & held, slowest_s)[0]
+    else:
+        part = _pieces(rows["t"], run, slowest_s)
+        held = part == 0
     base, offsets, drifts = _nuisances(rows, valid & ~rows["held"], slowest_s)
     labels = [("offset", unit)] * offsets + [("drift", unit)] * drifts
-    piece = _pieces(rows["t"], run, slowest_s)
-    fresh = _nuisances(rows, valid & rows["held"], slowest_s)[0] if hold_out else None
     if np.ptp(dither) > 0:
         base = np.column_stack([base, dither - dither.mean()])
         labels.append(("guide_gain_error", "1"))
@@ -90,9 +93,11 @@ def guide_problem(
         base_labels=labels,
         t=rows["t"],
         run=run,
-        session=run if hold_out else piece % EVERY,
+        session=part,
         valid=valid,
-        held=rows["held"],
+        held=held,
+        turned=None if hold_out else valid,
+        slow=not hold_out,
         period_s=period,
         ar_order=3,
         block_s=max(12 * period, 40.0),
@@ -103,8 +108,6 @@ def guide_problem(
     bent = bent[np.isfinite(bent)]
     if len(bent):
         problem.floor = by_median(bent - np.median(bent)) / float(np.sqrt(6))
-    if not hold_out:
-        return replace(problem, turned=valid, slow=True), [f"{np.sum(piece == 0) * period:.0f} s at a time, in turn"]
     return problem, names
 
 
@@ -145,18 +148,24 @@ def _nuisances(columns: dict[str, Array], rows: Mask, slowest_s: float) -> tuple
     return np.column_stack(both) if both else np.zeros((len(rows), 0)), len(offsets), len(drifts)
 
 
+def piece_s(p: Problem) -> float:
+    """Length of a piece that is held out in its turn, s."""
+    return float(np.argmax(np.diff(p.session) != 0) + 1) * p.period_s
+
+
 def _pieces(t: Array, run: NDArray[np.int64], slowest_s: float) -> NDArray[np.int64]:
-    """Number of every row's piece: a turn of the slowest period long, to see whether the next turn is as
-    the others."""
+    """Which turn every row is held out in.
+
+    A piece lasts a turn of the slowest period: air that moves slowly goes on into a shorter one beside it.
+    """
     spans = [float(np.ptp(t[run == k])) for k in np.unique(run)]
     length = min(slowest_s, max(spans) / LEAST_PIECES)
     out, first = np.zeros(len(t), dtype=np.int64), 0
     for k, span in zip(np.unique(run), spans, strict=True):
         here, count = run == k, max(round(span / length), 1)
-        since = (t[here] - t[here].min()) / (span + 1e-9)
-        out[here] = first + np.floor(since * count).astype(np.int64)
+        out[here] = first + np.floor((t[here] - t[here].min()) / (span + 1e-9) * count).astype(np.int64)
         first += count
-    return out
+    return out % EVERY
 
 
 def _drift(t: Array, here: Mask, slowest_s: float) -> Array:

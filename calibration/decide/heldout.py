@@ -50,24 +50,24 @@ class Model:
         """(n_test,): the held-out residual; of sessions in turn, each beside the others' coefficients."""
         if problem.turned is None:
             return self.residual(problem, problem.test)
-        out, rows = np.zeros(len(problem.y)), problem.valid
-        x, y, base = self.x[rows], problem.y[rows], problem.base[rows]
         if problem.slow:
-            n = base.shape[1]
-            both = np.column_stack([x[:, n:], y])
-            both = both - base @ np.linalg.lstsq(base, both, rcond=None)[0]
-            x, y = both[:, :-1], both[:, -1]
-            betas = solve_without(x, y, problem.session[rows])
-            out[rows] = y
-            for label, beta in zip(np.unique(problem.session[rows]), betas, strict=True):
-                mine = problem.session[rows] == label
-                out[np.flatnonzero(rows)[mine]] -= x[mine] @ beta
-            return np.asarray(out[problem.test])
-        betas = solve_without(x, y, problem.session[rows])
+            return self._beside_nuisances(problem)
+        out = np.zeros(len(problem.y))
+        betas = solve_without(self.x[problem.valid], problem.y[problem.valid], problem.session[problem.valid])
         for part, beta in zip(problem.turns, betas, strict=True):
             rows = part.test
             out[rows] = replace(self, beta=beta).residual(part, rows)
         return np.asarray(out[problem.test])
+
+    def _beside_nuisances(self, problem: Problem) -> Array:
+        """Likewise: what the declared terms take of all rows is nobody's, of the effects as of y."""
+        rows, base = problem.valid, problem.base[problem.valid]
+        both = np.column_stack([self.x[rows, base.shape[1] :], problem.y[rows]])
+        both -= base @ np.linalg.lstsq(base, both, rcond=None)[0]
+        x, y = both[:, :-1], both[:, -1]
+        labels, part = np.unique(problem.session[rows], return_inverse=True)
+        betas = np.reshape(solve_without(x, y, part), (len(labels), -1))
+        return np.asarray(y - np.einsum("ij,ij->i", x, betas[part]))
 
 
 def _new_phase(pairs: Array, beta: Array, train: Mask, rows: Mask, e: Array) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
-from calibration.balances.guide import guide_problem, usable
+from calibration.balances.guide import guide_problem, piece_s, usable
 from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount, parts
 from calibration.balances.problem import Problem
 from calibration.decide.controls import Wrong, controls
@@ -40,7 +40,7 @@ FEW = 4
 NEED = "guide one section for at least three turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
     "whole sections are held out, so the clock carries the worm's phase there, and a slew breaks it."
-    " Without --hold-out the end of every section is held out"
+    " Without --hold-out a piece of every section is held out in its turn"
 )
 
 
@@ -62,7 +62,8 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     span, p, jumped = longest_span(problem), s.problem, list[Finding]()
     if not options.hold_out:
         s, jumped = with_jumps(s, partial(_when, sections, p))
-    few = f"fewer than {LEAST_TURNS:.0f} turns in one section's fitted part"
+        held_out = [f"pieces of {piece_s(p):.0f} s, in turn"]
+    few = f"fewer than {LEAST_TURNS:.0f} turns in one section"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known
         slow = [f"{len(slow)} of the usual worms ({few})"]
@@ -88,7 +89,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         b = replace(b, missing=replace(missing, effect=False))
     needs = [f"{what} was close, but {why}" for _, what, why in refused]
     if slow:
-        needs = [f"a longer section without a slew: two turns in its first 60 %, for {'; '.join(slow)}"]
+        needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
     effects, needs = unnamed_where_missing(effects, needs, [b])
     return Looked(
         title=title,
@@ -120,14 +121,14 @@ def wrong_worm(p: Problem, _: int, c: Candidate) -> list[Wrong]:
     """A part of a mount with one tooth more and less, and with another period."""
     if not c.stage or not c.frequency:
         return []
-    out, count = [], max(c.width // 2, 1)
+    out, waves = [], range(1, max(c.width // 2, 1) + 1)
     for step, word in ((1, "more"), (-1, "less")):
         rate = c.frequency + step / SIDEREAL_DAY_S
         what = f"one tooth {word}: {1 / rate:.2f} s"
         if float(np.ptp(p.t)) < TOOTH_APART * SIDEREAL_DAY_S:
             out.append(Wrong(what=what, note="this log is too short to tell one tooth from the next"))
         else:
-            out.append(Wrong(what=what, columns=harmonics(p, rate, count)))
+            out.append(Wrong(what=what, columns=harmonics(p, rate, waves)))
     for rate in (c.frequency * factor for factor in WRONG_PERIODS):
-        out.append(Wrong(what=f"wrong period: {1 / rate:.1f} s", columns=harmonics(p, rate, count)))
+        out.append(Wrong(what=f"wrong period: {1 / rate:.1f} s", columns=harmonics(p, rate, waves)))
     return out

@@ -1,6 +1,6 @@
 """The periodic parts of a guided mount in its drive error: worms, transfer gears, periods of no part."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
-# turns in a section's training part for its own phase to mean anything. ASSUMPTION
+# fitted turns of a section for its own phase to mean anything. ASSUMPTION
 LEAST_IN_SESSION = 1.2
 # of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
 # wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
@@ -31,7 +31,7 @@ PART_GAIN = 0.15
 FREE_GAIN = 0.35
 # of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
 NEXT = 0.9
-# worm turns in the training span below which a worm cannot be separated from drift. ASSUMPTION
+# worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
 LEAST_TURNS = 2.0
 # harmonics of a worm that are looked at. ASSUMPTION
 HARMONICS = 8
@@ -50,10 +50,10 @@ class Mount:
         return sorted(1.0 / part.rate for part in self.parts) or [SLOWEST_S]
 
 
-def harmonics(problem: Problem, rate: float, count: int) -> Array:
-    """cos, sin of the first `count` harmonics per session: the worm's phase is a nuisance of the session.
+def harmonics(problem: Problem, rate: float, waves: Sequence[int]) -> Array:
+    """cos, sin of a turn's harmonics per section: the worm's phase is a nuisance of the section.
 
-    A session with less than LEAST_IN_SESSION turns to fit has none: offset and drift would imitate them.
+    A section with less than LEAST_IN_SESSION turns to fit has none: offset and drift would imitate them.
     """
     at, parts = problem.domains.get("clock", problem.t), []
     sections = np.zeros_like(problem.run) if "clock" in problem.domains else problem.run
@@ -61,43 +61,54 @@ def harmonics(problem: Problem, rate: float, count: int) -> Array:
         m = sections == k
         seen = at[m & problem.train]
         if len(seen) and np.ptp(seen) * rate >= LEAST_IN_SESSION:
-            phases = [2 * np.pi * h * rate * at for h in range(1, count + 1)]
+            phases = [2 * np.pi * h * rate * at for h in waves]
             parts += [np.where(m, g(x), 0.0) for x in phases for g in (np.cos, np.sin)]
     return np.column_stack(parts) if parts else np.zeros((len(problem.t), 0))
 
 
 def longest_span(problem: Problem) -> float:
-    """Seconds of the longest section's training part: a period must be seen again within one section."""
+    """Fitted seconds of the longest section: a period must be seen again within one section."""
     t, run = problem.t[problem.train], problem.run[problem.train]
     return max((float(np.ptp(t[run == k])) for k in np.unique(run)), default=0.0)
 
 
-def part_candidates(problem: Problem, part: Part, counts: tuple[int, ...]) -> list[Candidate]:
-    """One part with different numbers of harmonics."""
+def part_candidates(problem: Problem, mount: Mount, part: Part, counts: Sequence[int]) -> list[Candidate]:
+    """One part with different numbers of harmonics, none of which another part's turn could be."""
     place: dict[str, Any] = {"stage": part.name, "harmonic": 1, "order": part.rate * SIDEREAL_DAY_S}
-    seen = [count for count in counts if part.rate * count < 0.4 / problem.period_s]
-    return [c for count in seen for c in _periodic(problem, part.effect, part.rate, count, **place)]
+    others = [other.rate for other in mount.parts if mount.named and other is not part]
+    cell = 1.0 / max(longest_span(problem), 1e-9)
+    sets = {
+        tuple(
+            h
+            for h in range(1, count + 1)
+            if h == 1 or all(abs(h * part.rate - rate) > cell for rate in others)
+        )
+        for count in counts
+        if part.rate * count < 0.4 / problem.period_s
+    }
+    return [c for waves in sorted(sets) for c in _periodic(problem, part.effect, part.rate, waves, **place)]
 
 
-def _periodic(problem: Problem, name: str, rate: float, count: int, **more: Any) -> list[Candidate]:
-    """A period of `rate` 1/s with its harmonics, where a session shows it; `more`: `Candidate`'s fields."""
-    columns, size = harmonics(problem, rate, count), ("amplitude", problem.unit)
+def _periodic(problem: Problem, name: str, rate: float, waves: Sequence[int], **more: Any) -> list[Candidate]:
+    """A period of `rate` 1/s with its harmonics, where a section shows it; `more`: `Candidate`'s fields."""
+    columns, size = harmonics(problem, rate, waves), ("amplitude", problem.unit)
     line = candidate(name, columns, size, kind="line", frequency=rate, **more)
     return [line] if line.width else []
 
 
-def best_count(problem: Problem, selection: Selection, part: Part) -> int:
-    """Harmonics of an accepted part that predict best the training pieces they were not fitted to.
+def best_count(problem: Problem, selection: Selection, mount: Mount, part: Part) -> list[Candidate]:
+    """An accepted part with as many harmonics as predict best the training pieces they were not fitted to.
 
     A worm's error is a periodic function, not a sine: its first harmonics establish the period, how many of
     them to keep is a question of prediction.
     """
-    left: dict[int, tuple[float, int]] = {}
-    for c in part_candidates(problem, part, tuple(range(1, HARMONICS + 1))):
+
+    def left(c: Candidate) -> float:
         x = np.hstack([problem.base, c.columns])
-        score = cross_validate(problem, problem.base, x, selection.after.whitener)
-        left[c.width] = (score.after, len(left) + 1)
-    return min(left.values())[1] if left else 1
+        return cross_validate(problem, problem.base, x, selection.after.whitener).after
+
+    every = part_candidates(problem, mount, part, range(1, HARMONICS + 1))
+    return [min(every, key=left)] if every else []
 
 
 def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) -> Selection:
@@ -124,17 +135,16 @@ def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) 
 
 def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Selection:
     """Select parts with a few numbers of harmonics and free periods, then give each part its best number."""
-    candidates = [c for part in seen for c in part_candidates(problem, part, (1, 2, 5, HARMONICS))]
+    candidates = [c for part in seen for c in part_candidates(problem, mount, part, (1, 2, 5, HARMONICS))]
     candidates += free_periods(problem, mount, span)
     s = settle(problem, candidates, mount.named)
     by_name = {part.name: part for part in seen}
     for chosen in list(s.chosen):
         stage = chosen.candidate.stage
         if stage in by_name:
-            count = best_count(problem, s, by_name[stage])
             kept = {x.candidate.key for x in s.chosen if x is not chosen}
             candidates = [x for x in candidates if x.key in kept]
-            candidates += part_candidates(problem, by_name[stage], (count,))
+            candidates += best_count(problem, s, mount, by_name[stage])
             s = settle(problem, candidates, mount.named)
     return s
 
@@ -163,13 +173,18 @@ def free_periods(problem: Problem, mount: Mount, span: float) -> list[Candidate]
     waves = HARMONICS if mount.named else 1  # of a wheel that is only assumed, the turn alone
     taken = [h * part.rate for part in mount.parts for h in range(1, (waves if part.worm else 2) + 1)]
     rates = np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span)
-    free = [float(rate) for rate in rates if all(abs(rate - k) * span > APART_TURNS for k in taken)]
-    return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, 2, domain="time")]
+    own = (1, 2)  # harmonics, of which neither may be a known part's
+    free = [
+        float(rate)
+        for rate in rates
+        if all(abs(h * rate - k) * span > APART_TURNS for k in taken for h in own)
+    ]
+    return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, own, domain="time")]
 
 
 def _harmonic_leads(s: Selection, k: int) -> bool:
     """Whether a part's first harmonic is not its largest, over all sections."""
-    sections = harmonics(s.problem, s.candidates[k].frequency or 0.0, 1).shape[1] // 2
+    sections = harmonics(s.problem, s.candidates[k].frequency or 0.0, (1,)).shape[1] // 2
     sizes = np.hypot(*np.moveaxis(s.sizes(k).reshape(sections, -1, 2), 2, 0)).mean(axis=0)
     return bool(sizes.argmax() > 0)
 

@@ -201,7 +201,7 @@ CASES = [
         own=Own(terms=own.both(own.bristles, own.places)),
     ),
     _guide("phd2_01", "dataset01.csv", 478.69),
-    _guide("phd2_02", "performance_dataset02.txt", None),
+    _guide("phd2_02", "performance_dataset02.txt", 122.2, 2),
     _guide("phd2_03", "performance_dataset03.txt", 382.95),
     _guide("phd2_04", "performance_dataset04.txt", 382.95),
     _guide("phd2_06", "performance_dataset06.txt", 122.2, 2),

@@ -10,7 +10,7 @@ from tests.blind.world.logfile import Column, Log, Style
 from tests.blind.world.made import TURN, Array, Hidden, Made, Rng, clock, pick, wide
 from tests.blind.world.rigtext import Rig
 from tests.blind.world.sky import Error, Sky
-from tests.blind.world.worms import BEFORE_THE_WORM, MOUNTS, UNKNOWN_MOUNTS
+from tests.blind.world.worms import BEFORE_THE_WORM, MOUNTS, UNKNOWN_MOUNTS, worms_of
 
 HOUR_S = 3600.0
 DRAWS = 6
@@ -18,14 +18,16 @@ STANDS_OUT = 4.0
 """Least amplitude over that of the noise alone at the same period; chance passes it in some 1e-7 of draws."""
 
 
-def hidden_of(rng: Rng, name: str, period_s: float, before_s: float, seconds: float) -> Error | None:
-    """What the order's name hides."""
+def hidden_of(
+    rng: Rng, name: str, period_s: float, before_s: float, seconds: float, parts_s: tuple[float, ...] = ()
+) -> Error | None:
+    """What the order's name hides. parts_s: other periods that the mount's name allows."""
     if name == "worm":
         return sky.worm(rng, period_s)
     if name == "before":  # a wheel before the worm, which the rig file declares
         return sky.worm(rng, before_s, "transfer")
     if name == "outside_period":
-        return sky.stray(rng, period_s)
+        return sky.stray(rng, period_s, parts_s)
     return sky.flops(rng, seconds) if name == "outside_flop" else None
 
 
@@ -66,7 +68,7 @@ def make_log(order: Order, rng: Rng, _number: int) -> Made:
     if name != "before" and rng.random() < 0.25:
         mount = UNKNOWN_MOUNTS[int(rng.integers(len(UNKNOWN_MOUNTS)))]
     seconds = seconds_of(order, rng, before_s if name == "before" else period_s)
-    error = hidden_of(rng, name, period_s, before_s, seconds)
+    error = hidden_of(rng, name, period_s, before_s, seconds, worms_of(mount))
     reached = scaled(rng, s, error, clock(int(seconds / 2), 2.0), order) if error else 0.0
     lines, begun = ["PHD2 version 2.6.13, Log version 2.5. Log enabled at 2024-03-09 20:14:31", ""], 0.0
     parts = [1.0] if rng.random() < 0.6 or order.cell == "short" else [rng.uniform(0.55, 0.8), 1.0]

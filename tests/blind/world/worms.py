@@ -17,3 +17,9 @@ MOUNTS: tuple[tuple[str, float], ...] = (
 #: parts before the worm of an HEQ5, an AVX: their turns over the worm's
 BEFORE_THE_WORM = (9.0 / 47.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 3.0)
 UNKNOWN_MOUNTS = ("On-camera", "INDI Mount", "Serial")
+
+
+def worms_of(mount: str) -> tuple[float, ...]:
+    """Periods that a mount's name allows, s; of an unknown one, all."""
+    of = {period for name, period in MOUNTS if name == mount or mount in UNKNOWN_MOUNTS}
+    return tuple(sorted(of))

@@ -194,8 +194,12 @@ class Duel:
 
     def cut(self) -> None:
         """The supply fails while commands wait."""
-        for _ in range(5):
+        for _ in range(12):
             self.command(*self.order())
+        for _ in range(200):
+            self.both(1e-5)
+            if len(self.sides[0].network.boards["AXIS_RA"].inbox) > 1:
+                break
         numbers = [side.faults.start("node_off", node="AXIS_RA") for side in self.sides]
         self.both(0.004)
         for side, number in zip(self.sides, numbers, strict=True):
