@@ -107,10 +107,21 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
 
 
 def never_begins(problem: Problem, c: Candidate) -> str:
-    """Why a change in time is none: on all rows it is what it would be had it come long before; or empty."""
-    if "start" not in c.free or not _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
-        return ""
-    return "it came before the log begins: that is how the drive is, and no change"
+    """Why a change in time is none: on all rows it is what it would be had it come long before, or declared
+    terms move as it does; or empty."""
+    if "start" in c.free and _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
+        return "it came before the log begins: that is how the drive is, and no change"
+    if c.domain == "time" and c.free and _own(problem, c) < limits.OWN:
+        return "the declared terms change with it: this log has no two states with the same motion"
+    return ""
+
+
+def _own(problem: Problem, c: Candidate) -> float:
+    """Share of the columns' mean square that the declared terms cannot take, the inverse of their variance
+    inflation."""
+    rows = problem.train
+    x, base = c.columns[rows], problem.base[rows]
+    return float(np.sum((x - base @ np.linalg.lstsq(base, x, rcond=None)[0]) ** 2) / np.sum(x**2))
 
 
 def settled(p: Problem, base: Array, c: Candidate, fit: Fit) -> Candidate:

@@ -31,8 +31,9 @@ def columns(s: Scene) -> list[Candidate]:
     """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
-    turns_along = any(g.period and abs(g.period / s.turn - 1) < SAME for g in s.view.rig.stages)
-    twins = (*((SHAFT,) if turns_along else ()), *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()))
+    along = [g for g in s.view.rig.stages if g.period and abs(g.period / s.turn - 1) < SAME]
+    kinds = dict.fromkeys(g.kind or SHAFT for g in along if g.kind != NAME.name)
+    twins = (*kinds, *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()))
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
     return [replace(one, columns=s.at(gravity(s)))]
 
