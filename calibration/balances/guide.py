@@ -60,12 +60,7 @@ def guide_problem(
     out have on their own. `quickest_s`: shortest declared period. With the clock as a domain a period keeps
     its phase from section to section; else a slew turns the worm.
     """
-    units = {r.header.get("unit", "arcsec") for r in runs}
-    if len(units) > 1:
-        raise CalibrationInputError(
-            runs[0].path, "logs with and without a pixel scale cannot be put together"
-        )
-    unit = next(iter(units))
+    unit = _unit(runs)
     frame = float(np.median(np.concatenate([np.diff(r.columns["t"]) for r in runs])))
     cell = min(CELL_S, quickest_s / PER_TURN)
     period = frame if 2 * frame > cell else cell
@@ -85,6 +80,8 @@ def guide_problem(
         base = np.column_stack([base, dither - dither.mean()])
         labels.append(("guide_gain_error", "1"))
     whole = bool(hold_out) and all(r.start_s is not None for r in runs)
+    bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
+    bent = bent[np.isfinite(bent)]
     problem = Problem(
         channel="K",
         unit=unit,
@@ -103,12 +100,18 @@ def guide_problem(
         block_s=max(12 * period, 40.0),
         fresh=fresh,
         domains={"clock": rows["clock"]} if whole else {},
+        floor=by_median(bent - np.median(bent)) / float(np.sqrt(6)) if len(bent) else 0.0,
     )
-    bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
-    bent = bent[np.isfinite(bent)]
-    if len(bent):
-        problem.floor = by_median(bent - np.median(bent)) / float(np.sqrt(6))
     return problem, names
+
+
+def _unit(runs: list[Run]) -> str:
+    units = {r.header.get("unit", "arcsec") for r in runs}
+    if len(units) > 1:
+        raise CalibrationInputError(
+            runs[0].path, "logs with and without a pixel scale cannot be put together"
+        )
+    return next(iter(units))
 
 
 def _sections(runs: list[Run], hold_out: list[str], period: float) -> tuple[list[dict[str, Any]], list[str]]:

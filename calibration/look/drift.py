@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from calibration.balances.problem import Problem
 from calibration.decide.controls import Wrong, controls
 from calibration.decide.merge import merge
 from calibration.decide.residual import Place
+from calibration.decide.selection import Selection
 from calibration.decide.withdraw import failed_controls, withdraw
 from calibration.finding import Finding
 from calibration.inputs.declaration import Rig
@@ -70,7 +72,26 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
     effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
     effects += jumped
-    clock, stages = p.domains.get("clock", p.t), {part.name: part.rate for part in mount.parts}
+    b = _balance(s, mount, slow, tried)
+    needs = [f"{what} was close, but {why}" for _, what, why in refused]
+    if slow:
+        needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
+    effects, needs = unnamed_where_missing(effects, needs, [b])
+    return Looked(
+        title=title,
+        balances=[b],
+        effects=effects,
+        needs=needs,
+        held_out=held_out,
+        refused=refused,
+        notes=[*(n for r in runs for n in r.notes), *notes, *([ON_THE_CLOCK] if problem.domains else [])],
+    )
+
+
+def _balance(s: Selection, mount: Mount, slow: list[str], tried: list[dict[str, Any]]) -> Balance:
+    """The drive error, with the phases over which it is drawn and what is missing in it."""
+    p, stages = s.problem, {part.name: part.rate for part in mount.parts}
+    clock = p.domains.get("clock", p.t)
     b = Balance(
         key="position",
         row="position",
@@ -85,21 +106,8 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
     turns = [Place(f"the turn of {name}", None, (clock * rate) % 1.0) for name, rate in near.items()]
     missing = missing_over(b, [Place("time", None, p.t), *turns])
-    if missing is not None:  # no plant has an effect for what a night's air leaves
-        b = replace(b, missing=replace(missing, effect=False))
-    needs = [f"{what} was close, but {why}" for _, what, why in refused]
-    if slow:
-        needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
-    effects, needs = unnamed_where_missing(effects, needs, [b])
-    return Looked(
-        title=title,
-        balances=[b],
-        effects=effects,
-        needs=needs,
-        held_out=held_out,
-        refused=refused,
-        notes=[*(n for r in runs for n in r.notes), *notes, *([ON_THE_CLOCK] if problem.domains else [])],
-    )
+    # no plant has an effect for what a night's air leaves
+    return b if missing is None else replace(b, missing=replace(missing, effect=False))
 
 
 def _when(sections: list[Run], p: Problem, row: int) -> str:
