@@ -49,8 +49,11 @@ def wander(rng: np.random.Generator, rows: int, frame_s: float) -> Array:
     return e
 
 
-def night(seed: int, amplitude: float) -> tuple[str, str, int]:
-    """Log text, mount name and wheel: one to three sections of 40 to 120 minutes, `amplitude` in arcsec."""
+def night(seed: int, amplitude: float, turns: float = np.inf) -> tuple[str, str, int]:
+    """Log text, mount name and wheel: one to three sections of 40 to 120 minutes, `amplitude` in arcsec.
+
+    Of every section, so many turns of the worm are kept.
+    """
     rng = np.random.default_rng(seed)
     mount = str(rng.choice(list(WHEELS)))
     teeth = int(rng.choice(WHEELS[mount]))
@@ -66,5 +69,6 @@ def night(seed: int, amplitude: float) -> tuple[str, str, int]:
         seeing = rng.normal(0, rng.uniform(0.2, 0.6), len(t))
         error = drift + walk + wander(rng, len(t), frame) + amplitude * worm + seeing
         dither = int(rng.choice([0, 60, 200]))
-        text += section(f"2026-01-01 2{k}:00:00", t, error, mount, dither)
+        kept = t < turns * SIDEREAL_DAY_S / teeth
+        text += section(f"2026-01-01 2{k}:00:00", t[kept], error[kept], mount, dither)
     return text, mount, teeth

@@ -13,6 +13,8 @@ from calibration.errors import CalibrationInputError
 from calibration.inputs.guidelog import read_guide_log
 from calibration.inputs.logs import read_drive
 from calibration.inputs.run import Run
+from calibration.look.drift import look_at_drift
+from calibration.look.looked import Options
 from tests.calibration import guidelogs
 from tests.calibration.guidelogs import TOP, section
 from tests.calibration.test_readers import GUIDE
@@ -155,3 +157,16 @@ def test_worms_of_fresh_seeds_are_named_where_the_mount_is_known(tmp_path: Path)
             assert not e["stage"] or abs(e["frequency_Hz"] - rate) * 7000 < 1.0, (seed, mount, stages)
         named += bool(stages)
     assert named >= 4
+
+
+def named(seed: int, amplitude: float, turns: float) -> list[str | None]:
+    text, _, _ = guidelogs.night(seed, amplitude, turns)
+    looked = look_at_drift(read_guide_log(Path("night.txt"), text), None, Options())
+    return [f.stage for f in looked.effects if f.name != "unknown"]
+
+
+@pytest.mark.slow
+def test_two_turns_are_enough_for_a_worm_and_wander_over_three_is_none() -> None:
+    """Eight nights each, of slow quasi-periodic air; 6 arcsec of a worm stand out of it."""
+    assert sum(bool(named(seed, 0.0, 3.3)) for seed in range(8)) <= 1
+    assert sum(bool(named(seed, 6.0, 2.4)) for seed in range(8)) >= 6

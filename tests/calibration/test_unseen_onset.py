@@ -76,3 +76,14 @@ def test_a_step_that_came_before_the_log_is_no_change() -> None:
     s = select(p, [step(-20.0)], np.random.default_rng(0))
     assert s.chosen == [] and any("before the log begins" in r.why for r in s.refused)
     assert never_begins(p, step(-20.0)) and not never_begins(p, step(50.0))
+
+
+def test_a_change_that_a_declared_term_makes_as_well_is_none() -> None:
+    """Every run has a speed of its own: friction from the last one on is what the viscous term does there."""
+    p, onset = problem(225.0), step(230.0)
+    speeds = np.array([1.0, 1.02, 2.0])[RUN]
+    p.add(("viscous", "N m s", speeds), ("offset", "N m", np.ones(len(CLOCK))))
+    assert "same motion" in never_begins(p, onset)
+    p.held = np.zeros(len(CLOCK), dtype=bool)  # with the middle run fitted, two runs move alike as well
+    assert "same motion" in never_begins(p, onset)
+    assert not never_begins(p, step(50.0))

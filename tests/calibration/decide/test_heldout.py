@@ -147,3 +147,23 @@ def test_a_session_in_turn_is_held_out_where_the_others_tell_its_terms() -> None
     turned = p.in_turn()
     assert turned.train.all()
     assert (turned.test == (sign > 0)).all()
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=SEEDS)
+def test_beside_nuisances_a_piece_is_told_by_the_others_alone(seed: int) -> None:
+    """Against a least squares of every piece in turn, on what a projection leaves (Frisch, Waugh, Lovell)."""
+    rng = np.random.default_rng(seed)
+    n = 600
+    base, x, y = np.vander(np.linspace(-1, 1, n), 4), rng.standard_normal((n, 2)), rng.standard_normal(n)
+    p = problem(y, base)
+    p.valid = rng.random(n) > 0.1
+    p.session, p.turned, p.slow = np.arange(n) // 150, p.valid, True
+    left = Model(x=np.hstack([base, x]), beta=np.zeros(6)).left_out(p)
+    rows = p.valid
+    away = np.eye(rows.sum()) - base[rows] @ np.linalg.pinv(base[rows])
+    xs, ys, piece = away @ x[rows], away @ y[rows], p.session[rows]
+    for k in range(4):
+        beta = np.linalg.lstsq(xs[piece != k], ys[piece != k], rcond=None)[0]
+        assert left[piece == k] == pytest.approx(ys[piece == k] - xs[piece == k] @ beta, abs=1e-9)
+    assert Model(x=base, beta=np.ones(4)).left_out(p) == pytest.approx(ys, abs=1e-9)
