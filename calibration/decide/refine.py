@@ -109,9 +109,11 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
 def never_begins(problem: Problem, c: Candidate) -> str:
     """Why a change in time is none: on all rows it is what it would be had it come long before, or declared
     terms move as it does; or empty."""
-    if "start" in c.free and _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
+    if "start" not in c.free:
+        return ""
+    if _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
         return "it came before the log begins: that is how the drive is, and no change"
-    if c.domain == "time" and c.free and _own(problem, c) < limits.OWN:
+    if _own(problem, c) < limits.OWN:
         return "the declared terms change with it: this log has no two states with the same motion"
     return ""
 
