@@ -91,7 +91,7 @@ class GatewayBoard(PeriodicBoard):
 
     # --- bus to PC
     def _receive(self, t_ns: int, frame: Frame) -> None:
-        if frame.extended or frame.remote:
+        if frame.extended or frame.remote or not self.on:
             return
         identifier, data = frame.identifier, frame.data
         if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE and identifier < _END:

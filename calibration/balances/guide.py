@@ -28,7 +28,7 @@ LEAST_DEGREE = 2
 SLOWEST_S = 663.0
 # pieces of the longest section, each held out in its turn, where it has fewer turns. ASSUMPTION
 LEAST_PIECES = 3
-# of such pieces are held out together where there are more. ASSUMPTION
+# groups of pieces, where there are more: every sixth piece is held out together. ASSUMPTION
 EVERY = 6
 
 
@@ -165,7 +165,7 @@ def _pieces(t: Array, run: NDArray[np.int64], slowest_s: float) -> NDArray[np.in
     length = min(slowest_s, max(spans) / LEAST_PIECES)
     out, first = np.zeros(len(t), dtype=np.int64), 0
     for k, span in zip(np.unique(run), spans, strict=True):
-        here, count = run == k, max(round(span / length), 1)
+        here, count = run == k, max(round(span / length), 2)  # the other one tells a section's own phase
         out[here] = first + np.floor((t[here] - t[here].min()) / (span + 1e-9) * count).astype(np.int64)
         first += count
     return out % EVERY

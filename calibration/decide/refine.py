@@ -114,16 +114,21 @@ def never_begins(problem: Problem, c: Candidate) -> str:
     if _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):
         return "it came before the log begins: that is how the drive is, and no change"
     if _own(problem, c) < limits.OWN:
-        return "the declared terms change with it: this log has no two states with the same motion"
+        return "declared terms change with it, and take it as well"
     return ""
 
 
 def _own(problem: Problem, c: Candidate) -> float:
-    """Share of the columns' mean square that the declared terms cannot take, the inverse of their variance
-    inflation."""
+    """Share of a change's mean square that declared terms cannot take: one over its variance inflation.
+
+    Of the change or of what was before it, whichever is less.
+    """
+    assert c.shape is not None
     rows = problem.train
     x, base = c.columns[rows], problem.base[rows]
-    return float(np.sum((x - base @ np.linalg.lstsq(base, x, rcond=None)[0]) ** 2) / np.sum(x**2))
+    before = c.shape(_step(c, _begin(c) - limits.LONGEST_UNSEEN_S))[rows] - x
+    own = np.sum((x - base @ np.linalg.lstsq(base, x, rcond=None)[0]) ** 2)
+    return float(own / max(min(np.sum(x**2), np.sum(before**2)), 1e-300))
 
 
 def settled(p: Problem, base: Array, c: Candidate, fit: Fit) -> Candidate:

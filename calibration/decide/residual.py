@@ -102,7 +102,7 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
 
 
 def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[str | None, float, str]:
-    """The domain whose bin means take most off the held-out residual, or its size; None where none does; the
+    """The domain whose bin means take most off the residual, or its size; None where none does; the
     share; and in words. Of `stacked` things (two motors) the one that leaves most."""
     e, p = s.after.residual, s.problem.once
     mine = np.arange(len(e)) // (len(e) // stacked)

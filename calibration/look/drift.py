@@ -29,7 +29,15 @@ from calibration.look.looked import (
     missing_over,
     unnamed_where_missing,
 )
-from calibration.look.worm import LEAST_TURNS, Mount, findings_of_worms, harmonics, longest_span, worms
+from calibration.look.worm import (
+    LEAST_TURNS,
+    Mount,
+    findings_of_worms,
+    harmonics,
+    longest_span,
+    sections_of,
+    worms,
+)
 
 # frames to fit. ASSUMPTION
 LEAST_ROWS = 100
@@ -39,7 +47,7 @@ TOOTH_APART = 0.3
 WRONG_PERIODS = (0.9, 1.1)
 # parts of a mount, whose turns are looked at for what is left. ASSUMPTION
 FEW = 4
-NEED = "guide one section for at least three turns of the worm (half an hour for most mounts), without a slew"
+NEED = "guide one section for at least two turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
     "whole sections are held out, so the clock carries the worm's phase there, and a slew breaks it."
     " Without --hold-out a piece of every section is held out in its turn"
@@ -129,7 +137,7 @@ def wrong_worm(p: Problem, _: int, c: Candidate) -> list[Wrong]:
     """A part of a mount with one tooth more and less, and with another period."""
     if not c.stage or not c.frequency:
         return []
-    out, waves = [], range(1, max(c.width // 2, 1) + 1)
+    out, waves = [], range(1, c.width // 2 // sections_of(p, c.frequency) + 1)
     for step, word in ((1, "more"), (-1, "less")):
         rate = c.frequency + step / SIDEREAL_DAY_S
         what = f"one tooth {word}: {1 / rate:.2f} s"

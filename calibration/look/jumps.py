@@ -38,7 +38,7 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
     if not places:
         return s, []
     steps, sizes = np.column_stack(_steps_at(p, places)), [("size", p.unit)] * len(places)
-    one = fit_with(p, np.hstack([p.base, s.columns]), candidate(UNKNOWN, steps, *sizes, domain="time"))
+    one = fit_with(p, s.columns, candidate(UNKNOWN, steps, *sizes, domain="time"))
     if one is None:
         return s, []
     again = s.keep([*s.chosen, one])
@@ -63,7 +63,7 @@ def _places(s: Selection) -> list[int]:
     than MOST."""
     p, places = s.problem, list[int]()
     while len(places) <= MOST:
-        x = np.column_stack([p.base, s.columns, *_steps_at(p, places)])
+        x = np.column_stack([s.columns, *_steps_at(p, places)])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)

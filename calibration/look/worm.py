@@ -12,7 +12,7 @@ from calibration.balances.guide import SLOWEST_S
 from calibration.balances.mounts import SIDEREAL_DAY_S, Part
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import APART_TURNS, AS_QUICK
-from calibration.decide.heldout import cross_validate
+from calibration.decide.heldout import compare, cross_validate
 from calibration.decide.parameters import finding_of
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
@@ -22,10 +22,11 @@ from calibration.names.candidates import candidate
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
 # fitted turns of a section for its own phase to mean anything. ASSUMPTION
-LEAST_IN_SESSION = 1.2
+LEAST_IN_SECTION = 1.2
 # of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
 # wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
-# tests/calibration/guidelogs.py) three of these took 9 to 27 %, the worms of the measured logs 81 to 98 %
+# tests/calibration/guidelogs.py) three of these took 9 to 27 % of the ends that were held out then, the worms of
+# the measured logs 81 to 98 %
 PART_GAIN = 0.15
 # share likewise, of one of eleven usual wheels or any free period, on the same seeds
 FREE_GAIN = 0.35
@@ -53,14 +54,14 @@ class Mount:
 def harmonics(problem: Problem, rate: float, waves: Sequence[int]) -> Array:
     """cos, sin of a turn's harmonics per section: the worm's phase is a nuisance of the section.
 
-    A section with less than LEAST_IN_SESSION turns to fit has none: offset and drift would imitate them.
+    A section with less than LEAST_IN_SECTION turns to fit has none: offset and drift would imitate them.
     """
     at, parts = problem.domains.get("clock", problem.t), []
     sections = np.zeros_like(problem.run) if "clock" in problem.domains else problem.run
     for k in np.unique(sections):
         m = sections == k
         seen = at[m & problem.train]
-        if len(seen) and np.ptp(seen) * rate >= LEAST_IN_SESSION:
+        if len(seen) and np.ptp(seen) * rate >= LEAST_IN_SECTION:
             phases = [2 * np.pi * h * rate * at for h in waves]
             parts += [np.where(m, g(x), 0.0) for x in phases for g in (np.cos, np.sin)]
     return np.column_stack(parts) if parts else np.zeros((len(problem.t), 0))
@@ -97,7 +98,7 @@ def _periodic(problem: Problem, name: str, rate: float, waves: Sequence[int], **
 
 
 def best_count(problem: Problem, selection: Selection, mount: Mount, part: Part) -> list[Candidate]:
-    """An accepted part with as many harmonics as predict best the training pieces they were not fitted to.
+    """An accepted part with as many harmonics as predict best the pieces that they were not fitted to.
 
     A worm's error is a periodic function, not a sine: its first harmonics establish the period, how many of
     them to keep is a question of prediction.
@@ -173,18 +174,18 @@ def free_periods(problem: Problem, mount: Mount, span: float) -> list[Candidate]
     waves = HARMONICS if mount.named else 1  # of a wheel that is only assumed, the turn alone
     taken = [h * part.rate for part in mount.parts for h in range(1, (waves if part.worm else 2) + 1)]
     rates = np.arange(LEAST_TURNS / span, min(0.2 / problem.period_s, 80 / span), 0.3 / span)
-    own = (1, 2)  # harmonics, of which neither may be a known part's
-    free = [
-        float(rate)
-        for rate in rates
-        if all(abs(h * rate - k) * span > APART_TURNS for k in taken for h in own)
-    ]
-    return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, own, domain="time")]
+    free = [float(rate) for rate in rates if all(abs(rate - k) * span > APART_TURNS for k in taken)]
+    return [c for rate in free for c in _periodic(problem, UNKNOWN, rate, (1,), domain="time")]
+
+
+def sections_of(problem: Problem, rate: float) -> int:
+    """Sections that have columns of a period of `rate` 1/s."""
+    return int(harmonics(problem, rate, (1,)).shape[1]) // 2
 
 
 def _harmonic_leads(s: Selection, k: int) -> bool:
     """Whether a part's first harmonic is not its largest, over all sections."""
-    sections = harmonics(s.problem, s.candidates[k].frequency or 0.0, (1,)).shape[1] // 2
+    sections = sections_of(s.problem, s.candidates[k].frequency or 0.0)
     sizes = np.hypot(*np.moveaxis(s.sizes(k).reshape(sections, -1, 2), 2, 0)).mean(axis=0)
     return bool(sizes.argmax() > 0)
 
@@ -199,10 +200,11 @@ def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Select
             own = named and x.candidate.stage
             part, free = (PART_GAIN, "a part of this mount"), (FREE_GAIN, "a period that was tried")
             least, what = part if own else free
-            took = f"takes {100 * max(x.held.share, 0.0):.0f} % off the held-out mean square"
-            why = f"{took}; {what} must take {100 * least:.0f} %" if not x.held.share > least else ""
-            if not why and x.held.z < LUCK_Z:
-                why = f"{took}, within luck from turn to turn (z = {x.held.z:.1f})"
+            held = compare(problem, s.without(k).model, s.model, s.after.whitener)  # lines come together
+            took = f"takes {100 * max(held.share, 0.0):.0f} % off the held-out mean square"
+            why = f"{took}; {what} must take {100 * least:.0f} %" if not held.share > least else ""
+            if not why and held.z < LUCK_Z:
+                why = f"{took}, within luck (z = {held.z:.1f})"
             if not why and x.candidate.stage and not named and _harmonic_leads(s, k):
                 why = "a harmonic is larger than the turn itself, on a wheel that is only assumed"
             if why:

@@ -11,6 +11,8 @@ from calibration.names.name import FORCE, Array, Beside, Candidate, Facts, Findi
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
 
+# kinds of stages that no force shows
+OF_SENSORS = ("encoder_eccentricity", "encoder_subdivision")
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
@@ -32,7 +34,7 @@ def columns(s: Scene) -> list[Candidate]:
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
     along = [g for g in s.view.rig.stages if g.period and abs(g.period / s.turn - 1) < SAME]
-    kinds = dict.fromkeys(g.kind or SHAFT for g in along if g.kind != NAME.name)
+    kinds = dict.fromkeys(g.kind or SHAFT for g in along if g.kind not in OF_SENSORS)
     twins = (*kinds, *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()))
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
     return [replace(one, columns=s.at(gravity(s)))]

@@ -192,7 +192,8 @@ def trace_plot(selection: Selection, title: str) -> str:
     rows = p.test if p.test.any() else p.valid
     if rows.sum() < FEWEST_OF_A_TRACE:
         return nothing_to_draw(title, "no held-out rows in this channel")
-    before, after = (fit.residual(p, rows) for fit in (selection.bare, selection.model))
+    models = (selection.bare, selection.model)
+    before, after = (m.left_out(p) if p.test.any() else m.residual(p, rows) for m in models)
     t, run = p.t[rows], p.run[rows]
     gap = (np.diff(t) > 5 * p.period_s) | (np.diff(t) < 0) | (np.diff(run) != 0)
     step = np.where(gap, 0.0, np.diff(t))

@@ -92,9 +92,9 @@ def worm(rng: Rng, period_s: float, stage: str = "worm") -> Error:
 
 def stray(rng: Rng, period_s: float, parts_s: tuple[float, ...]) -> Error:
     """A period of no part that is declared, nor within a tenth of one that the mount's name allows."""
-    periods = [period_s * factor for factor in (0.618, 0.71, 1.36)]
+    periods = [period_s * factor for factor in (0.53, 0.618, 0.71, 0.83, 1.36)]
     free = [x for x in periods if all(abs(x / part - 1.0) > 0.1 for part in parts_s)]
-    part = pick(rng, *free)
+    part = pick(rng, *(free or periods))
     hidden = Hidden("outside_period", "K", ("time", "axis_angle"), raw={"period_s": part})
     return Error(hidden, [part], [1.0], [float(rng.uniform(0, TURN))])
 
