@@ -25,8 +25,8 @@ ASSUMED = "the log names no mount that is known here: the wheel is the usual one
 LEAST_IN_SECTION = 1.2
 # of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
 # wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
-# tests/calibration/guidelogs.py) three of these took 9 to 27 % of the ends that were held out then, the worms of
-# the measured logs 81 to 98 %
+# tests/calibration/guidelogs.py) three of these took 9 to 27 % of the ends that were held out then, the worms
+# of the measured logs 81 to 98 %
 PART_GAIN = 0.15
 # share likewise, of one of eleven usual wheels or any free period, on the same seeds
 FREE_GAIN = 0.35
