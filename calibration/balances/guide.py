@@ -152,8 +152,9 @@ def _nuisances(columns: dict[str, Array], rows: Mask, slowest_s: float) -> tuple
 
 
 def piece_s(p: Problem) -> float:
-    """Length of a piece that is held out in its turn, s."""
-    return float(np.argmax(np.diff(p.session) != 0) + 1) * p.period_s
+    """Usual length of a piece that is held out in its turn, s."""
+    ends = np.flatnonzero(np.diff(p.session, append=-1))
+    return float(np.median(np.diff(ends, prepend=-1))) * p.period_s
 
 
 def _pieces(t: Array, run: NDArray[np.int64], slowest_s: float) -> NDArray[np.int64]:

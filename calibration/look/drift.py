@@ -47,6 +47,7 @@ TOOTH_APART = 0.3
 WRONG_PERIODS = (0.9, 1.1)
 # parts of a mount, whose turns are looked at for what is left. ASSUMPTION
 FEW = 4
+OF_ALL_FRAMES = "offsets, drift and the dithers' gain are fitted to all frames, before and after alike"
 NEED = "guide one section for at least two turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
     "whole sections are held out, so the clock carries the worm's phase there, and a slew breaks it."
@@ -73,6 +74,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if not options.hold_out:
         s, jumped = with_jumps(s, partial(_when, sections, p))
         held_out = [f"pieces of {piece_s(p):.0f} s, in turn"]
+        notes.append(OF_ALL_FRAMES)
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section"
     slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known

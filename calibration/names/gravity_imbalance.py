@@ -1,18 +1,19 @@
 """A weight that hangs off the axis."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from math import pi
 
 import numpy as np
 
+from calibration.inputs.declaration import Stage
 from calibration.inputs.train import SHAFT
 from calibration.names.lines import SAME, line
 from calibration.names.name import FORCE, Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
+from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
 
-# kinds of stages that no force shows
-OF_SENSORS = ("encoder_eccentricity", "encoder_subdivision")
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
@@ -29,13 +30,21 @@ def gravity(s: Scene) -> Array:
     )
 
 
+def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
+    """Names of forces that stages of this period (position units) have; a kind of shaft is no effect."""
+    kinds = (g.kind or "" for g in stages if g.period and abs(g.period / turn - 1) < SAME)
+    shown = (REGISTRY.get(kind, REGISTRY[SHAFT]) for kind in kinds)
+    return tuple(dict.fromkeys(effect.name for effect in shown if effect.channel == "T"))
+
+
 def columns(s: Scene) -> list[Candidate]:
     """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
-    along = [g for g in s.view.rig.stages if g.period and abs(g.period / s.turn - 1) < SAME]
-    kinds = dict.fromkeys(g.kind or SHAFT for g in along if g.kind not in OF_SENSORS)
-    twins = (*kinds, *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()))
+    twins = (
+        *forces_once_a_turn(s.view.rig.stages, s.turn),
+        *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()),
+    )
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
     return [replace(one, columns=s.at(gravity(s)))]
 

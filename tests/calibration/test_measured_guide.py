@@ -67,9 +67,7 @@ def test_a_worm_is_named_and_pays_on_held_out_frames(
     error = data["error"]["position"]
     if scale is not None:
         t, y = drive_error(log, scale)
-        degree = round(
-            float(np.ptp(t)) / period_s
-        )  # a polynomial of half as many waves as the worm has turns
+        degree = round(float(np.ptp(t)) / period_s)  # half as many waves as the worm has turns
         assert error["before"] == pytest.approx(beside_a_drift(t, y, degree), rel=0.05)
     assert error["after"] < after < error["before"]
 

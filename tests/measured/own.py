@@ -1,6 +1,6 @@
 """A least squares of one's own: the physically right terms, fitted and tested on the finder's rows."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.balance import problem_of
 from calibration.balances.guide import guide_problem, usable
-from calibration.balances.mounts import parts
+from calibration.balances.problem import Problem
 from calibration.balances.view import View, view_of
 from calibration.inputs.counters import align_counters
 from calibration.inputs.logs import read_drive
@@ -26,15 +26,15 @@ def held_out_rms(logs: list[Path], rig: Path | None, terms: Terms, hold_out: lis
     align_counters(records, declared)
     view = view_of(records, declared, declared.responses[0])
     p = problem_of(view, records, hold_out)
-    return _left(p.y, np.column_stack([p.base, *[view.at(c) for c in terms(view)]]), p.train, p.test, p.fresh)
+    x = np.column_stack([p.base, *[view.at(c) for c in terms(view)]])
+    return _rms(_left(p.y, x, part) for part in (p.turns if p.turned is not None else [p]))
 
 
 def guide_rms(logs: list[Path], rig: Path | None, periods_s: Sequence[float], harmonics: int) -> float:
     """The same of a guide log, with a wave of every period and its harmonics in every section."""
     declared = load_rig(rig) if rig else None
     runs, _ = usable(read_drive(logs, declared).runs, [])
-    rates = [p.rate for p in parts(runs, declared)]
-    p, _ = guide_problem(runs, [], max(1 / r for r in rates), min(1 / r for r in rates))
+    p, _ = guide_problem(runs, [], max(periods_s), min(periods_s))
     waves = [
         np.where(p.run == k, f(2 * np.pi * h * p.t / period), 0.0)
         for k in np.unique(p.run)
@@ -42,18 +42,26 @@ def guide_rms(logs: list[Path], rig: Path | None, periods_s: Sequence[float], ha
         for h in range(1, harmonics + 1)
         for f in (np.cos, np.sin)
     ]
-    return _left(p.y, np.column_stack([p.base, *waves]), p.train, p.test, p.fresh)
+    both = np.column_stack([p.y, *waves])[p.valid]  # beside the finder's drift of all frames
+    both -= p.base[p.valid] @ np.linalg.lstsq(p.base[p.valid], both, rcond=1e-9)[0]
+    y, x, piece = both[:, 0], both[:, 1:], p.session[p.valid]
+    pieces = (piece == k for k in np.unique(piece))
+    return _rms(y[m] - x[m] @ np.linalg.lstsq(x[~m], y[~m], rcond=1e-9)[0] for m in pieces)
 
 
-def _left(y: Array, x: Array, train: Array, test: Array, fresh: Array | None) -> float:
-    """rms on `test`, where the nuisances `fresh` are fitted anew."""
-    size = np.maximum(np.linalg.norm(x[train], axis=0), 1e-300)
-    beta = np.linalg.lstsq(x[train] / size, y[train], rcond=1e-9)[0] / size
-    e = (y - x @ np.where(np.linalg.norm(x[train], axis=0) > 0, beta, 0.0))[test]
-    if fresh is not None:
-        f = fresh[test]
+def _left(y: Array, x: Array, p: Problem) -> Array:
+    """What is left on held-out rows, where the nuisances `fresh` are fitted anew."""
+    size = np.maximum(np.linalg.norm(x[p.train], axis=0), 1e-300)
+    beta = np.linalg.lstsq(x[p.train] / size, y[p.train], rcond=1e-9)[0] / size
+    e = (y - x @ np.where(np.linalg.norm(x[p.train], axis=0) > 0, beta, 0.0))[p.test]
+    if p.fresh is not None:
+        f = p.fresh[p.test]
         e = e - f @ np.linalg.lstsq(f, e, rcond=1e-9)[0]
-    return float(np.sqrt(np.mean(e**2)))
+    return np.asarray(e)
+
+
+def _rms(parts: Iterable[Array]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(list(parts)) ** 2)))
 
 
 def orders(*which: float) -> Terms:

@@ -40,7 +40,7 @@ EQUIVALENT = (
     "b->tach[k].rate_q8 = (0 + 1);",  # there, 1 + (256 d - 1 >> 2) is 64 d, as it is without the 1
     "if (b->remaining < (0 + 1)) wanted = -wanted;",  # nothing remains: the speed wanted is the gap, 0
     "can_filter((0 + 1), 0x7FF, (uint16_t)(COMMAND + device));",  # filters 0 and 1 do the same
-    "int32_t top = (0 + 1);",  # it is shifted by 16 bits, and a class has more than a count
+    "int32_t top = (0 + 1);",  # only its upper bits are used
 )
 """Nothing can tell these."""
 _FOUND = ("tests.boards.c.duel.Difference", "boards.core.declared.BoardError")
