@@ -78,15 +78,12 @@ def part_candidates(problem: Problem, mount: Mount, part: Part, counts: Sequence
     place: dict[str, Any] = {"stage": part.name, "harmonic": 1, "order": part.rate * SIDEREAL_DAY_S}
     others = [other.rate for other in mount.parts if mount.named and other is not part]
     cell = 1.0 / max(longest_span(problem), 1e-9)
-    sets = {
-        tuple(
-            h
-            for h in range(1, count + 1)
-            if h == 1 or all(abs(h * part.rate - rate) > cell for rate in others)
-        )
-        for count in counts
-        if part.rate * count < 0.4 / problem.period_s
-    }
+
+    def apart(h: int) -> bool:
+        return h == 1 or all(abs(h * part.rate - rate) > cell for rate in others)
+
+    seen = [count for count in counts if part.rate * count < 0.4 / problem.period_s]
+    sets = {tuple(filter(apart, range(1, count + 1))) for count in seen}
     return [c for waves in sorted(sets) for c in _periodic(problem, part.effect, part.rate, waves, **place)]
 
 
