@@ -14,7 +14,7 @@ from calibration.inputs.guidelog import is_guide_log, read_guide_log
 from calibration.inputs.rigfile import telescope
 from calibration.inputs.run import Run
 from calibration.inputs.stuck import check_stuck
-from calibration.inputs.tables import READERS, read_table, set_starts
+from calibration.inputs.tables import READERS, read_table, repair_tables, set_starts
 from calibration.inputs.text import check_file, load_text
 from calibration.inputs.twomotors import runs_of
 
@@ -60,6 +60,7 @@ def read_drive(logs: list[Path], rig: Rig | None) -> Drive:
     if found == "phd2":
         return Drive(rig, runs)
     assert rig is not None
+    repair_tables(runs, rig)
     check_stuck(runs, rig)
     clock = set_starts(runs, rig)
     if rig.motors is not None:

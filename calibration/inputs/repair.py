@@ -1,5 +1,5 @@
-"""What is wrong with columns before any physics: counters that wrap, signed numbers written unsigned, spikes,
-samples that repeat, readings at the end of their range."""
+"""What is wrong with columns before any physics: counters that wrap, spikes, samples that repeat, readings at
+the end of their range."""
 
 from collections.abc import Callable
 
@@ -44,14 +44,11 @@ def _wraps(run: Run, channel: str, where: Column) -> None:
         return
     if np.abs(np.diff(joined)).max() > 0.5 * float(x.max() - x.min()):
         return
-    kind, note = "wrap", f"a counter of {length:g} wraps: joined"
-    if np.allclose(x, np.round(x)) and channel not in MOVING and np.ptp(turns) == 1:
-        joined = np.where(x > length / 2, x - length, x)
-        kind, note = "signed", f"signed numbers of {length:g} values written unsigned: {length - 1:g} is -1"
     raw[good] = joined
     run.columns[channel] = raw * where.scale + where.offset
     count = int(np.count_nonzero(np.diff(turns)))
-    run.repairs.append(Repair(kind, channel, count, length * abs(where.scale), note))
+    note = f"a counter of {length:g} wraps: joined"
+    run.repairs.append(Repair("wrap", channel, count, length * abs(where.scale), note))
 
 
 def counter_length(x: Array) -> float:
@@ -66,7 +63,9 @@ def counter_length(x: Array) -> float:
     lengths = (*WORDS, 360.0) if np.allclose(x, np.round(x)) else CIRCLES
     length = min((w for w in lengths if w >= span * 0.999), key=lambda w: abs(w - size), default=0.0)
     near = abs(length - size) <= limits.NEAR_LENGTH * length
-    return length if length and near and _is_counter(x, step, jumps, length) else 0.0
+    # a register's word begins at zero or is signed; what goes beyond it moved so far
+    inside = length not in WORDS or (x.min() >= 0 and x.max() < length) or np.abs(x).max() <= length / 2
+    return length if length and near and inside and _is_counter(x, step, jumps, length) else 0.0
 
 
 def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:

@@ -18,6 +18,7 @@ from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import load_utf8, read_columns, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
+from calibration.inputs.words import read_signed
 
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, **RECORDINGS}
@@ -82,10 +83,16 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))
         for c, w in rig.columns.items()
     }
-    repair(run, rig)
-    if "time" in rig.columns:
-        steady_stamps(run)
     return run
+
+
+def repair_tables(runs: list[Run], rig: Rig) -> None:
+    """Repair the columns of all files of a drive in place: a word has its sign in every one of them."""
+    read_signed(runs, rig)
+    for run in runs:
+        repair(run, rig)
+        if "time" in rig.columns:
+            steady_stamps(run)
 
 
 def _even(rig: Rig, rows: int) -> Array:

@@ -10,7 +10,7 @@ from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.tables import read_table
+from calibration.inputs.logs import read_drive
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
@@ -139,6 +139,6 @@ def test_frames_that_repeat_are_seen_beside_a_reference_that_goes_on(tmp_path: P
     (tmp_path / "rig.yaml").write_text(rig)
     table = np.column_stack([t, x, u, goal])
     np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,x,u,goal", comments="", fmt="%.9g")
-    (record,) = read_table(tmp_path / "a.csv", load_rig(tmp_path / "rig.yaml"))
+    (record,) = read_drive([tmp_path / "a.csv"], load_rig(tmp_path / "rig.yaml")).runs
     assert [r.kind for r in record.repairs] == ["repeat"]
     assert len(quick) * 0.9 <= record.repairs[0].rows <= len(at)

@@ -9,7 +9,7 @@ import pytest
 
 from calibration.command import calibrate
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.tables import read_table
+from calibration.inputs.logs import read_drive
 from tests.calibration.logs import write_logs
 
 RIG = """rig: arm
@@ -64,7 +64,7 @@ def test_stamps_that_shake_are_named_and_put_right(tmp_path: Path, shake_s: floa
 @pytest.mark.parametrize(("stamps", "shake_s"), [("follow", 5e-4), ("shake", 1e-5), ("round", 0.0)])
 def test_right_stamps_are_left_alone(tmp_path: Path, stamps: str, shake_s: float) -> None:
     path = log(tmp_path, stamps, shake_s)
-    (record,) = read_table(path, load_rig_of(tmp_path))
+    (record,) = read_drive([path], load_rig_of(tmp_path)).runs
     assert [r.kind for r in record.repairs] == (["rounded"] if stamps == "round" else [])
     assert told(tmp_path, path)["effects"] == []
 

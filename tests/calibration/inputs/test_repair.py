@@ -119,3 +119,13 @@ def test_rows_missing_here_and_there_are_counted(tmp_path: Path) -> None:
     repair(r, rig(tmp_path))
     (found,) = r.repairs
     assert (found.kind, found.rows) == ("lost", int((~keep).sum()))
+
+
+def test_a_step_of_an_effort_through_zero_is_no_wrap(tmp_path: Path) -> None:
+    """From -30 to 480 counts in a row: a register of 512 values holds either of them, not both."""
+    t = PERIOD_S * np.arange(ROWS)
+    counts = np.where(t < 12, -30.0, 480.0) + np.round(3 * np.sin(t))
+    r = recorded(40 * np.sin(t), counts, t)
+    repair(r, rig(tmp_path))
+    assert not r.repairs
+    assert np.array_equal(r.columns["effort"], counts)

@@ -1,0 +1,36 @@
+"""Words: numbers of both signs that were written unsigned come back in every run, whatever a run holds."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from calibration.inputs.words import word_length
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    bits=st.sampled_from([16, 24, 32]),
+    low=st.integers(-8000, -5),
+    high=st.integers(0, 8000),
+    seed=st.integers(0, 1000),
+)
+def test_small_numbers_of_both_signs_show_their_words_length(bits: int, low: int, high: int, seed: int) -> None:
+    x = np.random.default_rng(seed).integers(low, high + 1, 200).astype(float)
+    x[:4] = low, low + 1, low + 2, high
+    assert word_length(x % 2.0**bits) == 2.0**bits
+    assert word_length(x) == 0.0  # it has its sign already
+
+
+@pytest.mark.parametrize(
+    "x",
+    [
+        np.arange(0.0, 65536.0, 50.0),  # a converter that is used from end to end
+        np.concatenate([np.arange(100.0), np.full(3, 65535.0)]),  # readings that failed
+        np.arange(1000.0),
+        np.linspace(0.0, 65535.0, 100) + 0.25,  # no whole numbers
+        np.array([1.0, 65535.0, 65534.0, 65533.0]),  # too few rows
+    ],
+)
+def test_what_is_no_signed_word_is_left(x: np.ndarray) -> None:
+    assert word_length(x) == 0.0
