@@ -121,7 +121,7 @@ MOST_JUMPS = 0.2
 # share of the jumps that must be the counter's length. ASSUMPTION
 MOST_JUMPS_WHOLE = 0.9
 
-# values below zero that a column has, before it is read with a sign. ASSUMPTION: one or two mark failed readings
+# values below zero, before a column is read with a sign. ASSUMPTION: one or two mark failed readings
 FEWEST_SIGNED = 3
 
 # --- spikes and leaps

@@ -10,7 +10,7 @@ from calibration.inputs.run import Repair, Run
 
 
 def read_signed(runs: list[Run], rig: Rig) -> None:
-    """Read such columns with their sign, in place and in every run alike; what was done is in `run.repairs`."""
+    """Read such columns with their sign, in place and in every run alike; `run.repairs` says so."""
     for channel, where in rig.columns.items():
         if channel in ("time", *MOVING) or where.wrap is not None:
             continue

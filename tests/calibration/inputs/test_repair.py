@@ -122,9 +122,9 @@ def test_rows_missing_here_and_there_are_counted(tmp_path: Path) -> None:
 
 
 def test_a_step_of_an_effort_through_zero_is_no_wrap(tmp_path: Path) -> None:
-    """From -30 to 480 counts in a row: a register of 512 values holds either of them, not both."""
+    """From -20 to 486 counts in a row: a register of 512 values holds either of them, not both."""
     t = PERIOD_S * np.arange(ROWS)
-    counts = np.where(t < 12, -30.0, 480.0) + np.round(3 * np.sin(t))
+    counts = np.where(t < 12, -20.0, 486.0) + np.round(2 * np.sin(t))
     r = recorded(40 * np.sin(t), counts, t)
     repair(r, rig(tmp_path))
     assert not r.repairs

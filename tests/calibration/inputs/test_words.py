@@ -15,7 +15,7 @@ from calibration.inputs.words import word_length
     high=st.integers(0, 8000),
     seed=st.integers(0, 1000),
 )
-def test_small_numbers_of_both_signs_show_their_words_length(bits: int, low: int, high: int, seed: int) -> None:
+def test_numbers_of_both_signs_show_their_word(bits: int, low: int, high: int, seed: int) -> None:
     x = np.random.default_rng(seed).integers(low, high + 1, 200).astype(float)
     x[:4] = low, low + 1, low + 2, high
     assert word_length(x % 2.0**bits) == 2.0**bits
