@@ -1,13 +1,15 @@
 """Two columns that say the same: how late one is against the other, and how well they agree."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
 
 from calibration.arrays import Array, Mask
-from calibration.balances.filters import smooth
-from calibration.balances.noise import row_to_row
+from calibration.balances.filters import by_piece, smooth
+from calibration.balances.noise import position_noise, row_to_row
 from calibration.balances.thresholds import FEWEST_FILES, FEWEST_ROWS, LEAST_SCALE
 from calibration.balances.view import View
 from calibration.statistics.regression import gls
@@ -20,6 +22,8 @@ SCALED = 0.01
 MATTERS = 0.2
 # sample periods: a shorter delay is within a reading's own window. ASSUMPTION
 SMALLEST = 0.1
+# standard deviations of a Gaussian, beyond which hardly anything of it is left. arithmetic
+IMPULSE = 6
 # sample periods that are looked at. ASSUMPTION
 LONGEST = 20
 
@@ -58,7 +62,7 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     """A measured velocity against the position's rate: scale and offset are free, then the delay."""
     if "velocity" not in view.columns or view.ok.sum() < FEWEST_ROWS:
         return None
-    v, w = view.rate(view.x), view.columns["velocity"]
+    v, w = view.rate(view.x), by_piece(view.columns["velocity"], view.segment, _over_two_rows)
     sigma = max(view.wide, 2.0)
     v, w = smooth(v, view.segment, sigma), smooth(w, view.segment, sigma)
     a = view.rate(v)
@@ -83,7 +87,9 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     error = max(error, _scatter(view.file[rows], free, moved, train))
     last = gls(moved, free[:, :2], train, 0, block)
     b, c = rms(before.residual[test]), rms(last.residual[test])
-    floor = row_to_row(last.residual, test)
+    noise = row_to_row(view.columns["velocity"], view.ok), position_noise(view.x, view.file) / view.period_s
+    passed = (_passed(f, sigma) for f in (_over_two_rows, np.gradient))
+    floor = float(np.hypot.reduce([x * gain for x, gain in zip(noise, passed, strict=True)]))
     late = (
         abs(delay) > SURE_Z * error
         and SMALLEST * view.period_s < abs(delay) < LONGEST * view.period_s  # at an end it is none
@@ -93,6 +99,21 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     unit = view.rig.columns["velocity"].unit
     spread = float(np.sqrt(max(last.covariance[0, 0], 0.0)))
     return Agreement("velocity", unit, delay, error, b, c, floor, late, float(last.beta[0]), spread)
+
+
+def _over_two_rows(rate: Array) -> Array:
+    """Mean (n,) of a rate over the rows before and behind, as the position's central difference has it.
+
+    Simpson's rule; a quick wave is dimmed alike in both.
+    """
+    return np.asarray(convolve1d(rate, np.array([1.0, 4.0, 1.0]) / 6.0, mode="nearest"))
+
+
+def _passed(what: Callable[[Array], Array], sigma: float) -> float:
+    """Part of white noise's rms that is left of it behind `what` and a Gaussian of `sigma` rows."""
+    one = np.zeros(2 * round(IMPULSE * sigma) + 1)
+    one[len(one) // 2] = 1.0
+    return float(np.linalg.norm(smooth(what(one), np.zeros(len(one), dtype=np.int64), sigma)))
 
 
 def _scatter(files: NDArray[np.int64], x: Array, y: Array, train: Mask) -> float:

@@ -160,4 +160,6 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
             order = c.order * (h + 1) if c.order else None
             sizes = {size: amplitude, "phase": phase}
             out.append(replace(whole, harmonic=h + 1, order=order, parameters=sizes))
-    return sorted(out, key=lambda f: -f.parameters[size].value) or [whole]
+    largest = max((f.parameters[size].value for f in out), default=0.0)
+    shown = [f for f in out if (f.parameters[size].high or largest) ** 2 > limits.ROUNDING * largest**2]
+    return sorted(shown, key=lambda f: -f.parameters[size].value) or [whole]

@@ -253,13 +253,14 @@ def _unit(d: _Draft, p: _Role) -> None:
 
 def _scaled(d: _Draft, v: _Role, p: _Role, rate: Array) -> None:
     """The measured rate in the position's unit, or left out."""
-    share, _ = _like(gaussian_filter1d(v.x, SOFT), rate)
+    soft = gaussian_filter1d(v.x, SOFT)  # as the rate is
+    share, _ = _like(soft, rate)
     steady = np.std(rate) < STEADY * abs(np.mean(rate))
     if share < IS_RATE and not steady:
         d.unsaid.append(f"what {v.column!r} is: it does not go with the position's rate; it is left out")
         del d.roles["velocity"]
         return
-    factor = float(np.mean(rate) / np.mean(v.x)) if steady else float(rate @ v.x / (v.x @ v.x))
+    factor = float(np.mean(rate) / np.mean(v.x)) if steady else float(rate @ soft / (soft @ soft))
     v.scale, v.x = v.scale * factor, v.x * factor
     near = min(FACTORS, key=lambda f: abs(float(np.log(f / abs(v.scale)))))
     fits = abs(np.log(near / abs(v.scale))) < NEAR

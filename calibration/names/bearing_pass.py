@@ -1,11 +1,13 @@
 """A line over position at a period of no stage."""
 
 from dataclasses import replace
-from math import pi
+from math import ceil, floor, pi
 
+from calibration.inputs.declaration import Stage
 from calibration.inputs.train import MESH, SHAFT
 from calibration.names.freelines import free_lines
 from calibration.names.inplant import Facts, Made, value
+from calibration.names.lines import SAME
 from calibration.names.motor_cogging import NAME as COGGING
 from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Candidate, Finding, Name, Scene
 
@@ -20,11 +22,37 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     if f.name != NAME.name or not f.order:
         return f
     f = replace(f, note=f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}")
-    if s.view.rig.stages:
+    if s.pair is not None:
         return f
-    alike = list(dict.fromkeys([*f.equivalent, MESH, COGGING.name, NAME.name]))
-    gears = replace(f, name=SHAFT, stage=None, equivalent=alike)
-    return gears.noted("no gear table was given, so its stage cannot be named")
+    stage, harmonic = _harmonic_of(f, s)
+    if stage is None and any(_within(g, s) for g in s.view.rig.stages):
+        return f
+    name = (stage.kind if stage else None) or SHAFT
+    alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, MESH, COGGING.name, NAME.name]) if x != name]
+    if stage is None:
+        gears = replace(f, name=name, stage=None, equivalent=alike)
+        return gears.noted("no gear table was given, so its stage cannot be named")
+    sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
+    shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)
+    return shaft.noted(f"the order's interval holds {harmonic} times that of {stage.name}")
+
+
+def _within(stage: Stage, s: Scene) -> bool:
+    """Whether a stage shows that the train is declared: it is the motor, or quicker than the axis."""
+    quicker = s.view.turn is None or (stage.period or s.turn) < s.turn * (1 - SAME)
+    return stage.period is not None and (quicker or stage.of_motor)
+
+
+def _harmonic_of(f: Finding, s: Scene) -> tuple[Stage | None, int]:
+    """The quickest stage of which a whole multiple lies within the order's interval, and the multiple."""
+    order = f.parameters.get("order")
+    if order is None or order.low is None or order.high is None:
+        return None, 0
+    for stage in sorted((g for g in s.view.rig.stages if g.period), key=lambda g: g.period or 0.0):
+        low, high = (x * (stage.period or 0.0) / s.turn for x in (order.low, order.high))
+        if floor(high) >= max(ceil(low), 1):
+            return stage, ceil(low)
+    return None, 0
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

@@ -10,7 +10,7 @@ from calibration.statistics.orders import order_spectrum, peaks
 
 # lines that are tried of a drive with one motor. ASSUMPTION
 MOST = 6
-# harmonics of a stage at least, at which no line is free. ASSUMPTION
+# harmonics of an axis' stage at least, at which no line is free. ASSUMPTION
 HARMONICS = 3
 # cycles per turn that are searched on an axis whose position is absolute. ASSUMPTION
 TOP = 3000.0
@@ -24,7 +24,8 @@ SHIFTS = (-0.2, 0.0, 0.2)
 
 def free_lines(s: Scene) -> list[Candidate]:
     """Lines over position at no stage's period that stand out of the residual; of a pair the strongest."""
-    turning = [(g.period, g.listed or range(1, max(g.harmonics, HARMONICS) + 1)) for g in s.view.rig.stages]
+    least = HARMONICS if s.pair is not None else 0
+    turning = [(g.period, g.listed or range(1, max(g.harmonics, least) + 1)) for g in s.view.rig.stages]
     taken = np.array([h / period for period, orders in turning if period for h in orders])
     if s.span <= 0:
         return []

@@ -9,8 +9,8 @@ import pytest
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.inputs.axislog import read_axis_log
-from calibration.inputs.rigfile import load_rig
 from calibration.inputs.logs import read_drive
+from calibration.inputs.rigfile import load_rig
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion

@@ -6,10 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.balances.agreement import velocity_against_position
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
+from calibration.balances.view import view_of
 from calibration.decide.rules import signed
 from calibration.decide.select import select
+from calibration.inputs.logs import read_drive
+from calibration.inputs.rigfile import load_rig
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
 
 SHARED = FORCE.replace("unit: m}", "unit: rad}") + "runs: {origin: shared}\n"
@@ -96,6 +100,28 @@ def test_a_rate_of_another_scale_or_sign_is_told(tmp_path: Path) -> None:
         assert f"velocity reads {factor:.4g} times the position's rate" in (
             folder / "out" / "report.json"
         ).read_text().replace("-1.000", "-1").replace("1.030", "1.03")
+
+
+def test_a_sound_rate_agrees_with_the_position_whatever_shakes_it(tmp_path: Path) -> None:
+    """A wave of nine rows: the position's difference dims it, and filtered noise is not white."""
+    t, x, u = motion(60.0)
+    quick = 2 * np.pi / (9 * (t[1] - t[0]))
+    shaken = x + 2e-4 * np.sin(quick * t)
+    rate = np.gradient(x, t) + 2e-4 * quick * np.cos(quick * t)
+    rng = np.random.default_rng(6)
+    rate += 0.01 * np.std(rate) * rng.standard_normal(len(t))
+    shaken += 1e-6 * rng.standard_normal(len(t))
+    (tmp_path / "rig.yaml").write_text(
+        FORCE.replace("\nresponse", "\n  velocity: {column: v, unit: m/s}\nresponse")
+    )
+    table = np.column_stack([t, shaken, u, rate])
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,x,u,v", comments="", fmt="%.9g")
+    drive = read_drive([tmp_path / "a.csv"], load_rig(tmp_path / "rig.yaml"))
+    assert drive.rig is not None
+    view = view_of(drive.runs, drive.rig, drive.rig.responses[0])
+    found = velocity_against_position(view, np.arange(len(view.rows)) > 0.7 * len(view.rows))
+    assert found is not None and not found.late
+    assert 0.5 < found.left < 1.5
 
 
 def test_strokes_that_are_made_again_are_the_floor_of_a_friction_test(tmp_path: Path) -> None:

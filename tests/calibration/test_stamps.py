@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.inputs.rigfile import load_rig
 from calibration.inputs.logs import read_drive
+from calibration.inputs.rigfile import load_rig
 from tests.calibration.logs import write_logs
 
 RIG = """rig: arm

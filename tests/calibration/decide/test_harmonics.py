@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from calibration.decide.parameters import findings_of
+from calibration.decide.rules import cancels
+from calibration.decide.scan import fit_with
 from calibration.decide.select import select
+from calibration.decide.selection import Selection
 from tests.calibration.decide.made import line, problem
 
 ROWS, ORDER = 4000, 3.0
@@ -18,7 +21,9 @@ def test_every_harmonic_has_its_own_amplitude_wherever_the_first_row_stands(firs
     """At position zero every sine of the first row is exactly zero."""
     turns = first + 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
     noise = np.random.default_rng(4).standard_normal(ROWS)
-    p = problem(2.0 * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + 0.3 * noise)
+    sizes = {1: 0.5, 2: 2.0, 3: 0.3}
+    waves = [size * np.cos(2 * np.pi * h * ORDER * turns + 0.4) for h, size in sizes.items()]
+    p = problem(np.sum(waves, axis=0) + 0.3 * noise)
     label = np.arange(ROWS) * files // ROWS
     p.session = label
     own = [line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2, 3)]
@@ -29,5 +34,28 @@ def test_every_harmonic_has_its_own_amplitude_wherever_the_first_row_stands(firs
     assert sorted(f.harmonic or 0 for f in found) == [1, 2, 3]
     assert found[0].harmonic == 2
     assert found[0].order == pytest.approx(2 * ORDER)
-    assert found[0].parameters["amplitude"].value == pytest.approx(2.0, abs=0.05)
-    assert all(f.parameters["amplitude"].value < 0.1 for f in found[1:])
+    for f in found:
+        assert f.parameters["amplitude"].value == pytest.approx(sizes[f.harmonic or 0], abs=0.05)
+
+
+def test_a_harmonic_that_is_surely_a_trifle_is_not_listed() -> None:
+    turns = 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
+    noise = np.random.default_rng(4).standard_normal(ROWS)
+    p = problem(2.0 * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + 0.1 * noise)
+    columns = np.hstack([line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2, 3)])
+    whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
+    s = select(p, [whole], np.random.default_rng(1))
+    assert [f.harmonic for f in findings_of(s, 0)] == [2]
+
+
+@pytest.mark.parametrize(("travel_turns", "cancel"), [(3.0, False), (0.5, True)])
+def test_harmonics_over_half_a_turn_that_cancel_are_no_lines(travel_turns: float, cancel: bool) -> None:
+    """A bump of a twentieth of the turn: over half of it harmonics make one, each far larger."""
+    turns = travel_turns * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0)) / 2
+    noise = np.random.default_rng(4).standard_normal(ROWS)
+    bump = np.exp(-0.5 * (((turns % 1.0) - 0.25) / 0.05) ** 2)
+    p = problem(bump + 0.01 * noise)
+    columns = np.hstack([line("encoder_eccentricity", turns, h).columns for h in (1, 2, 3, 4)])
+    whole = replace(line("encoder_eccentricity", turns, 1.0), columns=columns, stage="disc", searched=1)
+    s = Selection.of(p, [c for c in [fit_with(p, p.base, whole)] if c is not None])
+    assert cancels(s, 0) is cancel

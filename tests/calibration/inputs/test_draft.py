@@ -90,6 +90,11 @@ def test_a_rate_in_other_units_has_their_factor_and_a_strange_one_its_own(tmp_pa
     log = write(tmp_path / "b.csv", ["t", "angle", "speed", "torque"], (T, X, 4.3 * V, U))
     assert drafted(log).columns["velocity"].scale == pytest.approx(1 / 4.3, rel=0.02)
     assert "# guessed: its factor, by the position's rate" in draft(log)
+    noisy = 4.3 * V + 0.2 * np.std(4.3 * V) * np.random.default_rng(2).standard_normal(len(V))
+    log = write(tmp_path / "n.csv", ["t", "angle", "speed", "torque"], (T, X, noisy, U))
+    assert drafted(log).columns["velocity"].scale == pytest.approx(
+        1 / 4.3, rel=0.02
+    )  # noise biases no factor
     log = write(tmp_path / "c.csv", ["t", "angle", "speed", "torque"], (T, X, U**3, U))
     assert "velocity" not in places(drafted(log)) and "does not go with the position's rate" in draft(log)
 
