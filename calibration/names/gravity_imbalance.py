@@ -37,6 +37,15 @@ def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
     return tuple(dict.fromkeys(effect.name for effect in shown if effect.channel == "T"))
 
 
+def of_a_motor(f: Finding, s: Scene) -> Finding:
+    """Once per turn of a shaft that is declared as a motor, the motor's own force comes first."""
+    motors = [g for g in s.view.rig.stages if g.of_motor and forces_once_a_turn([g], s.turn)]
+    if f.name != NAME.name or not motors:
+        return f
+    (own, *_), alike = forces_once_a_turn(motors, s.turn), (NAME.name, *f.equivalent)
+    return replace(f, name=own, stage=motors[0].name, equivalent=[x for x in alike if x != own])
+
+
 def columns(s: Scene) -> list[Candidate]:
     """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:

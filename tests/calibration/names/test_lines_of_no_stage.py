@@ -62,3 +62,9 @@ def test_a_whole_multiple_of_a_stage_is_its_harmonic_first(
     assert ("bearing_pass" in first["equivalent"]) is (name != "bearing_pass")
     if stage:
         assert first["harmonic"] == {20.0: 20, 14.0: 2, 9.0: 9}[order]
+
+
+def test_once_per_turn_of_a_motor_its_own_force_comes_first(tmp_path: Path) -> None:
+    first = told(tmp_path, MOTOR, 1.0)
+    assert (first["name"], first["stage"], first["harmonic"]) == ("motor_cogging", "motor", 1)
+    assert first["equivalent"] == ["gravity_imbalance"]
