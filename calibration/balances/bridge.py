@@ -120,7 +120,7 @@ def adopt(p: Problem, column: Array, label: str, unit: str = "1", least: float =
     """Add a column that explains more than chance, surely positive and above `least`."""
     fit = p.fit(np.column_stack([p.base, column]))
     gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
-    if gained > MORE and fit.beta[-1] > max(SURE_Z * np.sqrt(fit.covariance[-1, -1]), least):
+    if gained > MORE and fit.beta[-1] > max(SURE_Z * fit.errors[-1], least):
         p.add((label, unit, column))
 
 
@@ -167,8 +167,7 @@ def _sound(p: Problem, fit: Fit, names: tuple[str, ...]) -> bool:
     resistance, at = float(fit.beta[p.place("resistance")]), p.base.shape[1]
     low, high = (part * resistance for part in TRUNCATION)
     bounds = {"current_ripple": RIPPLE, "conversion_offset": (low, high)}
-    error = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
-    asked = [(fit.beta[k], error[k], *bounds[n]) for k, n in enumerate(names, at) if n in bounds]
+    asked = [(fit.beta[k], fit.errors[k], *bounds[n]) for k, n in enumerate(names, at) if n in bounds]
     return all(low < size < high and size > SURE_Z * error for size, error, low, high in asked)
 
 

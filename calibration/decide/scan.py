@@ -183,7 +183,7 @@ def _fit_beside(p: Problem, base: Array, c: Candidate) -> Fit | None:
     n = base.shape[1]
     fit = p.fit(np.hstack([base, c.columns]))
     positive = (n + k for k in c.positive)
-    sure = all(fit.beta[k] >= SURE_Z * np.sqrt(fit.covariance[k, k]) for k in positive)
+    sure = all(fit.beta[k] >= SURE_Z * fit.errors[k] for k in positive)
     return fit if sure and c.allowed(fit.beta[n:]) else None
 
 

@@ -10,11 +10,8 @@ from calibration.inputs.thresholds import DEFAULT_HOLD_OUT
 from calibration.inputs.units import is_rate
 from plant.effects import REGISTRY
 
-#: what a response stands for: a balance of forces, or one sensor against another
+#: channels whose response is a balance of forces; the others compare one sensor with another
 FORCES = ("effort", "force", "current", "acceleration", "velocity")
-SENSORS = ("position2", "position")
-#: terms of the declared model of a force
-TERMS = ("inertia", "viscous", "coulomb", "offset", "drift", "stiffness", "gravity")
 #: the SI unit at the end of a key
 _UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")
 T = TypeVar("T")

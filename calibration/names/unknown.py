@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.balances.candidate import waves
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
@@ -230,12 +231,11 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
     power = np.where(hertz < max(SLOWEST_HZ, FEWEST_CYCLES / span), 0.0, power)
     out = []
     for f0 in peaks(hertz, power, LINES, APART / span):
-        x = 2 * np.pi * f0 * clock
         most = HARMONICS if f0 * HARMONICS < QUICKEST / period_s else 1
         for count in sorted({1, most}):
-            waves = np.column_stack([g(h * x) for h in range(1, count + 1) for g in (np.cos, np.sin)])
+            wave = waves(2 * np.pi * f0 * clock, range(1, count + 1))
             at: dict[str, Any] = {"frequency": f0, "fixed": {"frequency": (f0, "Hz")}}
-            out.append(_over("time", waves, ("amplitude", s.unit), kind="line", **at))
+            out.append(_over("time", wave, ("amplitude", s.unit), kind="line", **at))
     return out
 
 
