@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from calibration.finding import Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import FORCE, Beside, Candidate, Finding, Name, Scene
+from calibration.names.name import Beside, Candidate, Finding, Name, Scene
 from calibration.names.onsets import Begins, steps
 
 # s: longer than any log. ASSUMPTION
@@ -32,7 +32,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="brake_drag",
-    channels=(FORCE,),
     columns=columns,
     to_plant=to_plant,
     experiment="repeat at two speeds: a brake adds the same force at both, a preload scales all friction",

@@ -4,7 +4,7 @@ import numpy as np
 
 from calibration.balances.filters import smooth
 from calibration.names.gravity_imbalance import gravity
-from calibration.names.name import FORCE, Candidate, Name, Scene, candidate
+from calibration.names.name import Candidate, Name, Scene, candidate
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -29,7 +29,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="load_friction",
-    channels=(FORCE,),
     columns=columns,
     experiment="the same motion with two loads",
     lacks=lacks,

@@ -6,7 +6,7 @@ import numpy as np
 
 from calibration.finding import Parameter
 from calibration.names.magnet_weakening import LENGTHS
-from calibration.names.name import FORCE, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
+from calibration.names.name import Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
 from calibration.names.onsets import Begins, steps
 
 # s, of a change that is sudden: the plant's shortest (docs/reference/effects.md)
@@ -42,7 +42,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="preload_change",
-    channels=(FORCE,),
     columns=columns,
     relative={"change": ("viscous", 1)},
     to_plant=to_plant,
