@@ -113,9 +113,4 @@ def acceleration_of(x: Array, width: int, period_s: float) -> Array:
 
 def _shift(x: NDArray[Any], by: int) -> NDArray[Any]:
     """x[k - by], ends repeated."""
-    out = np.roll(x, by, axis=0)
-    if by > 0:
-        out[:by] = x[0]
-    elif by < 0:
-        out[by:] = x[-1]
-    return out
+    return x[np.clip(np.arange(len(x)) - by, 0, len(x) - 1)]

@@ -9,7 +9,6 @@ from calibration.balances.candidate import Candidate
 from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import LUCK_Z, ROUNDING
 from calibration.names.lines import on_clock
 from calibration.names.scene import Scene
 
@@ -27,8 +26,10 @@ def one_line(s: Selection, scene: Scene) -> Selection:
             continue
         why = f"the log does not tell its line from that of {s.candidates[clock].say()}"
         on_the_clock = [s.put(clock, c).without(place, why) for c in _either(s, scene, place, clock)]
-        if any(not _refused(other, s.without(clock)) for other in on_the_clock):
-            return one_line(min(on_the_clock, key=_left), scene)
+        rather = s.without(clock)
+        held = (compare(s.problem, c.model, rather.model, rather.after.whitener) for c in on_the_clock)
+        if not all(one.sure for one in held):
+            return one_line(min(on_the_clock, key=lambda c: c.fitted_square), scene)
         why = f"the log does not tell its line from that of {s.candidates[place].say()}"
         return one_line(s.without(clock, why), scene)
     return s
@@ -38,17 +39,6 @@ def _either(s: Selection, scene: Scene, place: int, clock: int) -> list[Contende
     """The line on the clock as it was found, and where the one over the place was."""
     x, hertz = s.chosen[clock], _rate(scene, s.candidates[place]) * abs(scene.one_speed[0])
     return [x, replace(x, candidate=x.candidate.moved(np.array([hertz])))]
-
-
-def _refused(clock: Selection, place: Selection) -> bool:
-    """Whether held-out rows have the line over the place rather."""
-    held = compare(clock.problem, clock.model, place.model, place.after.whitener)
-    return held.z > LUCK_Z and held.share > ROUNDING
-
-
-def _left(s: Selection) -> float:
-    """Mean square of the fitted rows."""
-    return float(np.mean(s.after.residual[s.problem.train] ** 2))
 
 
 def _beside(scene: Scene, place: Candidate, clock: Candidate) -> bool:

@@ -8,7 +8,7 @@ from calibration.balances.candidate import Candidate, sine_columns
 from calibration.decide.heldout import compare
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import LUCK_Z, ROUNDING
+from calibration.decide.thresholds import LUCK_Z
 from calibration.names import gravity_imbalance
 from calibration.names.lines import CLOCKED
 from calibration.names.scene import Scene
@@ -22,9 +22,9 @@ def told_by_the_clock(s: Selection, scene: Scene) -> Selection:
     for k, c in enumerate(s.candidates):
         if CLOCKED not in c.twins or c.order is None or not np.isfinite(s.held.after):
             continue
-        other = min((s.put(k, replace(s.chosen[k], candidate=x)) for x in _clocked(c, scene)), key=_left)
-        held = compare(s.problem, other.model, s.model, s.after.whitener)
-        if held.z > LUCK_Z and held.share > ROUNDING:
+        clocked = [s.put(k, replace(s.chosen[k], candidate=x)) for x in _clocked(c, scene)]
+        other = min(clocked, key=lambda x: x.fitted_square)
+        if compare(s.problem, other.model, s.model, s.after.whitener).sure:
             alone = replace(c, twins=tuple(t for t in c.twins if t != CLOCKED))
             s = s.put(k, replace(s.chosen[k], candidate=alone))
     return s
@@ -44,11 +44,6 @@ def weight_first(s: Selection, scene: Scene) -> Selection:
                 held = compare(s.problem, others.model, s.put(k, found).model, s.after.whitener)
                 s = s.put(k, replace(found, held=held))
     return s
-
-
-def _left(s: Selection) -> float:
-    """Mean square of the fitted rows."""
-    return float(np.mean(s.after.residual[s.problem.train] ** 2))
 
 
 def _clocked(c: Candidate, scene: Scene) -> list[Candidate]:
