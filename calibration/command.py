@@ -88,8 +88,7 @@ def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None
 
 
 def look(drive: Drive, options: Options) -> Looked:
-    """Look at a drive by what it is declared to be: an axis with two motors, a position at constant rate, or
-    a response to explain."""
+    """Look at a drive as it is declared: two motors, a position at constant rate, a response to explain."""
     rig = drive.rig
     if rig is not None and rig.motors is not None:
         return look_at_axis(drive.runs, rig, options)

@@ -79,8 +79,7 @@ def beyond(one: Estimate, declared: float, factor: float) -> bool:
 
 
 def seen_speeds(rate: Array, d: Declared) -> set[str]:
-    """What speeds (rad/s) tell of friction: "moved", "sliding" beyond the dip, "spread" there, within the
-    "dip"."""
+    """What speeds (rad/s) tell of friction: "moved", "sliding" beyond the dip, "spread" there, the "dip"."""
     if not len(rate):
         return set()
     w = np.abs(rate)

@@ -84,8 +84,7 @@ def _least_step(step: Array) -> float:
 
 
 def _leaps(run: Run, channel: str, _: Column) -> None:
-    """Join a position that moves by a constant from one row to the next while the motion goes on: a counter
-    that lost its zero."""
+    """Join a position that leaps by a constant while the motion goes on: a counter that lost its zero."""
     step = np.diff(run.columns[channel])
     size = np.abs(step[np.isfinite(step)])
     if len(size) < limits.FEWEST_ROWS or np.any(np.diff(run.columns["t"]) > limits.GAP * run.period_s):

@@ -85,8 +85,7 @@ def piled_at(x: Array, effort: Array, end: float, before: float) -> tuple[int, i
 
 
 def converter_end(runs: Sequence[Run], names: Sequence[str]) -> float | None:
-    """What the currents `names` of two motors stop at, the same for both and in all runs; None where they
-    pile up nowhere."""
+    """What the currents `names` of two motors stop at in all runs; None where they pile up nowhere."""
     have = [n for n in names if all(n in r.columns for r in runs)]
     if not have:
         return None

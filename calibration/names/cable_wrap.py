@@ -35,8 +35,8 @@ def columns(s: Scene) -> list[Candidate]:
     weighed = "gravity_cos" in s.declared
     alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again
     twins = () if alone else (WEIGHT.name,)
-    width = ("width", travels, s.angle_unit)
-    looped = grid(NAME.name, s.shaped(full), *sizes, along=width, positive=(0, 1), twins=twins)
+    along = ("width", travels, s.angle_unit)
+    looped = grid(NAME.name, s.shaped(full), *sizes, along=along, positive=(0, 1), twins=twins)
     # a bundle that hangs freely has hardly a loop; beside no declared weight, a longer slope is a weight's
     if s.pair is None and (weighed or s.span < LEAST_TURN * turn):
         looped.append(candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins))

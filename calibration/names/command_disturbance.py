@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from calibration.balances.candidate import sine_columns
-from calibration.balances.repeats import repeat_frequency
+from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
 from calibration.names.candidates import tried
 from calibration.names.inplant import Facts, Made, value
@@ -61,7 +61,8 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     length = min(float(t[files == k].max()) for k in np.unique(files))
     if length <= 0:
         return []
-    top, repeats = 0.5 / (v.period_s * max(v.step, 1)), repeat_frequency(v)
+    top, lag = 0.5 / (v.period_s * max(v.step, 1)), repeat_lag(v)
+    repeats = 1.0 / (lag * v.period_s) if lag else 0.0  # Hz
     most = int(top / repeats) if repeats else 0
     if repeats * length < FEWEST_REPEATS:
         most = min(most, STRONG)

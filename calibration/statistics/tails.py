@@ -48,13 +48,15 @@ def rms_interval(e: Array, block: int) -> tuple[float, float, float]:
     return size, max(size - reach, 0.0), size + reach
 
 
+def median_reach(x: Array) -> float:
+    """95 % half-width of the median of x (n,), n of at least 2: its error is 1.25 times the mean's."""
+    return student_reach(len(x) - 1) * 1.25 * float(np.std(x, ddof=1)) / float(np.sqrt(len(x)))
+
+
 def middle(x: Array, unit: str) -> Parameter:
     """The median of several measurements (n,) of one size; without an interval where there is only one."""
     value = float(np.median(x))
-    if len(x) < 2:
-        return Parameter(value, unit)
-    error = 1.25 * float(np.std(x, ddof=1)) / float(np.sqrt(len(x)))  # 1.25 times the mean's
-    return normal(value, error, unit, student_reach(len(x) - 1))
+    return normal(value, 1.0, unit, median_reach(x)) if len(x) > 1 else Parameter(value, unit)
 
 
 def student_reach(dof: float, level: float = 0.975) -> float:
