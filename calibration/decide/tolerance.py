@@ -30,7 +30,7 @@ ELECTRICAL_ERROR = 0.0005
 # share of the inertia, likewise: gear trains and rotors beyond a rigid balance (the same seeds)
 INERTIA_ERROR = 0.006
 # times a variance by the other columns (1 / (1 - R squared)): beyond, the motion does not hold numbers apart.
-# ASSUMPTION. A rig says from 30 on that two terms move together (look/forces.py): there it is only a remark
+# ASSUMPTION. A rig says from 30 on that two terms move together (look/said.py): there it is only a remark
 INFLATION = 100.0
 # part of 1 of a logarithm: keeps the number finite where INFLATION refuses it anyway. arithmetic
 LARGEST_CORRECTION = 3.0
