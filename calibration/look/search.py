@@ -9,10 +9,10 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import rules
-from calibration.decide.oneline import one_line
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import NOISE_SHARE
+from calibration.decide.twins import one_line
 from calibration.names import NAMES
 from calibration.names.freelines import free_lines
 from calibration.names.scene import Scene
