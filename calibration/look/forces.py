@@ -12,12 +12,11 @@ from calibration.balances.slowoffset import offset_order
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
 from calibration.decide.parameters import findings_of
-from calibration.decide.reported import as_told, of_calibrated
 from calibration.decide.residual import beyond_names, left_over, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.twins import told_by_the_clock, weight_first
 from calibration.decide.verdict import ROWS
-from calibration.decide.withdraw import unnamed
+from calibration.decide.withdraw import as_told, of_calibrated, unnamed
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
 from calibration.look.gap import crossed_first, where_known

@@ -99,8 +99,7 @@ def _of_rig(s: Scene, stage: Stage, mine: list[Candidate]) -> list[Candidate]:
     """Also all harmonics as one. A bearing's line may lie beside any of them."""
     beside, weighs = beside_stage(s, stage), s.force and s.view.turn is not None
     # once per turn of an angle: a weight that hangs off it has the same columns
-    weight = [weighs and abs((c.order or 0.0) - 1) < SAME and not c.per_run for c in mine]
-    others = [c for c, same in zip(mine, weight, strict=True) if not same]
+    others = [c for c in mine if not weighs or abs((c.order or 0.0) - 1) >= SAME or c.per_run]
     return [replace(c, neighbours=beside) for c in [*others, *as_one(mine)]]
 
 

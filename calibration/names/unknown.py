@@ -15,7 +15,7 @@ from calibration.names.lines import on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene, candidate
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
-from calibration.statistics.orders import order_spectrum, peaks
+from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
 from calibration.statistics.tails import middle
 
 # knots of a smooth function. ASSUMPTION: names against what only looks smooth
@@ -40,8 +40,6 @@ FEWEST_CYCLES = 4
 MOST_CYCLES = 2e5
 # Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
 SLOWEST_HZ = 0.05
-# part of the rows' rate, for the highest of HARMONICS. ASSUMPTION: a little below the Nyquist limit
-QUICKEST = 0.45
 # harmonics of such a line. ASSUMPTION
 HARMONICS = 5
 
@@ -231,7 +229,7 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
     power = np.where(hertz < max(SLOWEST_HZ, FEWEST_CYCLES / span), 0.0, power)
     out = []
     for f0 in peaks(hertz, power, LINES, APART / span):
-        most = HARMONICS if f0 * HARMONICS < QUICKEST / period_s else 1
+        most = HARMONICS if f0 * HARMONICS < PER_ROW / period_s else 1
         for count in sorted({1, most}):
             wave = waves(2 * np.pi * f0 * clock, range(1, count + 1))
             at: dict[str, Any] = {"frequency": f0, "fixed": {"frequency": (f0, "Hz")}}

@@ -19,7 +19,7 @@ SIZES = {"Parameter", "normal", "deviation", "middle", "middle_of"}
 MADE = {
     "decide/broadband.py": (UNKNOWN, "wind_torque"),
     "decide/delays.py": ("channel_delay",),
-    "decide/reported.py": ("play",),
+    "decide/withdraw.py": ("play",),
     "decide/residual.py": (UNKNOWN,),
     "balances/effortchange.py": (UNKNOWN,),
     "look/controllerlaw.py": (UNKNOWN, "command_disturbance"),
