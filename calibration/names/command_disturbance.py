@@ -18,6 +18,7 @@ from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve
 
 PASSED = "bearing_pass"  # at an order of no stage
+EFFORTS = ("effort", "current", "force", "voltage")  # responses behind which something may be added
 # cycles within a file before a frequency is a frequency. ASSUMPTION
 TURNS = 6.0
 # harmonics of a square wave. definition
@@ -176,12 +177,6 @@ def _power(s: Scene, y: Array, hertz: float) -> float:
     return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
 
 
-def lacks(s: Scene) -> str:
-    """An effort."""
-    some = s.view.response.channel in ("effort", "current", "force", "voltage")
-    return "" if some else "a column of the effort"
-
-
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Its phase is the first run's, every run has one of its own."""
     made, unit = Made(), f.parameters["amplitude"].unit
@@ -202,7 +197,7 @@ NAME = Name(
     columns=columns,
     experiment="the same motion at another speed: a disturbance keeps its frequency and size, at rest "
     "it stays",
-    lacks=lacks,
+    lacks=lambda s: "" if s.view.response.channel in EFFORTS else "a column of the effort",
     to_plant=to_plant,
     worth=SEARCHED_WORTH,
 )

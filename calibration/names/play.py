@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import acceleration
 from calibration.names.candidates import candidate, grid
-from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, SENSORS, Array, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.inplant import Made, value
+from calibration.names.name import FORCE, SENSORS, Array, Candidate, Name, Scene, both_ways
 from calibration.names.presliding import NAME as BRISTLES
 from calibration.names.scene import FEWEST
 from calibration.names.shaft_compliance import NAME as WIND_UP
@@ -121,11 +121,6 @@ def travel_of(c: Candidate) -> float | None:
     return abs(c.fixed[TRAVEL][0]) if c.name == NAME.name and TRAVEL in c.fixed else None
 
 
-def to_plant(f: Finding, facts: Facts) -> Made:
-    """The motors are compared with the absolute encoder, so its coupling has the gap."""
-    return Made().add(f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)})
-
-
 NAME = Name(
     name="play",
     observed={
@@ -137,6 +132,9 @@ NAME = Name(
     experiment="a slow reversal under load, or lock the output and step the torque: play is a step, "
     "compliance a line",
     lacks=both_ways,
-    to_plant=to_plant,
+    # the motors are compared with the absolute encoder, so its coupling has the gap
+    to_plant=lambda f, facts: Made().add(
+        f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)}
+    ),
     loop=("gap",),
 )
