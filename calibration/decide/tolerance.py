@@ -11,6 +11,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.declared import Friction
 from calibration.balances.problem import Estimate, Problem
+from calibration.balances.thresholds import FALLING_ROWS, SLIDING_ROWS
 from calibration.balances.torque import Torque
 from calibration.decide.parameters import interval
 from calibration.decide.selection import Selection
@@ -40,10 +41,6 @@ SURE = 5.0
 DIP = (0.0025, 0.64)
 # times, likewise: where the dip is over, e^-6 of it is left. arithmetic
 QUICK = 6.25
-# share of the rows used that must be in the dip. ASSUMPTION
-SEEN_IN_DIP = 0.004
-# share of the rows used that must be beyond it. ASSUMPTION
-SEEN_BEYOND = 0.02
 # times: the quick speeds over the slow ones, before Coulomb and viscous friction come apart. ASSUMPTION
 SPREAD = 3.0
 
@@ -85,12 +82,12 @@ def seen_speeds(rate: Array, d: Declared) -> set[str]:
     w = np.abs(rate)
     part = (w / d.stribeck_rate) ** d.stribeck_exponent
     quick = part > QUICK
-    if np.mean(quick) <= SEEN_BEYOND:
+    if np.mean(quick) <= SLIDING_ROWS:
         return {"moved"}
     out = {"moved", "sliding"}
     if np.quantile(w[quick], 0.95) > SPREAD * np.quantile(w[quick], 0.05):
         out.add("spread")
-    if np.mean((part > DIP[0]) & (part < DIP[1])) > SEEN_IN_DIP:
+    if np.mean((part > DIP[0]) & (part < DIP[1])) > FALLING_ROWS:
         out.add("dip")
     return out
 

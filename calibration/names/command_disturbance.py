@@ -11,7 +11,7 @@ from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
 from calibration.names.candidates import tried
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.lines import STEP_OF_CELL, on_clock, spectral_lines
+from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, on_clock, spectral_lines
 from calibration.names.name import FORCE, SEARCHED_WORTH, SPEED, VOLTS, Array, Candidate, Finding, Name, Scene
 from calibration.names.structural_mode import NAME as MODE
 from calibration.statistics.orders import Wanted, standing_out
@@ -27,12 +27,8 @@ ODD = (1, 3, 5, 7, 9)
 FEWEST_REPEATS = 2.5
 # harmonics of such a motion that are left out: friction's corners fall off with the multiple. ASSUMPTION
 STRONG = 50
-# Hz, from which on volts are searched. ASSUMPTION
-SLOWEST_HZ = 0.05
 # rows, half a minute, that volts are searched in. ASSUMPTION
 FEWEST_ROWS = 1000
-# lines of volts that are tried. ASSUMPTION
-LINES = 3
 # share of such a line's resolution cell, for its refinement. ASSUMPTION
 STEP_CELLS = 0.05
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
@@ -120,7 +116,7 @@ def _of_volts(s: Scene) -> list[Candidate]:
         return []
     added = np.where(seen, w.together(weight * s.residual)[:n], 0.0) / np.where(seen, power, 1)
     since = p.t[:n] - p.t[:n][np.searchsorted(run, run)]
-    want = Wanted(span=float(since.max()), least=SLOWEST_HZ, most=LINES)
+    want = Wanted(span=float(since.max()), least=SLOWEST_HZ, most=ON_CLOCK)
     out = []
     for f0, square in product(standing_out(added[rows], since[rows], run[rows], want), (False, True)):
         at = {"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")}
