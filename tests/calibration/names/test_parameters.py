@@ -13,7 +13,7 @@ from calibration.names.name import Name
 from plant.effects import REGISTRY
 
 ROOM = Path(__file__).parents[3] / "calibration"
-MAKERS = {"candidate", "grid", "tried", "_over", "line"}
+MAKERS = {"candidate", "grid", "steps", "tried", "_over", "line"}
 SIZES = {"Parameter", "normal", "deviation", "middle", "middle_of"}
 #: files of no name, and whose findings they make
 MADE = {
