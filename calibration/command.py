@@ -62,7 +62,7 @@ def calibrate(
                 on_step(text)
 
         drive = read_drive(logs, load_rig(rig) if rig is not None else None)
-        if plant is not None and not drive.emulated:
+        if plant is not None and (drive.rig is None or drive.rig.format != "axis-log"):
             raise CalibrationInputError("--plant", "is for axis logs: no other drive has a plant file")
         _check_names(hold_out or [], drive.runs, logs)
         out.mkdir(parents=True, exist_ok=True)

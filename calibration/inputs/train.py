@@ -21,11 +21,6 @@ class Train:
     kinds: dict[str, str | None]
 
     @property
-    def known(self) -> dict[str, float]:
-        """Stages whose torque the axis feels: all but sensors on shafts of their own."""
-        return {n: v for n, v in self.orders.items() if self.kinds[n] != "sensor"}
-
-    @property
     def shafts(self) -> tuple[str, ...]:
         """Everything that turns between the axis and the motors, and the roller on the axis."""
         return tuple(n for n, k in self.kinds.items() if k not in ("axis", "sensor", MESH))

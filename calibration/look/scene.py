@@ -99,7 +99,7 @@ def _in_radians(rig: Rig, train: Train) -> Rig:
     shafts = dict.fromkeys(train.shafts, SHAFT)
     stages = tuple(
         Stage(name, 2 * np.pi / order, None, HARMONICS, shafts.get(name, train.kinds[name]))
-        for name, order in train.known.items()
-        if train.kinds[name] != "axis"
+        for name, order in train.orders.items()
+        if train.kinds[name] not in ("axis", "sensor")  # a sensor may be on a shaft of its own
     )
     return replace(rig, stages=stages, runs={"origin": "shared"})
