@@ -40,10 +40,7 @@ AS_GOOD = 0.1
 
 def counter_share(frame: Frame) -> Array:
     """Counter torque of every row (n,), of the effort."""
-    share = np.full(len(frame.t), frame.scale["counter_torque"])
-    for k, r in enumerate(frame.runs):
-        share[frame.run == k] = r.scales["counter_torque"]
-    return share
+    return np.array([r.scales["counter_torque"] for r in frame.runs])[frame.run]
 
 
 def shares(frame: Frame, effort: Array) -> Array:
@@ -108,9 +105,8 @@ def _step(frame: Frame, x: Array) -> Array:
 
 def add_bridge(p: Problem, w: Windings, frame: Frame, effort: Array) -> None:
     """Add what the unlogged tick differed by, from motion and held set point, and a register that waits."""
-    for error, label in zip(
-        unlogged_errors(frame), ("gain_between_rows", "gain_of_held_set_point"), strict=False
-    ):
+    labels = ("gain_between_rows", "gain_of_held_set_point")
+    for error, label in zip(unlogged_errors(frame), labels, strict=False):
         unlogged = duties(frame, effort + error / frame.scale["effort_full_scale"])
         adopt(p, -w.at((unlogged - w.duty) * w.supply), label)
     adopt(p, -w.at(register_error(frame, effort) * w.supply), "held_counter_register")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.arrays import Array, Mask
+from calibration.balances.candidate import waves
 from calibration.balances.declared import Friction, fit_friction
 from calibration.balances.frame import Frame
 from calibration.balances.motion import Motion, acceleration_of, motion_of
@@ -67,9 +68,7 @@ def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], unit: str =
     out: list[Term] = []
     for _, stage, harmonic in lines:
         order = m.frame.train.orders[stage] * harmonic
-        dim = m.filter.gain(per_row * order)
-        x = 2 * np.pi * order * turns
-        pair = np.column_stack([dim * np.cos(x), dim * np.sin(x)])
+        pair = m.filter.gain(per_row * order)[:, None] * waves(2 * np.pi * order * turns, (1,))
         out.append((f"declared {stage} {harmonic}", unit, pair))
     return out
 
