@@ -1,2 +1,1 @@
-"""Closes the loop with measured data: what is left of a log after the declared model, and which effect it
-is."""
+"""Closes the loop with measured data: what a declared model leaves of a log, and which effect it is."""

@@ -62,7 +62,7 @@ def calibrate(
                 on_step(text)
 
         drive = read_drive(logs, load_rig(rig) if rig is not None else None)
-        if plant is not None and not drive.emulated:
+        if plant is not None and (drive.rig is None or drive.rig.format != "axis-log"):
             raise CalibrationInputError("--plant", "is for axis logs: no other drive has a plant file")
         _check_names(hold_out or [], drive.runs, logs)
         out.mkdir(parents=True, exist_ok=True)
@@ -88,8 +88,7 @@ def _check_names(hold_out: list[str], runs: list[Run], logs: list[Path]) -> None
 
 
 def look(drive: Drive, options: Options) -> Looked:
-    """Look at a drive by what it is declared to be: an axis with two motors, a position at constant rate, or
-    a response to explain."""
+    """Look at a drive as it is declared: two motors, a position at constant rate, a response to explain."""
     rig = drive.rig
     if rig is not None and rig.motors is not None:
         return look_at_axis(drive.runs, rig, options)

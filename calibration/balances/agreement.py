@@ -82,7 +82,7 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
         scale = float(fit.beta[0]) or 1.0
         step = float(fit.beta[2]) / scale
         delay = float(np.clip(delay + step, -LONGEST * view.period_s, LONGEST * view.period_s))
-    error = float(np.sqrt(max(fit.covariance[2, 2], 0.0))) / abs(scale)
+    error = float(fit.errors[2]) / abs(scale)
     moved = view.delayed(w, delay)[rows]
     error = max(error, _scatter(view.file[rows], free, moved, train))
     last = gls(moved, free[:, :2], train, 0, block)
@@ -97,8 +97,8 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
         and abs(scale) > LEAST_SCALE
     )
     unit = view.rig.columns["velocity"].unit
-    spread = float(np.sqrt(max(last.covariance[0, 0], 0.0)))
-    return Agreement("velocity", unit, delay, error, b, c, floor, late, float(last.beta[0]), spread)
+    own, spread = float(last.beta[0]), float(last.errors[0])
+    return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread)
 
 
 def _over_two_rows(rate: Array) -> Array:

@@ -40,10 +40,7 @@ AS_GOOD = 0.1
 
 def counter_share(frame: Frame) -> Array:
     """Counter torque of every row (n,), of the effort."""
-    share = np.full(len(frame.t), frame.scale["counter_torque"])
-    for k, r in enumerate(frame.runs):
-        share[frame.run == k] = r.scales["counter_torque"]
-    return share
+    return np.array([r.scales["counter_torque"] for r in frame.runs])[frame.run]
 
 
 def shares(frame: Frame, effort: Array) -> Array:
@@ -108,9 +105,8 @@ def _step(frame: Frame, x: Array) -> Array:
 
 def add_bridge(p: Problem, w: Windings, frame: Frame, effort: Array) -> None:
     """Add what the unlogged tick differed by, from motion and held set point, and a register that waits."""
-    for error, label in zip(
-        unlogged_errors(frame), ("gain_between_rows", "gain_of_held_set_point"), strict=False
-    ):
+    labels = ("gain_between_rows", "gain_of_held_set_point")
+    for error, label in zip(unlogged_errors(frame), labels, strict=False):
         unlogged = duties(frame, effort + error / frame.scale["effort_full_scale"])
         adopt(p, -w.at((unlogged - w.duty) * w.supply), label)
     adopt(p, -w.at(register_error(frame, effort) * w.supply), "held_counter_register")
@@ -120,7 +116,7 @@ def adopt(p: Problem, column: Array, label: str, unit: str = "1", least: float =
     """Add a column that explains more than chance, surely positive and above `least`."""
     fit = p.fit(np.column_stack([p.base, column]))
     gained = fit.loglik - under(p.y, p.base, p.train, fit.whitener)
-    if gained > MORE and fit.beta[-1] > max(SURE_Z * np.sqrt(fit.covariance[-1, -1]), least):
+    if gained > MORE and fit.beta[-1] > max(SURE_Z * fit.errors[-1], least):
         p.add((label, unit, column))
 
 
@@ -167,8 +163,7 @@ def _sound(p: Problem, fit: Fit, names: tuple[str, ...]) -> bool:
     resistance, at = float(fit.beta[p.place("resistance")]), p.base.shape[1]
     low, high = (part * resistance for part in TRUNCATION)
     bounds = {"current_ripple": RIPPLE, "conversion_offset": (low, high)}
-    error = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
-    asked = [(fit.beta[k], error[k], *bounds[n]) for k, n in enumerate(names, at) if n in bounds]
+    asked = [(fit.beta[k], fit.errors[k], *bounds[n]) for k, n in enumerate(names, at) if n in bounds]
     return all(low < size < high and size > SURE_Z * error for size, error, low, high in asked)
 
 

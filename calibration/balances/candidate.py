@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -96,15 +96,15 @@ class Candidate:
         return self.name + place + (f", harmonic {self.harmonic}" if self.harmonic else "")
 
 
-def sine_columns(phase_cycles: Array, session: NDArray[Any], weight: Array | None = None) -> Array:
+def waves(angle: Array, harmonics: Iterable[float]) -> Array:
+    """cos and sin of the angle's (n,) rad harmonics, one pair after the other."""
+    return np.column_stack([g(h * angle) for h in harmonics for g in (np.cos, np.sin)])
+
+
+def sine_columns(phase_cycles: Array, session: NDArray[Any]) -> Array:
     """cos and sin of a phase in cycles, a pair per session (phase is a nuisance of the session)."""
-    w = 1.0 if weight is None else weight
-    c, s = w * np.cos(2 * np.pi * phase_cycles), w * np.sin(2 * np.pi * phase_cycles)
-    parts = []
-    for k in np.unique(session):
-        m = session == k
-        parts += [np.where(m, c, 0.0), np.where(m, s, 0.0)]
-    return np.column_stack(parts)
+    pair = waves(2 * np.pi * phase_cycles, (1,))
+    return np.hstack([np.where((session == k)[:, None], pair, 0.0) for k in np.unique(session)])
 
 
 def pairs_by_section(columns: Array) -> list[list[int]]:

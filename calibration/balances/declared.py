@@ -41,12 +41,11 @@ OUTLIER = 8.0
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """The law and its sizes: coulomb in N m, viscous in N m s/rad, and the inertia beside them in kg m2."""
+    """The law and its sizes: coulomb in N m, viscous in N m s/rad."""
 
     law: FrictionLaw
     coulomb: float
     viscous: float
-    inertia: float
 
     @property
     def start(self) -> dict[str, float]:
@@ -99,13 +98,12 @@ class _Fit:
         """Friction; columns, behind the bristle's its derivatives to the logs and sigma_1's, lines last."""
         m, shape = self.motion, self.bristle(logs)
         x = self.columns(shape)
-        inertia, viscous, coulomb, *_ = (float(b) for b in solve(x[self.rows], self.torque[self.rows]))
+        _, viscous, coulomb, *_ = (float(b) for b in solve(x[self.rows], self.torque[self.rows]))
         derivative = [
             m.at((self.bristle(logs + h) - self.bristle(logs - h)) / (2 * APART)) * coulomb
             for h in APART * np.eye(len(logs))
         ]
-        law = _law(logs, self.exponent)
-        friction = Friction(law=law, coulomb=coulomb, viscous=viscous, inertia=inertia)
+        friction = Friction(law=_law(logs, self.exponent), coulomb=coulomb, viscous=viscous)
         slip = np.zeros(len(shape))  # rad/s
         slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * path_of(m).period_s) / friction.start["sigma_0"]
         slip[m.starts] = 0.0

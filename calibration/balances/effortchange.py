@@ -60,7 +60,7 @@ def incremental_law(frame: Frame, held: Mask, own: bool = False) -> Law | None:
     valid[1:] &= frame.run[1:] == frame.run[:-1]
     valid &= ~frame.transients() | (np.abs(effort) > 2)
     if own:
-        valid &= usual_regime(setpoint / ARCSEC, frame.run, valid)
+        valid &= usual_regime(setpoint / ARCSEC, valid)
     if valid.sum() < limits.FEWEST_FOR_A_LAW:
         return None
     base = np.where(valid[:, None], base, 0.0)
@@ -117,7 +117,7 @@ def resting(setpoint: Array, run: NDArray[np.int64]) -> Mask:
     return np.asarray(maximum_filter1d(out, 3, origin=1, mode="nearest"))
 
 
-def usual_regime(setpoint: Array, run: NDArray[np.int64], valid: Mask) -> Mask:
+def usual_regime(setpoint: Array, valid: Mask) -> Mask:
     """Rows of the commonest of three sets of gains: set rates, pointing while creeping, pointing faster.
 
     `setpoint` in arcsec/s. A set rate is constant or a ramp; a position loop corrects it at every tick.

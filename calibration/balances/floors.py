@@ -100,11 +100,8 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
     step = view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain)
     if own is not None and not view.response.divide_by:  # a held or slow column hides its rounding
         own = max(own, step * ROUNDING * float(np.sqrt(view.filter.passes)))
-    known = (
-        None
-        if own is None
-        else float(np.hypot(own, abs(declared.get("inertia", 0.0)) * _bent(view, Filter(view.wide))))
-    )
+    bent = abs(declared.get("inertia", 0.0)) * _bent(view, Filter(view.wide))
+    known = None if own is None else float(np.hypot(own, bent))
     coulomb = declared.get("coulomb", 0.0)
     if coulomb <= 0 or not view.dynamic or not p.valid.any():
         return known, None

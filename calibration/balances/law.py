@@ -56,21 +56,15 @@ class Law:
 class Command(Law):
     """Of a rig: the base is an offset per file, or per piece where the law integrates.
 
-    `gains` (k,), `covariance` (k, k) by `labels`; `follows` (n, k): terms that follow the reference;
+    `gains` (k,) by `labels`, `sizes` with their errors; `follows` (n, k): terms that follow the reference;
     `forward` (n, 3): feed-forward of rate, acceleration and friction; `rms` of the fitted residual.
     """
 
     gains: Array
-    covariance: Array
+    sizes: list[Estimate]
     follows: Array
     forward: Array
     rms: float
-
-    @property
-    def sizes(self) -> list[Estimate]:
-        """The gains with their errors."""
-        errors = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-        return [Estimate(float(g), float(e)) for g, e in zip(self.gains, errors, strict=True)]
 
 
 def command_of(view: View, balance: Problem, law: Controller) -> Command:
@@ -138,7 +132,8 @@ def _command_of(view: View, balance: Problem, law: Controller, known: Array, bef
         follows, design = terms_at, np.hstack([terms_at, nuisances])
         beta = solve(design[train], p.y[train])
         left = p.y - design @ beta
-    covariance = block_covariance(design[train], left[train], p.block)[:k, :k]
+    variances = np.diag(block_covariance(design[train], left[train], p.block))
+    errors = np.sqrt(np.maximum(variances[:k], 0.0))
     p.y = p.y - terms_at @ beta[:own]
     forward = view.at(np.column_stack([rate, view.rate(rate), np.sign(rate)]))
     rms = float(np.sqrt(np.mean(left[train] ** 2))) if train.any() else np.inf
@@ -148,7 +143,7 @@ def _command_of(view: View, balance: Problem, law: Controller, known: Array, bef
         terms=terms_at[:, :k],
         rates=_rates(view, p),
         gains=beta[:k],
-        covariance=covariance,
+        sizes=[Estimate(float(g), float(e)) for g, e in zip(beta[:k], errors, strict=True)],
         follows=follows[:, :k],
         forward=forward,
         rms=rms,

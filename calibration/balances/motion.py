@@ -44,20 +44,11 @@ class Motion:
 
     def clear(self, *marked: Mask) -> Mask:
         """Rows of the analysis grid (n_analysis,) whose filter holds no `marked` row (n,)."""
-        any_of = np.logical_or.reduce(marked)
-        return np.asarray(self.smooth(any_of.astype(float))[self.pick] < UNTOUCHED)
-
-    def smooth(self, x: Array) -> Array:
-        """h * x at full rate."""
-        return self.filter(x, self.frame.run)
-
-    def curvature(self, x: Array) -> Array:
-        """h * x'' at full rate."""
-        return acceleration_of(x, self.width, self.frame.period_s)
+        return self.at(np.logical_or.reduce(marked).astype(float)) < UNTOUCHED
 
     def at(self, x: Array) -> Array:
         """h * x on the analysis grid; `x` is (n,) or (n, k)."""
-        return np.asarray(self.smooth(x)[self.pick])
+        return np.asarray(self.filter(x, self.frame.run)[self.pick])
 
     def problem(self, held: Mask, terms: Sequence[Term], **more: Any) -> Problem:
         """`terms` against y on the analysis grid, motor A first; `held` (n,); `more`: `Problem`'s fields."""
@@ -113,9 +104,4 @@ def acceleration_of(x: Array, width: int, period_s: float) -> Array:
 
 def _shift(x: NDArray[Any], by: int) -> NDArray[Any]:
     """x[k - by], ends repeated."""
-    out = np.roll(x, by, axis=0)
-    if by > 0:
-        out[:by] = x[0]
-    elif by < 0:
-        out[by:] = x[-1]
-    return out
+    return x[np.clip(np.arange(len(x)) - by, 0, len(x) - 1)]

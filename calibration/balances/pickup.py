@@ -58,20 +58,15 @@ def pick_up(view: View) -> tuple[float, float] | None:
     n, r = len(spans), float(ratio[at])
     if r <= 1 or n * (r - 1 - np.log(r)) < np.log(use.sum() / BY_CHANCE):
         return None
-    line = _finest(quick, spans, at / size, size)
+    everything = np.ones(len(quick), dtype=bool)
+    near = (at + np.linspace(-1.0, 1.0, 21)) / size  # within a bin
+    line = float(max(near, key=lambda f: _sizes(quick, spans, f, everything)))
     whole = _sizes(quick, spans, line, calm)
     noise = by_median(quick[view.ok])
     if whole / np.sqrt(2.0) < MATTERS * noise or not _at_every_speed(view, quick, spans, line, whole):
         return None
     taken_away = 1.0 - float(view.filter.gain(line))
     return line / view.period_s, whole / taken_away
-
-
-def _finest(e: Array, spans: list[tuple[int, int]], near: float, size: int) -> float:
-    """Frequency in cycles per row, within a bin of `near`, at which the files' sines are largest."""
-    trial = near + np.linspace(-1.0, 1.0, 21) / size
-    everything = np.ones(len(e), dtype=bool)
-    return float(trial[int(np.argmax([_sizes(e, spans, t, everything) for t in trial]))])
 
 
 def _sizes(e: Array, spans: list[tuple[int, int]], line: float, rows: NDArray[np.bool_]) -> float:

@@ -136,9 +136,8 @@ class Problem:
 
     def named(self, fit: Fit) -> dict[str, Estimate]:
         """Likewise, with their standard errors."""
-        errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
-        labels = [name for name, _ in self.base_labels]
-        return {n: Estimate(float(b), float(e)) for n, b, e in zip(labels, fit.beta, errors, strict=False)}
+        sizes = zip(self.base_labels, fit.beta, fit.errors, strict=False)
+        return {name: Estimate(float(b), float(e)) for (name, _), b, e in sizes}
 
 
 def labels_of(terms: Sequence[Term]) -> list[tuple[str, str]]:

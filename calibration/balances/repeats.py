@@ -53,12 +53,6 @@ def repeat_lag(view: View) -> int:
     return at * step if best > ALIKE else 0
 
 
-def repeat_frequency(view: View) -> float:
-    """1 / time after which the motion repeats itself, Hz; 0 when it does not."""
-    lag = repeat_lag(view)
-    return 1.0 / (lag * view.period_s) if lag else 0.0
-
-
 def stroke_scatter(view: View, e: Array) -> float | None:
     """rms that strokes the same way differ by in `e` (n_fitted, or NaN), over root two; None of too few.
 

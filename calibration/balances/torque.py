@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.arrays import Array, Mask
+from calibration.balances.candidate import waves
 from calibration.balances.declared import Friction, fit_friction
 from calibration.balances.frame import Frame
-from calibration.balances.motion import Motion, motion_of
+from calibration.balances.motion import Motion, acceleration_of, motion_of
 from calibration.balances.problem import Problem, Term
 from calibration.inputs.declaredplant import Declared
 
@@ -67,9 +68,7 @@ def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], unit: str =
     out: list[Term] = []
     for _, stage, harmonic in lines:
         order = m.frame.train.orders[stage] * harmonic
-        dim = m.filter.gain(per_row * order)
-        x = 2 * np.pi * order * turns
-        pair = np.column_stack([dim * np.cos(x), dim * np.sin(x)])
+        pair = m.filter.gain(per_row * order)[:, None] * waves(2 * np.pi * order * turns, (1,))
         out.append((f"declared {stage} {harmonic}", unit, pair))
     return out
 
@@ -93,7 +92,7 @@ def torque_problem(
         left_out.append(~slid(m, unseen, SLID * declared.stiction / declared.bristle_stiffness))
     rows = (m.trusted & ta & tb)[pick] & m.clear(*left_out)
     full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
-    y = m.at(full) - drive.softness_s2 * m.curvature(full)[pick]
+    y = m.at(full) - drive.softness_s2 * acceleration_of(full, WIDTH, frame.period_s)[pick]
     lines = declared_lines(m, declared.lines)
     none = np.zeros((len(y), 0))
     torques = np.hstack([none, *[x for _, _, x in lines], none if beside is None else beside])

@@ -16,7 +16,7 @@ from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.run import Run, quantum
+from calibration.inputs.run import Run, numbers, quantum
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z
@@ -175,18 +175,13 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         dynamic=dynamic,
         rates=sigma if dynamic else 0.0,
         turn=rig.turn or units_per_turn(rig.columns["position"].unit),
-        quanta={k: step for k in columns if (step := _step(records, k)) is not None},
+        # as they were logged: on a grid of its own a column has none
+        quanta={k: step for k in columns if (step := quantum(numbers(records, k))) is not None},
     )
     _motion(view, sigma)
     view.run = _runs(view, label)
     choose_rows(view)
     return view
-
-
-def _step(records: list[Run], channel: str) -> float | None:
-    """The quantum of a column as it was logged: on a grid of its own it has none."""
-    logged = [r.columns[channel] for r in records if channel in r.columns]
-    return quantum(np.concatenate([x[np.isfinite(x)] for x in logged])) if logged else None
 
 
 def _regular(record: Run, period: float) -> dict[str, Array]:

@@ -100,8 +100,9 @@ def equivalents(others: Selection, contenders: list[Contender], best: Contender)
         if same or c.width > first.width or rival.gain < limits.RIVAL_GAIN * best.gain:
             continue
         loss, spread = _paired(others, best, rival)
-        if loss < max(limits.PAIRED_LOSS, limits.LUCK_Z * spread) and not _told_held_out(others, best, rival):
-            out.append(rival)
+        if loss < max(limits.PAIRED_LOSS, limits.LUCK_Z * spread):
+            theirs, own = _beside(others, rival), _beside(others, best)
+            out += [] if compare(others.problem, theirs, own, best.fit.whitener).sure else [rival]
     return out
 
 
@@ -118,13 +119,6 @@ def tied_at_last(s: Selection, k: int) -> list[Contender]:
         return list(pick.confounded)
     again = (fit_with(p, others.columns, c, best.fit.whitener) for c in rivals)
     return [*own, *equivalents(others, [x for x in again if x is not None], best)]
-
-
-def _told_held_out(others: Selection, best: Contender, rival: Contender) -> bool:
-    """Whether held-out rows have the best rather than the rival."""
-    w = best.fit.whitener
-    held = compare(others.problem, _beside(others, rival), _beside(others, best), w)
-    return held.z > limits.LUCK_Z and held.share > limits.ROUNDING
 
 
 def _paired(others: Selection, best: Contender, rival: Contender) -> tuple[float, float]:

@@ -171,41 +171,35 @@ def pick_up(frame: Frame) -> Finding | None:
     """A line at fixed Hz on the currents that keeps its frequency in every run, beyond the analysis band."""
     if frame.get("current_a") is None:
         return None
-    dt = frame.period_s
-    same: list[Line] = []
+    same = np.zeros((0, 5))
     for name in ("current_a", "current_b"):
         found = _lines(frame, name)
-        strong = [b for b in found if b[1] > PEAK and b[2] > COUNTS * frame.scale["adc_A_per_count"]]
+        strong = found[(found[:, 1] > PEAK) & (found[:, 2] > COUNTS * frame.scale["adc_A_per_count"])]
         if len(strong) < max(3, len(found) // 2):
             continue
-        middle = float(np.median([b[0] for b in strong]))
-        near = [b for b in strong if abs(b[0] - middle) < SAME_HZ]
+        near = strong[np.abs(strong[:, 0] - np.median(strong[:, 0])) < SAME_HZ]
         if len(near) >= 0.7 * len(strong) and len(near) > len(same):
             same = near
-    if not same:
+    if not len(same):
         return None
-    middle = float(np.median([b[0] for b in same]))
-    size = middle_of(np.array([b[2] for b in same]), "A")
-    # a bin of a periodogram over its median is exponential with mean 1/ln 2; so many bins were looked at
-    chances = [(b[1] * np.log(2) - np.log(b[4])) / np.log(10) for b in same]
+    hertz, power, size, share, bins = same.T
+    middle, rate = float(np.median(hertz)), 1 / frame.period_s
     return Finding(
         UNKNOWN,
         "E",
         "time",
         frequency=middle,
-        evidence=float(sum(chances)),
-        share=float(np.median([b[3] for b in same])),
-        note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {1 / dt:.0f} Hz)",
-        parameters={"amplitude": size},
+        # a bin of a periodogram over its median is exponential with mean 1/ln 2; so many bins were looked at
+        evidence=float(np.sum((power * np.log(2) - np.log(bins)) / np.log(10))),
+        share=float(np.median(share)),
+        note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {rate:.0f} Hz)",
+        parameters={"amplitude": middle_of(size, "A")},
     )
 
 
-#: Hz, power over the median, amplitude in A, its share of the fast current's variance, bins looked at
-Line = tuple[float, float, float, float, int]
-
-
-def _lines(frame: Frame, name: str) -> list[Line]:
-    """The strongest fast line of a current in every run."""
+def _lines(frame: Frame, name: str) -> Array:
+    """The strongest fast line of a current in every run (n, 5): Hz, power over the median, amplitude in A,
+    its share of the fast current's variance, bins looked at."""
     out = []
     dt = frame.period_s
     x, ok = fill(frame.columns[name], frame.run)
@@ -226,4 +220,4 @@ def _lines(frame: Frame, name: str) -> list[Line]:
         share = amplitude**2 / 2 / max(float(np.sum(part**2)) / used, 1e-300)
         bins = int(np.sum(hertz > FASTEST_BAND_HZ))
         out.append((float(hertz[j]), float(power[j] / level), amplitude, min(share, 1.0), bins))
-    return out
+    return np.array(out).reshape(-1, 5)

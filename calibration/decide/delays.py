@@ -53,8 +53,7 @@ def _matters(s: Selection, key: str) -> bool:
     """Whether the term takes more of the training mean square than what a balance errs by."""
     p = s.problem
     without = p.fit(np.delete(s.columns, p.place(TERM[key]), axis=1)).residual[p.train]
-    left = float(np.mean(s.after.residual[p.train] ** 2))
-    return 1.0 - left / max(float(np.mean(without**2)), 1e-300) > limits.MARGIN
+    return 1.0 - s.fitted_square / max(float(np.mean(without**2)), 1e-300) > limits.MARGIN
 
 
 def _of_encoders(selections: Selections, declared: Declared) -> Late | None:

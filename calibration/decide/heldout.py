@@ -27,6 +27,11 @@ class HeldOut:
     share: float = 0.0  # 1 - mean square after / before
     everywhere: bool = False  # cross-validation only: every fold gained
 
+    @property
+    def sure(self) -> bool:
+        """Whether the gain is more than luck, and more than rounding."""
+        return self.z > limits.LUCK_Z and self.share > limits.ROUNDING
+
 
 @dataclass(frozen=True, kw_only=True)
 class Model:

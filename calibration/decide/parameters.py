@@ -29,10 +29,9 @@ def parameters_of(s: Selection, k: int) -> dict[str, Parameter]:
     c = s.candidates[k]
     if c.kind == "line" or c.per_run:
         return _waves(s, k) | _nonlinear(s, k)
-    errors = np.sqrt(np.diag(s.covariance(k)))
     sizes = {
         name: Parameter(float(value), unit, *interval(float(value), float(error), s.problem.blocks))
-        for (name, unit), value, error in zip(c.labels, s.sizes(k), errors, strict=False)
+        for (name, unit), value, error in zip(c.labels, s.sizes(k), s.after.errors[s.at(k)], strict=False)
     }
     return sizes | _nonlinear(s, k)
 
@@ -44,8 +43,7 @@ def _nonlinear(s: Selection, k: int) -> dict[str, Parameter]:
     if not c.steps:
         return out
     fit = p.fit(np.hstack([s.columns, slopes(c, s.sizes(k))]))
-    errors = np.sqrt(np.diag(fit.covariance)[-len(c.steps) :])
-    for name, error, step in zip(c.free, errors, c.steps, strict=True):
+    for name, error, step in zip(c.free, fit.errors[-len(c.steps) :], c.steps, strict=True):
         value, unit = c.fixed[name]
         out[name] = Parameter(value, unit, *interval(value, float(error), p.blocks, limits.STEP_ERROR * step))
     if "duration" in out and out["duration"].value < 0.0:  # any length below a second is a step of one

@@ -15,8 +15,6 @@ from calibration.statistics.regression import Fit
 from calibration.statistics.surrogate import basis
 from calibration.statistics.whitening import Whitener
 
-Shape = Callable[[Array], Array]
-
 
 @dataclass(frozen=True)
 class Rest:

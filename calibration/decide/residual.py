@@ -11,7 +11,6 @@ from calibration.balances.pickup import pick_up
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
-from calibration.decide.coherent import APART, coherence
 from calibration.decide.parameters import finding_of
 from calibration.decide.rules import clear, displaced, leave_out
 from calibration.decide.select import select
@@ -20,6 +19,7 @@ from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names.scene import Scene
 from calibration.names.unknown import domains, smooth_functions
 from calibration.statistics.tails import rms
+from calibration.statistics.whitening import APART, coherence
 
 # of the mean square above the floor: names, or a gap, that leave more than they take are not what the log
 # mostly holds. ASSUMPTION by that reasoning; looked at on development seeds and the opened seed 20261122

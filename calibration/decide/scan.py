@@ -118,8 +118,7 @@ def _alike(one: Contender, other: Contender) -> bool:
 
 
 def _worth_fitting(p: Problem, null: Fit, base: Array, candidates: list[Candidate]) -> list[int]:
-    """Places of candidates fitted in full: the best by the whitened residual, and PLAIN_CONTENDERS by the
-    plain."""
+    """Places of candidates fitted in full: the best by the whitened residual, some by the plain one."""
     chosen: list[int] = []
     seen: dict[object, int] = {}
     for k in np.argsort(-_share(p, null, base, candidates, True)):
@@ -163,8 +162,7 @@ def few(candidates: list[Candidate]) -> list[list[Candidate]]:
 def fit_with(
     p: Problem, base: Array, candidate: Candidate, through: Whitener | None = None
 ) -> Contender | None:
-    """Fit base and candidate together, scored `through` a filter, or its own; None when physics refuses the
-    sign."""
+    """Base and candidate fitted together, scored `through` a filter or its own; None of a refused sign."""
     fit = _fit_beside(p, base, candidate)
     if fit is None:
         return None
@@ -183,7 +181,7 @@ def _fit_beside(p: Problem, base: Array, c: Candidate) -> Fit | None:
     n = base.shape[1]
     fit = p.fit(np.hstack([base, c.columns]))
     positive = (n + k for k in c.positive)
-    sure = all(fit.beta[k] >= SURE_Z * np.sqrt(fit.covariance[k, k]) for k in positive)
+    sure = all(fit.beta[k] >= SURE_Z * fit.errors[k] for k in positive)
     return fit if sure and c.allowed(fit.beta[n:]) else None
 
 

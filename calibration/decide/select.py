@@ -6,18 +6,11 @@ import numpy as np
 
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
+from calibration.decide import rules
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import SHORT, equivalents, refuse, scores, too_small
 from calibration.decide.heldout import cross_validate
 from calibration.decide.refine import Rest, polish, settled
-from calibration.decide.rules import (
-    below_surrogates,
-    leave_out,
-    lesser_of_one_order,
-    needless,
-    signed,
-    superfluous,
-)
 from calibration.decide.scan import Contender, few, fit_with, look
 from calibration.decide.selection import NO_SCORES, Refusal, Selection
 from calibration.statistics.regression import under
@@ -44,7 +37,7 @@ def select(
             s = replace(other, refused=[*other.refused, Refusal(pick.say(), why)])
     s = replace(s, looked_at=len(candidates))
     s.scores = gate(s, candidates, np.random.default_rng(0) if rng is None else rng)
-    return leave_out(s, below_surrogates)
+    return rules.leave_out(s, rules.below_surrogates)
 
 
 def _searched(problem: Problem, candidates: list[Candidate], most: int, margin: float) -> Selection:
@@ -98,7 +91,7 @@ class _Search:
             found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]
             if not found:
                 break
-            self.picks = leave_out(self.picks.keep([*self.picks.chosen, *found]), superfluous)
+            self.picks = rules.leave_out(self.picks.keep([*self.picks.chosen, *found]), rules.superfluous)
             taken = {x.candidate.key for x in found}
             left = [c for c in left if c.key not in taken]
 
@@ -110,10 +103,10 @@ class _Search:
             shares = (_shared(self.picks.problem, first, c) for c in later)
             if replaced or any(share > limits.APART for share in shares):
                 replaced |= self._look_again(k)
-        self.picks = leave_out(self.picks, needless(self.margin), lesser_of_one_order)
+        self.picks = rules.leave_out(self.picks, rules.needless(self.margin), rules.lesser_of_one_order)
         for k in range(len(self.picks.chosen)):
             self.picks = _polished(self.picks, k)
-        self.picks = signed(self.picks)
+        self.picks = rules.signed(self.picks)
 
     def _look_again(self, k: int) -> bool:
         """What was picked while the others were missing may be another's name; whether it is."""

@@ -120,6 +120,11 @@ class Selection:
         """(n,): what the chosen effect `k` adds, in the channel's unit."""
         return np.asarray(self.chosen[k].candidate.columns @ self.sizes(k))
 
+    @property
+    def fitted_square(self) -> float:
+        """Mean square of what is left on the fitted rows."""
+        return float(np.mean(self.after.residual[self.problem.train] ** 2))
+
     def residual(self) -> Array:
         """(n,), with the fresh nuisances and phases of the held-out rows there."""
         e, test = self.problem.y - self.columns @ self.after.beta, self.problem.test

@@ -11,6 +11,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.declared import Friction
 from calibration.balances.problem import Estimate, Problem
+from calibration.balances.thresholds import FALLING_ROWS, SLIDING_ROWS
 from calibration.balances.torque import Torque
 from calibration.decide.parameters import interval
 from calibration.decide.selection import Selection
@@ -30,7 +31,7 @@ ELECTRICAL_ERROR = 0.0005
 # share of the inertia, likewise: gear trains and rotors beyond a rigid balance (the same seeds)
 INERTIA_ERROR = 0.006
 # times a variance by the other columns (1 / (1 - R squared)): beyond, the motion does not hold numbers apart.
-# ASSUMPTION. A rig says from 30 on that two terms move together (look/forces.py): there it is only a remark
+# ASSUMPTION. A rig says from 30 on that two terms move together (look/said.py): there it is only a remark
 INFLATION = 100.0
 # part of 1 of a logarithm: keeps the number finite where INFLATION refuses it anyway. arithmetic
 LARGEST_CORRECTION = 3.0
@@ -40,10 +41,6 @@ SURE = 5.0
 DIP = (0.0025, 0.64)
 # times, likewise: where the dip is over, e^-6 of it is left. arithmetic
 QUICK = 6.25
-# share of the rows used that must be in the dip. ASSUMPTION
-SEEN_IN_DIP = 0.004
-# share of the rows used that must be beyond it. ASSUMPTION
-SEEN_BEYOND = 0.02
 # times: the quick speeds over the slow ones, before Coulomb and viscous friction come apart. ASSUMPTION
 SPREAD = 3.0
 
@@ -79,19 +76,18 @@ def beyond(one: Estimate, declared: float, factor: float) -> bool:
 
 
 def seen_speeds(rate: Array, d: Declared) -> set[str]:
-    """What speeds (rad/s) tell of friction: "moved", "sliding" beyond the dip, "spread" there, within the
-    "dip"."""
+    """What speeds (rad/s) tell of friction: "moved", "sliding" beyond the dip, "spread" there, the "dip"."""
     if not len(rate):
         return set()
     w = np.abs(rate)
     part = (w / d.stribeck_rate) ** d.stribeck_exponent
     quick = part > QUICK
-    if np.mean(quick) <= SEEN_BEYOND:
+    if np.mean(quick) <= SLIDING_ROWS:
         return {"moved"}
     out = {"moved", "sliding"}
     if np.quantile(w[quick], 0.95) > SPREAD * np.quantile(w[quick], 0.05):
         out.add("spread")
-    if np.mean((part > DIP[0]) & (part < DIP[1])) > SEEN_IN_DIP:
+    if np.mean((part > DIP[0]) & (part < DIP[1])) > FALLING_ROWS:
         out.add("dip")
     return out
 

@@ -88,11 +88,8 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
     if not np.any(raw.get("aux", True)):  # a network without that board logs 0
         del raw["aux"]
     factors = {name: COLUMNS[name].si(scales) for name in raw}
-    si = {}
-    for name, counts in raw.items():
-        column = COLUMNS[name]
-        values = unwrap(counts, column.wrap) if column.wrap else counts
-        si[column.called or name] = values * factors[name]
+    joined = {n: unwrap(x, COLUMNS[n].wrap) if COLUMNS[n].wrap else x for n, x in raw.items()}
+    si = {COLUMNS[n].called or n: x * factors[n] for n, x in joined.items()}
     scales["adc_end_A"] = limits.LAST_COUNT * scales["adc_A_per_count"]
     began = _began(header["start_utc"])
     run = Run(path.stem, path, header["session"], si, raw, header, scales, start_s=began)

@@ -10,19 +10,15 @@ from calibration.inputs.thresholds import DEFAULT_HOLD_OUT
 from calibration.inputs.units import is_rate
 from plant.effects import REGISTRY
 
-#: what a response stands for: a balance of forces, or one sensor against another
+#: channels whose response is a balance of forces; the others compare one sensor with another
 FORCES = ("effort", "force", "current", "acceleration", "velocity")
-SENSORS = ("position2", "position")
-#: terms of the declared model of a force
-TERMS = ("inertia", "viscous", "coulomb", "offset", "drift", "stiffness", "gravity")
 #: the SI unit at the end of a key
 _UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")
 T = TypeVar("T")
 
 
 def made(kind: type[T], given: Mapping[str, Any], **more: Any) -> T:
-    """The dataclass `kind` of a file's mapping; keys that are no field are left out, `more` are fields as
-    they are."""
+    """The dataclass `kind` of a file's mapping, without keys that are no field; `more` are fields as such."""
     hints = get_type_hints(kind)
     named = {key if key in hints else _UNIT.sub("", key): value for key, value in given.items()}
     found = {name: _as(hints[name], value) for name, value in named.items() if name in hints.keys() - more}
@@ -30,8 +26,7 @@ def made(kind: type[T], given: Mapping[str, Any], **more: Any) -> T:
 
 
 def _as(hint: Any, value: Any) -> Any:
-    """A file's value as a field has it: a whole number as a float, a list as a tuple, a mapping as the
-    dataclass."""
+    """A file's value as a field has it: integer as float, list as tuple, mapping as the dataclass."""
     kinds = get_args(hint) or (hint,)
     if isinstance(value, list):
         return tuple(_as(kinds[0], x) for x in value)
@@ -86,8 +81,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Response:
-    """What a balance explains: `gain` times a column, in `unit`; over another column where `divide_by` is
-    given."""
+    """What a balance explains: `gain` times a column, in `unit`, over the column `divide_by` where given."""
 
     channel: str
     unit: str

@@ -42,8 +42,7 @@ PATHS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Declared(Friction):
-    """Declared friction and drive of one axis, SI; `lines` are (name, stage, harmonic) of periodic effects
-    already declared."""
+    """Declared friction and drive of one axis, SI; `lines`: name, stage, harmonic of its periodic effects."""
 
     stiffness: float
     torque_constant: float  # N m/A

@@ -86,8 +86,7 @@ class _Draft:
 
 
 def draft(path: Path) -> str:
-    """The text of a rig file. Raises CalibrationInputError where the log has no two columns of numbers, or
-    needs no rig file."""
+    """A rig file's text; CalibrationInputError for a log without two columns, or that needs no rig file."""
     loose = read_loose(path)
     finite = {c: np.where(np.isfinite(x), x, np.nan) for c, x in loose.columns.items()}
     columns = {c: x for c, x in finite.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}

@@ -184,14 +184,8 @@ class _Section:
             except ValueError:
                 what = f"the section above this line: '{start[0]}' is no date and time"
                 raise CalibrationInputError(self.path, what, self.first) from None
-        t, ra, dec, segment, dither = np.array(self.rows).T.copy()
-        columns = {
-            "t": t,
-            "ra": ra * factor,
-            "dec": dec * factor,
-            "segment": segment,
-            "dither": dither * factor,
-        }
+        scaled = (np.array(self.rows) * (1.0, factor, factor, 1.0, factor)).T.copy()
+        columns = dict(zip(("t", "ra", "dec", "segment", "dither"), scaled, strict=True))
         notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
         return Run(name, self.path, name, columns, header=header, notes=notes, start_s=start_s)
 

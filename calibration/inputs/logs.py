@@ -34,11 +34,6 @@ class Drive:
     records: list[Run] = field(default_factory=list)
     clock: str = ""
 
-    @property
-    def emulated(self) -> bool:
-        """Whether the drive is the telescope's, of which the emulator has a plant."""
-        return self.rig is not None and self.rig.format == "axis-log"
-
 
 def read_drive(logs: list[Path], rig: Rig | None) -> Drive:
     """Read logs of one format; `rig` declares the drive, which axis logs and guide logs can do without."""

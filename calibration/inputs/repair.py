@@ -1,8 +1,6 @@
 """What is wrong with columns before any physics: counters that wrap, spikes, samples that repeat, readings at
 the end of their range."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from calibration.arrays import Array, Mask, by_median
@@ -21,9 +19,16 @@ SLOW = ("supply", "temperature", "normal")  # what leaps there may be real
 def repair(run: Run, rig: Rig) -> None:
     """Repair the run's columns in place; what was done is in `run.repairs`."""
     for channel, where in rig.columns.items():
-        for mend, concerned in RULES:
-            if channel != "time" and concerned(channel, where):
-                mend(run, channel, where)
+        if channel == "time":
+            continue
+        if where.wrap is None:
+            _wraps(run, channel, where)
+        if channel == "position":
+            _leaps(run, channel)
+        if channel not in SLOW:
+            _spikes(run, channel)
+        if channel in ("effort", "current", "force"):
+            _saturation(run, channel)
     repeated_rows(run, rig)
     lost_rows(run)
 
@@ -82,9 +87,8 @@ def _least_step(step: Array) -> float:
     return float(some.min()) if len(some) else 0.0
 
 
-def _leaps(run: Run, channel: str, _: Column) -> None:
-    """Join a position that moves by a constant from one row to the next while the motion goes on: a counter
-    that lost its zero."""
+def _leaps(run: Run, channel: str) -> None:
+    """Join a position that leaps by a constant while the motion goes on: a counter that lost its zero."""
     step = np.diff(run.columns[channel])
     size = np.abs(step[np.isfinite(step)])
     if len(size) < limits.FEWEST_ROWS or np.any(np.diff(run.columns["t"]) > limits.GAP * run.period_s):
@@ -103,7 +107,7 @@ def _leaps(run: Run, channel: str, _: Column) -> None:
         run.repairs.append(Repair("leap", channel, 1, excess, note))
 
 
-def _spikes(run: Run, channel: str, _: Column) -> None:
+def _spikes(run: Run, channel: str) -> None:
     """Leave out rows far off the line through their neighbours, which agree with each other."""
     x = run.columns[channel]
     n = len(x)
@@ -158,7 +162,7 @@ def _clear_of_tails(off: Array) -> float:
     return limit
 
 
-def _saturation(run: Run, channel: str, _: Column) -> None:
+def _saturation(run: Run, channel: str) -> None:
     """Leave out an effort that stays at one extreme value: there it says nothing of the force."""
     x = run.columns[channel]
     good = x[np.isfinite(x)]
@@ -173,12 +177,3 @@ def _saturation(run: Run, channel: str, _: Column) -> None:
             note = f"{int(at.sum())} rows stay at {end:g}: the end of its range, left out"
             run.repairs.append(Repair("saturation", channel, int(at.sum()), float(end), note))
             run.columns[channel] = np.where(at, np.nan, run.columns[channel])
-
-
-#: what is mended in a column, one after the other, and the columns it concerns
-RULES: tuple[tuple[Callable[[Run, str, Column], None], Callable[[str, Column], bool]], ...] = (
-    (_wraps, lambda channel, where: where.wrap is None),
-    (_leaps, lambda channel, where: channel == "position"),
-    (_spikes, lambda channel, where: channel not in SLOW),
-    (_saturation, lambda channel, where: channel in ("effort", "current", "force")),
-)

@@ -34,8 +34,7 @@ _Loader.add_implicit_resolver(
 
 
 def load_rig(path: Path) -> Rig:
-    """Load and check a rig file; raises CalibrationInputError naming the field and, where it helps, the
-    line."""
+    """Load and check a rig file; raises CalibrationInputError with the field and, where known, the line."""
     from jsonschema import Draft202012Validator
 
     data, text = _read(path)

@@ -1,6 +1,6 @@
 """One run as the rest of the tool sees it: columns on the log's own clock, and what is known of each."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -79,6 +79,12 @@ class Run:
         t = self.columns["t"]
         at = np.flatnonzero(np.diff(t) > limits.GAP * self.period_s)
         return [(float(t[k]), float(t[k + 1])) for k in at]
+
+
+def numbers(records: Iterable[Run], channel: str) -> Array:
+    """All numbers of a channel, one record's after the other's; none where no record has it."""
+    logged = (r.columns[channel] for r in records if channel in r.columns)
+    return np.concatenate([np.zeros(0), *(x[np.isfinite(x)] for x in logged)])
 
 
 def signal_of(channel: str, column: str, unit: str, x: Array, wraps: int) -> Signal:

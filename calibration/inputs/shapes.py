@@ -1,5 +1,4 @@
-"""Files that are no table of numbers as such a table: JSON, long tables of (name, stamp, value), stamps in
-words."""
+"""Other files as a table of numbers: JSON, long tables of (name, stamp, value), stamps in words."""
 
 import json
 from collections.abc import Iterator

@@ -10,7 +10,7 @@ from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
-from calibration.inputs.run import Run
+from calibration.inputs.run import Run, numbers
 
 
 def check_counted(run: Run, factors: dict[str, float], first: int) -> None:
@@ -38,14 +38,14 @@ def check_counted(run: Run, factors: dict[str, float], first: int) -> None:
 def check_stuck(records: list[Run], rig: Rig) -> None:
     """Raise CalibrationInputError for a response or a measured rate that never changes although the position
     does: it explains nothing, and nothing explains it."""
-    position = _all(records, "position")
+    position = numbers(records, "position")
     if np.ptp(position) <= limits.MOVED * float(np.abs(position).max()):
         return
     wanted = [r.channel for r in rig.responses if r.channel != "position"]
     wanted += ["velocity", "acceleration", "motor_a", "motor_b"]
     wanted += ["effort"] if rig.motors is not None else []
     for channel in dict.fromkeys(wanted):
-        if channel in rig.columns and (held := _held(_all(records, channel))) is not None:
+        if channel in rig.columns and (held := _held(numbers(records, channel))) is not None:
             _refuse(records[0].path, held, str(rig.columns[channel].column))
 
 
@@ -55,11 +55,6 @@ def _leaps(x: Array) -> Mask:
     beside = np.maximum(np.append(step[1:], 0.0), np.insert(step[:-1], 0, 0.0))
     before = np.concatenate([[0], np.cumsum(step > limits.QUICKER * beside + limits.FAR_RAD)])
     return np.asarray(before[limits.RATE_ROWS :] > before[: -limits.RATE_ROWS])
-
-
-def _all(records: list[Run], channel: str) -> Array:
-    x = np.concatenate([r.columns[channel] for r in records])
-    return np.asarray(x[np.isfinite(x)])
 
 
 def _held(x: Array) -> float | None:
@@ -85,8 +80,7 @@ def piled_at(x: Array, effort: Array, end: float, before: float) -> tuple[int, i
 
 
 def converter_end(runs: Sequence[Run], names: Sequence[str]) -> float | None:
-    """What the currents `names` of two motors stop at, the same for both and in all runs; None where they
-    pile up nowhere."""
+    """What the currents `names` of two motors stop at in all runs; None where they pile up nowhere."""
     have = [n for n in names if all(n in r.columns for r in runs)]
     if not have:
         return None

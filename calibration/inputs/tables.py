@@ -162,8 +162,7 @@ def of_file(path: Path, where: Column, label: str) -> float:
 
 
 def over_time(where: Column, t: Array, values: Array) -> Array:
-    """`values` (n,), rig units, times the steps declared, integrated where that is declared; t in s from the
-    file's first row."""
+    """`values` (n,), rig units, times declared steps, integrated if declared; t s from the first row."""
     if where.steps:
         starts, sizes = np.array(where.steps).T
         values = values * np.where(t < starts[0], 0.0, sizes[np.searchsorted(starts[1:], t, side="right")])

@@ -11,8 +11,6 @@ from calibration.inputs.units import units_per_turn
 
 #: what the lines of a gear's stage are called: of a shaft that runs out of true, of teeth in mesh
 SHAFT, MESH = "gear_eccentricity", "gear_mesh"
-#: what a stage of an axis with two motors may be; a shaft where nothing is said
-KINDS = ("axis", "motor", "roller", "sensor", MESH, SHAFT, None)
 
 
 @dataclass(frozen=True)
@@ -21,11 +19,6 @@ class Train:
 
     orders: dict[str, float]
     kinds: dict[str, str | None]
-
-    @property
-    def known(self) -> dict[str, float]:
-        """Stages whose torque the axis feels: all but sensors on shafts of their own."""
-        return {n: v for n, v in self.orders.items() if self.kinds[n] != "sensor"}
 
     @property
     def shafts(self) -> tuple[str, ...]:

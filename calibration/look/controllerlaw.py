@@ -22,6 +22,7 @@ from calibration.look.looked import Balance
 from calibration.names.candidates import tried
 from calibration.names.command_disturbance import NAME as DISTURBANCE
 from calibration.names.command_disturbance import lines
+from calibration.names.lines import ON_CLOCK
 from calibration.names.scene import Scene
 from calibration.statistics.orders import power_of_two
 from calibration.statistics.regression import solve
@@ -44,8 +45,6 @@ LEAST_LAW = 1.2
 # steps of the effort: a line on the command below the effort's own step is a beat of quantised columns.
 # ASSUMPTION
 LEAST_COMMAND = 0.8
-# count of an axis' strongest lines that are tried. ASSUMPTION
-LINES = 3
 # cells of the spectrum on either side of a line, that are then left out. ASSUMPTION
 CELLS = 8
 
@@ -147,7 +146,7 @@ def _lines_of_steps(p: Problem) -> list[Candidate]:
 
     form: dict[str, Any] = {"steps": (1.0 / (size * dt),), "searched": 0, "domain": "time"}
     out, form = [], {**form, "kind": "line", "per_run": True}
-    for _ in range(LINES):
+    for _ in range(ON_CLOCK):
         k = int(np.argmax(score))
         score[max(k - CELLS, 0) : k + CELLS + 1] = 0
         f, unit = float(hertz[k]), ("amplitude", p.unit)

@@ -226,7 +226,7 @@ def calibrated(s: Selection, skip: tuple[str, ...] = (), model: float | None = N
     for k, (name, unit) in enumerate(s.problem.base_labels):
         if name in (*skip, SLOW) or name in out or not s.problem.base[:, k].any():
             continue
-        value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
+        value, error = float(s.after.beta[k]), float(s.after.errors[k])
         low, high = interval(value, error, s.problem.blocks, None if model is None else model * value)
         out[name] = Parameter(value, unit, low, high)
     return out

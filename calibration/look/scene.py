@@ -13,6 +13,7 @@ from calibration.balances.problem import Problem
 from calibration.balances.torque import Torque
 from calibration.balances.view import View
 from calibration.inputs.declaration import Response, Rig, Stage
+from calibration.inputs.thresholds import HARMONICS
 from calibration.inputs.train import SHAFT, Train
 from calibration.look.axis_result import AxisResult
 from calibration.names.pair import Pair
@@ -20,8 +21,6 @@ from calibration.names.scene import Scene
 
 # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range. ASSUMPTION
 DIRECTION_TRAVEL = 2e-6
-# of every shaft and mesh, that are looked for. ASSUMPTION
-HARMONICS = 2
 #: what a balance's response is, by its channel
 RESPONSES = {"T": "current", "E": "voltage", "K": "motor", "S": "rate"}
 #: columns of the log that a scene holds at full rate, gaps bridged
@@ -100,7 +99,7 @@ def _in_radians(rig: Rig, train: Train) -> Rig:
     shafts = dict.fromkeys(train.shafts, SHAFT)
     stages = tuple(
         Stage(name, 2 * np.pi / order, None, HARMONICS, shafts.get(name, train.kinds[name]))
-        for name, order in train.known.items()
-        if train.kinds[name] != "axis"
+        for name, order in train.orders.items()
+        if train.kinds[name] not in ("axis", "sensor")  # a sensor may be on a shaft of its own
     )
     return replace(rig, stages=stages, runs={"origin": "shared"})

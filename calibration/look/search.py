@@ -9,10 +9,10 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import rules
-from calibration.decide.oneline import one_line
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import NOISE_SHARE
+from calibration.decide.twins import one_line
 from calibration.names import NAMES
 from calibration.names.freelines import free_lines
 from calibration.names.scene import Scene
@@ -37,7 +37,7 @@ def _bound(s: Selection) -> list[str]:
     """Masses and friction that the final fit wants negative are taken out of the balance, and said."""
     problem, out = s.problem, []
     for k, (name, _) in enumerate(problem.base_labels):
-        value, error = float(s.after.beta[k]), float(np.sqrt(max(s.after.covariance[k, k], 0.0)))
+        value, error = float(s.after.beta[k]), float(s.after.errors[k])
         if name in ("inertia", "viscous", "coulomb") and value < 0 and problem.base[:, k].any():
             why = "" if value < -2 * error else ", within its error"
             out.append(f"{name}: the fit gives {value:.4g}{why}; a negative one feeds energy: kept at zero")

@@ -20,7 +20,6 @@ from calibration.look.scene import scene_of_pair
 from calibration.look.volts import DENIED, volts_deny
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
-from calibration.statistics.tails import rms
 from calibration.statistics.whitening import white_noise
 from plant.effects import REGISTRY
 
@@ -53,8 +52,7 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
         again = torque_problem(frame, drive, result.held, result.declared, beside)
         assert again is not None
         second = _pass(result, again)
-        left, was = (rms(x.after.residual[x.problem.train]) for x in (second[0], s))
-        if left < was:
+        if second[0].fitted_square < s.fitted_square:
             result.torque = torque = again
             s, whole, moving = second
     p = torque.problem
@@ -63,8 +61,8 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
     enough = p.blocks >= FEWEST_BLOCKS
     blowing = wind(s.after.residual, p, white_noise(s.after.residual, p.train)) if enough else None
     if blowing is not None and (blowing.name != UNKNOWN or not s.chosen):
-        result.findings = [x for x in result.findings if x.channel != "T" or beside_wind(x)]
-        result.findings.append(blowing)
+        kept = [x for x in result.findings if x.channel != "T" or beside_wind(x)]
+        result.findings = [*kept, blowing]
     # long rests say where the bristles were left, not what they are; and an exponent below 1 has a cusp at
     # rest, which needs slower speeds than the encoder resolves
     if result.declared.stribeck_exponent >= 1.0:
@@ -83,8 +81,7 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
     # the effects' columns were made with the friction from before they were known, which a large one has bent
     now = {n: calibrated[n].value for n in ("coulomb", "viscous") if n in calibrated}
     quotients: dict[str, float] = {n: getattr(torque.friction, n) / x for n, x in now.items() if x > 0}
-    told = (NAMES[f.name].retold(f, quotients) if f.channel == "T" else f for f in result.findings)
-    result.findings = list(told)
+    result.findings = [NAMES[f.name].retold(f, quotients) if f.channel == "T" else f for f in result.findings]
 
 
 def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:

@@ -20,8 +20,8 @@ from calibration.decide.rules import leave_out, signed, worth_little
 from calibration.decide.select import select
 from calibration.inputs.declaration import Response
 from calibration.look.axis_result import AxisResult
-from calibration.look.forces import lacking_names
 from calibration.look.looked import Balance, calibrated, missing_of
+from calibration.look.said import lacking_names
 from calibration.look.scene import scene_of_balance
 from calibration.names import NAMES, offered
 from calibration.names.pair import Pair

@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, candidate
+from calibration.names.name import FORCE, VOLTS, Beside, Candidate, Finding, Name, candidate
 from calibration.names.scene import MOTOR, Scene
 
 # share of a current: one motor's torque is most of the torque, and would explain itself. ASSUMPTION
@@ -22,11 +22,6 @@ def columns(s: Scene) -> list[Candidate]:
     return [candidate(NAME.name, one, "gain", most=LARGEST, fixed=motor) for one, motor in torques]
 
 
-def torque_kept(_: Candidate, size: float, clock: Array, __: float) -> Array:
-    """A motor draws no more than its current really is."""
-    return np.full(len(clock), 1.0 - size)
-
-
 def to_plant(f: Finding, facts: Facts) -> Made:
     """The residual g i is what the reading has too much."""
     return Made().add(f.name, facts, {"gain": 1.0 / (1.0 - value(f, "gain")), "motor": value(f, "motor")})
@@ -38,7 +33,8 @@ NAME = Name(
     columns=columns,
     experiment="lock the rotor and step the duty of each motor: a reading that is too large shows "
     "there, a weak magnet does not",
-    torque_kept=torque_kept,
+    # a motor draws no more than its current really is
+    torque_kept=lambda _, size, clock, __: np.full(len(clock), 1.0 - size),
     torque_doubt=0.5,  # volts show that two readings differ, and hardly which of them is right
     to_plant=to_plant,
     beside=Beside(settled_by=("magnet_weakening",)),

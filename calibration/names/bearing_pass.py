@@ -9,12 +9,7 @@ from calibration.names.freelines import free_lines
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import SAME
 from calibration.names.motor_cogging import NAME as COGGING
-from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Candidate, Finding, Name, Scene
-
-
-def columns(s: Scene) -> list[Candidate]:
-    """Lines that stand out of the residual's spectrum over position; of a pair of its torque."""
-    return free_lines(s) if s.pair is None or s.force else []
+from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Finding, Name, Scene
 
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
@@ -65,7 +60,8 @@ NAME = Name(
     name="bearing_pass",
     searched=True,
     channels=(FORCE, SENSORS, SPEED),
-    columns=columns,
+    # lines that stand out of the residual's spectrum over position; of a pair of its torque
+    columns=lambda s: free_lines(s) if s.pair is None or s.force else [],
     to_plant=to_plant,
     experiment="twice the travel: the order stands clear of every gear, or declare the gears",
     worth=SEARCHED_WORTH,

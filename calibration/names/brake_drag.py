@@ -4,16 +4,11 @@ from dataclasses import replace
 
 from calibration.finding import Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import FORCE, Beside, Candidate, Finding, Name, Scene
-from calibration.names.onsets import Begins, steps
+from calibration.names.name import Beside, Finding, Name
+from calibration.names.onsets import steps
 
 # s: longer than any log. ASSUMPTION
 FOREVER_S = 1e6
-
-
-def columns(s: Scene) -> list[Candidate]:
-    """A constant force against the motion, from an onset on."""
-    return steps(s, Begins(name=NAME.name, size=("torque", s.unit), weigh=s.answer))
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -32,8 +27,8 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="brake_drag",
-    channels=(FORCE,),
-    columns=columns,
+    # a constant force against the motion, from an onset on
+    columns=lambda s: steps(s, "brake_drag", ("torque", s.unit), s.answer),
     to_plant=to_plant,
     experiment="repeat at two speeds: a brake adds the same force at both, a preload scales all friction",
     beside=Beside(consequences={"T": ("friction_warmup",)}),

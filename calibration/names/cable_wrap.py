@@ -3,11 +3,11 @@
 import numpy as np
 
 from calibration.balances.recursions import stop_operator
-from calibration.names.candidates import Size, candidate, tried
+from calibration.names.candidates import Size, candidate, grid
 from calibration.names.gravity_imbalance import LEAST_TURN
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways
 
 # of a turn, in which the loop closes: the plant's widths are among them. ASSUMPTION
 TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)
@@ -31,21 +31,12 @@ def columns(s: Scene) -> list[Candidate]:
 
     sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
     sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
-    travels = [part * turn for part in TRAVELS if v.resolved < part * turn < s.span]
+    travels = [travel for part in TRAVELS if v.resolved < (travel := part * turn) < s.span]
     weighed = "gravity_cos" in s.declared
     alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again
     twins = () if alone else (WEIGHT.name,)
-    looped = [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            *sizes,
-            at={"width": (travel, s.angle_unit)},
-            positive=(0, 1),
-            twins=twins,
-        )
-        for travel in travels
-    ]
+    along = ("width", travels, s.angle_unit)
+    looped = grid(NAME.name, s.shaped(full), *sizes, along=along, positive=(0, 1), twins=twins)
     # a bundle that hangs freely has hardly a loop; beside no declared weight, a longer slope is a weight's
     if s.pair is None and (weighed or s.span < LEAST_TURN * turn):
         looped.append(candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins))
@@ -69,7 +60,6 @@ def lacks(s: Scene) -> str:
 NAME = Name(
     name="cable_wrap",
     observed={"neutral_torque": "at the mean of the position column"},
-    channels=(FORCE,),
     columns=columns,
     to_plant=to_plant,
     experiment="a full turn both ways: a cable pulls back more the further it is wound, a weight comes "

@@ -1,6 +1,7 @@
 """How a name makes its candidates: the domain of the columns and the sizes' units are the plant's."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -38,3 +39,19 @@ def tried(
     steps = (STEP * values[0],) if steps is None else steps
     more = {"fixed": dict(at), "shape": shape, "steps": steps, "searched": len(steps), **more}
     return candidate(name, shape(np.array(values[: len(steps)])), *sizes, **more)
+
+
+def grid(
+    name: str,
+    shape: Callable[[Array], Array],
+    *sizes: Size,
+    along: tuple[str, Iterable[float], str],
+    step: float = STEP,
+    beside: Mapping[str, tuple[float, str]] = MappingProxyType({}),
+    **more: Any,
+) -> list[Candidate]:
+    """`tried` at every value `along` one parameter (its name, values and unit), of which `step` is a small
+    change; `beside` it stand parameters that are not searched for."""
+    called, values, unit = along
+    at = ({called: (float(value), unit), **beside} for value in values)
+    return [tried(name, shape, *sizes, at=one, steps=(step * one[called][0],), **more) for one in at]

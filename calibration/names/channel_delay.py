@@ -51,11 +51,6 @@ def against_position(channel: str, delay: float) -> str:
     return f"the {channel} column is {'late' if delay > 0 else 'early'} against the position"
 
 
-def lacks(s: Scene) -> str:
-    """Accelerations, or speeds of more than one size."""
-    return "a balance with accelerations ('inertia')" if s.force and not s.view.dynamic else ""
-
-
 def to_plant(f: Finding, facts: Facts) -> Made:
     """A plant's columns are late, and known."""
     if "column" not in f.parameters:
@@ -72,7 +67,7 @@ NAME = Name(
     channels=(FORCE, SENSORS),
     columns=columns,
     experiment="one quick step, and compare the columns row by row",
-    lacks=lacks,
+    lacks=lambda s: "a balance with accelerations ('inertia')" if s.force and not s.view.dynamic else "",
     to_plant=to_plant,
     beside=Beside(consequences={"S": ("structural_mode", *OF_CLOCKS, "wind_torque")}, single=True),
 )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.finding import Finding, Parameter, deviation, of_columns
-from calibration.inputs.run import Run
+from calibration.inputs.run import Repair, Run
 from calibration.names import NAMES
 
 #: kind of repair -> name of the catalogue
@@ -20,14 +20,13 @@ CERTAIN = 12.0
 def repairs_found(records: list[Run], own: tuple[str, ...] = ()) -> list[Finding]:
     """One finding per kind and column, over all files. `own`: channels whose spikes may be the drive's: a
     command whose law is another than the declared one jumps where that law does."""
-    groups: dict[tuple[str, str], list[tuple[Run, int, float, str]]] = {}
-    for r in records:
-        for fix in r.repairs:
-            if fix.kind not in SAID and not (fix.kind == "spike" and fix.channel in own):
-                groups.setdefault((fix.kind, fix.channel), []).append((r, fix.rows, fix.size, fix.note))
+    groups: dict[tuple[str, str], list[Repair]] = {}
+    for fix in (x for r in records for x in r.repairs if x.kind not in SAID):
+        if fix.kind != "spike" or fix.channel not in own:
+            groups.setdefault((fix.kind, fix.channel), []).append(fix)
     out = []
     for (kind, channel), found in groups.items():
-        rows = sum(n for _, n, _, _ in found)
+        rows = sum(x.rows for x in found)
         least = FEWEST_OF_FORCE if kind == "spike" and channel in FORCES else FEWEST.get(kind, 1)
         if rows < least:
             continue
@@ -35,11 +34,11 @@ def repairs_found(records: list[Run], own: tuple[str, ...] = ()) -> list[Finding
         files = f" in {len(found)} of {len(records)} files" if len(records) > 1 else ""
         parameters = {"count": Parameter(float(rows), "rows", float(rows), float(rows))}
         if kind == "jitter":
-            shake = float(np.sqrt(np.mean([size**2 for _, _, size, _ in found])))
+            shake = float(np.sqrt(np.mean([x.size**2 for x in found])))
             parameters = {"deviation": deviation(shake, rows, "s")}
+        size = found[0].size
         if kind in ("wrap", "signed"):
-            size = found[0][2]
             parameters["length"] = Parameter(size, "rig units", size, size)
-        note = f"{where}{files}: {found[0][3]}"
+        note = f"{where}{files}: {found[0].note}"
         out.append(of_columns(CALLED[kind], parameters, evidence=CERTAIN, share=0.0, note=note))
     return out

@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 
 from calibration.balances.candidate import sine_columns
-from calibration.balances.repeats import repeat_frequency
+from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
 from calibration.names.candidates import tried
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.lines import STEP_OF_CELL, on_clock, spectral_lines
+from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, on_clock, spectral_lines
 from calibration.names.name import FORCE, SEARCHED_WORTH, SPEED, VOLTS, Array, Candidate, Finding, Name, Scene
 from calibration.names.structural_mode import NAME as MODE
 from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve
 
 PASSED = "bearing_pass"  # at an order of no stage
+EFFORTS = ("effort", "current", "force", "voltage")  # responses behind which something may be added
 # cycles within a file before a frequency is a frequency. ASSUMPTION
 TURNS = 6.0
 # harmonics of a square wave. definition
@@ -26,12 +27,8 @@ ODD = (1, 3, 5, 7, 9)
 FEWEST_REPEATS = 2.5
 # harmonics of such a motion that are left out: friction's corners fall off with the multiple. ASSUMPTION
 STRONG = 50
-# Hz, from which on volts are searched. ASSUMPTION
-SLOWEST_HZ = 0.05
 # rows, half a minute, that volts are searched in. ASSUMPTION
 FEWEST_ROWS = 1000
-# lines of volts that are tried. ASSUMPTION
-LINES = 3
 # share of such a line's resolution cell, for its refinement. ASSUMPTION
 STEP_CELLS = 0.05
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
@@ -61,7 +58,8 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     length = min(float(t[files == k].max()) for k in np.unique(files))
     if length <= 0:
         return []
-    top, repeats = 0.5 / (v.period_s * max(v.step, 1)), repeat_frequency(v)
+    top, lag = 0.5 / (v.period_s * max(v.step, 1)), repeat_lag(v)
+    repeats = 1.0 / (lag * v.period_s) if lag else 0.0  # Hz
     most = int(top / repeats) if repeats else 0
     if repeats * length < FEWEST_REPEATS:
         most = min(most, STRONG)
@@ -118,7 +116,7 @@ def _of_volts(s: Scene) -> list[Candidate]:
         return []
     added = np.where(seen, w.together(weight * s.residual)[:n], 0.0) / np.where(seen, power, 1)
     since = p.t[:n] - p.t[:n][np.searchsorted(run, run)]
-    want = Wanted(span=float(since.max()), least=SLOWEST_HZ, most=LINES)
+    want = Wanted(span=float(since.max()), least=SLOWEST_HZ, most=ON_CLOCK)
     out = []
     for f0, square in product(standing_out(added[rows], since[rows], run[rows], want), (False, True)):
         at = {"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")}
@@ -175,12 +173,6 @@ def _power(s: Scene, y: Array, hertz: float) -> float:
     return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
 
 
-def lacks(s: Scene) -> str:
-    """An effort."""
-    some = s.view.response.channel in ("effort", "current", "force", "voltage")
-    return "" if some else "a column of the effort"
-
-
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Its phase is the first run's, every run has one of its own."""
     made, unit = Made(), f.parameters["amplitude"].unit
@@ -201,7 +193,7 @@ NAME = Name(
     columns=columns,
     experiment="the same motion at another speed: a disturbance keeps its frequency and size, at rest "
     "it stays",
-    lacks=lacks,
+    lacks=lambda s: "" if s.view.response.channel in EFFORTS else "a column of the effort",
     to_plant=to_plant,
     worth=SEARCHED_WORTH,
 )

@@ -1,10 +1,9 @@
 """Friction that does not depend on the speed, more or less than was declared."""
 
-from calibration.names.name import FORCE, Changed, Name, beside_stated
+from calibration.names.name import Changed, Name, beside_stated
 
 NAME = Name(
     name="coulomb_change",
-    channels=(FORCE,),
     columns=lambda s: beside_stated(s, "coulomb", s.view.direction, s.unit),
     experiment="slow motion in both directions",
     observed={"coulomb_change": "from the rig file's constant"},

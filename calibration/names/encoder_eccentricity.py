@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-
+from calibration.balances.candidate import waves
 from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
 from calibration.names.lines import SAME, line, over_place, stage_lines
 from calibration.names.name import RATES, SENSORS, Beside, Candidate, Finding, Name, Scene, candidate
@@ -18,8 +17,8 @@ def columns(s: Scene) -> list[Candidate]:
     out = stage_lines(s, "encoder_eccentricity", default=True)
     if s.pair is not None:
         out = [replace(c, labels=(("amplitude", "arcsec"),)) for c in out]
-        waves = np.column_stack([g(h * s.view.x) for h in (1, 2) for g in (np.cos, np.sin)])
-        own = candidate("encoder_eccentricity", s.at(waves), "amplitude", "second", kind="line")
+        both = s.at(waves(s.view.x, (1, 2)))
+        own = candidate("encoder_eccentricity", both, "amplitude", "second", kind="line")
         return [*out, replace(own, stage="axis", harmonic=1, order=1.0)]
     turn, have = s.view.turn, [c.order for c in out if c.order is not None]
     if turn and s.span > LEAST_TURN * turn:

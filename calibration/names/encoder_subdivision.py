@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from calibration.balances.candidate import waves
 from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
 from calibration.names.lines import stage_lines
 from calibration.names.name import FULL_RATES, RATES, SENSORS, Candidate, Finding, Name, Scene, candidate
@@ -28,9 +29,9 @@ def columns(s: Scene) -> list[Candidate]:
     periods = np.abs(s.view.speed[s.view.rows]) / (2 * np.pi) * lines * s.view.period_s
     if np.mean(periods < RESOLVED) < SLOW_ROWS:
         return []
-    waves = np.column_stack([g(h * lines * s.view.x) for h in (1, 2) for g in (np.cos, np.sin)])
+    both = s.at(waves(lines * s.view.x, (1, 2)))
     more: dict[str, Any] = {"kind": "line", "order": float(lines), "harmonic": 1}
-    return [candidate("encoder_subdivision", s.at(waves), "amplitude", "second", **more)]
+    return [candidate("encoder_subdivision", both, "amplitude", "second", **more)]
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

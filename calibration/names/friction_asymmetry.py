@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from calibration.names.name import FORCE, Beside, Candidate, Name, Scene, both_ways, candidate
+from calibration.names.name import Beside, Candidate, Name, Scene, both_ways, candidate
 
 # part of 1, standard deviation of |direction|: below, nothing stands still. ASSUMPTION
 STANDS = 0.02
@@ -38,7 +38,6 @@ def columns(s: Scene) -> list[Candidate]:
 
 NAME = Name(
     name="friction_asymmetry",
-    channels=(FORCE,),
     columns=columns,
     relative={COULOMB: ("coulomb", 1), VISCOUS: ("viscous", 1)},
     experiment="run both directions at two speeds, and read the effort at rest",

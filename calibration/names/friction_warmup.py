@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.names.inplant import Facts, Made, as_found
-from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, candidate, tried
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, candidate, grid
 from calibration.names.scene import since_first
 
 # part of the time from the first row to the last: time constants that are tried. ASSUMPTION
@@ -52,9 +52,8 @@ def _cooling(s: Scene, name: str, since: Array, of_coulomb: bool) -> list[Candid
         return -_friction(s, np.exp(-since / tau), of_coulomb)[:, None]
 
     which = {OF_COULOMB: (1.0, "0 all friction, 1 what knows no speed")} if of_coulomb else {}
-    return [
-        tried(NAME.name, shape, "depth", at={name: (part * span, "s"), **which}, sign=-1) for part in PARTS
-    ]
+    along = (name, [part * span for part in PARTS], "s")
+    return grid(NAME.name, shape, "depth", along=along, beside=which, sign=-1)
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -68,7 +67,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 NAME = Name(
     name="friction_warmup",
     observed={"of_coulomb": "1 where the response's column shows it in what knows no speed"},
-    channels=(FORCE,),
     columns=columns,
     relative={"depth": ("coulomb", 1)},
     to_plant=to_plant,

@@ -9,7 +9,7 @@ import numpy as np
 from calibration.inputs.declaration import Stage
 from calibration.inputs.train import SHAFT
 from calibration.names.lines import SAME, line
-from calibration.names.name import FORCE, Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
+from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
 from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
@@ -75,7 +75,6 @@ def lacks(s: Scene) -> str:
 NAME = Name(
     name="gravity_imbalance",
     scaled=True,
-    channels=(FORCE,),
     columns=columns,
     to_plant=to_plant,
     experiment="move through at least 60 degrees slowly, there and back, another weight changes it, a "

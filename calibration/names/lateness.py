@@ -58,8 +58,7 @@ def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
     """
     v = s.view
     # without the rows near rest: there friction turns, which looks late or early by itself
-    usual = float(np.quantile(np.abs(v.speed[v.ok]), 0.95)) if v.ok.any() else 0.0
-    quick = s.problem.valid & (np.abs(v.speed[v.rows]) > QUICK * usual)
+    quick = s.problem.valid & (np.abs(v.speed[v.rows]) > QUICK * v.top)
     s = replace(s, problem=replace(s.problem, valid=quick))
     p, r = s.problem, v.response
     if p.train.sum() < 20 * p.base.shape[1] or r.divide_by:

@@ -34,6 +34,10 @@ SEEN = 0.3
 # cycles, rms, by which the turn and the clock run apart before a log tells a line over one from a line over
 # the other: a quarter of a sine's mean square (2 pi 0.1)^2 / 2 is left. arithmetic
 SLIP = 0.1
+# strongest lines on the clock that are tried of an axis with two motors. ASSUMPTION
+ON_CLOCK = 3
+# Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
+SLOWEST_HZ = 0.05
 #: what a line over the place is called when the clock drives it
 CLOCKED = "command_disturbance"
 # cycles within the travel before a line that no stage has is a line and not a bend. ASSUMPTION
@@ -99,8 +103,7 @@ def _of_rig(s: Scene, stage: Stage, mine: list[Candidate]) -> list[Candidate]:
     """Also all harmonics as one. A bearing's line may lie beside any of them."""
     beside, weighs = beside_stage(s, stage), s.force and s.view.turn is not None
     # once per turn of an angle: a weight that hangs off it has the same columns
-    weight = [weighs and abs((c.order or 0.0) - 1) < SAME and not c.per_run for c in mine]
-    others = [c for c, same in zip(mine, weight, strict=True) if not same]
+    others = [c for c in mine if not weighs or abs((c.order or 0.0) - 1) >= SAME or c.per_run]
     return [replace(c, neighbours=beside) for c in [*others, *as_one(mine)]]
 
 

@@ -4,20 +4,21 @@ import numpy as np
 
 from calibration.balances.filters import smooth
 from calibration.names.gravity_imbalance import gravity
-from calibration.names.name import FORCE, Candidate, Name, Scene, candidate
+from calibration.names.name import Candidate, Name, Scene, candidate
 
 
 def columns(s: Scene) -> list[Candidate]:
     """The load against the motion: from the motion, not from the response, whose noise it would share."""
-    if s.pair is None and (lacks(s) or not s.both):
+    if s.pair is not None:  # through both trains, which pull against each other
+        both, m = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging), s.pair.motion
+        load = np.interp(np.arange(len(m.theta)), m.pick, both)
+    elif lacks(s) or not s.both:
         return []
-    if s.pair is None:  # what accelerations and gravity need
+    else:  # what accelerations and gravity need
         v, load = s.view, s.declared.get("inertia", 0.0) * s.view.second(s.view.x)
         if "gravity_cos" in s.declared:
             load = load + gravity(s) @ np.array([s.declared["gravity_cos"], s.declared["gravity_sin"]])
         load = np.abs(smooth(load, v.segment, max(v.wide, 1.0)))
-    else:
-        load = s.pair.transmitted
     return [candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=1.0)]
 
 
@@ -29,7 +30,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="load_friction",
-    channels=(FORCE,),
     columns=columns,
     experiment="the same motion with two loads",
     lacks=lacks,

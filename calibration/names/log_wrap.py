@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.finding import UNKNOWN, Parameter, of_columns
+from calibration.inputs.axislog import COLUMNS as LOGGED
 from calibration.inputs.run import Run
 from calibration.inputs.stuck import piled_at
 from calibration.names.channel_delay import COLUMNS
@@ -16,7 +17,6 @@ from plant.units import ARCSEC
 OF_SENSORS = ("encoder_eccentricity", "roller_ratio", "roller_slip", "channel_delay", "sample_loss")
 OF_FORCES = ("adc_gain", "magnet_weakening", "supply_sag", "command_disturbance", "friction_asymmetry")
 OF_SHAPES = ("structural_mode", "damaged_tooth", UNKNOWN)
-RENAMED = {"adc_a": "current_a", "adc_b": "current_b", "tach_a": "motor_a", "tach_b": "motor_b"}
 # off a whole number of bits, share of one, from where on it is said. ASSUMPTION
 WHOLE_BITS = 1e-6
 # part of a bit, for a column of whole counts: rounding. arithmetic
@@ -78,7 +78,7 @@ def _other_wraps(run: Run) -> Finding | None:
             # a signed column stops at half of its whole length, currents are unsigned
             told = _in_plant(name, np.log2(abs(end) + (end > 0)) + (not unsigned), stops=True)
             at_end = (raw == x.max()) | ((raw == x.min()) & (not unsigned))
-            column = RENAMED.get(name, name)
+            column = LOGGED[name].called or name
             run.columns[column] = np.where(at_end, np.nan, run.columns[column])
             return of_columns(NAME.name, told, sure, note=f"{run.name}: {name} stops at {end} counts")
     return None
@@ -86,7 +86,7 @@ def _other_wraps(run: Run) -> Finding | None:
 
 def _unfold(run: Run, name: str, size: int) -> None:
     """Add turns of `size` counts until the column follows the encoder's own rate."""
-    column = RENAMED.get(name, name)
+    column = LOGGED[name].called or name
     raw, si = run.raw[name], run.columns[column]
     big = np.abs(raw) > CLEAR_COUNTS
     scale = float(np.nanmedian(si[big] / raw[big])) if big.any() else 0.0

@@ -5,7 +5,7 @@ import numpy as np
 from calibration.balances.candidate import ramp
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, Scene, candidate
-from calibration.names.onsets import Begins, steps
+from calibration.names.onsets import steps
 
 # part of the time, that the fall may take at first. ASSUMPTION, as of every slow change
 LENGTHS = (0.02, 0.2, 0.5, 1.0)
@@ -26,18 +26,14 @@ def columns(s: Scene) -> list[Candidate]:
     else:
         return []
     of_one = s.motors if w is not None and pair is not None else []
-    falls = Begins(
-        name=NAME.name,
-        size=("loss", "1"),
-        weigh=lambda x: lost * s.at(x),
-        lengths=LENGTHS if w is None else VOLTS_LENGTHS,
-        sign=1,
-        most=1.0,
-        in_every_run=pair is None,
-        step=STEP if w is not None else 0.0,
-    )
+    lengths, surely = (LENGTHS, 0.0) if w is None else (VOLTS_LENGTHS, STEP)
+    size, all_runs = ("loss", "1"), pair is None
+
+    def weigh(x: Array) -> Array:
+        return lost * s.at(x)
+
     out = [candidate(NAME.name, lost * rows, "loss", sign=1, fixed=motor) for rows, motor in of_one]
-    return [*out, *steps(s, falls)]
+    return [*out, *steps(s, NAME.name, size, weigh, lengths, all_runs, surely, sign=1, most=1.0)]
 
 
 def torque_kept(c: Candidate, size: float, clock: Array, quotient: float) -> Array:

@@ -8,14 +8,14 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.frame import Frame
 from calibration.finding import UNKNOWN, Finding
-from calibration.names.candidates import candidate, tried
+from calibration.names.candidates import candidate, grid, tried
 from calibration.names.inplant import IN_RUN, Facts, Made, as_found, value
 from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene
 from plant.effects import REGISTRY
 
 __all__ = ["FORCE", "FULL_RATES", "MOTOR", "OF_CLOCKS", "RATES", "SENSORS", "SPEED", "VOLTS", "Array"]
 __all__ += ["Beside", "Candidate", "Changed", "Facts", "Finding", "Made", "Name", "Scene", "as_found"]
-__all__ += ["beside_stated", "both_ways", "candidate", "tried", "value"]
+__all__ += ["beside_stated", "both_ways", "candidate", "grid", "tried", "value"]
 
 # share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
 WORTH = 0.01
@@ -85,7 +85,7 @@ class Name:
     """One name of the catalogue.
 
     experiment: the cheapest one that tells it from what looks like it. channels: kinds of balance it can be
-    seen in ("force", "sensors", "volts"). columns: its candidates along a motion; lacks: what a log would
+    seen in, a force's unless it says so. columns: its candidates along a motion; lacks: what a log would
     need to show it, empty when it has all. to_plant: what a finding is in a plant file.
 
     Of what moves the torque that a current promises: torque_kept gives the part (n,) that its motors keep. It
@@ -108,7 +108,7 @@ class Name:
 
     name: str
     experiment: str
-    channels: tuple[str, ...] = ()
+    channels: tuple[str, ...] = (FORCE,)
     columns: Callable[[Scene], list[Candidate]] = lambda _: []
     lacks: Callable[[Scene], str] = lambda _: ""
     torque_kept: Callable[[Candidate, float, Array, float], Array] | None = None

@@ -1,7 +1,7 @@
 """Friction that changes from one time on: shared by the names that do."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,56 +23,41 @@ BEFORE = 0.4
 LENGTH_STEP = 0.008
 
 
-@dataclass(frozen=True, kw_only=True)
-class Begins:
-    """An effect that begins at some time.
+def steps(
+    s: Scene,
+    name: str,
+    size: tuple[str, str],
+    weigh: Callable[[Array], Array],
+    lengths: tuple[float, ...] = (),
+    in_every_run: bool = True,
+    surely: float = 0.0,
+    **more: Any,
+) -> list[Candidate]:
+    """Of an effect that begins at some time: candidates at one time of the clock that all files share, and,
+    `in_every_run`, at the same time of every file, where a change's length is not told from a short one.
 
-    size: its size's label. weigh: its columns (n_fitted,) from a step (n,) at full rate. lengths (of the
-    time): those that are tried where it takes its time. step (of the time): how far onset and length surely
-    lie off, where that is more than the grid's own.
-    """
-
-    name: str
-    size: tuple[str, str]
-    weigh: Callable[[Array], Array]
-    lengths: tuple[float, ...] = ()
-    sign: int = 0
-    most: float = np.inf
-    in_every_run: bool = True  # or by the clock that all files share only
-    step: float = 0.0
-
-
-def steps(s: Scene, what: Begins) -> list[Candidate]:
-    """Candidates at one time of the clock that all files share, and at the same time of every file.
-
-    In the latter a change's length is not told from a short one.
+    weigh: columns (n_fitted,) from a step (n,) at full rate. lengths (of the time): those that are tried of
+    one that takes its time. surely (of the time): how far onset and length lie off, where that is more than
+    the grid's own. more: `Candidate`'s fields.
     """
     out = []
-    for clock in s.clocks if what.in_every_run else ("start",):
-        first = clock == "start"
-        if not what.lengths:
-            out += _begun(s, what, clock, PLACES)
-        for part in what.lengths if first else what.lengths[:1]:
-            out += _begun(s, what, clock, (-BEFORE if first else EDGE, 1 - EDGE), part)
+    for clock, since in s.clocks.items():
+        whole, span = clock == "start", float(since.max())
+        places = (-BEFORE if whole else EDGE, 1 - EDGE) if lengths else PLACES
+        for part in ((lengths if whole else lengths[:1]) or (0.0,)) if whole or in_every_run else ():
+            shape = partial(_begun, s, since, part, weigh)
+            length = {"duration": (part * span, "s")} if part else {}
+            small = (span / TRIALS / 3, LENGTH_STEP * max(10 * part, 1.0) * span)[: 1 + len(length)]
+            form: dict[str, Any] = {"domain": "time", "steps": tuple(max(x, surely * span) for x in small)}
+            tries = ({clock: (float(at), "s"), **length} for at in np.linspace(*places, TRIALS) * span)
+            out += [tried(name, shape, size, at=fixed, **form, **more) for fixed in tries]
     return out
 
 
-def _begun(
-    s: Scene, what: Begins, clock: str, places: tuple[float, float], part: float = 0.0
-) -> list[Candidate]:
-    """Between two `places` of the time: a step, or a ramp over `part` of it."""
-    since, sudden = s.clocks[clock], 2 * s.view.period_s * max(s.view.step, 1)
-    span = float(since.max())
-
-    def shape(p: Array) -> Array:
-        if part:
-            return what.weigh(ramp(since, float(p[0]), float(p[1])))[:, None]
-        at = float(np.clip(p[0], EDGE * span, (1 - EDGE) * span))
-        return what.weigh(np.clip((since - at) / sudden, 0.0, 1.0))[:, None]
-
-    length = {"duration": (part * span, "s")} if part else {}
-    small = (span / TRIALS / 3, LENGTH_STEP * max(10 * part, 1.0) * span)[: 1 + len(length)]
-    more: dict[str, Any] = {"domain": "time", "sign": what.sign, "most": what.most}
-    more["steps"] = tuple(max(x, what.step * span) for x in small)
-    tries = ({clock: (float(at), "s"), **length} for at in np.linspace(*places, TRIALS) * span)
-    return [tried(what.name, shape, what.size, at=fixed, **more) for fixed in tries]
+def _begun(s: Scene, since: Array, part: float, weigh: Callable[[Array], Array], p: Array) -> Array:
+    """Columns (n_fitted, 1) from the onset p[0] on: a step, or with a `part` of the time a ramp over p[1]."""
+    if part:
+        return weigh(ramp(since, float(p[0]), float(p[1])))[:, None]
+    span, sudden = float(since.max()), 2 * s.view.period_s * max(s.view.step, 1)
+    at = float(np.clip(p[0], EDGE * span, (1 - EDGE) * span))
+    return weigh(np.clip((since - at) / sudden, 0.0, 1.0))[:, None]

@@ -11,7 +11,7 @@ from calibration.balances.candidate import Candidate
 from calibration.inputs.declaration import Stage
 from calibration.names.candidates import STEP
 from calibration.names.candidates import tried as first_value
-from calibration.names.name import FORCE, Name
+from calibration.names.name import Name
 from calibration.names.scene import Scene
 from plant.effects import REGISTRY
 from plant.effects import signals as column
@@ -39,7 +39,7 @@ def from_formula(name: str, *, size: str, tried: Mapping[str, tuple[float, ...]]
             places = [g for g in s.view.rig.stages if g.period and fits(effect, g)]
         return [c for g in places for c in own_candidates(effect, size, tried, s, g)]
 
-    return Name(name=name, channels=(FORCE,), columns=columns, experiment=experiment, lacks=lacks)
+    return Name(name=name, columns=columns, experiment=experiment, lacks=lacks)
 
 
 def lacks(s: Scene) -> str:

@@ -35,9 +35,3 @@ class Pair:
     def train(self) -> Train:
         """The declared gear train."""
         return self.frame.train
-
-    @property
-    def transmitted(self) -> Array:
-        """Torque through both trains at full rate, N m: they pull against each other."""
-        both = np.abs(self.load) + 2 * np.abs(self.lagging)
-        return np.asarray(np.interp(np.arange(len(self.motion.theta)), self.motion.pick, both))

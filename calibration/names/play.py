@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import acceleration
-from calibration.names.candidates import candidate, tried
-from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, SENSORS, Array, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.candidates import candidate, grid
+from calibration.names.inplant import Made, value
+from calibration.names.name import FORCE, SENSORS, Array, Candidate, Name, Scene, both_ways
 from calibration.names.presliding import NAME as BRISTLES
 from calibration.names.scene import FEWEST
 from calibration.names.shaft_compliance import NAME as WIND_UP
@@ -51,24 +51,15 @@ def _missing_force(s: Scene) -> list[Candidate]:
     if v.response.channel == "acceleration":
         return []  # nothing drives through a gap
     least, gaps = v.resolved, [part * s.stroke for part in PARTS]
+    seen = [gap for gap in gaps if gap >= least and np.mean(np.abs(v.since) < gap) >= FEWEST]
 
     def full(p: Array) -> Array:
         return np.asarray(-v.direction * (np.abs(v.since) < max(float(p[0]), least)))
 
-    return [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            ("missing_force", s.unit),
-            at={"gap": (gap, s.angle_unit)},
-            steps=(STEP * gap,),
-            sign=1,
-            searched=4,  # a gap in the force's way is the rarer one of the two
-            twins=(BRISTLES.name,),
-        )
-        for gap in gaps
-        if gap >= least and np.mean(np.abs(v.since) < gap) >= FEWEST
-    ]
+    # a gap in the force's way is the rarer one of the two
+    more: dict[str, Any] = {"step": STEP, "sign": 1, "searched": 4, "twins": (BRISTLES.name,)}
+    size, along = ("missing_force", s.unit), ("gap", seen, s.angle_unit)
+    return grid(NAME.name, s.shaped(full), size, along=along, **more)
 
 
 def _between_sensors(s: Scene) -> list[Candidate]:
@@ -85,17 +76,8 @@ def _between_sensors(s: Scene) -> list[Candidate]:
         gap = max(float(p[0]), 1e-9 * span)
         return lag_in_gap(moved, np.zeros_like(v.file), gap) / gap
 
-    return [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            ("gap", s.unit),
-            at={TRAVEL: (gap, s.angle_unit)},
-            steps=(STEP * gap,),
-            **_sided(s),
-        )
-        for gap in first * GROWS ** np.arange(count)
-    ]
+    along = (TRAVEL, first * GROWS ** np.arange(count), s.angle_unit)
+    return grid(NAME.name, s.shaped(full), ("gap", s.unit), along=along, step=STEP, **_sided(s))
 
 
 def _thrown(s: Scene) -> list[Candidate]:
@@ -125,11 +107,8 @@ def _of_the_coupling(s: Scene) -> list[Candidate]:
         one = lag_in_gap(moved, s.view.run[rows], gap) / gap
         return np.concatenate([-one, -one])[:, None]
 
-    return [
-        tried(NAME.name, shape, "gap", at={TRAVEL: (gap, "arcsec")}, searched=0, sign=1, stage="axis")
-        for gap in GAPS_ARCSEC
-        if gap < REACH * float(np.ptp(moved))
-    ]
+    along = (TRAVEL, [gap for gap in GAPS_ARCSEC if gap < REACH * float(np.ptp(moved))], "arcsec")
+    return grid(NAME.name, shape, "gap", along=along, searched=0, sign=1, stage="axis")
 
 
 def lag_in_gap(moved: Array, run: NDArray[np.int64], gap: float) -> Array:
@@ -140,11 +119,6 @@ def lag_in_gap(moved: Array, run: NDArray[np.int64], gap: float) -> Array:
 def travel_of(c: Candidate) -> float | None:
     """Of a gap between two sensors: how far one moves until the other follows, position units."""
     return abs(c.fixed[TRAVEL][0]) if c.name == NAME.name and TRAVEL in c.fixed else None
-
-
-def to_plant(f: Finding, facts: Facts) -> Made:
-    """The motors are compared with the absolute encoder, so its coupling has the gap."""
-    return Made().add(f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)})
 
 
 NAME = Name(
@@ -158,6 +132,9 @@ NAME = Name(
     experiment="a slow reversal under load, or lock the output and step the torque: play is a step, "
     "compliance a line",
     lacks=both_ways,
-    to_plant=to_plant,
+    # the motors are compared with the absolute encoder, so its coupling has the gap
+    to_plant=lambda f, facts: Made().add(
+        f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)}
+    ),
     loop=("gap",),
 )

@@ -10,7 +10,7 @@ from calibration.names.candidates import tried
 from calibration.names.freelines import strongest
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import STEP_OF_CELL, as_one, line, of_stage
-from calibration.names.name import FORCE, Array, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.name import Array, Candidate, Finding, Name, Scene, both_ways
 from plant.gears import ORDERS
 
 # harmonics of the travelled range. ASSUMPTION
@@ -81,7 +81,6 @@ NAME = Name(
     name="position_friction",
     observed={"order": "along the position column"},
     scaled=True,
-    channels=(FORCE,),
     columns=columns,
     to_plant=to_plant,
     experiment="go there and back over the same place: friction changes its sign, a gear or cogging does not",

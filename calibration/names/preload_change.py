@@ -6,8 +6,8 @@ import numpy as np
 
 from calibration.finding import Parameter
 from calibration.names.magnet_weakening import LENGTHS
-from calibration.names.name import FORCE, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
-from calibration.names.onsets import Begins, steps
+from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
+from calibration.names.onsets import steps
 
 # s, of a change that is sudden: the plant's shortest (docs/reference/effects.md)
 SHORTEST_S = 0.01
@@ -18,14 +18,12 @@ def columns(s: Scene) -> list[Candidate]:
     f = s.sliding
     if s.pair is None and (lacks(s) or not s.declared.get("coulomb", 0.0) > 0 or not s.speeds):
         return []
-    change = Begins(
-        name=NAME.name,
-        size=("change", "1"),
-        weigh=lambda x: s.at(f.answer(f.stiction * x) + f.drag * x),
-        lengths=LENGTHS if s.pair is not None else (),
-        most=1.0 if s.pair is not None else np.inf,
-    )
-    return steps(s, change)
+    lengths, most = (LENGTHS, 1.0) if s.pair is not None else ((), np.inf)
+
+    def weigh(x: Array) -> Array:
+        return s.at(f.answer(f.stiction * x) + f.drag * x)
+
+    return steps(s, NAME.name, ("change", "1"), weigh, lengths, most=most)
 
 
 def lacks(s: Scene) -> str:
@@ -42,7 +40,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="preload_change",
-    channels=(FORCE,),
     columns=columns,
     relative={"change": ("viscous", 1)},
     to_plant=to_plant,

@@ -5,7 +5,7 @@ import numpy as np
 from calibration.balances.friction import Path, sliding_of
 from calibration.balances.recursions import stop_operator
 from calibration.inputs.declaration import FrictionLaw
-from calibration.names.name import FORCE, Array, Candidate, Changed, Name, Scene, both_ways, tried
+from calibration.names.name import Array, Candidate, Changed, Name, Scene, both_ways, tried
 from calibration.names.scene import FEWEST
 
 # part of the usual stroke: an element of half a stroke or more never slides, which is a spring. ASSUMPTION
@@ -59,7 +59,6 @@ NAME = Name(
         "breakaway_travel": "along the position column, until an element slides",
         "bristle_travel": "of a rig file's friction_law",
     },
-    channels=(FORCE,),
     columns=columns,
     experiment="a sine smaller than break-away",
     lacks=both_ways,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from calibration.finding import UNKNOWN
-from calibration.names.name import VOLTS, Array, Candidate, Finding, Name, Scene, candidate, tried, value
+from calibration.names.name import VOLTS, Array, Candidate, Finding, Name, Scene, candidate, grid, value
 
 # of the supply. ASSUMPTION: a bridge that loses more is broken
 MOST = 0.2
@@ -52,9 +52,8 @@ def columns(s: Scene) -> list[Candidate]:
             knee = float(np.clip(at[0], SMALLEST, max(widest, SMALLEST)))
             return w.at(volts * np.clip(duty / knee, -1.0, 1.0))[:, None]
 
-        for knee in (k for k in KNEES if k < widest):
-            at = {"knee": (knee, "1"), **place}
-            out.append(tried(NAME.name, shape, "deadband", at=at, sign=1, most=MOST))
+        along = ("knee", [k for k in KNEES if k < widest], "1")
+        out += grid(NAME.name, shape, "deadband", along=along, beside=place, sign=1, most=MOST)
     return out
 
 

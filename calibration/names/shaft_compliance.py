@@ -16,17 +16,14 @@ def columns(s: Scene) -> list[Candidate]:
     return []
 
 
-def lacks(s: Scene) -> str:
-    """A column of the force."""
-    return "" if {*WINDS} & {*s.view.columns} else "a column of the effort, the current or the force"
-
-
 NAME = Name(
     name="shaft_compliance",
     channels=(SENSORS,),
     columns=columns,
     experiment="lock the output and step the torque: play is a step, compliance a line",
-    lacks=lacks,
+    lacks=lambda s: (
+        "" if {*WINDS} & {*s.view.columns} else "a column of the effort, the current or the force"
+    ),
     changed=Changed(
         numbers={"stiffness": "stiffness"}, written="gear.stiffness", precise={"stiffness": PRECISE}
     ),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from calibration.names.name import FORCE, Candidate, Changed, Name, Scene, tried
+from calibration.names.name import Candidate, Changed, Name, Scene, grid
 from calibration.names.scene import FEWEST
 
 # part of the top speed: Stribeck speeds that are tried. ASSUMPTION
@@ -29,17 +29,8 @@ def columns(s: Scene) -> list[Candidate]:
         low = np.mean((speed < vs) & (speed > 0.1 * vs))
         return bool(low >= FEWEST and top >= 2.5 * vs and vs >= least)
 
-    return [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            ("stribeck_force", s.unit),
-            at={"stribeck_speed": (vs, f"{s.angle_unit}/s")},
-            sign=1,
-        )
-        for vs in (part * top for part in PARTS)
-        if seen(vs)
-    ]
+    along = ("stribeck_speed", filter(seen, (part * top for part in PARTS)), f"{s.angle_unit}/s")
+    return grid(NAME.name, s.shaped(full), ("stribeck_force", s.unit), along=along, sign=1)
 
 
 def lacks(s: Scene) -> str:
@@ -56,7 +47,6 @@ NAME = Name(
         "stribeck_force": "stiction less Coulomb's friction, in the response's column",
         "stribeck_speed": "of a rig file's friction_law",
     },
-    channels=(FORCE,),
     columns=columns,
     experiment="slow ramps on both sides of the Stribeck speed",
     lacks=lacks,

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from calibration.balances.filters import by_piece
 from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import FORCE, Array, Beside, Candidate, Finding, Name, Scene, tried
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
 
 # places of a mode's frequency that are tried on any drive. ASSUMPTION
@@ -99,7 +99,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="structural_mode",
-    channels=(FORCE,),
     columns=columns,
     experiment="repeat at another speed: a mode keeps its frequency",
     lacks=lacks,

@@ -5,16 +5,17 @@ from typing import Any
 
 import numpy as np
 
+from calibration.balances.candidate import waves
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
 from calibration.finding import UNKNOWN, Finding, of_columns
 from calibration.names.gravity_imbalance import gravity
-from calibration.names.lines import on_clock
+from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene, candidate
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
-from calibration.statistics.orders import order_spectrum, peaks
+from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
 from calibration.statistics.tails import middle
 
 # knots of a smooth function. ASSUMPTION: names against what only looks smooth
@@ -29,18 +30,12 @@ RADII = (0.002, 0.01, 0.05, 0.2)
 SLOW_RATE = 5e-5
 # knots over that logarithm. ASSUMPTION
 SPEED_KNOTS = 9
-# lines at fixed Hz that are tried. ASSUMPTION
-LINES = 3
 # times 1 / time that lies between them. ASSUMPTION
 APART = 3.0
 # cycles of such a line within the log, at least. ASSUMPTION
 FEWEST_CYCLES = 4
 # cycles likewise, at most, for its memory. ASSUMPTION
 MOST_CYCLES = 2e5
-# Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
-SLOWEST_HZ = 0.05
-# part of the rows' rate, for the highest of HARMONICS. ASSUMPTION: a little below the Nyquist limit
-QUICKEST = 0.45
 # harmonics of such a line. ASSUMPTION
 HARMONICS = 5
 
@@ -229,13 +224,12 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
     hertz, power = order_spectrum(np.where(rows, s.residual, 0.0), clock, rows.astype(float), top)
     power = np.where(hertz < max(SLOWEST_HZ, FEWEST_CYCLES / span), 0.0, power)
     out = []
-    for f0 in peaks(hertz, power, LINES, APART / span):
-        x = 2 * np.pi * f0 * clock
-        most = HARMONICS if f0 * HARMONICS < QUICKEST / period_s else 1
+    for f0 in peaks(hertz, power, ON_CLOCK, APART / span):
+        most = HARMONICS if f0 * HARMONICS < PER_ROW / period_s else 1
         for count in sorted({1, most}):
-            waves = np.column_stack([g(h * x) for h in range(1, count + 1) for g in (np.cos, np.sin)])
+            wave = waves(2 * np.pi * f0 * clock, range(1, count + 1))
             at: dict[str, Any] = {"frequency": f0, "fixed": {"frequency": (f0, "Hz")}}
-            out.append(_over("time", waves, ("amplitude", s.unit), kind="line", **at))
+            out.append(_over("time", wave, ("amplitude", s.unit), kind="line", **at))
     return out
 
 

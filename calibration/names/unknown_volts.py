@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from calibration.balances.candidate import Candidate
+from calibration.balances.candidate import Candidate, waves
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
 from calibration.names.lines import line, over_place
@@ -27,11 +27,10 @@ def of_volts(s: Scene) -> list[Candidate]:
     column, size = w.constant * w.at(c.share) * c.lagging * leading, ("following", "1")
     following = candidate(UNKNOWN, column, size, domain="current", sign=1, most=FOLLOWS)
     # brushes over the angle of either motor, as a resistance and as a voltage
-    x = 2 * np.pi * c.turns
-    waves = np.column_stack([g(h * x) for h in range(1, HARMONICS + 1) for g in (np.cos, np.sin)])
+    turned = waves(2 * np.pi * c.turns, range(1, HARMONICS + 1))
     more: dict[str, Any] = {"domain": "motor_angle", "kind": "line", "stage": "motor", "harmonic": 1}
     brushes = [
-        candidate(UNKNOWN, waves * weight[:, None], ("amplitude", unit), fixed=motor, **more)
+        candidate(UNKNOWN, turned * weight[:, None], ("amplitude", unit), fixed=motor, **more)
         for rows, motor in s.motors
         for weight, unit in ((rows, "V"), (rows * w.at(w.current), "ohm"))
     ]

@@ -1,10 +1,9 @@
 """Friction that grows with the speed, more or less than was declared."""
 
-from calibration.names.name import FORCE, Changed, Name, beside_stated
+from calibration.names.name import Changed, Name, beside_stated
 
 NAME = Name(
     name="viscous_change",
-    channels=(FORCE,),
     columns=lambda s: beside_stated(s, "viscous", s.view.speed, f"{s.unit} s/{s.angle_unit}"),
     experiment="two speeds that differ by a factor of ten",
     observed={"viscous_change": "from the rig file's constant"},

@@ -4,7 +4,7 @@ import numpy as np
 
 from calibration.balances.recursions import lowpass
 from calibration.balances.volts import Windings
-from calibration.names.name import VOLTS, Array, Candidate, Facts, Finding, Made, Name, Scene, tried, value
+from calibration.names.name import VOLTS, Array, Candidate, Facts, Finding, Made, Name, Scene, grid, value
 from plant.effects.winding_heating import COPPER
 
 # s: small motors' windings have 5 to 400 s by their datasheets, the telescope's are heavier
@@ -35,9 +35,8 @@ def _heated(w: Windings, clock: Array, name: str) -> list[Candidate]:
         heat = [lowpass(power, t, max(float(p[0]), 1.0)) for power, t in motors]
         return np.asarray(volts * np.concatenate(heat))[:, None]
 
-    at = [{name: (tau, "s")} for tau in TAUS_S if tau < 2 * float(w.clock.max())]
-    size = "thermal_resistance"
-    return [tried(NAME.name, shape, size, at=x, steps=(STEP * x[name][0],), sign=1) for x in at]
+    along = (name, [tau for tau in TAUS_S if tau < 2 * float(w.clock.max())], "s")
+    return grid(NAME.name, shape, "thermal_resistance", along=along, step=STEP, sign=1)
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

@@ -4,7 +4,7 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.balances.filters import since
-from calibration.balances.frame import Frame
+from calibration.balances.frame import JUMP, Frame
 from calibration.balances.noise import row_to_row
 from calibration.replay import thresholds as limits
 from calibration.replay.trace import Trace
@@ -22,7 +22,7 @@ def comparable(frame: Frame, rows: Mask) -> Mask:
     jump[1:] |= np.abs(np.diff(np.nan_to_num(wanted))) > limits.SETPOINT_STEP
     jump[1:] |= there[1:] & ~there[:-1]
     if not np.isfinite(wanted).any():
-        jump[1:] |= np.abs(np.diff(np.nan_to_num(frame.columns["effort"][rows]))) > limits.EFFORT_STEP
+        jump[1:] |= np.abs(np.diff(np.nan_to_num(frame.columns["effort"][rows]))) > JUMP
     settled = since(jump) > round(limits.SETTLE_S / frame.period_s)
     settled[:-2] &= ~(jump[1:-1] | jump[2:])
     return np.asarray(settled & there)

@@ -6,7 +6,8 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.balances.frame import Frame, fill
-from calibration.replay.thresholds import AGREE, FULL, LAG_S, LARGEST_GAIN, LEAST_LOOP_ROWS, ROBUST_ROUNDS
+from calibration.balances.thresholds import AT_LIMIT
+from calibration.replay.thresholds import AGREE, LAG_S, LARGEST_GAIN, LEAST_LOOP_ROWS, ROBUST_ROUNDS
 from calibration.statistics.regression import solve
 from plant.units import ARCSEC
 
@@ -35,7 +36,7 @@ def identify(frame: Frame, rows: Mask) -> Gains | None:
     error = (setpoint - velocity) * window / count
     position, trusted = fill(frame.columns["position"], frame.run)
     wanted = np.cumsum(np.nan_to_num(setpoint)) * frame.period_s
-    late = np.abs(effort) > FULL * frame.scale["effort_full_scale"]
+    late = np.abs(effort) > AT_LIMIT * frame.scale["effort_full_scale"]
     busy = np.cumsum((late | ~trusted | ~np.isfinite(error)).astype(float))
 
     def over(x: Array) -> Array:

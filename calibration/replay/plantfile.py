@@ -82,14 +82,13 @@ def _checked(model: PlantModel) -> PlantModel:
 
 
 def convert(f: Finding, facts: Facts) -> Made:
-    """What `f` becomes in the plant file: effects, changed numbers, or a remark on what cannot be said
-    there."""
+    """What `f` becomes in the plant file: effects, changed numbers, or a remark on what it cannot say."""
     name = NAMES.get(f.name)
-    if name is not None and name.changed is not None:
+    if name is None:
+        return Made(remarks=[f"{f.name}: described in the report, not a number of the plant file"])
+    if name.changed is not None:
         return Made(remarks=[f"{f.name}: in the plant as axes.{facts.axis}.{name.changed.written}"])
-    if name is not None and name.to_plant is not None:
-        return name.to_plant(f, facts)
-    return Made(remarks=[f"{f.name}: described in the report, not a number of the plant file"])
+    return name.to_plant(f, facts)
 
 
 def correct(

@@ -8,8 +8,6 @@ from plant.units import ARCSEC
 SETTLE_S = 1.0
 # rad/s within one row: a new rate, and no ramp. ASSUMPTION
 SETPOINT_STEP = 10.0 * ARCSEC
-# of full effort within one row, open loop. ASSUMPTION
-EFFORT_STEP = 0.02
 # s either side of a passage through the Stribeck speed: when it breaks away hangs on Ts to 0.1 %. ASSUMPTION
 BREAKAWAY_S = 1.0
 # s over which the speed of that passage is taken. ASSUMPTION
@@ -40,8 +38,6 @@ LARGEST_STEP = 0.3
 
 # s, over which effort differences are taken: the summed error is then far above one count. ASSUMPTION
 LAG_S = 0.25
-# of full effort: beyond, the integrator is held at its end. ASSUMPTION
-FULL = 0.98
 # rows of closed loop in motion that tell its gains. ASSUMPTION
 LEAST_LOOP_ROWS = 500
 # median deviations: rows beyond are another mode of the controller, or a jump of the set point. ASSUMPTION

@@ -14,9 +14,7 @@ from plant.evaluate import signals
 from plant.model import PlantModel, with_effects, with_value
 from plant.parts import EffectModel
 from plant.rows import values
-from plant.units import ARCSEC
-
-SECONDS_PER = {"K/s": 1.0, "K/h": 3600.0}
+from plant.units import ARCSEC, factor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +102,7 @@ class Loop:
             seen = np.flatnonzero(np.isfinite(temperature))
             warming, start = np.polyfit(seen * scales["sample_period_s"], temperature[seen], 1)
             numbers["environment.temperature"] = start - warming * start_s
-            numbers["environment.warming"] = warming * SECONDS_PER[model.environment.warming.unit]
+            numbers["environment.warming"] = warming * factor("K/s", model.environment.warming.unit)
         if self.gains is not None:
             numbers |= {"controller.kp": self.gains.kp, "controller.ki": self.gains.ki}
         for path, value in numbers.items():

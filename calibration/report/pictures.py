@@ -20,8 +20,7 @@ Picture = dict[str, str]
 
 
 def pictures(found: Looked, again: Replay) -> list[Picture]:
-    """Image and alternative text of each. Of a drive in which nothing was accepted, the first balance is
-    drawn."""
+    """Image and alternative text of each; of a drive in which nothing was accepted, the first balance's."""
     shown = [b for b in found.balances if b.selection.chosen] or list(found.balances[:1])
     out = [p for b in shown for p in of_balance(b)]
     return out if again.log is None else [*out, replay_picture(again)]

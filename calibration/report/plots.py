@@ -89,8 +89,10 @@ def domain_plot(
     xs, es, ms = x[rows], e[rows], model[rows]
     ax.plot(xs[::step], es[::step], ".", ms=1.5, color=GREY, alpha=0.4)
     ax.plot([], [], ".", ms=6, color=GREY, label="residual without the effect")
-    order = np.argsort(xs)
-    cells = np.array_split(order, min(max(len(xs) // 20, 8), _bins(selection, index)))
+    order, bins, fixed = np.argsort(xs), BINS, selection.candidates[index].fixed
+    if "width" in fixed:  # of a narrow pulse as many as put BINS_OF_A_PULSE on its width
+        bins = max(BINS, round(BINS_OF_A_PULSE / fixed["width"][0]))
+    cells = np.array_split(order, min(max(len(xs) // 20, 8), bins))
     mid = np.array([np.median(xs[c]) for c in cells])
     mean = np.array([np.mean(es[c]) for c in cells])
     error = np.array([np.std(es[c]) / np.sqrt(max(len(c) / 10, 1)) for c in cells])
@@ -101,12 +103,6 @@ def domain_plot(
     times = " × direction" if odd is not None else ""
     ax.set(xlabel=label, ylabel=f"residual{times}, {p.unit}")
     return finish(ax, title)
-
-
-def _bins(selection: Selection, index: int) -> int:
-    """Bins over a domain: BINS, and for a narrow pulse as many as put BINS_OF_A_PULSE on its width."""
-    fixed = selection.candidates[index].fixed
-    return max(BINS, round(BINS_OF_A_PULSE / fixed["width"][0])) if "width" in fixed else BINS
 
 
 def spectrum_plot(selection: Selection, spectrum: Spectrum, title: str) -> str:

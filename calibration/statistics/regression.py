@@ -22,6 +22,11 @@ class Fit:
     loglik: float
     rows: int
 
+    @property
+    def errors(self) -> Array:
+        """Standard errors (p,) of the coefficients."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
 
 def solve(x: Array, y: Array) -> Array:
     """Least squares through scaled normal equations; columns without weight get a zero coefficient."""

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.special import betainc, betaln, rel_entr, stdtrit
 
 from calibration.arrays import Array
-from calibration.finding import Parameter
+from calibration.finding import Parameter, normal
 from calibration.statistics.thresholds import SMALLEST_TAIL
 
 
@@ -56,8 +56,7 @@ def median_reach(x: Array) -> float:
 def middle(x: Array, unit: str) -> Parameter:
     """The median of several measurements (n,) of one size; without an interval where there is only one."""
     value = float(np.median(x))
-    reach = median_reach(x) if len(x) > 1 else None
-    return Parameter(value, unit) if reach is None else Parameter(value, unit, value - reach, value + reach)
+    return normal(value, 1.0, unit, median_reach(x)) if len(x) > 1 else Parameter(value, unit)
 
 
 def student_reach(dof: float, level: float = 0.975) -> float:

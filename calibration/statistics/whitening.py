@@ -3,11 +3,20 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_toeplitz
 
 from calibration.arrays import Array, Mask, by_median
 from calibration.statistics.orders import power_of_two
 from calibration.statistics.thresholds import LOADING, ROWS_PER_ORDER, SECOND
+
+# rows, beyond the filter's own reach, over which a residual is compared with itself. ASSUMPTION: a swept line
+# or a switch that sticks agrees with itself for longer than the filter lasts
+LAGS = 50
+# standard deviations of a Gaussian filter, after which it carries exp(-4), 2 %, over. arithmetic
+APART = 4.0
+# pairs of rows, to compare at all. ASSUMPTION: chance correlates 200 of white noise by a tenth of LEAST_SHARE
+FEWEST = 200
 
 
 @dataclass(frozen=True)
@@ -45,6 +54,20 @@ def autocovariance(e: Array, valid: Mask, lags: int) -> Array:
     size = power_of_two(2 * len(x))
     spectrum = np.abs(np.fft.rfft(x, size)) ** 2
     return np.asarray(np.fft.irfft(spectrum, size)[: lags + 1] / n)
+
+
+def coherence(e: Array, rows: Mask, session: NDArray[np.int64], first: int) -> float:
+    """Largest squared correlation of the residual `e` (n,) with itself, `first` rows later and more.
+
+    rows: those that count, of one session each time; 0 where there are too few.
+    """
+    most = 0.0
+    for lag in range(first, first + LAGS):
+        both = rows[lag:] & rows[:-lag] & (session[lag:] == session[:-lag])
+        if both.sum() < FEWEST:
+            break
+        most = max(most, float(np.corrcoef(e[lag:][both], e[:-lag][both])[0, 1]) ** 2)
+    return most
 
 
 def fit_ar(e: Array, valid: Mask, order: int) -> Whitener:

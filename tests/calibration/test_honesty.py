@@ -132,7 +132,7 @@ def test_a_fit_with_a_negative_inertia_names_nothing() -> None:
         period_s=1.0,
     )
     for inertia, kept in ((-5.0, 0), (-0.5, 1), (5.0, 1)):  # half a standard error below zero is no sign
-        fit = type("F", (), {"beta": np.array([inertia, 3.0]), "covariance": np.eye(2)})()
+        fit = type("F", (), {"beta": np.array([inertia, 3.0]), "errors": np.ones(2)})()
         s = type("S", (), {"problem": p, "after": fit})()
         found, refused = withdraw([finding()], against_nature({"T": s}))
         assert (len(found), len(refused)) == (kept, 1 - kept)

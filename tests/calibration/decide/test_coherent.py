@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from calibration.decide.coherent import APART, coherence
 from calibration.decide.thresholds import LEAST_SHARE
+from calibration.statistics.whitening import APART, coherence
 
 ROWS, SIGMA = 4000, 3.0
 FIRST = int(np.ceil(APART * SIGMA))

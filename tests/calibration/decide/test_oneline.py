@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from calibration.balances.candidate import Candidate
-from calibration.decide.oneline import one_line
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
+from calibration.decide.twins import one_line
 from calibration.names.scene import Scene
 from tests.calibration.decide.made import PERIOD_S, line, problem, term
 

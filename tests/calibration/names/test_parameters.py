@@ -13,13 +13,13 @@ from calibration.names.name import Name
 from plant.effects import REGISTRY
 
 ROOM = Path(__file__).parents[3] / "calibration"
-MAKERS = {"candidate", "tried", "_over", "line"}
+MAKERS = {"candidate", "grid", "steps", "tried", "_over", "line"}
 SIZES = {"Parameter", "normal", "deviation", "middle", "middle_of"}
 #: files of no name, and whose findings they make
 MADE = {
     "decide/broadband.py": (UNKNOWN, "wind_torque"),
     "decide/delays.py": ("channel_delay",),
-    "decide/reported.py": ("play",),
+    "decide/withdraw.py": ("play",),
     "decide/residual.py": (UNKNOWN,),
     "balances/effortchange.py": (UNKNOWN,),
     "look/controllerlaw.py": (UNKNOWN, "command_disturbance"),
@@ -50,8 +50,11 @@ def printed(path: Path) -> Iterator[str]:
         if isinstance(node, ast.keyword) and node.arg in ("at", "fixed", "parameters"):
             for key in node.value.keys if isinstance(node.value, ast.Dict) else ():
                 yield from words(key, module) if key is not None else ()
-        if isinstance(node, ast.keyword) and node.arg == "size" and isinstance(node.value, ast.Tuple):
-            yield from words(node.value.elts[0], module)
+        called = node.arg if isinstance(node, ast.keyword) else ""
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            called = node.targets[0].id
+        if called in ("along", "size") and isinstance(value := getattr(node, "value", None), ast.Tuple):
+            yield from words(value.elts[0], module)
         if isinstance(node, ast.Dict):
             for key, made in zip(node.keys, node.values, strict=True):
                 name = getattr(made.func, "id", "") if isinstance(made, ast.Call) else ""

@@ -1,0 +1,100 @@
+"""What is said of a response beside its effects: what its filter takes, what this motion cannot tell."""
+
+import numpy as np
+
+from calibration.arrays import Array
+from calibration.balances.balance import response_of
+from calibration.balances.candidate import Candidate
+from calibration.balances.floors import passed
+from calibration.balances.slowoffset import SLOW
+from calibration.balances.view import View
+from calibration.decide.selection import Selection
+from calibration.finding import UNKNOWN
+from calibration.names import NAMES
+from calibration.names.scene import Scene
+from calibration.names.shaft_compliance import NAME as COMPLIANCE
+from calibration.names.shaft_compliance import WINDS
+
+# of a parameter's variance by its neighbours: over five times the error it would have alone. arithmetic
+INFLATION = 30.0
+# that had evidence and failed elsewhere, as `Refusal.why` begins
+CLOSE = ("cross-validated gain is within luck", "makes the held-out", "no held-out")
+
+
+def filtered(view: View) -> list[str]:
+    """What share of the response's own column the filter takes away before anything is looked at."""
+    y = response_of(view, 0.0)[0]
+    rows = view.rows[view.ok[view.rows]]
+    if view.filter.sigma <= 0 or len(rows) < 2 or np.var(y[rows]) == 0:
+        return []
+    lost = 1 - float(np.var(view.filter(y, view.segment)[rows]) / np.var(y[rows]))
+    part = f"{100 * max(lost, 0.0):.3g} %"
+    return [f"the filter takes {part} of the mean square of {view.response.channel} away"]
+
+
+def lacking_names(scene: Scene, kind: str) -> list[str]:
+    """Names that the log has not what they need for."""
+    names = [n for n in NAMES.values() if kind in n.channels]
+    return [f"not looked for: {n.name}: {why}" for n in names if (why := n.lacks(scene))]
+
+
+def close(s: Selection) -> list[str]:
+    """Names (no smooth functions) that had evidence and failed elsewhere, each with its experiment."""
+    out = []
+    for r in s.refused:
+        name = r.what.split(" on ")[0].split(",")[0]
+        if r.why.startswith(CLOSE) and not r.what.startswith(UNKNOWN):
+            hint = NAMES[name].experiment if name in NAMES else "repeat the run"
+            out.append(f"{r.what} was close ({r.why}): {hint}")
+    return out
+
+
+def moves_with(s: Selection, bounds: list[str]) -> list[str]:
+    """Parameters whose columns this motion does not move apart; from the columns, not from the response."""
+    p = s.problem
+    named = [x.candidate for x in s.chosen if x.candidate.kind != "line"]
+    names = [label for label, _ in p.base_labels]
+    names += [f"{label} of {c.name}" for c in named for label, _ in c.labels]
+    columns = np.hstack([p.base, *[c.columns for c in named]])[p.train]
+    size = np.linalg.norm(columns, axis=0)
+    out = [
+        n
+        for n, v in zip(names, size, strict=False)
+        if v == 0 and n != SLOW and not any(x.startswith(n + ":") for x in bounds)
+    ]
+    at = np.flatnonzero(size > 0)
+    z = columns[:, at] / size[at]
+    gram = z.T @ z
+    likeness = np.abs(gram) - np.eye(len(at))
+    for k, v in enumerate(np.diag(np.linalg.pinv(gram, hermitian=True))):
+        if v > INFLATION and at[k] < len(names) and names[at[k]] != SLOW:
+            out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
+    return out
+
+
+def place_of(view: View, c: Candidate) -> tuple[Array, str]:
+    """What an effect of a rig is drawn over."""
+    at, unit = view.rows, view.angle_unit
+    if c.repeats is not None:
+        return (view.x[at] / (view.turn or 1.0) * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
+    if c.frequency is not None:
+        return (view.t[at] * c.frequency) % 1.0, f"phase of {c.frequency:.5g} Hz, turns"
+    if c.domain == "temperature" and "temperature" in view.columns:
+        return view.columns["temperature"][at], "temperature, degC"
+    table = {
+        "axis_angle": (view.x, f"position, {unit}"),
+        "velocity": (view.speed, f"speed, {unit}/s"),
+        "reversal": (view.since, f"travel since reversal, {unit}"),
+    }
+    x, label = table.get(c.domain, (view.clock, "time, s"))
+    return x[at], label
+
+
+def wound_up(view: View, s: Selection) -> float:
+    """rms, in the response's unit, of the effort's own noise through a shaft's wind-up that was found: its
+    column is noisy, the shaft winds up by the torque; 0 where none was."""
+    for c, beta in s.fitted:
+        if c.name == COMPLIANCE.name:
+            channel = next(k for k in WINDS if k in view.columns)
+            return abs(float(beta[0])) * (passed(view, view.columns[channel]) or 0.0)
+    return 0.0

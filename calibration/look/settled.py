@@ -1,0 +1,88 @@
+"""What of a response is settled before its names: filter, sign, and how sharply friction turns."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.arrays import Array
+from calibration.balances.candidate import waves
+from calibration.balances.filters import Filter
+from calibration.balances.problem import Problem
+from calibration.balances.view import STANDSTILLS, View, choose_rows, fade
+from calibration.inputs.run import Run, numbers
+from calibration.look.delay import Make, Timed, left_by_the_declared
+
+# times the mean square that a balance leaves behind the wide filter, by coefficients of two filters, at most.
+# ASSUMPTION: measured arms have 1.0 and 1.1 (ur10e), one whose joint is quick behind a coarse encoder 17
+DISAGREE = 2.0
+
+
+def one_filter(view: View, made: Callable[[], Problem]) -> None:
+    """Filter the response like the rates where coefficients fitted behind two filters are wrong behind one.
+
+    A narrower filter lets quick waves through that the position's rates cannot follow. Where the drive
+    accelerates as quickly, the response then holds what its inertia's column lacks, and every term is biased.
+    """
+    if view.rates <= view.sigma:
+        return
+    shown, two = (view.filter, view.rows), _terms(made())
+    view.filter = Filter(view.rates)
+    choose_rows(view)
+    p = made()
+    left = [float(np.mean((p.y - p.base @ x)[p.valid] ** 2)) for x in (two, _terms(p))]
+    if left[0] <= DISAGREE * left[1]:
+        view.filter, view.rows = shown
+
+
+def _terms(p: Problem) -> Array:
+    return np.asarray(np.linalg.lstsq(p.base[p.valid], p.y[p.valid], rcond=None)[0])
+
+
+def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
+    """How sharply friction turns with the speed, of STANDSTILLS: by what the declared terms leave on fitted
+    rows, beside the effects of `known` where there is something."""
+    shown = (view.standstill, view.direction)
+    delay = known.delay.parameters["delay"].value if known is not None and known.delay is not None else 0.0
+    s = known.found[0] if known is not None else None
+    effects = sum(s.effect(k) for k in range(len(s.chosen))) if s is not None else 0.0
+    left = []
+    for part in STANDSTILLS:
+        fade(view, part)
+        p = made(delay)
+        left.append(left_by_the_declared(view, replace(p, y=p.y - effects)))
+    view.standstill, view.direction = shown
+    return STANDSTILLS[int(np.argmin(left))]
+
+
+def few_values(records: list[Run], view: View, p: Problem) -> str:
+    """Why a response of fewer values than the model has terms (a torque's steps) tests nothing, or empty."""
+    channel, terms = view.response.channel, p.base.shape[1]
+    logged = numbers(records, channel)
+    values = len(np.unique(logged if len(logged) else p.y))
+    if values > terms:
+        return ""
+    return (
+        f"{channel} holds {values} values, the model has {terms} terms: no balance"
+        " can be tested with it; as response take a measured current or force"
+    )
+
+
+def turned(view: View, problem: Problem) -> list[str]:
+    """Turn the response's sign, in place, where masses and friction, taken together, come out negative: the
+    convention is the other one. What is said of it."""
+    r, rows, x = view.response, problem.train, problem.base
+    if not r.is_force or r.channel == "acceleration":
+        return []
+    if view.turn:  # a weight that nobody declared must not turn the sign
+        x = np.column_stack([x, waves(view.x[view.rows] / view.turn * 2 * np.pi, (1,))])
+    beta = np.linalg.lstsq(x[rows], problem.y[rows], rcond=1e-8)[0]
+    heavy = [k for k, (n, _) in enumerate(problem.base_labels) if n in ("inertia", "viscous", "coulomb")]
+    share = [float(beta[k] * np.std(x[rows, k])) for k in heavy]
+    if not share or sum(share) >= 0 or max(share) >= -0.2 * min(share):
+        return []
+    view.response = replace(r, gain=-r.gain)
+    return [
+        f"{r.channel}: points against the motion, so it is what acts on the drive, or the position"
+        " counts the other way; its sign is turned here, and so are the signs of what is found in it"
+    ]
