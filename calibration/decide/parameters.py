@@ -13,7 +13,7 @@ from calibration.decide.accept import tied_at_last
 from calibration.decide.refine import slopes, unseen
 from calibration.decide.scan import Contender
 from calibration.decide.selection import Selection
-from calibration.finding import Finding, Parameter
+from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.statistics.tails import student_reach
 
 
@@ -145,7 +145,7 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
         whole = replace(whole, frequency=whole.parameters["frequency"].value)
     sections = pairs_by_section(c.columns) if c.kind == "line" else [[]]
     pairs = min(len(section) for section in sections)
-    if c.harmonic is not None or c.stage is None or pairs < 2:
+    if c.harmonic is not None or c.stage is None or pairs < 2 or c.name == UNKNOWN:
         return [whole]
     beta, cov, (size, unit) = s.sizes(k), s.covariance(k), c.labels[0]
     out = []

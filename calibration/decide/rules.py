@@ -136,16 +136,18 @@ def within_bounds(resolved: float) -> Rule:
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:
-    """Whether an effect, or a harmonic of a line, goes further than the response does."""
+    """Whether a harmonic of a line goes further than the response does: it cancels against another."""
     c, rows = s.candidates[k], s.problem.valid
-    parts = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2 if c.kind == "line" else c.width)
-    return bool(np.ptp(parts.sum(axis=2), axis=0).max(initial=0.0) > np.ptp(s.problem.y[rows]))
+    if c.kind != "line" or c.name == UNKNOWN:
+        return False
+    waves = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2).sum(axis=2)
+    return bool(np.ptp(waves, axis=0).max(initial=0.0) > np.ptp(s.problem.y[rows]))
 
 
 def cancels(s: Selection, k: int) -> bool:
     """Whether harmonics of a line are far larger than their sum: over part of a turn they make any shape."""
     c = s.candidates[k]
-    if c.kind != "line" or c.width <= 2:
+    if c.kind != "line" or c.width <= 2 or c.name == UNKNOWN:
         return False
     waves = (c.columns * s.sizes(k))[s.problem.valid].reshape(int(s.problem.valid.sum()), -1, 2).sum(axis=2)
     return bool(np.var(waves.sum(axis=1)) < limits.OWN * np.sum(np.var(waves, axis=0)))

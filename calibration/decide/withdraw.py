@@ -13,7 +13,7 @@ from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
 from calibration.names.bearing_pass import of_no_stage
 from calibration.names.friction_warmup import OF_COULOMB
-from calibration.names.gravity_imbalance import of_a_motor
+from calibration.names.gravity_imbalance import once_a_turn
 from calibration.names.scene import Scene
 
 # share of the usual stroke: contacts slide after some hundred micrometres (Al-Bender, Lampaert, Swevers 2005)
@@ -85,7 +85,7 @@ def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> l
 
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
     """Findings of a balance of forces with the names that the log carries."""
-    named = [_turned_gap(_wide_loop(of_a_motor(of_no_stage(f, scene), scene), scene)) for f in findings]
+    named = [_turned_gap(_wide_loop(once_a_turn(of_no_stage(f, scene), scene), scene)) for f in findings]
     return _one_loop(named) if scene.force else named
 
 

@@ -64,7 +64,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         own = ((f, f.frequency or 0.0) for f in law.findings)
         effects += [f for f, hz in own if not any(abs(x - hz) < SAME_HZ * hz for x in found)]
     effects += electric.findings if electric is not None else []
-    effects.sort(key=lambda f: (f.of_column, f.name == UNKNOWN, -f.share))
+    effects.sort(key=lambda f: (f.of_column, f.name == UNKNOWN and not f.equivalent, -f.share))
     strange, a = [], agreement
     if a is not None and a.left > STILL_MISSING:
         strange = [

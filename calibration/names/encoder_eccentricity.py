@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 from calibration.balances.candidate import waves
+from calibration.finding import UNKNOWN
+from calibration.inputs.train import SHAFT
 from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
 from calibration.names.lines import SAME, line, over_place, stage_lines
 from calibration.names.name import RATES, SENSORS, Beside, Candidate, Finding, Name, Scene, candidate
@@ -26,7 +28,7 @@ def columns(s: Scene) -> list[Candidate]:
             if not any(abs(order - h) < SAME for order in have):
                 one = line(s, "encoder_eccentricity", h / turn, stage="axis", harmonic=h)
                 out += over_place(s, one, h / turn)
-    return [replace(c, twins=("gear_eccentricity",)) for c in out]
+    return [replace(c, twins=(*(c.twins if c.name == UNKNOWN else ()), SHAFT)) for c in out]
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

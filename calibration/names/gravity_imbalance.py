@@ -37,13 +37,16 @@ def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
     return tuple(dict.fromkeys(effect.name for effect in shown if effect.channel == "T"))
 
 
-def of_a_motor(f: Finding, s: Scene) -> Finding:
-    """Once per turn of a shaft that is declared as a motor, the motor's own force comes first."""
-    motors = [g for g in s.view.rig.stages if g.of_motor and forces_once_a_turn([g], s.turn)]
-    if f.name != NAME.name or not motors:
+def once_a_turn(f: Finding, s: Scene) -> Finding:
+    """A force once per turn: a weight comes first; on a shaft that is declared as a motor, its own force."""
+    if f.channel != "T" or s.pair is not None or f.harmonic != 1 or abs((f.order or 0.0) - 1) > SAME:
         return f
-    (own, *_), alike = forces_once_a_turn(motors, s.turn), (NAME.name, *f.equivalent)
-    return replace(f, name=own, stage=motors[0].name, equivalent=[x for x in alike if x != own])
+    motors = [g for g in s.view.rig.stages if g.of_motor and forces_once_a_turn([g], s.turn)]
+    name = forces_once_a_turn(motors, s.turn)[0] if motors else NAME.name if not lacks(s) else f.name
+    if f.name not in (NAME.name, *forces_once_a_turn(s.view.rig.stages, s.turn)) or f.name == name:
+        return f
+    alike = [x for x in dict.fromkeys((f.name, *f.equivalent)) if x != name]
+    return replace(f, name=name, stage=motors[0].name if motors else "axis", equivalent=alike)
 
 
 def columns(s: Scene) -> list[Candidate]:

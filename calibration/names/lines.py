@@ -8,7 +8,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
-from calibration.finding import Finding
+from calibration.finding import UNKNOWN, Finding
 from calibration.inputs.declaration import Stage
 from calibration.names.candidates import Size, candidate
 from calibration.names.inplant import SIDES, Facts, Made, motor_of, value
@@ -104,7 +104,10 @@ def _of_rig(s: Scene, stage: Stage, mine: list[Candidate]) -> list[Candidate]:
     beside, weighs = beside_stage(s, stage), s.force and s.view.turn is not None
     # once per turn of an angle: a weight that hangs off it has the same columns
     others = [c for c in mine if not weighs or abs((c.order or 0.0) - 1) >= SAME or c.per_run]
-    return [replace(c, neighbours=beside) for c in [*others, *as_one(mine)]]
+    whole, turns = as_one(mine), s.span / (stage.period or s.span)
+    if turns < 1:  # nothing comes again: together they are any function of the place, and so called
+        whole = [] if s.force else [replace(c, name=UNKNOWN, twins=(c.name, *c.twins)) for c in whole]
+    return [replace(c, neighbours=beside) for c in [*others, *whole]]
 
 
 def _of_axis(s: Scene, mine: list[Candidate]) -> list[Candidate]:
