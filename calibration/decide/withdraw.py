@@ -1,4 +1,4 @@
-"""What fitted effects may be called, and which findings keep their name once everything has been tried."""
+"""Names that fitted effects may bear, and which of them they keep once everything has been tried."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
