@@ -40,7 +40,10 @@ AS_GOOD = 0.1
 
 def counter_share(frame: Frame) -> Array:
     """Counter torque of every row (n,), of the effort."""
-    return np.array([r.scales["counter_torque"] for r in frame.runs])[frame.run]
+    share = np.full(len(frame.t), frame.scale["counter_torque"])
+    for k, r in enumerate(frame.runs):
+        share[frame.run == k] = r.scales["counter_torque"]
+    return share
 
 
 def shares(frame: Frame, effort: Array) -> Array:

@@ -56,7 +56,7 @@ class Law:
 class Command(Law):
     """Of a rig: the base is an offset per file, or per piece where the law integrates.
 
-    `gains` (k,) by `labels`, `sizes` with their errors; `follows` (n, k): terms that follow the reference;
+    `gains` (k,) by `labels`, `sizes` with their errors. `follows` (n, k): terms that follow the reference.
     `forward` (n, 3): feed-forward of rate, acceleration and friction; `rms` of the fitted residual.
     """
 

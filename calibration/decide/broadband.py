@@ -198,8 +198,10 @@ def pick_up(frame: Frame) -> Finding | None:
 
 
 def _lines(frame: Frame, name: str) -> Array:
-    """The strongest fast line of a current in every run (n, 5): Hz, power over the median, amplitude in A,
-    its share of the fast current's variance, bins looked at."""
+    """The strongest fast line of a current in every run (n, 5).
+
+    Hz, power over the median, amplitude in A, share of the fast current's variance, bins looked at.
+    """
     out = []
     dt = frame.period_s
     x, ok = fill(frame.columns[name], frame.run)

@@ -81,9 +81,8 @@ def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[
     span, turn, x = scene.span or 1.0, scene.view.turn or 1.0, scene.view.x[scene.view.rows]
 
     def wrong_of(k: int, c: Candidate) -> list[Wrong]:
-        scaled = c.name in NAMES and NAMES[c.name].scaled
         whole_stage = c.harmonic is None and c.stage is not None
-        if k >= MOST_LINES or c.kind != "line" or not c.order or scaled or whole_stage:
+        if k >= MOST_LINES or c.kind != "line" or not c.order or NAMES[c.name].scaled or whole_stage:
             return []
         order, _ = c.fixed.get("order", (c.order, ""))
         label = s.problem.session if c.per_run else np.zeros_like(s.problem.session)

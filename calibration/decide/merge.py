@@ -35,7 +35,7 @@ def traces(findings: list[Finding], kept: list[Finding]) -> list[tuple[str, str,
 
 
 def _beside(f: Finding) -> Beside:
-    return NAMES[f.name].beside if f.name in NAMES else Beside()
+    return NAMES[f.name].beside
 
 
 def _resolve_gain(findings: list[Finding]) -> list[Finding]:

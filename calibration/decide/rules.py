@@ -20,7 +20,6 @@ from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
-from calibration.names.name import WORTH
 from calibration.names.structural_mode import MOST_DAMPED
 from calibration.statistics.regression import under
 from calibration.statistics.thresholds import SURE_Z
@@ -155,7 +154,7 @@ def cancels(s: Selection, k: int) -> bool:
 
 def worth_little(s: Selection) -> tuple[int, str] | None:
     """The effect whose absence the held-out rows notice least, where that is hardly at all."""
-    least = [NAMES[c.name].worth if c.name in NAMES else WORTH for c in s.candidates]
+    least = (NAMES[c.name].worth for c in s.candidates)
     cost = [(_left(x) / _left(s) - 1.0) / w for x, w in zip(_each_left_out(s), least, strict=True)]
     k = int(np.argmin(cost))
     return (k, "adds too little to what is left when it is left out") if cost[k] < 1.0 else None
@@ -191,7 +190,7 @@ def displaced(smooth: Contender) -> Rule:
     def why(s: Selection, k: int) -> str:
         c = s.candidates[k]
         # knots follow weights and lines; friction of one harmonic is a guess at what knots show
-        if c.domain != domain or (domain == "axis_angle" and not _waves_of_friction(c)):
+        if c.domain != domain or (domain == "axis_angle" and not NAMES[c.name].waves_of_friction):
             return ""
         alone, both = _left(s.put(k, smooth)), _left(s.keep([*s.chosen, smooth]))
         little = alone - both < limits.REMAINDER * (s.held.before**2 - both)
@@ -307,11 +306,7 @@ def _turned(s: Selection) -> str:
         if name in POSITIVE and was[name].value > 0 > x.value:
             return name
         if name == "coulomb" and x.value > 0:
-            waves = [float(np.hypot(*b)) for c, b in s.fitted if _waves_of_friction(c) and c.width == 2]
-            if max(waves, default=0.0) > x.value + SURE_Z * x.error:
+            pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)
+            if max((float(np.hypot(*b)) for b in pairs), default=0.0) > x.value + SURE_Z * x.error:
                 return "friction at some places"
     return ""
-
-
-def _waves_of_friction(c: Candidate) -> bool:
-    return c.name in NAMES and NAMES[c.name].waves_of_friction

@@ -1,4 +1,4 @@
-"""What fitted effects may be called, and which findings keep their name once everything has been tried."""
+"""Names that fitted effects may bear, and which of them they keep once everything has been tried."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -103,7 +103,7 @@ def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]
     out = []
     for f in findings:
         was, now = (known, coulomb) if OF_COULOMB in f.parameters else (before, after)
-        parts = NAMES[f.name].relative if f.name in NAMES and was > 0 and now > 0 else ()
+        parts = NAMES[f.name].relative if was > 0 and now > 0 else ()
         sizes = {size: f.parameters[size] for size in parts if size in f.parameters}
         out.append(f.having(**{k: p.times(was / now) for k, p in sizes.items() if p.unit.startswith("1")}))
     return out
@@ -118,14 +118,9 @@ def _of_all(f: Finding, whole: float) -> Finding:
     return replace(f, parameters=kept | {"delay": kept["delay"].times(part)})
 
 
-def _loop(f: Finding) -> tuple[str, ...]:
-    """Parameters that are the width of a loop after every reversal."""
-    return NAMES[f.name].loop if f.name in NAMES else ()
-
-
 def _wide_loop(f: Finding, scene: Scene) -> Finding:
     """A loop over a good part of the stroke has no name: gears have gaps of minutes of arc."""
-    key = next((k for k in _loop(f) if k in f.parameters), None)
+    key = next((k for k in NAMES[f.name].loop if k in f.parameters), None)
     if key is None:
         return f
     travel, stroke = f.parameters[key].value, scene.stroke
@@ -151,7 +146,7 @@ def _one_loop(findings: list[Finding]) -> list[Finding]:
     out: list[Finding] = []
     first: int | None = None
     for f in findings:
-        if f.domain == "reversal" and (_loop(f) or f.name == UNKNOWN):
+        if f.domain == "reversal" and (NAMES[f.name].loop or f.name == UNKNOWN):
             if first is not None:
                 out[first] = out[first].noted(f"its shape needs a second element ({f.name})")
                 continue

@@ -29,18 +29,13 @@ def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     try:
         with MDF(path) as file:
             have = sorted(name for name in file.channels_db if name not in ("t", TIME))
-            got = {name: file.get(name, *_first(file, name)) for name in wanted if name in file.channels_db}
+            known = (name for name in wanted if name in file.channels_db)
+            got = {name: file.get(name, *file.channels_db[name][0]) for name in known}  # of several the first
     except (MdfException, OSError, ValueError) as error:
         text = " ".join(str(error).split())
         raise CalibrationInputError(path, f"is no MDF file that can be read ({text})") from None
     columns = {name: (signal.timestamps, signal.samples) for name, signal in got.items() if name != TIME}
     return [_joined(path, wanted, columns, have)]
-
-
-def _first(file: Any, name: str) -> tuple[int, int]:
-    """Group and place of a channel; of several of that name the first."""
-    group, place = file.channels_db[name][0]
-    return int(group), int(place)
 
 
 def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:

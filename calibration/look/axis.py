@@ -22,7 +22,7 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
 from calibration.look.axis_channels import analyse
 from calibration.look.axis_result import SENSORS, AxisResult
-from calibration.look.lacks import absent_columns, lacks, not_identifiable
+from calibration.look.lacks import COLUMNS, lacks, not_identifiable
 from calibration.look.looked import (
     Balance,
     Looked,
@@ -65,6 +65,7 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
     balances = [replace(b, before=before.get(b.key)) for b in balances]
     balances = [_with_missing(result, b) for b in balances]
     doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]
+    absent = {key: what for key, what in COLUMNS.items() if key not in result.selections}
     effects, needs = unnamed_where_missing(effects, [*lacks(result, balances), *doubts], balances)
     return Looked(
         title=title,
@@ -74,7 +75,10 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
         held_out=result.held_out,
         not_identifiable=not_identifiable(result),
         refused=[*withdrawn, *traces(result.findings, named), *result.refused],
-        notes=[*(n for r in runs for n in r.notes), *absent_columns(result)],
+        notes=[
+            *(n for r in runs for n in r.notes),
+            *(f"channel {key} was not looked at: the log lacks {what}" for key, what in absent.items()),
+        ],
         earned=AXIS_EARNED if emulated else None,
         header=header,
         axis=result,

@@ -44,9 +44,9 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
 
 
 def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
-    """What is selected, the effort where it belongs; and remarks on an offset that wanders.
+    """The selection with the effort where it belongs, and remarks on an offset that wanders.
 
-    What begins at some time looks like a walk before it has a name, so the offset is tried at rest, too.
+    An effect that begins at some time looks like a walk before it has a name: the offset is tried at rest.
     """
     response, remarks = view.response, list[str]()
 
@@ -98,7 +98,7 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
 
 
 def _told(view: View, when: Timed, notes: list[str], remarks: list[str], tell: Tell) -> Balance:
-    """What the answer is made of: floor, names that stay, what no name explains, controls."""
+    """The parts of the answer: floor, names that stay, what no name explains, controls."""
     channel, unit = view.response.channel, view.angle_unit
     (s, scene, bounds), delay = when.found, when.delay
     s = weight_first(told_by_the_clock(where_known(s, view), scene), scene)

@@ -10,6 +10,7 @@ from calibration.decide.tolerance import unsettled_reading
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
 
+#: what a log lacks that has no such channel
 COLUMNS = {
     "T": "the currents (adc_a, adc_b): without them there is neither torque nor volts",
     "S": "the incremental encoder (velocity)",
@@ -70,12 +71,3 @@ def not_identifiable(result: AxisResult) -> list[str]:
         "resistance": e is None,
     }
     return [name for name, open_ in unsure.items() if open_]
-
-
-def absent_columns(result: AxisResult) -> list[str]:
-    """Sentences on channels that the log has no columns for."""
-    return [
-        f"channel {key} was not looked at: the log lacks {what}"
-        for key, what in COLUMNS.items()
-        if key not in result.selections
-    ]

@@ -1,4 +1,4 @@
-"""What is said of a response beside its effects: what its filter takes, what this motion cannot tell."""
+"""Notes on a response beside its effects: what its filter takes, what this motion cannot tell."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What of a response is settled before its names: filter, sign, and how sharply friction turns."""
+"""A response before its names are looked for: its filter, its sign, and how sharply friction turns."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -69,8 +69,10 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
 
 
 def turned(view: View, problem: Problem) -> list[str]:
-    """Turn the response's sign, in place, where masses and friction, taken together, come out negative: the
-    convention is the other one. What is said of it."""
+    """Turn the response's sign, in place, where masses and friction together come out negative.
+
+    The sign convention is then the other one; a note says so.
+    """
     r, rows, x = view.response, problem.train, problem.base
     if not r.is_force or r.channel == "acceleration":
         return []

@@ -50,8 +50,10 @@ def grid(
     beside: Mapping[str, tuple[float, str]] = MappingProxyType({}),
     **more: Any,
 ) -> list[Candidate]:
-    """`tried` at every value `along` one parameter (its name, values and unit), of which `step` is a small
-    change; `beside` it stand parameters that are not searched for."""
+    """`tried` at every value `along` one parameter: its name, values and unit; `step` is a part of a value.
+
+    `beside`: parameters that are not searched for.
+    """
     called, values, unit = along
     at = ({called: (float(value), unit), **beside} for value in values)
     return [tried(name, shape, *sizes, at=one, steps=(step * one[called][0],), **more) for one in at]

@@ -33,12 +33,11 @@ def steps(
     surely: float = 0.0,
     **more: Any,
 ) -> list[Candidate]:
-    """Of an effect that begins at some time: candidates at one time of the clock that all files share, and,
-    `in_every_run`, at the same time of every file, where a change's length is not told from a short one.
+    """An effect that begins at one time of the clock that all files share, or at the same time of every file.
 
-    weigh: columns (n_fitted,) from a step (n,) at full rate. lengths (of the time): those that are tried of
-    one that takes its time. surely (of the time): how far onset and length lie off, where that is more than
-    the grid's own. more: `Candidate`'s fields.
+    In the latter (`in_every_run`) a change's length is not told from a short one. weigh: columns (n_fitted,)
+    from a step (n,) at full rate. lengths (of the time): those that are tried. surely (of the time): how far
+    onset and length lie off, where that is more than the grid's own. more: `Candidate`'s fields.
     """
     out = []
     for clock, since in s.clocks.items():

@@ -83,12 +83,10 @@ def _checked(model: PlantModel) -> PlantModel:
 
 def convert(f: Finding, facts: Facts) -> Made:
     """What `f` becomes in the plant file: effects, changed numbers, or a remark on what it cannot say."""
-    name = NAMES.get(f.name)
-    if name is None:
-        return Made(remarks=[f"{f.name}: described in the report, not a number of the plant file"])
-    if name.changed is not None:
-        return Made(remarks=[f"{f.name}: in the plant as axes.{facts.axis}.{name.changed.written}"])
-    return name.to_plant(f, facts)
+    name = NAMES[f.name]
+    if name.changed is None:
+        return name.to_plant(f, facts)
+    return Made(remarks=[f"{f.name}: in the plant as axes.{facts.axis}.{name.changed.written}"])
 
 
 def correct(

@@ -43,9 +43,9 @@ def of(sizes: dict[str, float], seed: int = 0) -> Selection:
 
 
 def test_sizes_residual_and_effects_are_those_of_the_joint_fit() -> None:
-    s = of({"drag": 2.0, "load": -1.0})
+    s = of({"brake_drag": 2.0, "load_friction": -1.0})
     assert [float(s.sizes(k)[0]) for k in range(2)] == pytest.approx([2.0, -1.0], abs=0.05)
-    assert [c.name for c, _ in s.fitted] == ["drag", "load"]
+    assert [c.name for c, _ in s.fitted] == ["brake_drag", "load_friction"]
     rest = s.problem.y - s.problem.base @ s.after.beta[:1] - s.effect(0) - s.effect(1)
     assert s.residual() == pytest.approx(rest)
     assert s.covariance(0).shape == (1, 1) and s.covariance(0)[0, 0] > 0
@@ -54,22 +54,22 @@ def test_sizes_residual_and_effects_are_those_of_the_joint_fit() -> None:
 
 
 def test_without_and_put_give_what_is_left_and_say_why() -> None:
-    s = of({"drag": 2.0, "load": -1.0})
+    s = of({"brake_drag": 2.0, "load_friction": -1.0})
     less = s.without(1, "too small")
-    assert [c.name for c in less.candidates] == ["drag"] and [c.name for c in s.candidates] == [
-        "drag",
-        "load",
+    assert [c.name for c in less.candidates] == ["brake_drag"] and [c.name for c in s.candidates] == [
+        "brake_drag",
+        "load_friction",
     ]
-    assert [(r.what, r.why) for r in less.refused] == [("load", "too small")] and s.refused == []
+    assert [(r.what, r.why) for r in less.refused] == [("load_friction", "too small")] and s.refused == []
     assert s.without(0).refused == []
     assert less.held.after > s.held.after and less.held.before == s.held.before
     back = less.put(0, s.chosen[1])
-    assert [c.name for c in back.candidates] == ["load"]
+    assert [c.name for c in back.candidates] == ["load_friction"]
     assert s.keep([]).held.share == 0.0
 
 
 def test_the_same_effects_on_other_rows() -> None:
-    s = of({"drag": 2.0})
+    s = of({"brake_drag": 2.0})
     p = replace(s.problem, valid=s.problem.valid & (np.arange(ROWS) % 7 != 0))
     there = s.on(p)
     assert there.after.rows < s.after.rows and there.problem is p
@@ -93,27 +93,29 @@ def test_a_rule_is_asked_again_after_everything_it_left_out() -> None:
 
 
 def test_what_hardly_adds_anything_is_left_out_and_what_does_stays() -> None:
-    assert [c.name for c in leave_out(of({"drag": 2.0, "none": 0.0}), worth_little).candidates] == ["drag"]
-    assert len(leave_out(of({"drag": 2.0, "load": 1.0}), worth_little, harmful).chosen) == 2
+    assert [
+        c.name for c in leave_out(of({"brake_drag": 2.0, "cable_wrap": 0.0}), worth_little).candidates
+    ] == ["brake_drag"]
+    assert len(leave_out(of({"brake_drag": 2.0, "load_friction": 1.0}), worth_little, harmful).chosen) == 2
 
 
 def test_a_small_name_beside_one_that_explains_nearly_all_is_its_remainder() -> None:
-    large = of({"drag": 5.0, "load": 0.3})
-    assert dominant(large) == "drag"
+    large = of({"brake_drag": 5.0, "load_friction": 0.3})
+    assert dominant(large) == "brake_drag"
     (refused,) = leave_out(large, remainder).refused
-    assert refused.what == "load" and "a remainder of drag" in refused.why
-    assert dominant(of({"drag": 2.0, "load": 2.0})) == ""
+    assert refused.what == "load_friction" and "a remainder of brake_drag" in refused.why
+    assert dominant(of({"brake_drag": 2.0, "load_friction": 2.0})) == ""
 
 
 def test_without_held_out_rows_nothing_is_compared() -> None:
-    s = of({"drag": 2.0, "none": 0.0})
+    s = of({"brake_drag": 2.0, "cable_wrap": 0.0})
     blind = s.on(replace(s.problem, held=np.zeros(ROWS, dtype=bool)))
     assert np.isnan(blind.held.after) and dominant(blind) == ""
     assert len(leave_out(blind, worth_little, remainder, harmful).chosen) == 2
 
 
 def test_names_are_for_what_is_above_the_floor() -> None:
-    faint, clear = of({"drag": 0.05}), of({"drag": 2.0})
+    faint, clear = of({"brake_drag": 0.05}), of({"brake_drag": 2.0})
     for s in (faint, clear):
         s.problem.floor = 10.0
     assert below_floor(faint) is not None  # most of what is left stays
