@@ -22,6 +22,8 @@ RINGS = 0.145
 BELOW = 0.5
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
 FEWEST_PERIODS = 8.0
+# Hz. ASSUMPTION: slower than the first mode of a steerable structure; antennas of 70 to 100 m begin above it
+SLOWEST_HZ = 0.5
 # Hz, on a telescope's axis: 4.5 % apart, as wide as a mode of 2 % damping
 AXIS_HZ = np.geomspace(1.8, 14.2, 48)
 # part of critical, tried there: either side of what structures have (Altintas 2012)
@@ -46,7 +48,7 @@ def columns(s: Scene) -> list[Candidate]:
         a, way = np.asarray(v.second(v.x)), np.sign(v.direction[np.abs(v.direction) > HALF])
         # a mode rings within one of the usual moves, and often in the log; slower, it is the motion
         moves = 1 + np.count_nonzero(np.diff(way))
-        lowest = max(FEWEST_PERIODS, float(moves)) / max(len(v.t) * v.period_s, 1e-9)
+        lowest = max(max(FEWEST_PERIODS, float(moves)) / max(len(v.t) * v.period_s, 1e-9), SLOWEST_HZ)
         corner = 1 / (2 * np.pi * max(v.wide, 1.0) * v.period_s)
         modes = [(f, DAMPING) for f in np.geomspace(lowest, max(BELOW * corner, 2 * lowest), COUNT)]
 
