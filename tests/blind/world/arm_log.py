@@ -32,17 +32,20 @@ def sized(
 
 
 def make(order: Order, rng: Rng, number: int) -> Made:
-    """Files, rig file, truth. Another arm is drawn where no plausible size is seen in this one."""
+    """Files, rig file, truth. Another arm is drawn where no plausible size is seen in this one, or its loop
+    runs away."""
     name = order.names[0] if order.names else ""
     for _ in range(40):
-        made = _one(order, rng, number, name)
+        if (found := _one(order, rng, number, name)) is None:
+            continue
+        made = found
         tells = order.cell == "short" or made.drive["seen_over_sound"] > LEAST_SEEN
         if not name or (made.reached > 0.9 * order.ratio and tells):
             return made
     return made
 
 
-def _one(order: Order, rng: Rng, number: int, name: str) -> Made:
+def _one(order: Order, rng: Rng, number: int, name: str) -> Made | None:
     a, weight = arm.draw(rng)
     if order.cell == "short":
         a.files, a.seconds = 1, wide(rng, 1.5, 4.0)
@@ -72,6 +75,8 @@ def _one(order: Order, rng: Rng, number: int, name: str) -> Made:
         effect.hidden.raw = effect.values(size)
         shares = np.array(seen(a, runs, declares, number)) / np.array(sound)
         tells = float(np.nanmax(shares)) if np.isfinite(shares).any() else 0.0
+    if not all(np.isfinite(rows).all() for rows, _ in runs):
+        return None
     files, rig = _tables(order, rng, a, runs, declares, two, number)
     drive = {
         **a.values,
