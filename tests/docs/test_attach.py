@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import can
+import cantools
 import pytest
 import serial
 from alpaca.telescope import Telescope
@@ -183,6 +184,27 @@ def test_a_door_is_attached_to_as_the_page_says(
         pytest.skip("needs a kernel with vcan and uhid: make guest")
     monkeypatch.chdir(served)
     assert CHECKS[row.option](row.code), row
+
+
+def test_the_host_of_the_page_moves_an_axis_by_a_degree(served: Path) -> None:
+    """The program as it stands there; where the axis is, another program hears."""
+    program = text_of("docs/guides/attach-a-host.md").partition("```python\n")[2].partition("```")[0]
+    names: Any = cantools.database.load_file(ROOT / "bus/protocol/schmidt.dbc")
+    position = names.get_message_by_name("POSITION_DEC_POSITION")
+
+    def counts() -> int:
+        with can.Bus(interface="udp_multicast", channel="239.74.163.2") as bus:
+            heard = (bus.recv(WAIT_S) for _ in range(10_000))
+            frame = next(f for f in heard if f is not None and f.arbitration_id == position.frame_id)
+        return int(names.decode_message(frame.arbitration_id, frame.data)["Position"])
+
+    before = counts()
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, timeout=120
+    )
+    assert done.stdout.endswith("arrived\n"), done.stderr
+    degree = 2**29 / 360  # counts of the encoder
+    assert abs(counts() - before - degree) < 0.02 * degree
 
 
 @pytest.mark.skipif(shutil.which("indiserver") is None, reason="indi-bin is not installed")
