@@ -7,7 +7,7 @@ from calibration.inputs.declaration import Stage
 from calibration.inputs.train import MESH, SHAFT
 from calibration.names.freelines import free_lines
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.lines import SAME
+from calibration.names.lines import has_train
 from calibration.names.motor_cogging import NAME as COGGING
 from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Finding, Name, Scene
 
@@ -20,7 +20,7 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     if s.pair is not None:
         return f
     stage, harmonic = _harmonic_of(f, s)
-    if stage is None and any(_within(g, s) for g in s.view.rig.stages):
+    if stage is None and has_train(s):
         return f
     name = (stage.kind if stage else None) or SHAFT
     alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, MESH, COGGING.name, NAME.name]) if x != name]
@@ -30,12 +30,6 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
     shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)
     return shaft.noted(f"the order's interval holds {harmonic} times that of {stage.name}")
-
-
-def _within(stage: Stage, s: Scene) -> bool:
-    """Whether a stage shows that the train is declared: it is the motor, or quicker than the axis."""
-    quicker = s.view.turn is None or (stage.period or s.turn) < s.turn * (1 - SAME)
-    return stage.period is not None and (quicker or stage.of_motor)
 
 
 def _harmonic_of(f: Finding, s: Scene) -> tuple[Stage | None, int]:

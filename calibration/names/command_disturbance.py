@@ -11,7 +11,7 @@ from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
 from calibration.names.candidates import tried
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, on_clock, spectral_lines
+from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, has_train, on_clock, spectral_lines
 from calibration.names.name import FORCE, SEARCHED_WORTH, SPEED, VOLTS, Array, Candidate, Finding, Name, Scene
 from calibration.names.structural_mode import NAME as MODE
 from calibration.statistics.orders import Wanted, standing_out
@@ -78,7 +78,8 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
                 hertz = [k * p[0] for k in overtones if k * p[0] < top]
                 return np.hstack([sine_columns(t * f, files) * v.filter.gain(f * v.period_s) for f in hertz])
 
-            more["twins"] = places if len(overtones) > 1 else (MODE.name, *places)
+            rings = len(overtones) == 1 and not MODE.lacks(s)
+            more["twins"] = (MODE.name, *places) if rings else places
             at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / length, ("amplitude", s.unit)
             out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))
     return out
@@ -95,7 +96,7 @@ def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
         harmonic = round(rate * (g.period or 0.0))
         if g.period and harmonic in g.orders and abs(rate - harmonic / g.period) * s.span < 1.0:
             return None
-    return (SHAFT, PASSED)
+    return (PASSED,) if has_train(s) else (SHAFT, PASSED)
 
 
 def _of_volts(s: Scene) -> list[Candidate]:

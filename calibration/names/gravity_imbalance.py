@@ -16,6 +16,8 @@ from plant.evaluate import evaluate, signals
 
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
+# turns: what carries a weight is hardly swung round more often. ASSUMPTION
+SWUNG = 2.0
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
 SLOPE_TURN = 1 / 72
 
@@ -38,10 +40,11 @@ def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
 
 
 def once_a_turn(f: Finding, s: Scene) -> Finding:
-    """A force once per turn: a weight comes first; on a shaft that is declared as a motor, its own force."""
+    """A force once per turn: a weight first; of a declared motor that turns on and on, its own force."""
     if f.channel != "T" or s.pair is not None or f.harmonic != 1 or abs((f.order or 0.0) - 1) > SAME:
         return f
-    motors = [g for g in s.view.rig.stages if g.of_motor and forces_once_a_turn([g], s.turn)]
+    turning = s.view.rig.stages if s.span > SWUNG * s.turn else ()
+    motors = [g for g in turning if g.of_motor and forces_once_a_turn([g], s.turn)]
     name = forces_once_a_turn(motors, s.turn)[0] if motors else NAME.name if not lacks(s) else f.name
     if f.name not in (NAME.name, *forces_once_a_turn(s.view.rig.stages, s.turn)) or f.name == name:
         return f

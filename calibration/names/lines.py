@@ -84,6 +84,16 @@ def on_clock(s: Scene, rate: float) -> float:
     return abs(rate * speed) if rate * slip < SLIP else 0.0
 
 
+def has_train(s: Scene) -> bool:
+    """Whether the rig file has the train: a stage that is the motor, or that turns quicker than the axis."""
+
+    def within(g: Stage) -> bool:
+        quicker = s.view.turn is None or (g.period or s.turn) < s.turn * (1 - SAME)
+        return g.period is not None and (quicker or g.of_motor)
+
+    return any(within(g) for g in s.view.rig.stages)
+
+
 def of_stage(
     s: Scene, stage: Stage, blank: Candidate, weight: Array | None = None, turns: float | None = None
 ) -> list[Candidate]:
