@@ -9,6 +9,8 @@ from plant.effects import signals as sig
 from plant.evaluate import evaluate, signals
 from plant.parts import EffectModel, Number
 from plant.plant import Plant
+from plant.wind import INTENSITY, LEE, share
+from plant.wind import torque as torque_of
 from tests.plant.bench import SECOND, with_effect
 
 STEP_S = 0.0005  # the plant's grid
@@ -58,3 +60,22 @@ def test_it_is_the_seeds_and_the_times() -> None:
     for k in range(1, 101):
         often.advance(k * SECOND // 100)
     assert np.array_equal(once.world, often.world)
+
+
+def test_the_torque_goes_with_the_square_of_the_speed() -> None:
+    mean, deviation, time = torque_of(10.0)
+    assert mean == pytest.approx(0.5 * 1.0 * 100.0 * 1.0 * 1.2 * 0.33)  # dynamic pressure, area, arm
+    assert deviation / mean == pytest.approx(2 * INTENSITY)  # of a square, first order (Davenport 1961)
+    assert time == pytest.approx(0.1)  # an eddy of a metre passes
+    assert torque_of(20.0)[0] == pytest.approx(4 * mean)
+    squares = (10.0 * (1 + INTENSITY * np.random.default_rng(1).standard_normal(100_000))) ** 2
+    assert deviation / mean == pytest.approx(squares.std() / 100.0, rel=0.03)
+    assert torque_of(0.0)[:2] == (0.0, 0.0)
+
+
+def test_the_dome_keeps_off_more_the_farther_the_slit_looks_away() -> None:
+    shares = [share(np.radians(angle), 1.0) for angle in range(0, 181, 5)]
+    assert shares[0] == 1.0 and shares[-1] == LEE and sorted(shares, reverse=True) == shares
+    assert len(set(shares[:17])) == 17  # to 80 deg it falls
+    assert share(np.radians(-40), 1.0) == pytest.approx(share(np.radians(400), 1.0))
+    assert share(0.0, 0.0) == 0.0 and share(0.0, 0.5) == 0.5

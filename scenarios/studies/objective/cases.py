@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from bus.protocol import AxisParameter
 from plant.model import with_effects
 from plant.parts import EffectModel, PlantModel
-from scenarios.studies.objective.wind import SPEEDS_M_S, wind
+from plant.wind import wind
 
 EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
 """At the catalogue's default size (`schmidt effects NAME`)."""
 STARTS = 8
+SPEEDS_M_S = (1.0, 3.0, 10.0)
+"""Of the wind in the slit."""
 FIRST_DEG, LAST_DEG = 85.0, 265.0
 """Of the absolute encoder: 95 deg before the middle of the travel to 85 deg after it."""
 

@@ -7,12 +7,12 @@ import pytest
 
 from plant.model import load, with_effects
 from plant.parts import EffectModel, Number
+from plant.wind import wind
 from scenarios.language.firmware import FIRMWARES
 from scenarios.studies.objective.bench import hold
 from scenarios.studies.objective.cases import cases, starts
 from scenarios.studies.objective.run_holds import objective
 from scenarios.studies.objective.table import Row, line
-from scenarios.studies.objective.wind import wind
 from scenarios.studies.options import ObjectiveOptions
 
 LOW = "low_preload_motor_units"
