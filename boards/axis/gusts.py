@@ -14,10 +14,10 @@ _SLOW_SHIFT: Final = 4
 _WINDOW_TICKS: Final = 1024
 """5.12 s: a start from rest shakes for three, so it is never loud in two windows one after the other."""
 _LOUD: Final = 13107 * _WINDOW_TICKS
-"""0.2 counts a tick, Q16: between 0.09, the most that a default effect leaves in still air, and the 0.35 of a
-wind of 0.3 N m, where both sets of gains are equal (`low_preload_motor_units`)."""
+"""0.2 counts a tick, Q16. In still air default effects leave 0.09 at most; a wind of 0.3 N m leaves 0.37
+(`low_preload_motor_units`)."""
 _QUIET: Final = 9175 * _WINDOW_TICKS
-"""0.14 counts: the other gains leave 0.7 of that wind; as much as commutation ripple leaves with them."""
+"""0.14 counts: the other gains leave 0.26 of that wind, and of commutation ripple no more than this."""
 
 
 class Gusts:

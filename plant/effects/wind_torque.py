@@ -1,7 +1,7 @@
 """Wind on the tube: a mean and gusts with von Karman's spectrum.
 
-White noise through three lags has that spectrum within 0.35 dB up to 2 pi tau f = 300; a tube smaller than
-its eddies feels the square of the wind's speed, so torque and speed have one spectrum (Davenport 1961).
+White noise through three lags has that spectrum within 0.35 dB up to 2 pi tau f = 300. A tube smaller than
+its eddies feels the square of the wind's speed. So torque and speed have one spectrum (Davenport 1961).
 """
 
 from math import exp, floor, sqrt
