@@ -8,6 +8,7 @@ import pytest
 from boards.axis.gusts import Gusts
 from bus.protocol import AxisParameter, Opcode
 from bus.protocol.scales import rate_q16
+from scenarios.native import compiled
 from tests.boards.lab import Lab
 
 ONE = 1 << 16
@@ -52,6 +53,7 @@ def test_B1_what_gears_leave_and_a_start_are_no_wind() -> None:
     )
 
 
+@pytest.mark.skipif(compiled(), reason="a private number of the plain class")
 def test_B1_no_window_overflows() -> None:
     gusts = Gusts()
     for k in range(WINDOW - 1):
