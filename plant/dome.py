@@ -53,6 +53,10 @@ class DomePort:
         """Shutter motor: 1 opens, -1 closes, 0 off."""
         self._shutter.drive(t_ns, direction)
 
+    def azimuth(self, t_ns: int) -> float:
+        """Where the slit looks, deg from the encoder's zero, unbounded."""
+        return self._dome.at(t_ns)
+
     def encoder(self, t_ns: int) -> int:
         """Counts of the rail's encoder, 0..3599."""
         return round(self._dome.at(t_ns) * COUNTS / 360.0) % COUNTS

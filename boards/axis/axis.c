@@ -13,6 +13,9 @@ _Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
 #define Q16 INT32_C(65536)
 #define SHARE_SHIFT 5 /* counter.py */
 #define Q18 INT64_C(262144)
+#define GUST_TICKS 1024
+#define GUST_LOUD (INT32_C(13107) * GUST_TICKS)
+#define GUST_QUIET (INT32_C(9175) * GUST_TICKS)
 #define UNITS_PER_STEP INT32_C(55125) /* Q18 counts in a step of the absolute encoder, exactly */
 #define COUNTS_PER_TURN INT32_C(112896000)
 #define STEPS_MASK INT32_C(0x1FFFFFFF)
@@ -49,8 +52,8 @@ enum { /* parameters by number */
     BIAS = 40, LOCK, BLEND, PARAMETERS
 };
 enum { /* settings by place: boards/axis/settings.py */
-    KP_POINTING = 11, KI_POINTING, KI_CREEP, FADE, PWM_STEPS, GAIN, CORRECTION, CREEP_RATE, LAG, SETTLE, FRAME_NS,
-    PEERS, SETTINGS = PEERS + 4
+    KP_POINTING = 11, KI_POINTING, KI_CREEP, KP_GUST, KI_GUST, FADE, PWM_STEPS, GAIN, CORRECTION, CREEP_RATE, LAG,
+    SETTLE, FRAME_NS, PEERS, SETTINGS = PEERS + 4
 };
 
 struct tachometer {
@@ -71,11 +74,14 @@ struct board {
     int32_t p[PARAMETERS];
     int32_t effort_q16, pi_error, kp, ki;                   /* the loop, with the gains in force */
     int32_t position, rate, setpoint_q16, wanted_q16;
+    int32_t gust_fast_q16, gust_slow_q16, gust_sum;         /* what wind leaves of the velocity error */
     int32_t lock_q16, friction_q16, watch_counts, auxiliary_position, auxiliary_rate_q8;
     uint32_t ticks;
     int16_t velocity, effort, effort_command;
     uint16_t poscnt, counter;
     int32_t share_q16;                                      /* of the counter torque, smoothed */
+    uint16_t gust_ticks;
+    uint8_t gust_turned, blowing;
     uint8_t device, mode, selected, near_ticks;
     uint8_t fault, fixed, reached, watching, blending;      /* fixed: the effort is commanded */
     uint8_t first, waiting, late, late_reply[8];            /* inbox and a reply that found no buffer */
@@ -212,6 +218,29 @@ static int64_t lock_step(struct board *b, int32_t setpoint_q16) {
     int64_t error = b->lock_q16 + (setpoint_q16 - (int64_t)b->velocity * Q16);
     b->lock_q16 = (int32_t)limited(error, 174 * Q16); /* 2 arcsec */
     return (int64_t)b->lock_q16 * b->settings[GAIN] >> 16;
+}
+
+static void gusts_start(struct board *b) {
+    b->gust_fast_q16 = b->gust_slow_q16 = b->gust_sum = 0;
+    b->gust_ticks = 0;
+    b->gust_turned = b->blowing = 0;
+}
+
+static void gusts_step(struct board *b, int64_t error_q16) { /* gusts.py */
+    int32_t error = (int32_t)limited(error_q16, 8 * Q16);
+    uint8_t turned;
+    b->gust_fast_q16 += (error - b->gust_fast_q16) >> 2;
+    b->gust_slow_q16 += (b->gust_fast_q16 - b->gust_slow_q16) >> 4;
+    b->gust_sum += (int32_t)size_of(b->gust_fast_q16 - b->gust_slow_q16);
+    if (++b->gust_ticks < GUST_TICKS) return;
+    turned = b->blowing ? b->gust_sum < GUST_QUIET : b->gust_sum > GUST_LOUD;
+    if (turned && b->gust_turned) {
+        b->blowing = !b->blowing;
+        turned = 0;
+    }
+    b->gust_turned = turned;
+    b->gust_sum = 0;
+    b->gust_ticks = 0;
 }
 
 static int64_t blend_step(struct board *b, int64_t absolute_q18, uint8_t creeping) {
@@ -353,8 +382,8 @@ static void motion_off(struct board *b) {
 }
 
 static void velocity_gains(struct board *b) {
-    b->kp = b->p[LOCK] ? b->settings[KP_POINTING] : b->p[KP];
-    b->ki = b->p[LOCK] ? b->settings[KI_CREEP] : b->p[KI];
+    b->kp = b->p[LOCK] ? b->settings[b->blowing ? KP_GUST : KP_POINTING] : b->p[KP];
+    b->ki = b->p[LOCK] ? b->settings[b->blowing ? KI_GUST : KI_CREEP] : b->p[KI];
 }
 
 static void motion_run(struct board *b, uint8_t mode, int32_t rate_q16) {
@@ -363,8 +392,9 @@ static void motion_run(struct board *b, uint8_t mode, int32_t rate_q16) {
         b->kp = b->settings[KP_POINTING];
         b->ki = b->settings[KI_POINTING];
     } else {
-        velocity_gains(b);
         b->lock_q16 = 0;
+        gusts_start(b);
+        velocity_gains(b);
     }
     b->wanted_q16 = rate_q16;
     b->rate = 0;
@@ -382,6 +412,7 @@ static void enter_pointing(struct board *b) {
     b->target = here + stop;
     b->near_ticks = 0;
     b->blending = 0;
+    gusts_start(b);
     b->kp = b->settings[KP_POINTING];
 }
 
@@ -423,13 +454,18 @@ static int64_t point(struct board *b, int64_t now_ns) {
     error = b->target - b->remaining - here;
     held = limited(error, b->settings[LAG] * (int64_t)UNITS_PER_STEP);
     b->remaining += error - held; /* the axis cannot follow: the reference waits for it */
-    b->ki = b->settings[creeping ? KI_CREEP : KI_POINTING];
     correction = limited(held * b->settings[GAIN] >> 18, b->settings[CORRECTION]);
     if (size_of(held) < b->settings[SETTLE] * (int64_t)UNITS_PER_STEP && !b->remaining) {
         if (b->near_ticks < SETTLE_TICKS) b->near_ticks++;
         if (b->rate) b->mode = TRACK;
     } else {
         b->near_ticks = 0;
+    }
+    b->ki = b->settings[creeping ? KI_CREEP : KI_POINTING];
+    if (b->p[LOCK]) {
+        if (creeping && !b->remaining) gusts_step(b, (feed >> 2) + correction - b->velocity * (int64_t)Q16);
+        b->kp = b->settings[creeping && b->blowing ? KP_GUST : KP_POINTING];
+        if (creeping && b->blowing) b->ki = b->settings[KI_GUST];
     }
     return (feed >> 2) + correction;
 }
@@ -440,7 +476,14 @@ static int64_t setpoint(struct board *b, int64_t now_ns) {
     else if (pointing(b)) b->setpoint_q16 = (int32_t)point(b, now_ns);
     else if (b->setpoint_q16 != b->wanted_q16)
         b->setpoint_q16 += (int32_t)limited((int64_t)b->wanted_q16 - b->setpoint_q16, b->p[ACCELERATION]);
-    else if (b->p[LOCK] && b->mode != STOP) return b->setpoint_q16 + lock_step(b, b->setpoint_q16);
+    else if (b->p[LOCK] && b->mode != STOP) {
+        int64_t wanted = b->setpoint_q16 + lock_step(b, b->setpoint_q16);
+        if (size_of(b->wanted_q16) < b->settings[CREEP_RATE]) {
+            gusts_step(b, wanted - b->velocity * (int64_t)Q16);
+            velocity_gains(b);
+        }
+        return wanted;
+    }
     return b->setpoint_q16;
 }
 
@@ -550,6 +593,8 @@ static void changed(struct board *b, uint8_t number) {
         b->reciprocal_q32 = (INT64_C(1) << 32) / b->p[TRAVEL];
     } else if (number == LOCK) {
         b->lock_q16 = 0;
+        gusts_start(b);
+        if (pointing(b)) b->kp = b->settings[KP_POINTING];
     } else if (number == BLEND) {
         b->blending = 0;
     }

@@ -49,6 +49,8 @@ class AxisConfig:
     ki_creep: instead of ki_pointing while the reference creeps. Below `creep_rate` (Q16 counts/5 ms) the
         bearings' bristles make the axis a spring, which wants, and bears, more integral action than a
         sliding mass.
+    kp_gust, ki_gust: instead of kp_pointing and ki_creep while parameter 41 is set and wind shakes the axis
+        (gusts.py).
     correction: largest rate the position loop adds, Q16 counts/5 ms.
     lag_steps: following error at which the profile waits for the axis.
     acceleration: Q16 counts/5 ms per 5 ms (Table 1: 12.583 rad/s2 at the motor = 2 deg/s2).
@@ -67,6 +69,8 @@ class AxisConfig:
     kp_pointing: float = 1.0
     ki_pointing: float = 0.08
     ki_creep: float = 0.15
+    kp_gust: float = 1.5
+    ki_gust: float = 0.075
     creep_rate: int = rate_q16(200.0)
     correction: int = rate_q16(1500.0)
     lag_steps: int = steps(900.0)

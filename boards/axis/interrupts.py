@@ -41,4 +41,4 @@ LEDGER: Final = Ledger(
     extra_cycles=HARMONICS * HARMONIC_CYCLES + FRICTION_CYCLES,
 )
 """More RAM than the chip has: samples and packets of nine columns do not fit (FIDELITY.md, B1). Lock, blend,
-bias and smoothed share book no cycles."""
+gusts, bias and smoothed share book no cycles."""

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.axis.config import TICK_NS, AxisConfig
+from boards.axis.gusts import Gusts
 from boards.axis.hold import Blend, RateLock
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
@@ -36,18 +37,18 @@ class Motion:
     """
 
     __slots__ = (
-        "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_pointing",
-        "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "ends", "good_ns",
-        "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks", "position",
-        "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
+        "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_gust", "_ki_pointing",
+        "_kp_gust", "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "ends",
+        "good_ns", "gusts", "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks",
+        "position", "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
     )  # fmt: skip
 
     def __init__(self, config: AxisConfig, pi: IncrementalPi) -> None:
         self._pi = pi
         self._creep_rate = config.creep_rate << _RATE_TO_UNIT
-        self._kp_pointing, self._ki_pointing, self._ki_creep = (
-            round(gain * (1 << GAIN_SHIFT))
-            for gain in (config.kp_pointing, config.ki_pointing, config.ki_creep)
+        gains = (config.kp_pointing, config.ki_pointing, config.ki_creep, config.kp_gust, config.ki_gust)
+        self._kp_pointing, self._ki_pointing, self._ki_creep, self._kp_gust, self._ki_gust = (
+            round(gain * (1 << GAIN_SHIFT)) for gain in gains
         )
         self.kp_q12 = pi.kp_q12
         self.ki_q12 = pi.ki_q12
@@ -75,6 +76,7 @@ class Motion:
         self.wanted_q16 = 0
         self.near_ticks = 0
         self.lock: RateLock | None = None
+        self.gusts: Gusts | None = None
         self.blend: Blend | None = None
 
     # --- measurements -----------------------------------------------------------------------------
@@ -133,9 +135,10 @@ class Motion:
         if mode is AxisMode.STOP:
             self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_pointing
         else:
-            self._velocity_gains()
-            if self.lock is not None:
+            if self.lock is not None and self.gusts is not None:
                 self.lock.start()
+                self.gusts.start()
+            self._velocity_gains()
         self.wanted_q16 = rate_q16
         self.rate = 0
         self.setpoint = self._ramp
@@ -175,20 +178,28 @@ class Motion:
         self.near_ticks = 0
         if self.blend is not None:
             self.blend.start()
+        if self.gusts is not None:
+            self.gusts.start()
         self._pi.kp_q12 = self._kp_pointing
         self.setpoint = self._point
 
     def _velocity_gains(self) -> None:
-        if self.lock is None:
+        if self.gusts is None:
             self._pi.kp_q12, self._pi.ki_q12 = self.kp_q12, self.ki_q12
+        elif self.gusts.blowing:
+            self._pi.kp_q12, self._pi.ki_q12 = self._kp_gust, self._ki_gust
         else:
             self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_creep
 
     def set_lock(self, on: int) -> None:
-        """RATE and CLASS hold the sum of the set point, with the gains of the pointing loop."""
+        """RATE and CLASS hold the sum of the set point, with the gains of the pointing loop; they and TRACK
+        notice gusts."""
         self.lock = RateLock(self._gain) if on else None
+        self.gusts = Gusts() if on else None
         if self.mode in (AxisMode.RATE, AxisMode.CLASS):
             self._velocity_gains()
+        elif self.mode in POINTING:
+            self._pi.kp_q12 = self._kp_pointing
 
     def set_blend(self, shift: int) -> None:
         """Time constant of the blend of both encoders, 2**shift ticks; 0: the absolute encoder alone."""
@@ -221,8 +232,11 @@ class Motion:
             else:
                 setpoint = wanted
             self.setpoint_q16 = setpoint
-        elif self.lock is not None and self.mode is not AxisMode.STOP:
-            return setpoint + self.lock.step(setpoint, velocity)
+        elif self.lock is not None and self.gusts is not None and self.mode is not AxisMode.STOP:
+            setpoint += self.lock.step(setpoint, velocity)
+            if -self._creep_rate < wanted << _RATE_TO_UNIT < self._creep_rate:
+                self.gusts.step(setpoint - (velocity << 16))
+                self._velocity_gains()
         return setpoint
 
     def _point(self, now_ns: int, velocity: int) -> int:
@@ -242,7 +256,6 @@ class Motion:
             held = lag if error > 0 else -lag
             profile.remaining += error - held
             error = held
-        self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         correction = error * self._gain >> 18
         limit = self._correction
         if correction > limit:
@@ -257,6 +270,14 @@ class Motion:
         else:
             self.near_ticks = 0
         self.setpoint_q16 = setpoint = (feed >> 2) + correction
+        self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
+        gusts = self.gusts
+        if gusts is not None:
+            if creeping and not profile.remaining:
+                gusts.step(setpoint - (velocity << 16))
+            self._pi.kp_q12 = self._kp_pointing
+            if creeping and gusts.blowing:
+                self._pi.kp_q12, self._pi.ki_q12 = self._kp_gust, self._ki_gust
         return setpoint
 
     # --- what the rest of the firmware asks -------------------------------------------------------

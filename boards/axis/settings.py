@@ -8,7 +8,8 @@ from bus.protocol.scales import TICKS_PER_S
 def settings(config: AxisConfig, peers: AxisPeers) -> tuple[int, ...]:
     """Parameters 1 to 11 first, then what no command changes; gains in Q12, the position loop's in Q16."""
     gains = (config.kp, config.ki, config.kp_pointing, config.ki_pointing, config.ki_creep)
-    kp, ki, *pointing = (round(gain * (1 << GAIN_SHIFT)) for gain in gains)
+    gusts = (config.kp_gust, config.ki_gust)
+    kp, ki, *pointing = (round(gain * (1 << GAIN_SHIFT)) for gain in (*gains, *gusts))
     parameters = (config.counter_split, kp, ki, config.low, config.high, config.acceleration, *config.classes)
     return (
         *parameters,

@@ -18,6 +18,11 @@ _POINTING_KI = 0.08
 """Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
 _CREEP_KI = 0.15
 """Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
+_GUST_BANDWIDTH = 33.0
+"""rad/s, while it creeps in wind. ASSUMPTION: a quarter of that mode."""
+_GUST_KI = 0.05
+"""Ki/Kp then: 10 rad/s. ASSUMPTION: with less of it the axis swings less between 1 and 8 Hz, where wind is. A
+slow torque then leaves twice as much, so these gains are for wind alone."""
 
 
 def _inertia(axis: AxisModel) -> float:
@@ -45,12 +50,15 @@ def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) 
     part: AxisModel = getattr(model.axes, axis)
     scale = _unit_gain(model, part) / _unit_gain(model, model.axes.ra)
     pointing = POINTING_BANDWIDTH * _unit_gain(model, part)
+    gust = _GUST_BANDWIDTH * _unit_gain(model, part)
     return AxisConfig(
         kp=controller.kp.si * scale,
         ki=controller.ki.si * scale,
         kp_pointing=pointing,
         ki_pointing=pointing * _POINTING_KI,
         ki_creep=pointing * _CREEP_KI,
+        kp_gust=gust,
+        ki_gust=gust * _GUST_KI,
         counter_split=round(controller.counter_split.si * 100),
         pwm_steps=round(controller.pwm_steps.si),
         pwm_hz=round(controller.pwm_frequency.si),

@@ -29,6 +29,7 @@ from bus.protocol.nodes import AUXILIARY, KindError, kind_of
 from bus.protocol.scales import STEPS_PER_TURN
 from bus.time import EventQueue, Oscillator, generator
 from plant.axis import AxisPort
+from plant.dome import DomePort
 from plant.plant import Plant
 from scenarios.lab.drive import axis_config
 from scenarios.lab.networks import FINAL, NetworkConfig, NetworkError, NodeConfig, devices_of
@@ -37,6 +38,7 @@ from scenarios.lab.powerstages import PowerStages
 
 if TYPE_CHECKING:
     from boards.canopen import Voice
+    from scenarios.lab.blowing import Blowing
     from scenarios.lab.chain import Chain
 
 Firmware = TypeVar("Firmware")
@@ -68,6 +70,9 @@ class Network:
     voices: dict[str, "Voice"] = field(default_factory=dict)
     stages: PowerStages = field(init=False)
     chain: "Chain | None" = None
+    dome: DomePort | None = None
+    """None: no dome board, the telescope stands in the open."""
+    blowing: "Blowing | None" = None
 
     def __post_init__(self) -> None:
         self.stages = PowerStages(self)
@@ -281,7 +286,9 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
         from boards.canopen import Voice  # the package takes its time
 
         voices = {name: Voice(board) for name, board in boards.items()}
-    return Network(wiring.queue, wiring.wire, boards, wiring.devices, plant, hid, uarts, debug, voices)
+    made = Network(wiring.queue, wiring.wire, boards, wiring.devices, plant, hid, uarts, debug, voices)
+    made.dome = wiring.site.dome if "DOME" in boards else None
+    return made
 
 
 def _check_firmware(config: NetworkConfig) -> None:

@@ -9,6 +9,7 @@ from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
 from host.procedures.manual import AXES
 from host.sky.mount import STEP_ARCSEC
+from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
@@ -36,10 +37,14 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
 
     limits = soft_limits(scenario)
     soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
-    pins = Plant(with_stops(model, soft_rad), scenario.seed, start_steps(scenario))
+    wind_from = scenario.network.get("wind_from")
+    built = model if wind_from is None else in_the_wind(model)
+    pins = Plant(with_stops(built, soft_rad), scenario.seed, start_steps(scenario))
     config = config_from(scenario.network, limits, scenario.file.parent)
     made = build(config, pins, scenario.seed)
     made.chain = chained(made, soft_rad, scenario.network.get("chain", SWITCHES))
+    if wind_from is not None:
+        made.blowing = Blowing(made, wind_from / ARCSEC_PER_RAD)
     return made
 
 

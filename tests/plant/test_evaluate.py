@@ -74,19 +74,6 @@ def test_diode_braking_uses_constants_of_the_plant() -> None:
     assert np.allclose(y, [0.0, 0.4 * 0.4 * 5.0 / 2.0 * 360.0])
 
 
-def test_wind_is_stationary_with_its_deviation_and_correlation() -> None:
-    n = 200_000
-    rows = signals(n, {sig.TIME: np.arange(n) * 0.01})
-    wind = {"mean": 10.0, "deviation": 5.0, "correlation_time": 1.0}
-    y = evaluate("wind_torque", rows, {**wind, "seed": 12345.0})
-    assert y.mean() == pytest.approx(10.0, abs=0.6)
-    assert y.std() == pytest.approx(5.0, rel=0.1)
-    centred = y - y.mean()
-    assert (centred[:-100] * centred[100:]).mean() / centred.var() == pytest.approx(np.exp(-1.0), abs=0.1)
-    other = evaluate("wind_torque", rows[:100], {**wind, "seed": 54321.0})
-    assert not np.array_equal(other, y[:100])
-
-
 def unknown(x: np.ndarray, knots: list[tuple[float, float]], kind: float, period: float = 0.0) -> np.ndarray:
     """Evaluate an unknown function of the axis angle."""
     p = np.zeros(ROW - ROW_MEMORY)

@@ -11,9 +11,9 @@ from scenarios.native.modules import PACKAGE
 
 _OURS: Final = (
     "boards.", "bus.can.", "bus.protocol.", "bus.time.", "bus.outside.node", "host.sky.", "plant.",
-    "scenarios.lab.chain", "scenarios.lab.faults.", "scenarios.lab.network", "scenarios.lab.nodes",
-    "scenarios.lab.powerstages", "scenarios.lab.snapshot.", "scenarios.lab.supply", "scenarios.doors.usb",
-    "scenarios.language.model", MODULE,
+    "scenarios.lab.blowing", "scenarios.lab.chain", "scenarios.lab.faults.", "scenarios.lab.network",
+    "scenarios.lab.nodes", "scenarios.lab.powerstages", "scenarios.lab.snapshot.", "scenarios.lab.supply",
+    "scenarios.doors.usb", "scenarios.language.model", MODULE,
 )  # fmt: skip
 """Modules whose classes may be in one. MODULE: boards of a user's own, which the scenario loads first."""
 _NOT: Final = ("boards.avr.", "boards.c.library", "boards.c.isolated", "plant.fmu.")

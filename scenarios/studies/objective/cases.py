@@ -5,11 +5,14 @@ from dataclasses import dataclass
 from bus.protocol import AxisParameter
 from plant.model import with_effects
 from plant.parts import EffectModel, PlantModel
-from scenarios.studies.objective.wind import SPEEDS_M_S, wind
+from plant.wind import wind
 
 EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
 """At the catalogue's default size (`schmidt effects NAME`)."""
+PAPER = "the paper's firmware"
 STARTS = 8
+SPEEDS_M_S = (1.0, 3.0, 10.0)
+"""Of the wind in the slit."""
 FIRST_DEG, LAST_DEG = 85.0, 265.0
 """Of the absolute encoder: 95 deg before the middle of the travel to 85 deg after it."""
 
@@ -38,7 +41,7 @@ class Case:
 
 def cases(compensation: bool) -> tuple[Case, ...]:
     """Rows of the table; with a compensation file, those of the fine firmware once more with it."""
-    rows = [Case(name="the paper's firmware", firmware="paper"), Case(name="spread duty, bias, lock, blend")]
+    rows = [Case(name=PAPER, firmware="paper"), Case(name="spread duty, bias, lock, blend")]
     if compensation:
         rows.append(Case(name="the same, compensated", compensated=True))
     for effect in EFFECTS:
@@ -49,7 +52,7 @@ def cases(compensation: bool) -> tuple[Case, ...]:
     rows.append(Case(name="high preload, spread duty, bias, lock, blend", high=True))
     for speed in SPEEDS_M_S:
         name = f"wind of {speed:g} m/s"
-        rows.append(Case(name=f"{name}, the paper's firmware", firmware="paper", wind_m_s=speed))
+        rows.append(Case(name=f"{name}, {PAPER}", firmware="paper", wind_m_s=speed))
         rows.append(Case(name=name, wind_m_s=speed))
     return tuple(rows)
 

@@ -1,6 +1,6 @@
 """Runs the cases and puts worst and median of every case into a table."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,11 +8,13 @@ import numpy as np
 from plant.parts import PlantModel
 from scenarios.language.firmware import FIRMWARES
 from scenarios.studies.objective.bench import MODES, Held, hold
-from scenarios.studies.objective.cases import Case, starts
+from scenarios.studies.objective.bound import Bound
+from scenarios.studies.objective.cases import PAPER, Case, starts
 from scenarios.studies.options import ObjectiveOptions
 
 MUST = 1.0
 """arcsec/s: the paper's objective."""
+BOUND = "the least possible"
 
 
 class Row(NamedTuple):
@@ -69,6 +71,16 @@ def measure(
             )  # fmt: skip
 
 
+def over_paper(rows: Iterable[Row]) -> dict[str, float]:
+    """Rms over that of the paper's firmware in the same wind, start and seed: the largest of each row."""
+    known = {(row.case, row.mode): row for row in rows}
+    return {
+        f"{case}, {mode}": max(fine / paper for fine, paper in zip(row.rms, other.rms, strict=True))
+        for (case, mode), row in known.items()
+        if case.startswith("wind") and (other := known.get((f"{case}, {PAPER}", mode))) is not None
+    }
+
+
 HEADINGS = ("plant and firmware", "mode", "peak, worst", "median", "rms, worst", "angle, worst", "runs", "")
 
 
@@ -81,9 +93,15 @@ def line(row: Row) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def markdown(rows: list[Row], command: str) -> str:
+def bound_line(case: str, bound: Bound) -> tuple[str, ...]:
+    """Cells of a bound, which has an rms and no peak."""
+    return (f"{case}, {BOUND}", "", "", "", f"{bound.rms:.3f}", "", "", "bound")
+
+
+def markdown(rows: list[Row], command: str, bounds: Mapping[str, Bound]) -> str:
     """The table for docs."""
     text = [f"True rate against 15.041″/s, in ″/s; angle off a straight line, in ″. `{command}`", ""]
     text += ["| " + " | ".join(HEADINGS) + " |", "|---|---|" + "---:|" * 5 + "---|"]
-    text += ["| " + " | ".join(line(row)) + " |" for row in rows]
+    lines = [line(row) for row in rows] + [bound_line(*each) for each in bounds.items()]
+    text += ["| " + " | ".join(cells) + " |" for cells in lines]
     return "\n".join(text) + "\n"

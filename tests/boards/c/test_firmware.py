@@ -14,7 +14,11 @@ from boards.c.isolated import IsolatedMemory
 from boards.c.library import FirmwareError, Memory, load, members
 from boards.core.declared import BoardError
 from bus.can import Frame
-from bus.protocol import COMMAND_BASE, AxisMode, Device, Opcode, pack_command
+from bus.protocol import COMMAND_BASE, AxisMode, AxisParameter, Device, Opcode, pack_command
+from bus.protocol.scales import rate_q16
+from plant.parts import EffectModel, Number
+from plant.rows import write
+from plant.world import constants
 from scenarios.lab.network import Network
 from scenarios.lab.prepare import Changes, prepare
 from scenarios.lab.snapshot import restore, take
@@ -277,3 +281,24 @@ def test_twenty_wrong_lines_of_twenty_are_found(tmp_path: Path) -> None:
     told = {mutant: mutants.found(mutant, tmp_path) for mutant in mutants.chosen(30, seed=1)}
     compiled_ones = [how for how in told.values() if how != mutants.UNCOMPILED]
     assert all(compiled_ones) and len(compiled_ones) >= 20, told
+
+
+@pytest.mark.parametrize("opcode", [Opcode.TRACK_RATE, Opcode.SET_RATE])
+def test_both_notice_wind(opcode: Opcode) -> None:
+    """Shaken by 10 N m, then in still air; every frame is compared on the way."""
+    duel = Duel(6)
+    wind = EffectModel("wind_torque", parameters={"correlation_time": Number(0.3, "s", "a test")})
+    duel.both(0.1)
+    duel.command(Opcode.POWER, 1)
+    duel.command(Opcode.SET_PARAMETER, AxisParameter.DUTY_FRACTION, 1)
+    duel.command(Opcode.SET_PARAMETER, AxisParameter.RATE_LOCK, 1)
+    duel.command(opcode, rate_q16(15.0))
+    for effects, blowing in (((wind,), 1), ((), 0)):
+        for side in duel.sides:
+            plant = side.network.plant
+            plant.advance(side.network.queue.now_ns)
+            write(plant.world[0], effects, constants(plant.model.axes.ra), 1, "ra")
+        duel.both(20.0)
+        assert duel.sides[1].state()["blowing"] == blowing
+        if not compiled():
+            assert duel.sides[0].state()["motion.gusts.blowing"] == bool(blowing)

@@ -1,0 +1,47 @@
+"""The RA axis as matrices at a steady rate: friction linearised, both trains in contact, both windings."""
+
+from math import exp
+
+import numpy as np
+
+from plant.compiled import Floats
+from plant.gears import RATIO
+from plant.parts import PlantModel
+
+# states: axis angle and rate, bristle torque; angle and rate of rotor A, its motor's torque; rotor B
+ANGLE, RATE, BRISTLE, ROTOR_A, SPEED_A, TORQUE_A, ROTOR_B, SPEED_B, SIZE = range(9)
+
+
+def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
+    """Matrices at steady sliding with `rate`, rad/s above 0: state, motor A's duty, a torque on the axis.
+
+    The duty is in PWM steps, the torque in N m. SI units, rotors and motor as seen at the axis.
+
+    A leads: its EMF brakes. B is turned against its pull and gives a steady torque (plant/kernels/drive.py).
+    """
+    part = model.axes.ra
+    f, motor, gear = part.friction, part.motor, part.gear
+    x = (rate / f.stribeck_rate.si) ** f.stribeck_exponent.si
+    excess = (f.stiction.si - f.coulomb.si) * exp(-x)
+    level = f.coulomb.si + excess
+    slope = -excess * x * f.stribeck_exponent.si  # rate times dg/drate, N m
+    rotor, load = motor.rotor_inertia.si * RATIO**2, part.inertia.si
+    k, c, sigma0 = gear.stiffness.si / 2, gear.damping.si / 2, f.bristle_stiffness.si
+    constant, electric = motor.torque_constant.si * RATIO, motor.inductance.si / motor.loop
+    per_step = constant * model.supply.voltage.si / model.controller.pwm_steps.si / motor.loop
+    a, b, push = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1)), np.zeros((SIZE, 1))
+    a[ANGLE, RATE] = 1.0
+    a[BRISTLE, [RATE, BRISTLE]] = sigma0 * slope / level, -sigma0 * rate / level
+    a[RATE, [RATE, BRISTLE]] = -f.viscous.si / load, -1.0 / load
+    a[RATE] -= f.bristle_damping.si / sigma0 / load * a[BRISTLE]
+    push[RATE, 0] = 1.0 / load
+    for angle, speed in ((ROTOR_A, SPEED_A), (ROTOR_B, SPEED_B)):
+        twist = np.zeros(SIZE)
+        twist[[ANGLE, RATE, angle, speed]] = -k, -c, k, c
+        a[RATE] += twist / load
+        a[angle, speed] = 1.0
+        a[speed] -= twist / rotor
+    a[SPEED_A, TORQUE_A] = 1.0 / rotor
+    a[TORQUE_A, [TORQUE_A, SPEED_A]] = -1.0 / electric, -(constant**2) / motor.loop / electric
+    b[TORQUE_A, 0] = per_step / electric
+    return a, b, push
