@@ -39,15 +39,21 @@ def _table(data: dict[str, Any]) -> Table:
         table.add_column(name, justify="right")
     rest = dict(data["error"])
     for e in data["effects"]:
-        where = ", ".join(
-            [*[e["stage"]] * bool(e["stage"]), *[f"harmonic {e['harmonic']}"] * bool(e["harmonic"])]
-        )
         row = ROWS.get(e["channel"], "")
         rest.pop(row, None)
-        table.add_row(e["name"], where, _size(e), *_error(row, data["error"].get(row)))
+        table.add_row(e["name"], _where(e), _size(e), *_error(row, data["error"].get(row)))
     for row, error in rest.items():
-        table.add_row("none", "", "", *_error(row, error))
+        table.add_row("(no effect)", "", "", *_error(row, error))
     return table
+
+
+def _where(effect: dict[str, Any]) -> str:
+    """Its stage and harmonic; of a line that no stage has, its order or its frequency."""
+    words = [effect["stage"] or "", f"harmonic {effect['harmonic']}" if effect["harmonic"] else ""]
+    if not effect["stage"] and effect["order"]:
+        words = [f"order {effect['order']:.4g}"]
+    hertz = [f"{effect['frequency_Hz']:.4g} Hz"] if effect["frequency_Hz"] else []
+    return ", ".join(filter(None, [*words, *hertz]))
 
 
 def _size(effect: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ GEAR: dict[str, Any] = {
     "harmonic": 2,
     "channel": "T",
     "domain": "axis_angle",
+    "order": 83.5,
     "frequency_Hz": None,
     "parameters": {
         "phase": {"value": 0.5, "unit": "rad", "low": 0.4, "high": 0.6},
@@ -27,6 +28,7 @@ PUSH: dict[str, Any] = {
     "name": "friction_asymmetry",
     "stage": None,
     "harmonic": None,
+    "order": None,
     "parameters": {"coulomb_asymmetry": {"value": 0.25, "unit": "1", "low": None, "high": None}},
 }
 FOUND: dict[str, Any] = {
@@ -56,10 +58,22 @@ def test_every_effect_has_its_place_its_size_and_its_errors(
         "effect where size (95 % interval) held-out error before after floor",
         "gear_eccentricity shaft2, harmonic 2 amplitude 7.125 (7 to 7.25) N m torque, N m 5.25 1.5 1.25",
         "friction_asymmetry coulomb asymmetry 0.25 torque, N m 5.25 1.5 1.25",
-        "none electrical, V 0.02 0.02 not known",
+        "(no effect) electrical, V 0.02 0.02 not known",
     ]
     assert remark == "! something is still missing in torque"
     assert report == f"Report: {tmp_path / 'report.html'}"
+
+
+def test_a_line_of_no_stage_has_its_order_or_its_frequency(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bearing = {**GEAR, "name": "bearing_pass", "stage": None, "harmonic": None, "order": 20.25}
+    mains = {**PUSH, "name": "command_disturbance", "frequency_Hz": 50.0}
+    rows = printed({**FOUND, "effects": [bearing, mains]}, tmp_path, capsys)[2:4]
+    assert [" ".join(row.split())[:32] for row in rows] == [
+        "bearing_pass order 20.25 amplitu",
+        "command_disturbance 50 Hz coulom",
+    ]
 
 
 def test_the_next_step_is_the_experiment_else_the_corrected_plant(
