@@ -6,12 +6,14 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer
 from bus.outside.punctual import Punctuality
 from plant.model import PlantModel
 from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
+from scenarios.doors.payload import pack_frame, unpack_frame
 from scenarios.doors.usb import Usb
 from scenarios.lab.wiring import wired
 from scenarios.language.model import Scenario
@@ -70,12 +72,18 @@ class LiveNetwork:
         return self.network.queue.now_ns
 
     def node(self, index: int) -> OutsideNode:
-        """The node on the wire for the door to CAN of this number, from 0 on."""
+        """The node on the wire for the door to CAN of this number, from 0 on, whose frames may enter now."""
         kind = f"can{index}"
         if kind not in self.nodes:
             name = f"outside {index}" if index else "outside"
             self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
-        return self.nodes[kind]
+        node = self.nodes[kind]
+        self.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
+        return node
+
+    def frame(self, index: int, frame: Frame) -> None:
+        """A frame for the wire, by the node of this number."""
+        self.entry.enter(f"can{index}", pack_frame(frame))
 
     def stop(self) -> None:
         """End the serving with the next slice."""
