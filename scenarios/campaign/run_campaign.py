@@ -9,8 +9,10 @@ from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
 from scenarios.campaign.job import Job, Row, run
 from scenarios.campaign.options import CampaignOptions
+from scenarios.campaign.report_page import write
 from scenarios.language.document import ScenarioError
 from scenarios.progress import shown
+from scenarios.run.probe import digest
 
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
 
@@ -20,9 +22,6 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
 
     task: what makes a row of a planned run; the bench has one that does nothing.
     """
-    from scenarios.campaign.report_page import write
-    from scenarios.run.probe import digest
-
     out = options.folder
     planned = plan.load(options.file)
     journal = table.Journal(out, options.resume)

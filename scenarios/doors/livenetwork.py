@@ -14,12 +14,12 @@ from plant.model import PlantModel
 from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
 from scenarios.doors.payload import pack_frame, unpack_frame
+from scenarios.doors.standing import Standing
 from scenarios.doors.usb import Usb
 from scenarios.lab.wiring import wired
 from scenarios.language.model import Scenario
 
 if TYPE_CHECKING:
-    from scenarios.doors.standing import Standing
     from scenarios.doors.steps import Steps
 
 BOARD = "board"

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from io import BytesIO
-from pathlib import Path
 
 from rich.console import Console
 from rich.live import Live
@@ -23,10 +22,12 @@ from scenarios.doors.options import ServeOptions
 from scenarios.doors.parking import park
 from scenarios.doors.priority import first
 from scenarios.doors.recording import Recording
-from scenarios.doors.standing import Standing
+from scenarios.doors.snapshots import Snapshots
+from scenarios.doors.standing import standing
 from scenarios.doors.steps import Steps
 from scenarios.lab.muted import Feed, FeedError
 from scenarios.lab.prepare import chosen
+from scenarios.lab.snapshot.file import read
 from scenarios.lab.wiring import wire
 from scenarios.language.model import Scenario
 
@@ -48,23 +49,21 @@ def serve(options: ServeOptions) -> int:
         raise FeedError(
             "--mute with --record or --snapshots: frames fed from a log are not recorded; leave one out"
         )
-    standing = None if options.begun is None else _standing(options.begun)
-    if standing is None:
+    stood = None if options.begun is None else standing(read(options.begun))
+    if stood is None:
         scenario, model = chosen(options.scenario, options.seed, options.plant, options.network)
     else:
-        scenario, model = standing.scenario, standing.model
+        scenario, model = stood.scenario, stood.model
     # no thread that refreshes: it would hold Python's lock when a tick is due
     with Live(
         "starting (the first time compiles)", console=console, auto_refresh=False, transient=True
     ) as line:
         line.refresh()
         recording = Recording(record, scenario, model, options.begun) if record is not None else None
-        served = LiveNetwork(scenario, model, options.speed, recording, standing)
+        served = LiveNetwork(scenario, model, options.speed, recording, stood)
         if options.clock == "steps":
             served.steps = Steps(served)
         if options.snapshots is not None:
-            from scenarios.doors.snapshots import Snapshots
-
             Snapshots(options.snapshots, served, recording)
         if mute is not None:
             Feed(served.network, *mute)
@@ -110,13 +109,6 @@ def _warm_up(scenario: Scenario, model: PlantModel) -> None:
     network.wire.tap(log.take)
     network.run_until(_WARM_NS)
     log.flush()
-
-
-def _standing(file: Path) -> Standing:
-    from scenarios.doors.standing import standing
-    from scenarios.lab.snapshot.file import read
-
-    return standing(read(file))
 
 
 def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> None:
