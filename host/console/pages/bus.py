@@ -34,6 +34,7 @@ def bus(shell: Shell, view: BusView) -> None:
             running = ui.switch("follow", value=True).props('aria-label="Follow the frames"')
             frames = table(("t, s", "from", "id", "data", "says"))
 
+    @shell.each
     def refresh() -> None:
         now = view.look()
         load.set_text(f"{100 * now.load:.1f} % in the last second")
@@ -53,8 +54,6 @@ def bus(shell: Shell, view: BusView) -> None:
                 ]
             )
 
-    shell.each(refresh)
-
 
 def _entries(entries: list[Entry]) -> list[tuple[float, str]]:
     return [(entry.t_s, f"{entry.where}: {entry.text}") for entry in entries]
@@ -65,7 +64,7 @@ def _supply(shell: Shell, view: BusView) -> None:
     if not names:
         ui.label("This is no emulated bus: nothing can be broken from here.").classes("mid")
         return
-    chosen = shell.control(ui.select(list(names), value=names[0], label="Board").props("outlined dense"))
+    chosen = shell.field(ui.select(list(names), value=names[0], label="Board"))
     with ui.row():
         for text, on in (("Cut its supply", False), ("Give it back", True)):
             shell.control(button(text, on_click=lambda state=on: view.switch(chosen.value, state)))
@@ -78,13 +77,9 @@ def _faults(shell: Shell, view: BusView) -> None:
         return
     first = next(iter(kinds.values()))
     names = {name: f"{kind.level}: {name}" for name, kind in kinds.items()}
-    chosen = shell.control(
-        ui.select(names, value=first.name, label="Fault").classes("w-full").props("outlined dense")
-    )
+    chosen = shell.field(ui.select(names, value=first.name, label="Fault"), wide=True)
     text = ui.label(first.text).classes("small")
-    given = shell.control(
-        ui.input("Arguments, name=value", value=first.needed).classes("w-full").props("outlined dense")
-    )
+    given = shell.field(ui.input("Arguments, name=value", value=first.needed), wide=True)
     hint = ui.label(first.arguments).classes("small")
 
     def show() -> None:
@@ -101,9 +96,7 @@ def _faults(shell: Shell, view: BusView) -> None:
     shell.control(button("Start it", on_click=start))
     fill = table(("number", "on"))
     with ui.row().classes("items-center"):
-        number = shell.control(
-            ui.number("Number", value=0, min=0, format="%d").props("outlined dense").classes("w-24")
-        )
+        number = shell.field(ui.number("Number", value=0, min=0, format="%d").classes("w-24"))
 
         async def clear() -> None:
             await _tell(shell, view.clear_fault(int(number.value or 0)))
