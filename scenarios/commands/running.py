@@ -109,12 +109,12 @@ def _loaded(options: RunOptions) -> tuple[Scenario, PlantModel, dict[str, Any] |
     from scenarios.lab.prepare import Changes, prepare
 
     if options.begun is not None:
-        from scenarios.lab.snapshot.run import begun, parts
+        from scenarios.lab.snapshot.run import begun
 
         if options.changed:
             raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
         whole = begun(options.begun)
-        return *parts(whole), whole
+        return whole["scenario"], whole["model"], whole
     if options.scenario is None:
         raise click.UsageError("Missing argument 'SCENARIO'.")
     # a table in fractions of a step wants a duty in fractions of a step

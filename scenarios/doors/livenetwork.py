@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 from bus.can.frame import Frame
@@ -13,7 +14,6 @@ from bus.outside.punctual import Punctuality
 from plant.model import PlantModel
 from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
-from scenarios.doors.payload import pack_frame, unpack_frame
 from scenarios.doors.standing import Standing
 from scenarios.doors.usb import Usb
 from scenarios.lab.wiring import wired
@@ -28,6 +28,20 @@ DEBUG = "debug"
 """Kind of entry of a debug port: `NAME ` and the bytes."""
 FAULT = "fault"
 """Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
+
+_head = Struct("<IB")
+_EXTENDED, _REMOTE = 1, 2
+
+
+def pack_frame(frame: Frame) -> bytes:
+    """A frame in the journal: identifier u32, flags u8 (1 extended, 2 remote), data."""
+    return _head.pack(frame.identifier, _EXTENDED * frame.extended | _REMOTE * frame.remote) + frame.data
+
+
+def unpack_frame(data: bytes) -> Frame:
+    """The frame of such bytes."""
+    identifier, flags = _head.unpack_from(data)
+    return Frame(identifier, data[_head.size :], bool(flags & _EXTENDED), bool(flags & _REMOTE))
 
 
 class LiveNetwork:

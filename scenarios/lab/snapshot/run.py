@@ -7,14 +7,10 @@ from typing import Any
 import numpy as np
 
 from bus.protocol import Device
-from plant.model import PlantModel
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.file import read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 from scenarios.lab.snapshot.tape import SEEN, Tape, listeners
-from scenarios.language.model import Scenario
-
-__all__ = ["Order", "Progress", "begun", "parts", "read", "resume"]
 
 
 @dataclass
@@ -71,11 +67,6 @@ def _outside(session: Session) -> dict[str, Any]:
     return {"session": session, "can": session.recorder.can, "recorder": session.recorder}
 
 
-def parts(whole: dict[str, Any]) -> tuple[Scenario, PlantModel]:
-    """Scenario and plant."""
-    return whole["scenario"], whole["model"]
-
-
 def begun(file: Path) -> dict[str, Any]:
     """A run in a file; raises SnapshotError, also for a served session."""
     whole = read(file)
@@ -86,8 +77,7 @@ def begun(file: Path) -> dict[str, Any]:
 
 def resume(whole: dict[str, Any], folder: Path) -> Session:
     """A session in a new folder as it was, its files written again up to then."""
-    scenario, model = parts(whole)
-    session = Session(scenario, model, folder)
+    session = Session(whole["scenario"], whole["model"], folder)
     session.link._send = _nobody
     calls = listeners(session) | {"tick": session.work}
     session.eye.replay(arguments for kind, arguments in whole["heard"] if kind == SEEN)
