@@ -17,7 +17,7 @@ def write_file(path: Path, data: str | bytes) -> None:
     try:
         path.write_bytes(data.encode() if isinstance(data, str) else data)
     except OSError as error:
-        raise LogError(f"{path}: {_reason(error)}") from None
+        raise LogError(f"{path}: {reason(error)}") from None
 
 
 class BlockFile:
@@ -34,7 +34,7 @@ class BlockFile:
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
         except OSError as error:
-            raise LogError(f"{path}: cannot be written: {_reason(error)}") from None
+            raise LogError(f"{path}: cannot be written: {reason(error)}") from None
 
     def write(self, data: bytes) -> int:
         """Write a block; raises `LogError` when it does not fit."""
@@ -44,7 +44,7 @@ class BlockFile:
                 done += os.write(self._descriptor, data[done:])
         except OSError as error:
             self._cut_back(data[:done])
-            raise LogError(f"{self.path}: {_reason(error)}; what is there is readable") from None
+            raise LogError(f"{self.path}: {reason(error)}; what is there is readable") from None
         self._whole += done
         return done
 
@@ -114,5 +114,6 @@ class LineFile:
         return self._digest.hexdigest()
 
 
-def _reason(error: OSError) -> str:
-    return (error.strerror or "cannot be written").lower()
+def reason(error: OSError) -> str:
+    """What the system says, in one line."""
+    return ((error.strerror or str(error)).splitlines() or ["cannot be written"])[0].lower()
