@@ -2,7 +2,7 @@
 
 
 def words(identifier: int, data: bytes) -> str:
-    """What a frame says; its device is the sender's column already."""
+    """Signals of a frame; its device is the sender's column already."""
     from bus.protocol.database import database
 
     try:

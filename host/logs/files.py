@@ -115,5 +115,5 @@ class LineFile:
 
 
 def reason(error: OSError) -> str:
-    """What the system says, in one line."""
+    """The reason that the system gives, in one line."""
     return ((error.strerror or str(error)).splitlines() or ["cannot be written"])[0].lower()
