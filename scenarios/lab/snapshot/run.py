@@ -4,8 +4,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from bus.protocol import Device
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.file import read, write
@@ -38,7 +36,7 @@ class Order:
             raise SnapshotError("snapshots of a run need a network with a gateway")
         self.tape = Tape(session, [] if begun is None else begun["heard"])
         if begun is not None:
-            session.host_rows, session.focus_rows = begun["rows"]
+            session.rows = begun["rows"]
 
     def due(self, until_ns: int) -> bool:
         """Whether its time lies before `until_ns`."""
@@ -57,7 +55,7 @@ class Order:
             "progress": progress,
             "heard": self.tape.heard,
             "can": (session.recorder.folder / "can.log").read_bytes(),
-            "rows": (session.host_rows, session.focus_rows),
+            "rows": session.rows,
             "network": take((session.network, session.faults), outside),
         }
         write(whole, self.file)
@@ -84,10 +82,7 @@ def resume(whole: dict[str, Any], folder: Path) -> Session:
     for kind, arguments in whole["heard"]:
         if kind != SEEN:
             calls[kind](*arguments)
-    session.forget_rows()
-    for trace, rows in zip((session.recorder.host, session.recorder.focus), whole["rows"], strict=True):
-        if rows:
-            trace.append(np.array(rows))
+    session.begin_traces(whole["rows"])
     session.recorder.can.resume(whole["can"])
     network, session.faults = restore(whole["network"], {**listeners(session), **_outside(session)})
     session.adopt(network)

@@ -1,8 +1,7 @@
 """Where and with which seed an experiment begins, and the benches it may ask for there."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 from plant.model import with_value
 from plant.parts import PlantModel
@@ -38,14 +37,8 @@ QUICK = STARTS[::4]
 """For a look; decides nothing."""
 
 
-class MakeBench(Protocol):
-    """Makes a bench of a plant at a start; gains instead of the plant file's when given."""
-
-    def __call__(
-        self, model: PlantModel, seed: int, gains: tuple[float, float] | None, start_steps: float
-    ) -> Bench:
-        """Return a fresh bench, at rest and powered."""
-        ...
+MakeBench = Callable[[PlantModel, int, tuple[float, float] | None, float], Bench]
+"""Makes a bench, at rest and powered, of (plant, seed, gains instead of the plant file's, start in steps)."""
 
 
 @dataclass(frozen=True)
