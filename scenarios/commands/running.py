@@ -90,7 +90,7 @@ def run(options: RunOptions) -> None:
             raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
         result = _compared(scenario, model, folder, options.compensation)
     else:
-        result = _once(scenario, model, folder, options, whole, muted)
+        result = _once(scenario, model, folder, options, whole)
     _tell(result, folder, options.no_report)
     if muted is not None:
         from scenarios.lab.muted import compare
@@ -137,7 +137,6 @@ def _once(
     folder: Path,
     options: RunOptions,
     whole: dict[str, Any] | None,
-    muted: tuple[str, Path] | None,
 ) -> Result:
     from scenarios.lab.snapshot.run import Order
     from scenarios.run import run as runner
@@ -145,7 +144,7 @@ def _once(
     order = None
     if options.snapshot_at is not None:
         order = Order(round(options.snapshot_at * 1e9), options.snapshot or folder / "snapshot")
-    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=muted)
+    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=options.muted)
     with runner.bar(scenario) as progress:
         result = runner.run(scenario, model, folder, progress, way)
     if order is not None and not order.done:

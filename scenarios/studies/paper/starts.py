@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from plant.model import with_value
 from plant.parts import PlantModel
 from scenarios.studies.paper.bench import Bench
+from scenarios.studies.paper.scales import GEAR_RATIO
 
 STEPS_PER_DEGREE = (1 << 29) / 360.0
 ANGLES_DEG = (97.3, 123.1, 149.6, 172.9, 193.4, 217.7, 241.2, 268.9)
@@ -73,8 +74,6 @@ def viscous_only(model: PlantModel) -> PlantModel:
 
 def with_inertia(model: PlantModel, factor: float) -> PlantModel:
     """Return a plant whose whole moment of inertia, rotors included, is `factor` times its own."""
-    from scenarios.studies.paper.scales import GEAR_RATIO
-
     axis = model.axes.ra
     rotors = 2.0 * axis.motor.rotor_inertia.si * GEAR_RATIO**2
     load = factor * (axis.inertia.si + rotors) - rotors
