@@ -94,10 +94,9 @@ def run(options: RunOptions) -> None:
     _tell(result, folder, options.no_report)
     if muted is not None:
         from scenarios.lab.muted import compare
-        from scenarios.lab.networks import config_from, devices_of
+        from scenarios.lab.networks import devices_in
 
-        devices = devices_of(config_from(scenario.network, {}, scenario.file.parent))
-        board = next(device for device in devices if device.name == muted[0])
+        board = next(device for device in devices_in(scenario) if device.name == muted[0])
         click.echo(compare(muted[1], folder / "can.log", board).text())
     if result.interrupted:
         fail(f"interrupted, logs up to t={result.summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)

@@ -15,10 +15,9 @@ from host.serial_link import SerialLink
 from scenarios.doors.options import HostOptions
 from scenarios.doors.pc import Host, TelescopePc, dated
 from scenarios.doors.runs import RecordedRuns
-from scenarios.lab.networks import config_from, devices_of
+from scenarios.lab.networks import devices_in
 from scenarios.lab.prepare import chosen
 from scenarios.lab.session import log_headers
-from scenarios.language.model import Scenario
 
 SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
 _SERIAL = "serial "
@@ -36,7 +35,7 @@ class CabledHost(Host):
         scenario, model = chosen(options.scenario, network_name=options.network)
         scenario = dated(scenario)
         pc = TelescopePc(
-            scenario, lambda _t, report: self.usb.write(report), expected(scenario), options.logs
+            scenario, lambda _t, report: self.usb.write(report), devices_in(scenario), options.logs
         )
         self.usb = LinkTask(options.usb, lambda: _port(options.usb), self.inbox, said.put)
         self.tasks = [self.usb]
@@ -96,11 +95,6 @@ class CabledHost(Host):
                 return
             self._console.print(line)
             self.pc.journal.status(now_ns, "LINK", line)
-
-
-def expected(scenario: Scenario) -> tuple[Device, ...]:
-    """The boards that a scenario's network has: those that should live."""
-    return devices_of(config_from(scenario.network, {}, scenario.file.parent))
 
 
 def _port(spec: str) -> HidrawPort | SocketPort | CanPort:
