@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from plant.model import with_value
 from plant.parts import PlantModel
-from scenarios.studies.paper.bench import Bench
+from scenarios.studies.paper.runs import Bench
 from scenarios.studies.paper.scales import GEAR_RATIO
 
 STEPS_PER_DEGREE = (1 << 29) / 360.0

@@ -22,9 +22,8 @@ from math import floor
 import numpy as np
 from scipy.optimize import least_squares
 
-from scenarios.studies.paper.bench import Bench
 from scenarios.studies.paper.log import Array
-from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC
+from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC, Bench
 from scenarios.studies.paper.scales import CONTROL_PERIOD_S, EFFORT_SCALE, LOG_PERIOD_S
 from scenarios.studies.paper.tuning import FirstOrder
 
