@@ -13,11 +13,12 @@ class LogError(ValueError):
 
 
 def write_file(path: Path, data: str | bytes) -> None:
-    """Write a whole file, text as UTF-8; raises `LogError` that names it."""
+    """Write a whole file, text as UTF-8, and its folder if need be; raises `LogError` that names it."""
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data.encode() if isinstance(data, str) else data)
     except OSError as error:
-        raise LogError(f"{path}: {reason(error)}") from None
+        raise LogError(f"{path}: cannot be written: {reason(error)}") from None
 
 
 class BlockFile:
