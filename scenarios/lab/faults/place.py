@@ -81,10 +81,7 @@ class Place:
     def let_go(self, name: str) -> bool:
         """One fewer; whether it was the last."""
         self.held[name] -= 1
-        if self.held[name]:
-            return False
-        del self.held[name]
-        return True
+        return not self.held[name]
 
     def known(self) -> dict[str, tuple[str, ...]]:
         """The words an argument may be, by its type."""
