@@ -49,11 +49,11 @@ def _terminate(_signal: int, _frame: object) -> None:
     raise KeyboardInterrupt
 
 
-def _said(error: OSError) -> str:
+def _said(error: OSError | ValueError) -> str:
     """The file first, as in all other errors, without the system's number."""
-    if error.filename is None or error.strerror is None:
-        return str(error)
-    return f"{error.filename}: {error.strerror.lower()}"
+    if isinstance(error, OSError) and error.filename is not None and error.strerror is not None:
+        return f"{error.filename}: {error.strerror.lower()}"
+    return str(error)
 
 
 def main() -> None:
@@ -61,23 +61,18 @@ def main() -> None:
     signal.signal(signal.SIGTERM, _terminate)
     try:
         cli.main(standalone_mode=False)
-    except click.exceptions.Abort:
+    except (click.exceptions.Abort, KeyboardInterrupt):
         fail("interrupted", INTERRUPTED)
     except click.ClickException as error:
-        fail(" ".join(error.format_message().split()), UNUSABLE)
-    except KeyboardInterrupt:
-        fail("interrupted", INTERRUPTED)
-    except OSError as error:
-        fail(" ".join(_said(error).split()), UNUSABLE)
-    except ValueError as error:
-        fail(" ".join(str(error).split()), UNUSABLE)
+        fail(error.format_message(), UNUSABLE)
+    except (OSError, ValueError) as error:
+        fail(_said(error), UNUSABLE)
     except ImportError as error:
-        fail(
-            advice(error.name or "") or f"this command needs a part that is not installed: {error}", UNUSABLE
-        )
+        missing = f"this command needs a part that is not installed: {error}"
+        fail(advice(error.name or "") or missing, UNUSABLE)
     except MemoryError:
         fail("there is not enough memory for this", UNUSABLE)
     except RecursionError:
         fail("the input is nested too deeply", UNUSABLE)
     except Exception as error:
-        fail(f"internal error, please report it: {type(error).__name__}: {' '.join(str(error).split())}", 70)
+        fail(f"internal error, please report it: {type(error).__name__}: {error}", 70)

@@ -9,11 +9,8 @@ from bus.protocol import Device, unpack_heartbeat
 from bus.protocol.nodes import DEVICES
 from bus.protocol.report import ReportError, unpack_report
 from host.client import SILENCE_NS, Client
-from host.console.decoded import seen
-from host.console.views import FaultKind, Node, SeenFrame
+from host.console.views import KEPT, BusState, FaultKind, Node
 
-KEPT = 25
-"""Frames that a page shows."""
 _LOAD_NS = 1_000_000_000
 """The load is that of the last second."""
 _PASSIVE = 128
@@ -29,6 +26,8 @@ class HeardBus:
     """
 
     def __init__(self, client: Client) -> None:
+        self.boards: tuple[str, ...] = ()
+        self.kinds: list[FaultKind] = []
         self._client = client
         self._frames: deque[tuple[int, int, bytes]] = deque(maxlen=KEPT)
         self._second_ns = 0
@@ -49,40 +48,26 @@ class HeardBus:
             self._bits[frame.data[0]] += frame_bits(frame)
             self._frames.append((t_ns, frame.identifier, frame.data))
 
-    def nodes(self) -> list[Node]:
-        """Boards that should live; silent ones are shown as off. Nobody tells the host of their REC."""
-        return [self._node(device) for device in self._client.devices]
+    def look(self) -> BusState:
+        """Boards that should live; silent ones are shown as off. Nobody tells the host of their REC.
 
-    def load(self) -> float:
-        """Of the last whole second, at least."""
-        return sum(self._loads.values())
-
-    def errors(self) -> dict[str, int]:
-        """Of the cable only: no host hears error frames through the gateway."""
-        return {"bad reports": self._client.link.bad_reports}
-
-    def frames(self, most: int) -> list[SeenFrame]:
-        """The last ones, by the protocol."""
+        The load is of the last whole second, errors are of the cable only: no host hears error frames through
+        the gateway.
+        """
         names = {int(device): device.name for device in (*DEVICES, *self._client.devices)}
-        return [
-            seen(t_ns, names.get(data[0], f"{data[0]:#04x}"), identifier, data)
-            for t_ns, identifier, data in tuple(self._frames)[-most:]
-        ]
-
-    def faults(self) -> tuple[str, ...]:
-        """None: real supplies have no switch here."""
-        return ()
+        return BusState(
+            nodes=[self._node(device) for device in self._client.devices],
+            load=sum(self._loads.values()),
+            errors={"bad reports": self._client.link.bad_reports},
+            running=[],
+            frames=[
+                (t_ns, names.get(data[0], f"{data[0]:#04x}"), identifier, data)
+                for t_ns, identifier, data in tuple(self._frames)
+            ],
+        )
 
     def switch(self, board: str, on: bool) -> None:
         """Nothing to switch."""
-
-    def fault_kinds(self) -> list[FaultKind]:
-        """None."""
-        return []
-
-    def running(self) -> list[tuple[int, str]]:
-        """None."""
-        return []
 
     def start_fault(self, name: str, arguments: str) -> Future[str]:
         """Refused."""

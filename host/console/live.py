@@ -65,7 +65,8 @@ class Live:
         now = self.telescope.snapshot
         if self.samples and now.t_s <= self.samples[-1].t_s:
             return
-        found = self.alarms.of_telescope(now) | of_bus(self._bus.load(), self._bus.running())
+        bus = self._bus.look()
+        found = self.alarms.of_telescope(now) | of_bus(bus.load, bus.running)
         if now.t_s > SILENCE_S:  # boards that have just been switched on are not silent
             found = of_house(self.telescope.house) | found
         self.alarms.take(now.t_s, found)

@@ -73,9 +73,14 @@ class Shell:
         self._controls.append(element)
         return element
 
-    def each(self, refresh: Callable[[], object]) -> None:
+    def field(self, element: Any, wide: bool = False) -> Any:
+        """A field to fill in, as all of them look; wide: over the whole box."""
+        return self.control(element.props("outlined dense").classes("w-full" if wide else None))
+
+    def each(self, refresh: Callable[[], object]) -> Callable[[], object]:
         """Call this four times a second, while the page is open."""
         self._refresh.append(refresh)
+        return refresh
 
     def key(self, act: Callable[[KeyEventArguments], None]) -> None:
         """Keys that this page takes beside the space bar; not while the consoles are locked."""
@@ -168,13 +173,12 @@ class Shell:
                     ui.label(name).classes("small")
                     labels.append(ui.label("–").classes("mid"))
 
+        @self.each
         def refresh() -> None:
             for label, text in zip(labels, self.live.clocks, strict=True):
                 label.set_text(text)
             for label in labels[2:]:
                 stale(label, not self.desk.now.stale.isdisjoint(ENCODERS))
-
-        self.each(refresh)
 
     def _alarms(self) -> None:
         """What is wrong, on every page, until somebody acknowledges it; with a sound if wanted."""
@@ -185,6 +189,7 @@ class Shell:
             sound = ui.switch("sound").props('aria-label="Sound at a new alarm"')
         heard = [0]
 
+        @self.each
         def refresh() -> None:
             standing = alarms.standing
             bar.set_visibility(bool(standing))
@@ -196,8 +201,6 @@ class Shell:
             if new > heard[0] and sound.value:
                 ui.run_javascript(_BEEP)
             heard[0] = new
-
-        self.each(refresh)
 
     def _stop_button(self) -> None:
         """In force at the press already, as of any such button: the click comes only with the release."""
@@ -281,13 +284,12 @@ def log_of(shell: Shell, name: str, lines: Callable[[], Sequence[tuple[float, st
     """A window of (t_s, words), the newest on top, with UTC."""
     element = ui.html(sanitize=False).props(f'role="log" aria-label="{name}"')
 
+    @shell.each
     def refresh() -> None:
         utc = shell.telescope.observatory.clock.iso
         text = escape("\n".join(f"{utc(t_s)[11:19]}  {words}" for t_s, words in reversed(lines())))
         if (made := f'<pre class="lines">{text}</pre>') != element.content:
             element.set_content(made)
-
-    shell.each(refresh)
 
 
 def escape(text: str) -> str:

@@ -4,6 +4,9 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+KEPT = 25
+"""Frames that a page shows."""
+
 
 class Node(NamedTuple):
     """One node of the CAN bus: error state by ISO 11898-1 and its counters; its frames' share of the last
@@ -17,16 +20,6 @@ class Node(NamedTuple):
     load: float = 0.0
 
 
-class SeenFrame(NamedTuple):
-    """One frame as a person reads it: when its last bit ended, who sent it, what it says."""
-
-    t_s: float
-    sender: str
-    identifier: int
-    data: bytes
-    text: str
-
-
 class FaultKind(NamedTuple):
     """A fault that can be made: its level (bus, board …), what happens, the arguments it needs as
     `name=` words, and all of its arguments with units and bounds."""
@@ -38,32 +31,31 @@ class FaultKind(NamedTuple):
     arguments: str
 
 
+class BusState(NamedTuple):
+    """The wire as it stands. load: share of the last second that the bus was busy, 0..1. errors: error frames
+    so far by cause. running: faults that are on, number and a line of words. frames: (end ns, sender,
+    identifier, data) of the last ones, newest last."""
+
+    nodes: list[Node]
+    load: float
+    errors: dict[str, int]
+    running: list[tuple[int, str]]
+    frames: list[tuple[int, str, int, bytes]]
+
+
 class BusView(Protocol):
     """The bus as its own emulator or adapter sees it; safe to call from the consoles' thread."""
 
-    def nodes(self) -> list[Node]:
-        """All nodes, in the order they joined."""
+    boards: tuple[str, ...]
+    """Those whose supply can be switched here; empty on a real bus."""
+    kinds: list[FaultKind]
+    """Faults that can be made; empty on a real bus."""
 
-    def load(self) -> float:
-        """Share of the time that the bus was busy, 0..1."""
-
-    def errors(self) -> dict[str, int]:
-        """Error frames so far by cause."""
-
-    def frames(self, most: int) -> list[SeenFrame]:
-        """The last frames, newest last."""
-
-    def faults(self) -> tuple[str, ...]:
-        """Names of the boards whose supply can be switched here; empty on a real bus."""
+    def look(self) -> BusState:
+        """Everything at this moment; nodes in the order they joined."""
 
     def switch(self, board: str, on: bool) -> None:
         """Cut or give back the supply of a board; in force with the next slice of time."""
-
-    def fault_kinds(self) -> list[FaultKind]:
-        """Faults that can be made; empty on a real bus."""
-
-    def running(self) -> list[tuple[int, str]]:
-        """Faults that are on: number, and a line of words."""
 
     def start_fault(self, name: str, arguments: str) -> Future[str]:
         """Start one with `name=value` words; the next slice does it. ValueError with one line: it cannot

@@ -13,11 +13,12 @@ class LogError(ValueError):
 
 
 def write_file(path: Path, data: str | bytes) -> None:
-    """Write a whole file, text as UTF-8; raises `LogError` that names it."""
+    """Write a whole file, text as UTF-8, and its folder if need be; raises `LogError` that names it."""
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data.encode() if isinstance(data, str) else data)
     except OSError as error:
-        raise LogError(f"{path}: {_reason(error)}") from None
+        raise LogError(f"{path}: cannot be written: {reason(error)}") from None
 
 
 class BlockFile:
@@ -34,7 +35,7 @@ class BlockFile:
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
         except OSError as error:
-            raise LogError(f"{path}: cannot be written: {_reason(error)}") from None
+            raise LogError(f"{path}: cannot be written: {reason(error)}") from None
 
     def write(self, data: bytes) -> int:
         """Write a block; raises `LogError` when it does not fit."""
@@ -44,7 +45,7 @@ class BlockFile:
                 done += os.write(self._descriptor, data[done:])
         except OSError as error:
             self._cut_back(data[:done])
-            raise LogError(f"{self.path}: {_reason(error)}; what is there is readable") from None
+            raise LogError(f"{self.path}: {reason(error)}; what is there is readable") from None
         self._whole += done
         return done
 
@@ -114,5 +115,6 @@ class LineFile:
         return self._digest.hexdigest()
 
 
-def _reason(error: OSError) -> str:
-    return (error.strerror or "cannot be written").lower()
+def reason(error: OSError) -> str:
+    """The reason that the system gives, in one line."""
+    return ((error.strerror or str(error)).splitlines() or ["cannot be written"])[0].lower()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from host.logs.files import LogError
+from host.logs.files import LogError, reason
 
 _ROWS_PER_GROUP = 1 << 13
 
@@ -58,7 +58,7 @@ class Trace:
             buffers = [pa.Array.from_buffers(pa.float64(), count, [None, pa.py_buffer(c)]) for c in columns]
             self._writer.write_table(pa.table(buffers, schema=self._schema))
         except OSError as error:
-            raise LogError(f"{self.path}: {_reason(error)}") from None
+            raise LogError(f"{self.path}: {reason(error)}") from None
 
     def close(self) -> None:
         """Write the rest and the footer; a second close does nothing."""
@@ -71,7 +71,7 @@ class Trace:
             try:
                 writer.close()
             except OSError as error:
-                raise LogError(f"{self.path}: {_reason(error)}") from None
+                raise LogError(f"{self.path}: {reason(error)}") from None
 
 
 def read(
@@ -99,7 +99,7 @@ def overview(path: Path, columns: tuple[str, ...], points: int = 4000) -> dict[s
         for group in range(file.num_row_groups):
             table = file.read_row_group(group, columns=wanted)
             rows = np.stack([_column(table[name]) for name in wanted], axis=1)
-            pieces.append(rows[_extremes(rows[:, 1], width)])
+            pieces.append(rows[extremes(rows[:, 1], width)])
     joined = np.concatenate(pieces) if pieces else np.empty((0, len(wanted)))
     return {name: joined[:, index] for index, name in enumerate(wanted)}
 
@@ -109,8 +109,8 @@ def _column(column: Any) -> npt.NDArray[np.float64]:
     return np.concatenate([np.empty(0), *(np.from_dlpack(chunk) for chunk in column.chunks)])
 
 
-def _extremes(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.intp]:
-    """Indices of the smallest and largest value of every stretch of `width`, in order."""
+def extremes(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.intp]:
+    """Return indices of the smallest and largest value of every stretch of `width`, in order."""
     whole = len(values) // width * width
     if width < 3 or not whole:
         return np.arange(len(values))
@@ -118,7 +118,3 @@ def _extremes(values: npt.NDArray[np.float64], width: int) -> npt.NDArray[np.int
     start = np.arange(len(blocks)) * width
     ends = np.stack([blocks.argmin(axis=1) + start, blocks.argmax(axis=1) + start], axis=1)
     return np.sort(ends, axis=1).reshape(-1)
-
-
-def _reason(error: OSError) -> str:
-    return (error.strerror or str(error)).splitlines()[0].lower()

@@ -37,28 +37,17 @@ def right_ascension(session: Session, argument: str) -> None:
     session.target_ra_rad = hours * math.pi / 12
 
 
-def declination(session: Session, argument: str) -> None:
-    """`:SdsDD*MM:SS#`."""
-    degrees = angles.parse(argument)
-    if abs(degrees) > 90:
-        raise ValueError(f"declination {argument!r} is outside -90 to 90")
-    session.target_dec_rad = math.radians(degrees)
+def _degrees(field: str, name: str, low: int, high: int) -> Handler:
+    """`:SdsDD*MM:SS#`; `:SzDDD*MM#`, from north through east; `:SasDD*MM#`, with refraction, as the tube
+    stands."""
 
+    def set_it(session: Session, argument: str) -> None:
+        degrees = angles.parse(argument)
+        if not low <= degrees <= high:
+            raise ValueError(f"{name} {argument!r} is outside {low} to {high}")
+        setattr(session, field, math.radians(degrees))
 
-def azimuth(session: Session, argument: str) -> None:
-    """`:SzDDD*MM#`, from north through east."""
-    degrees = angles.parse(argument)
-    if not 0 <= degrees <= 360:
-        raise ValueError(f"azimuth {argument!r} is outside 0 to 360")
-    session.target_az_rad = math.radians(degrees)
-
-
-def altitude(session: Session, argument: str) -> None:
-    """`:SasDD*MM#`, with refraction, as the tube stands."""
-    degrees = angles.parse(argument)
-    if abs(degrees) > 90:
-        raise ValueError(f"altitude {argument!r} is outside -90 to 90")
-    session.target_alt_rad = math.radians(degrees)
+    return _answering(set_it)
 
 
 def longitude(session: Session, argument: str) -> None:
@@ -127,8 +116,9 @@ def _taken(_session: Session, argument: str) -> None:
 
 
 SETTING: dict[str, Handler] = {
-    "Sr": _answering(right_ascension), "Sd": _answering(declination), "Sz": _answering(azimuth),
-    "Sa": _answering(altitude), "Sg": _answering(longitude),
+    "Sr": _answering(right_ascension), "Sd": _degrees("target_dec_rad", "declination", -90, 90),
+    "Sz": _degrees("target_az_rad", "azimuth", 0, 360),
+    "Sa": _degrees("target_alt_rad", "altitude", -90, 90), "Sg": _answering(longitude),
     "St": _answering(latitude), "SG": _answering(utc_offset), "SL": _answering(local_time),
     "SC": local_date, "ST": frequency, "SM": _name(0), "SN": _name(1), "SO": _name(2), "SP": _name(3),
     "So": _answering(_taken), "Sh": _answering(_taken), "Sw": _answering(_taken),

@@ -6,15 +6,16 @@ import json
 from pathlib import Path
 from typing import Any
 
+from plant.model import PlantModel, dump
+from scenarios.language.load import DEFAULT_PLANT
+from scenarios.language.plants import named, plant_model
+
 Document = dict[str, Any]
 FIELD = "calibration"
 
 
-def declared(document: Document, beside: Path) -> Any:
+def declared(document: Document, beside: Path) -> PlantModel:
     """The declared plant with the document's overrides. beside: folder of relative names."""
-    from scenarios.language.load import DEFAULT_PLANT
-    from scenarios.language.plants import named, plant_model
-
     return plant_model(named(document.get("plant", DEFAULT_PLANT)), beside)
 
 
@@ -30,7 +31,6 @@ def row(document: Document, beside: Path, folder: Path) -> Document:
     """Calibrate into `folder`; the verdict, how many effects it names, and the error of every held-out
     channel before and after. Raises ValueError as `schmidt calibrate` does."""
     from calibration.command import calibrate
-    from plant.model import dump
 
     given = document[FIELD]
     plant = None

@@ -4,9 +4,13 @@ import copy
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
+from plant.model import ModelError, get
 from scenarios.language.document import ScenarioError
+from scenarios.language.load import DEFAULT_PLANT
+from scenarios.language.plants import named, plant_model
 from scenarios.language.validate import nearest
 
 Document = dict[str, Any]
@@ -99,12 +103,6 @@ Put = tuple[Callable[[Document, Any], None], str, float | None]
 
 def _plant(path: Any, where: str, base: Document) -> Put:
     """A number of the plant file, by the file's own paths; `times` is relative to what the scenario has."""
-    from pathlib import Path
-
-    from plant.model import ModelError, get
-    from scenarios.language.load import DEFAULT_PLANT
-    from scenarios.language.plants import named, plant_model
-
     whole = named(base.get("plant", DEFAULT_PLANT))
     try:
         number = get(plant_model(whole, Path(base["_folder"])), str(path)).value

@@ -11,7 +11,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from scenarios.campaign import calibration
+from scenarios.lab.prepare import prepare
+from scenarios.language.document import Document
 from scenarios.language.load import BESIDE
+from scenarios.native import compiled
+from scenarios.run import run as runner
+from scenarios.run.probe import digest
 
 Row = dict[str, Any]
 _EXPECTATIONS = "expectations"
@@ -34,9 +40,6 @@ class Job:
 
 def run(job: Job) -> Row:
     """Run one case. What the run makes of it is the row's `failure`; only a broken machine raises."""
-    from scenarios.native import compiled
-    from scenarios.run.probe import digest
-
     start, cpu = time.perf_counter(), time.process_time()
     row: Row = {"key": job.key, "index": job.index, "failure": ""}
     row |= {f"input: {name}": _cell(value) for name, value in job.values.items()}
@@ -59,15 +62,11 @@ def run(job: Job) -> Row:
 
 def _made(job: Job, folder: Path) -> Row:
     """What this kind of run makes of its document."""
-    from scenarios.campaign.calibration import FIELD
-
-    return _calibrated(job, folder) if FIELD in job.document else _simulated(job, folder)
+    return _calibrated(job, folder) if calibration.FIELD in job.document else _simulated(job, folder)
 
 
 def _calibrated(job: Job, folder: Path) -> Row:
-    from scenarios.campaign.calibration import row as calibrate
-
-    found = calibrate(job.document, Path(job.beside), folder)
+    found = calibration.row(job.document, Path(job.beside), folder)
     figures = found.pop("figures")
     row: Row = {"passed": True, "missed": "", **found}
     row["digest"] = hashlib.sha256(json.dumps([found, figures], sort_keys=True).encode()).hexdigest()
@@ -75,10 +74,6 @@ def _calibrated(job: Job, folder: Path) -> Row:
 
 
 def _simulated(job: Job, folder: Path) -> Row:
-    from scenarios.lab.prepare import prepare
-    from scenarios.language.document import Document
-    from scenarios.run import run as runner
-
     document = Document(Path(job.beside) / f"{job.key}.yaml", job.document, {})
     scenario, model = prepare(document)
     result = runner.run(scenario, model, folder, lambda _step, _t, _factor: None, runner.Way(report=False))

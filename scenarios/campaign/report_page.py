@@ -14,6 +14,7 @@ from scenarios.campaign.plan import Plan
 from scenarios.campaign.sensitivity import Indices, Influence, influence, share, sobol
 from scenarios.lab.prepare import load
 from scenarios.language.document import Document
+from scenarios.run.evaluate import KINDS
 from scenarios.run.report.html import picture, rendered
 
 _QUANTILES = (0.05, 0.5, 0.95)
@@ -58,8 +59,6 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
 
 def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]]:
     """Limit of each expectation, and what it is measured in; no unit for a bare number."""
-    from scenarios.run.evaluate import KINDS
-
     data = {word: value for word, value in plan.base.items() if word != "_folder"}
     expected = load(Document(plan.scenario, data, {})).expectations
     units = {e.name: KINDS[e.kind].unit for e in expected}

@@ -9,10 +9,36 @@ from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
 from scenarios.campaign.job import Job, Row, run
 from scenarios.campaign.options import CampaignOptions
+from scenarios.campaign.report_page import write
 from scenarios.language.document import ScenarioError
 from scenarios.progress import shown
+from scenarios.run.probe import digest
 
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
+
+
+class _Waiting:
+    """The planned runs that are not made yet; `late` when time is over before all were given."""
+
+    def __init__(self, planned: plan.Plan, done: set[str], out: Path) -> None:
+        self._planned, self._done, self._out = planned, done, out
+        self._begun_s = time.perf_counter()
+        self.late = False
+
+    @property
+    def wall_s(self) -> float:
+        """Since the beginning."""
+        return time.perf_counter() - self._begun_s
+
+    def __iter__(self) -> Iterator[tuple[str, Job]]:
+        limit_s = self._planned.time_s
+        for case in self._planned.cases():
+            if case.key in self._done:
+                continue
+            if limit_s is not None and self.wall_s > limit_s:
+                self.late = True
+                return
+            yield case.key, _job(self._planned, case, self._out)
 
 
 def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
@@ -20,31 +46,16 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
 
     task: what makes a row of a planned run; the bench has one that does nothing.
     """
-    from scenarios.campaign.report_page import write
-    from scenarios.run.probe import digest
-
     out = options.folder
     planned = plan.load(options.file)
     journal = table.Journal(out, options.resume)
     ours = digest()  # also fills the cache of compiled kernels before the workers ask for it
-    begun = time.perf_counter()
-    late = False
+    waiting = _Waiting(planned, journal.done, out)
     before = len(journal.done)
-
-    def waiting() -> Iterator[tuple[str, Job]]:
-        nonlocal late
-        for case in planned.cases():
-            if case.key in journal.done:
-                continue
-            if planned.time_s is not None and time.perf_counter() - begun > planned.time_s:
-                late = True
-                return
-            yield case.key, _job(planned, case, out)
-
     status = COMPLETE
     with shown("runs", planned.count, before) as advance:
         try:
-            for done in each(task, waiting(), jobs=options.jobs, scheduler=options.scheduler):
+            for done in each(task, waiting, jobs=options.jobs, scheduler=options.scheduler):
                 if done.value is None:
                     journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
                     status = INCOMPLETE
@@ -57,20 +68,20 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
             status = INTERRUPTED
         finally:
             journal.close()
-    wall_s = time.perf_counter() - begun
+    wall_s = waiting.wall_s
     if not journal.done:
         print(f"schmidt: no run has ended; nothing is in {out}", file=sys.stderr)
         return status or INCOMPLETE
     table.write(out)
     write(planned, out, wall_s, len(journal.done) - before)
-    missing = planned.count - len(journal.done)
     where = f"report {out / 'report.html'}, table {out / table.TABLE}"
     print(f"{len(journal.done)} of {planned.count} runs, {where}")
-    if missing > 0:
-        why = "interrupted" if status == INTERRUPTED else "out of time" if late else "workers were lost"
-        print(f"schmidt: {why}, {missing} runs are missing: --resume makes them", file=sys.stderr)
-        return status or INCOMPLETE
-    return status
+    missing = planned.count - len(journal.done)
+    if missing <= 0:
+        return status
+    why = "interrupted" if status == INTERRUPTED else "out of time" if waiting.late else "workers were lost"
+    print(f"schmidt: {why}, {missing} runs are missing: --resume makes them", file=sys.stderr)
+    return status or INCOMPLETE
 
 
 def _job(planned: plan.Plan, case: plan.Case, out: Path) -> Job:

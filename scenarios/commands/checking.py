@@ -9,7 +9,7 @@ from bus.conformance.cli import check, conformance_command
 from bus.conformance.result import CheckResult
 from bus.outside.pythoncan import SchmidtBus
 from bus.protocol.nodes import DEVICES, documented
-from scenarios.lab.networks import config_from, devices_of
+from scenarios.lab.networks import devices_in
 from scenarios.lab.prepare import chosen
 from scenarios.lab.wiring import wire
 from scenarios.progress import Show, shown
@@ -30,7 +30,7 @@ def command(
     """
     settings = settings or Settings()
     scenario, model = chosen(scenario_file, network_name=network_name)
-    devices = devices_of(config_from(scenario.network, {}, scenario.file.parent))
+    devices = devices_in(scenario)
     known = (*DEVICES, *devices)
     dbc = documented(known)
     named = [parse(board, known) for board in boards] or [board_of(device) for device in devices]

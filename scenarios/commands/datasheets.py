@@ -39,7 +39,6 @@ def write_eds(folder: Path, scenario: Path | None = None, name: str | None = Non
     from boards.canopen.dictionary import type_of
 
     made = network(scenario, network_name=name)
-    folder.mkdir(parents=True, exist_ok=True)
     boards = {type_of(board)[0].lower(): board for board in reversed(made.boards.values())}
     written = []
     for kind, board in sorted(boards.items()):

@@ -12,7 +12,8 @@ _LINE = 600
 
 
 def fail(text: str, status: int) -> NoReturn:
-    """Say `schmidt: text` on stderr and leave with `status`."""
+    """Say `schmidt: text` on stderr, in one line, and leave with `status`."""
+    text = " ".join(text.split())
     if len(text) > _LINE:
         text = text[: _LINE // 2] + " … " + text[-_LINE // 2 :]
     click.echo(f"schmidt: {text}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)

@@ -90,14 +90,13 @@ def run(options: RunOptions) -> None:
             raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
         result = _compared(scenario, model, folder, options.compensation)
     else:
-        result = _once(scenario, model, folder, options, whole, muted)
+        result = _once(scenario, model, folder, options, whole)
     _tell(result, folder, options.no_report)
     if muted is not None:
         from scenarios.lab.muted import compare
-        from scenarios.lab.networks import config_from, devices_of
+        from scenarios.lab.networks import devices_in
 
-        devices = devices_of(config_from(scenario.network, {}, scenario.file.parent))
-        board = next(device for device in devices if device.name == muted[0])
+        board = next(device for device in devices_in(scenario) if device.name == muted[0])
         click.echo(compare(muted[1], folder / "can.log", board).text())
     if result.interrupted:
         fail(f"interrupted, logs up to t={result.summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
@@ -109,12 +108,12 @@ def _loaded(options: RunOptions) -> tuple[Scenario, PlantModel, dict[str, Any] |
     from scenarios.lab.prepare import Changes, prepare
 
     if options.begun is not None:
-        from scenarios.lab.snapshot.run import begun, parts
+        from scenarios.lab.snapshot.run import begun
 
         if options.changed:
             raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
         whole = begun(options.begun)
-        return *parts(whole), whole
+        return whole["scenario"], whole["model"], whole
     if options.scenario is None:
         raise click.UsageError("Missing argument 'SCENARIO'.")
     # a table in fractions of a step wants a duty in fractions of a step
@@ -137,7 +136,6 @@ def _once(
     folder: Path,
     options: RunOptions,
     whole: dict[str, Any] | None,
-    muted: tuple[str, Path] | None,
 ) -> Result:
     from scenarios.lab.snapshot.run import Order
     from scenarios.run import run as runner
@@ -145,7 +143,7 @@ def _once(
     order = None
     if options.snapshot_at is not None:
         order = Order(round(options.snapshot_at * 1e9), options.snapshot or folder / "snapshot")
-    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=muted)
+    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=options.muted)
     with runner.bar(scenario) as progress:
         result = runner.run(scenario, model, folder, progress, way)
     if order is not None and not order.done:

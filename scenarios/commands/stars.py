@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from host.logs.files import write_file
 from host.sky.pointfind import Answer, Lack, find
 from host.sky.pointread import read
 from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
@@ -27,8 +28,7 @@ def calibrate_stars(path: Path, terms: str | None, out: Path) -> int:
             raise ValueError(f"--terms: no term is called {name!r}; there are {', '.join(TERMS)}")
     stars = read(path)
     answer = find(stars, declared)
-    out.mkdir(parents=True, exist_ok=True)
-    (out / "report.json").write_text(json.dumps(report(answer, declared), indent=1) + "\n", encoding="utf-8")
+    write_file(out / "report.json", json.dumps(report(answer, declared), indent=1) + "\n")
     answer.model.save(out / "pointing-model.json")
     residuals(stars, answer.model).savefig(out / "pointing-run.png")
     _show(answer, declared, out)

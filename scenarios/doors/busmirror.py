@@ -6,9 +6,8 @@ from itertools import count
 from time import monotonic
 from typing import Any
 
-from host.console.decoded import seen
-from host.console.views import FaultKind, Node, SeenFrame
-from scenarios.doors.pipe_messages import BusState, Done, Wish
+from host.console.views import BusState, FaultKind
+from scenarios.doors.pipe_messages import Done, Wish
 
 _LOOKED_S = 1.0
 """Pages refresh four times a second; when nobody has asked for so long, nobody looks."""
@@ -18,8 +17,8 @@ class BusMirror:
     """A `BusView`. boards: whose supply can be switched. send: takes a `Wish`, from any thread."""
 
     def __init__(self, boards: list[str], kinds: list[FaultKind], send: Callable[[Wish], None]) -> None:
-        self._boards = tuple(boards)
-        self._kinds = kinds
+        self.boards = tuple(boards)
+        self.kinds = kinds
         self._send = send
         self._numbers = count()
         self._open: dict[int, Future[str]] = {}
@@ -31,34 +30,10 @@ class BusMirror:
         """Whether somebody looks."""
         return monotonic() - self._asked_s < _LOOKED_S
 
-    def nodes(self) -> list[Node]:
-        """Boards and whoever else is attached."""
-        return self.state.nodes
-
-    def load(self) -> float:
-        """Busy share so far."""
+    def look(self) -> BusState:
+        """The last picture."""
         self._asked_s = monotonic()
-        return self.state.load
-
-    def errors(self) -> dict[str, int]:
-        """By cause."""
-        return self.state.errors
-
-    def frames(self, most: int) -> list[SeenFrame]:
-        """The last ones, decoded by the DBC."""
-        return [seen(*each) for each in self.state.frames[-most:]]
-
-    def faults(self) -> tuple[str, ...]:
-        """Every board's supply can be cut."""
-        return self._boards
-
-    def fault_kinds(self) -> list[FaultKind]:
-        """The table of faults."""
-        return self._kinds
-
-    def running(self) -> list[tuple[int, str]]:
-        """What is on, by number."""
-        return self.state.running
+        return self.state
 
     def start_fault(self, name: str, arguments: str) -> Future[str]:
         """Wished for; the next slice does it."""

@@ -6,13 +6,10 @@ from typing import Any
 
 from bus.can.frame import Frame
 from bus.can.length import frame_bits
-from host.console.views import FaultKind, Node
+from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.pipe_messages import BusState
 from scenarios.lab.faults import FaultError, Kind, Parameter
 
-KEPT = 25
-"""Frames that a page shows."""
 _LOAD_NS = 1_000_000_000
 REFUSALS = (ValueError, TypeError)
 """What a wish may be refused by: FaultError, NetworkError, arguments of another kind."""

@@ -11,23 +11,19 @@ from host.client import TICK_NS
 from host.console.heard import HeardBus
 from host.links.ports import CanPort, HidrawPort, SerialPort, SocketPort
 from host.links.task import LinkTask
-from host.outside import Outside
 from host.serial_link import SerialLink
-from scenarios.doors.keeper import Keeper
 from scenarios.doors.options import HostOptions
-from scenarios.doors.pc import TelescopePc, dated
+from scenarios.doors.pc import Host, TelescopePc, dated
 from scenarios.doors.runs import RecordedRuns
-from scenarios.doors.table import ON_HOST, doors_on
-from scenarios.lab.networks import config_from, devices_of
+from scenarios.lab.networks import devices_in
 from scenarios.lab.prepare import chosen
 from scenarios.lab.session import log_headers
-from scenarios.language.model import Scenario
 
 SERIAL = ("AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC", "FOCUS")
 _SERIAL = "serial "
 
 
-class CabledHost:
+class CabledHost(Host):
     """Links, telescope and doors on the PC's own clock."""
 
     def __init__(self, options: HostOptions, console: Console) -> None:
@@ -38,26 +34,24 @@ class CabledHost:
         self._said, self._console = said, console
         scenario, model = chosen(options.scenario, network_name=options.network)
         scenario = dated(scenario)
-        self.pc = TelescopePc(scenario, self._send, expected(scenario), options.logs)
-        self.outside = Outside()
+        pc = TelescopePc(
+            scenario, lambda _t, report: self.usb.write(report), devices_in(scenario), options.logs
+        )
         self.usb = LinkTask(options.usb, lambda: _port(options.usb), self.inbox, said.put)
         self.tasks = [self.usb]
         self.serial: dict[str, SerialLink] = {}
         for board, url in ports.items():
             self.tasks.append(LinkTask(_SERIAL + board, _serial(url), self.inbox, said.put))
-            self.serial[_SERIAL + board] = SerialLink(
-                Device[board], self.pc.journal, lambda _t, _packet: None
-            )
-        self.bus = HeardBus(self.pc.telescope.client)
-        self.runs = RecordedRuns(options.runs, log_headers(scenario, model), self.pc.journal, list(ports))
-        self.keepers = [Keeper(door, console.print) for door in doors_on(ON_HOST, options, self)]
+            self.serial[_SERIAL + board] = SerialLink(Device[board], pc.journal, lambda _t, _packet: None)
+        self._heard = HeardBus(pc.telescope.client)
+        runs = RecordedRuns(options.runs, log_headers(scenario, model), pc.journal, list(ports))
+        super().__init__(pc, self._heard, runs, options, console.print)
         self._start_s = monotonic()
 
     def run(self, duration_s: float | None = None) -> None:
         """Until Ctrl-C, or for a time."""
         try:
-            for keeper in self.keepers:
-                keeper.open()
+            self.open()
             for task in self.tasks:
                 task.start()
             doors = ", ".join(keeper.door.name for keeper in self.keepers) or "no door"
@@ -80,22 +74,18 @@ class CabledHost:
                 self.runs.receive(now_ns, name.removeprefix(_SERIAL), data)
             else:
                 self.pc.link.receive(now_ns, data)
-                self.bus.take(now_ns, data)
+                self._heard.take(now_ns, data)
         self.pc.poll(now_ns)
         for link in self.serial.values():
             link.watch(now_ns)
-        for keeper in self.keepers:
-            keeper.poll(now_ns)
+        self.poll(now_ns)
         self._tell(now_ns)
 
     def close(self) -> None:
-        """Doors, links, logs."""
-        for keeper in self.keepers:
-            keeper.close()
-        self.outside.close()
+        """Links, too."""
+        super().close()
         for task in self.tasks:
             task.close()
-        self.pc.close()
 
     def _tell(self, now_ns: int) -> None:
         while True:
@@ -105,14 +95,6 @@ class CabledHost:
                 return
             self._console.print(line)
             self.pc.journal.status(now_ns, "LINK", line)
-
-    def _send(self, _t_ns: int, report: bytes) -> None:
-        self.usb.write(report)
-
-
-def expected(scenario: Scenario) -> tuple[Device, ...]:
-    """The boards that a scenario's network has: those that should live."""
-    return devices_of(config_from(scenario.network, {}, scenario.file.parent))
 
 
 def _port(spec: str) -> HidrawPort | SocketPort | CanPort:

@@ -3,14 +3,13 @@
 import os
 import socket
 from contextlib import suppress
+from functools import partial
 
 import can
 
-from bus.can.frame import Frame
 from bus.outside.door import Door as Fence
 from bus.outside.external import open_bus
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.payload import pack_frame, unpack_frame
 
 _BUFFER_BYTES = 1 << 23
 """Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
@@ -23,21 +22,13 @@ class CanDoor:
         self.name = f"--can {spec}"
         self._spec = spec
         self._network = served.network
-        self._entry = served.entry
-        self.kind = f"can{index}"
+        self._enter = partial(served.frame, index)
         self.node = served.node(index)
-        self._entry.register(self.kind, self._arrive)
         self._bus: can.BusABC | None = None
         self.fence: Fence | None = None
         self._before = [0, 0, 0, 0, 0, 0]
         """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out, and dropped
         by the system."""
-
-    def _arrive(self, data: bytes) -> None:
-        self.node.arrive(unpack_frame(data))
-
-    def _enter(self, frame: Frame) -> None:
-        self._entry.enter(self.kind, pack_frame(frame))
 
     def open(self) -> None:
         """Open the interface; raises SpecError."""

@@ -10,6 +10,7 @@ from multiprocessing.connection import Connection
 from time import monotonic
 
 from host.client import TICK_NS
+from host.console.views import BusState
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
@@ -18,7 +19,6 @@ from scenarios.doors.looks import Looks
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import dated
 from scenarios.doors.pipe_messages import (
-    BusState,
     Close,
     Done,
     Opened,

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from struct import Struct
 from typing import TYPE_CHECKING, Any
 
+from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer
 from bus.outside.punctual import Punctuality
 from plant.model import PlantModel
 from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
+from scenarios.doors.standing import Standing
 from scenarios.doors.usb import Usb
 from scenarios.lab.wiring import wired
 from scenarios.language.model import Scenario
 
 if TYPE_CHECKING:
-    from scenarios.doors.standing import Standing
     from scenarios.doors.steps import Steps
 
 BOARD = "board"
@@ -26,6 +28,20 @@ DEBUG = "debug"
 """Kind of entry of a debug port: `NAME ` and the bytes."""
 FAULT = "fault"
 """Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
+
+_head = Struct("<IB")
+_EXTENDED, _REMOTE = 1, 2
+
+
+def pack_frame(frame: Frame) -> bytes:
+    """A frame in the journal: identifier u32, flags u8 (1 extended, 2 remote), data."""
+    return _head.pack(frame.identifier, _EXTENDED * frame.extended | _REMOTE * frame.remote) + frame.data
+
+
+def unpack_frame(data: bytes) -> Frame:
+    """The frame of such bytes."""
+    identifier, flags = _head.unpack_from(data)
+    return Frame(identifier, data[_head.size :], bool(flags & _EXTENDED), bool(flags & _REMOTE))
 
 
 class LiveNetwork:
@@ -70,12 +86,18 @@ class LiveNetwork:
         return self.network.queue.now_ns
 
     def node(self, index: int) -> OutsideNode:
-        """The node on the wire for the door to CAN of this number, from 0 on."""
+        """The node on the wire for the door to CAN of this number, from 0 on, whose frames may enter now."""
         kind = f"can{index}"
         if kind not in self.nodes:
             name = f"outside {index}" if index else "outside"
             self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
-        return self.nodes[kind]
+        node = self.nodes[kind]
+        self.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
+        return node
+
+    def frame(self, index: int, frame: Frame) -> None:
+        """A frame for the wire, by the node of this number."""
+        self.entry.enter(f"can{index}", pack_frame(frame))
 
     def stop(self) -> None:
         """End the serving with the next slice."""

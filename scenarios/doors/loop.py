@@ -34,22 +34,16 @@ class Loop:
         self._console = console
         self._show = show
         self._recording = recording
-        self._start_s = perf_counter()
         self._start_ns = served.now_ns
-        self._next_s = self._start_s + _STATUS_S
-        self._flush_s = self._next_s + _STATUS_S / 2
-        self._second = (self._start_s, self._start_ns, 0)
         self._slow = False
         self._duration_s = duration_s
-        self._end_s: float | None = None
-        self._end_wall_s = self._start_s
 
     def run(self) -> None:
         """Until somebody ends it."""
         gc.collect()
         gc.freeze()  # a collection that walks the whole network makes a tick late
         served = self._served
-        self._start_s = now_s = perf_counter()
+        self._start_s = self._end_wall_s = now_s = perf_counter()
         self._next_s = now_s + _STATUS_S
         self._flush_s = self._next_s + _STATUS_S / 2
         self._second = (now_s, served.now_ns, 0)

@@ -1,6 +1,6 @@
 """The end of serving: the axes go to the park position, or at least to rest, and the motors off."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from time import perf_counter
 
 from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, pack_command, unpack_motion, unpack_target
@@ -16,6 +16,41 @@ _STEP_NS = 50_000_000
 _FRESH_NS = 1_000_000_000
 
 
+class _Way:
+    """A host program of its own on the cable, whose time runs as fast as it can. end_s: when it has to be
+    there, wall time."""
+
+    def __init__(self, served: LiveNetwork) -> None:
+        self._served = served
+        self.plug = served.usb.plug("parking")
+        self.link = HidLink(self.plug.write)
+        self.end_s = perf_counter() + _WALL_S
+
+    def go(self, done: Callable[[], bool], until_s: float) -> bool:
+        """On until `done`; False when wall time is over before."""
+        while not done():
+            if perf_counter() > until_s:
+                return False
+            self._served.run_until(self._served.now_ns + _STEP_NS)
+            for t_ns, report in self.plug.reports():
+                self.link.receive(t_ns, report)
+        return True
+
+    def send(self, *commands: bytes) -> None:
+        """In one report."""
+        self.plug.write(self._served.now_ns, pack_report(commands))
+
+    def axes_with(self, flag: int) -> list[Device]:
+        """Axes whose last MOTION frame has a flag."""
+        heard = ((device, self.link.measurements.get(device)) for device in AXES.values())
+        return [device for device, data in heard if data is not None and unpack_motion(data).flags & flag]
+
+    def settled(self, devices: Iterable[Device]) -> bool:
+        """Whether all have told that they are there."""
+        told = [self.link.summaries.get(device) for device in devices]
+        return all(data is not None and unpack_target(data).settled for data in told)
+
+
 def park(served: LiveNetwork) -> str:
     """Send both axes to the park position, unpaced, and take the power off; says how far that came.
 
@@ -23,59 +58,34 @@ def park(served: LiveNetwork) -> str:
     """
     served.entry.running = False
     served.punctual.counting = False
-    plug = served.usb.plug("parking")
-    link = HidLink(plug.write)
-    end_s = perf_counter() + _WALL_S
+    way = _Way(served)
+    try:
+        return _parked(served, way)
+    finally:
+        way.plug.unplug()
 
-    def go(done: Callable[[], bool], until_s: float) -> bool:
-        while not done():
-            if perf_counter() > until_s:
-                return False
-            served.run_until(served.now_ns + _STEP_NS)
-            for t_ns, report in plug.reports():
-                link.receive(t_ns, report)
-        return True
 
-    def send(*commands: bytes) -> None:
-        plug.write(served.now_ns, pack_report(commands))
-
-    def axes_with(flag: int) -> list[Device]:
-        found = []
-        for device in AXES.values():
-            data = link.measurements.get(device)
-            if data is not None and unpack_motion(data).flags & flag:
-                found.append(device)
-        return found
-
+def _parked(served: LiveNetwork, way: _Way) -> str:
     heard_ns = served.now_ns + _FRESH_NS
-    go(lambda: len(set(AXES.values()) & set(link.measurements)) == 2 or served.now_ns > heard_ns, end_s)
-    powered = axes_with(MotionFlag.POWERED)
+    both = set(AXES.values())
+    way.go(lambda: both <= set(way.link.measurements) or served.now_ns > heard_ns, way.end_s)
+    powered, goals = way.axes_with(MotionFlag.POWERED), start_steps(served.scenario)
     if not powered:
-        plug.unplug()
         return "the motors were off"
-    targets = start_steps(served.scenario)
-    link.summaries.clear()
-    send(
+    way.link.summaries.clear()
+    way.send(
         *(
-            pack_command(device, Opcode.MOVE_TO, round(targets[name]), SpeedClass.SLEW)
+            pack_command(device, Opcode.MOVE_TO, round(goals[name]), SpeedClass.SLEW)
             for name, device in AXES.items()
             if device in powered
         )
     )
-    sent_ns = served.now_ns
-
-    def settled() -> bool:
-        if served.now_ns - sent_ns < _FRESH_NS:
-            return False
-        data = [link.summaries.get(device) for device in powered]
-        return all(each is not None and unpack_target(each).settled for each in data)
-
-    parked = go(settled, end_s - 0.1)
+    fresh_ns = served.now_ns + _FRESH_NS
+    parked = way.go(lambda: served.now_ns >= fresh_ns and way.settled(powered), way.end_s - 0.1)
     if not parked:
-        send(*(pack_command(device, Opcode.STOP) for device in powered))
-        go(lambda: not axes_with(MotionFlag.MOVING), end_s)
-    send(*(pack_command(device, Opcode.POWER, 0) for device in powered))
-    off_ns = served.now_ns + _STEP_NS * 4
-    go(lambda: served.now_ns >= off_ns, end_s + 0.1)
-    plug.unplug()
+        way.send(*(pack_command(device, Opcode.STOP) for device in powered))
+        way.go(lambda: not way.axes_with(MotionFlag.MOVING), way.end_s)
+    way.send(*(pack_command(device, Opcode.POWER, 0) for device in powered))
+    off_ns = served.now_ns + 4 * _STEP_NS
+    way.go(lambda: served.now_ns >= off_ns, way.end_s + 0.1)
     return "parked, motors off" if parked else "stopped on the way to park (no time), motors off"

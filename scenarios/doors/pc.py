@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol
 
 from bus.protocol import Device
 from host.camera.camera import Camera
@@ -20,7 +19,10 @@ from host.lx200.server import Lx200
 from host.outside import Outside
 from host.sky.observed import Clock
 from host.telescope import Observatory, Telescope
+from scenarios.doors.keeper import Keeper
+from scenarios.doors.options import DoorOptions
 from scenarios.doors.runs import RecordedRuns
+from scenarios.doors.table import ON_HOST, doors_on
 from scenarios.lab.networks import in_order
 from scenarios.lab.prepare import UNDATED
 from scenarios.language.model import Scenario
@@ -87,21 +89,40 @@ class TelescopePc:
             self.files.close()
 
 
-class Host(Protocol):
-    """What doors for other programs stand on: the host program beside `schmidt serve`, or by itself."""
+class Host:
+    """What doors for other programs stand on: the host program beside `schmidt serve`, or by itself.
 
-    @property
-    def pc(self) -> TelescopePc:
-        """The telescope client."""
+    bus: the wire, for the bus page. runs: axis logs that a console records. outside: where servers run.
+    say: takes lines for the user.
+    """
 
-    @property
-    def outside(self) -> Outside:
-        """Where servers run."""
+    def __init__(
+        self,
+        pc: TelescopePc,
+        bus: BusView,
+        runs: RecordedRuns,
+        options: DoorOptions,
+        say: Callable[[str], None],
+    ) -> None:
+        self.pc = pc
+        self.bus = bus
+        self.runs = runs
+        self.outside = Outside()
+        self.keepers = [Keeper(door, say) for door in doors_on(ON_HOST, options, self)]
 
-    @property
-    def bus(self) -> BusView:
-        """The wire, for the bus page."""
+    def open(self) -> None:
+        """Open the doors; raises OSError, ValueError."""
+        for keeper in self.keepers:
+            keeper.open()
 
-    @property
-    def runs(self) -> RecordedRuns:
-        """Axis logs that a console records."""
+    def poll(self, now_ns: int) -> None:
+        """Look at the doors."""
+        for keeper in self.keepers:
+            keeper.poll(now_ns)
+
+    def close(self) -> None:
+        """Doors, servers, logs."""
+        for keeper in self.keepers:
+            keeper.close()
+        self.outside.close()
+        self.pc.close()

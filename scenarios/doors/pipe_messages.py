@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from bus.protocol import Device
 from host.camera.look import Look
-from host.console.views import FaultKind, Node
+from host.console.views import BusState, FaultKind
 from scenarios.doors.options import DoorOptions
 from scenarios.language.model import Scenario
 
@@ -25,16 +25,6 @@ class Settings(NamedTuple):
     devices: tuple[Device, ...]
     headers: dict[str, dict[str, str]]
     kinds: list[FaultKind]
-
-
-class BusState(NamedTuple):
-    """The wire as it stands. frames: (end, sender, identifier, data) of the last ones, newest last."""
-
-    nodes: list[Node]
-    load: float
-    errors: dict[str, int]
-    running: list[tuple[int, str]]
-    frames: list[tuple[int, str, int, bytes]]
 
 
 class Slice(NamedTuple):

@@ -4,20 +4,17 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from threading import Lock
 
-from host.outside import Outside
 from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.cameras import cameras
-from scenarios.doors.keeper import Keeper
-from scenarios.doors.pc import TelescopePc
+from scenarios.doors.pc import Host, TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
 from scenarios.doors.runs import RecordedRuns
-from scenarios.doors.table import ON_HOST, doors_on
 
 _LOOK_S = 0.02
 """Wall time without a slice after which the host looks for itself, for a stop while time stands still."""
 
 
-class PipedHost:
+class PipedHost(Host):
     """What the pipe brings goes to the telescope client; what it and the pages want goes back."""
 
     def __init__(self, pipe: Connection, settings: Settings) -> None:
@@ -25,34 +22,30 @@ class PipedHost:
         self._sending = Lock()
         self._now_ns = 0
         options = settings.options
-        self.pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
-        self.pc.cameras = cameras(settings.scenario, options)
-        self.outside = Outside()
-        self.bus = BusMirror(settings.boards, settings.kinds, self._send)
-        self.runs = RecordedRuns(options.runs, settings.headers, self.pc.journal)
-        self._doors = doors_on(ON_HOST, options, self)
-        self._keepers = [Keeper(door, lambda text: self._send(Said(text))) for door in self._doors]
+        pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
+        pc.cameras = cameras(settings.scenario, options)
+        self._mirror = BusMirror(settings.boards, settings.kinds, self._send)
+        runs = RecordedRuns(options.runs, settings.headers, pc.journal)
+        super().__init__(pc, self._mirror, runs, options, lambda text: self._send(Said(text)))
 
     def run(self) -> None:
         """Until told to close, or nobody is there any more."""
         try:
-            for keeper in self._keepers:
-                keeper.open()
+            self.open()
         except (OSError, ValueError) as error:
             self._send(Opened([], str(error)))
-            self._close()
+            self.close()
             return
         self._send(Opened(self._told()))
         try:
             while not self._pipe.poll(_LOOK_S) or self._take(self._pipe.recv()):
                 self.pc.poll(self._now_ns)
-                for keeper in self._keepers:
-                    keeper.poll(self._now_ns)
+                self.poll(self._now_ns)
         except (EOFError, OSError):  # the emulator has gone without a word
-            self._close()
+            self.close()
             return
         told = self._told()
-        self._close()
+        self.close()
         self._send(Taken(False, False, False, told))
 
     def _take(self, message: object) -> bool:
@@ -64,27 +57,21 @@ class PipedHost:
             for board, data in message.lines:
                 self.runs.receive(message.now_ns, board, data)
             if message.bus is not None:
-                self.bus.state = message.bus
+                self._mirror.state = message.bus
             for look in message.looks:
                 for camera in self.pc.cameras:
                     camera.take(look)
             self.pc.poll(self._now_ns)
             looking = any(camera.looking for camera in self.pc.cameras)
-            self._send(Taken(self.bus.watching, self.runs.recording, looking, self._told()))
+            self._send(Taken(self._mirror.watching, self.runs.recording, looking, self._told()))
         elif isinstance(message, Done):
-            self.bus.done(message)
+            self._mirror.done(message)
         return not isinstance(message, Close)
 
     def _told(self) -> list[tuple[str, str]]:
         now = self.pc.telescope.snapshot
         state = f"{now.activity}, {self.pc.journal.errors} errors"
-        return [("the host", state), *((door.name, door.state()) for door in self._doors)]
-
-    def _close(self) -> None:
-        for keeper in self._keepers:
-            keeper.close()
-        self.outside.close()
-        self.pc.close()
+        return [("the host", state), *((each.door.name, each.door.state()) for each in self.keepers)]
 
     def _report(self, _t_ns: int, report: bytes) -> None:
         self._send(Report(report))

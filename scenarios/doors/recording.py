@@ -5,7 +5,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from host.logs.files import LineFile, LogError
+from host.logs.files import LineFile, LogError, write_file
 from plant.model import PlantModel, dump
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.rest import Rest
@@ -99,7 +99,4 @@ class Recording:
         return digest
 
     def _save(self) -> None:
-        try:
-            (self.folder / SESSION).write_text(json.dumps(self._facts, indent=1) + "\n", encoding="utf-8")
-        except OSError as error:
-            raise LogError(f"{self.folder / SESSION}: {error.strerror}") from None
+        write_file(self.folder / SESSION, json.dumps(self._facts, indent=1) + "\n")

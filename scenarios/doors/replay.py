@@ -9,7 +9,6 @@ from typing import Any
 from plant.model import load as load_plant
 from plant.yamltext import TextError, check_regular, read_text
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.payload import unpack_frame
 from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording
 from scenarios.doors.rest import Rest
 from scenarios.doors.standing import standing
@@ -67,7 +66,7 @@ def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
 def _nodes(served: LiveNetwork, facts: dict[str, Any]) -> None:
     for kind in facts["kinds"]:
         if kind.startswith("can"):
-            _register(served, kind)
+            served.node(int(kind.removeprefix("can")))
 
 
 def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int = 0) -> None:
@@ -89,11 +88,6 @@ def _go(served: LiveNetwork, t_ns: int, end_ns: int, show: Show) -> None:
     while served.now_ns < t_ns:
         served.run_until(min(t_ns, served.now_ns + _STEP_NS))
         show(served.now_ns if end_ns else None, f"{served.now_ns / _STEP_NS:.0f} s simulated")
-
-
-def _register(served: LiveNetwork, kind: str) -> None:
-    node = served.node(int(kind[3:]))
-    served.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
 
 
 def _facts(folder: Path) -> dict[str, Any]:

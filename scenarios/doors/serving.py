@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from io import BytesIO
-from pathlib import Path
 
 from rich.console import Console
 from rich.live import Live
@@ -23,10 +22,12 @@ from scenarios.doors.options import ServeOptions
 from scenarios.doors.parking import park
 from scenarios.doors.priority import first
 from scenarios.doors.recording import Recording
-from scenarios.doors.standing import Standing
+from scenarios.doors.snapshots import Snapshots
+from scenarios.doors.standing import Standing, standing
 from scenarios.doors.steps import Steps
 from scenarios.lab.muted import Feed, FeedError
 from scenarios.lab.prepare import chosen
+from scenarios.lab.snapshot.file import read
 from scenarios.lab.wiring import wire
 from scenarios.language.model import Scenario
 
@@ -43,42 +44,34 @@ def serve(options: ServeOptions) -> int:
     console = Console()
     checked_speed(options.speed)
     check(options)
-    record, mute = options.record, options.muted
-    if mute is not None and (record is not None or options.snapshots is not None):
+    if options.muted is not None and (options.record is not None or options.snapshots is not None):
         raise FeedError(
             "--mute with --record or --snapshots: frames fed from a log are not recorded; leave one out"
         )
-    standing = None if options.begun is None else _standing(options.begun)
-    if standing is None:
+    stood = None if options.begun is None else standing(read(options.begun))
+    if stood is None:
         scenario, model = chosen(options.scenario, options.seed, options.plant, options.network)
     else:
-        scenario, model = standing.scenario, standing.model
+        scenario, model = stood.scenario, stood.model
     # no thread that refreshes: it would hold Python's lock when a tick is due
     with Live(
         "starting (the first time compiles)", console=console, auto_refresh=False, transient=True
     ) as line:
         line.refresh()
-        recording = Recording(record, scenario, model, options.begun) if record is not None else None
-        served = LiveNetwork(scenario, model, options.speed, recording, standing)
-        if options.clock == "steps":
-            served.steps = Steps(served)
-        if options.snapshots is not None:
-            from scenarios.doors.snapshots import Snapshots
-
-            Snapshots(options.snapshots, served, recording)
-        if mute is not None:
-            Feed(served.network, *mute)
+        folder = options.record
+        recording = None if folder is None else Recording(folder, scenario, model, options.begun)
+        served = _network(options, scenario, model, recording, stood)
         doors = make_doors(options, served, console.print)
         if recording is not None:
             recording.attach(served)
         keepers = [Keeper(door, console.print) for door in doors]
+        show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
+        loop = Loop(served, keepers, console, show, options.duration, recording)
         try:
             _warm_up(scenario, model)
             for keeper in keepers:
                 keeper.open()
             _say_hello(console, served, doors)
-            show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
-            loop = Loop(served, keepers, console, show, options.duration, recording)
             with interrupts(served.stop), _ahead(options) as said:
                 if said is not None:
                     console.print(said, soft_wrap=True)
@@ -93,8 +86,26 @@ def serve(options: ServeOptions) -> int:
         console.print(f"  {door.name}: {door.state()}")
     console.print(f"{served.punctual.text()}; {ended}")
     if recording is not None:
-        console.print(f"recorded in {record}, digest {digest[:16]}; schmidt replay {record} repeats it")
+        console.print(f"recorded in {folder}, digest {digest[:16]}; schmidt replay {folder} repeats it")
     return 0
+
+
+def _network(
+    options: ServeOptions,
+    scenario: Scenario,
+    model: PlantModel,
+    recording: Recording | None,
+    stood: Standing | None,
+) -> LiveNetwork:
+    """As the options want it, with nobody at its doors yet."""
+    served = LiveNetwork(scenario, model, options.speed, recording, stood)
+    if options.clock == "steps":
+        served.steps = Steps(served)
+    if options.snapshots is not None:
+        Snapshots(options.snapshots, served, recording)
+    if options.muted is not None:
+        Feed(served.network, *options.muted)
+    return served
 
 
 def _ahead(options: ServeOptions) -> AbstractContextManager[str | None]:
@@ -110,13 +121,6 @@ def _warm_up(scenario: Scenario, model: PlantModel) -> None:
     network.wire.tap(log.take)
     network.run_until(_WARM_NS)
     log.flush()
-
-
-def _standing(file: Path) -> Standing:
-    from scenarios.doors.standing import standing
-    from scenarios.lab.snapshot.file import read
-
-    return standing(read(file))
 
 
 def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> None:

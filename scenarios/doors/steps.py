@@ -20,7 +20,6 @@ from bus.can.frame import check
 from host.client import TICK_NS
 from scenarios.doors.clients import Client
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.payload import pack_frame, unpack_frame
 from scenarios.language.units import parse
 
 _LOOK_S = 0.05
@@ -60,9 +59,7 @@ class Steps:
         self._served = served
         self._members: dict[Client, _Member] = {}
         self._tapped = False
-        node = served.node(NODE)
-        self._kind = f"can{NODE}"
-        served.entry.register(self._kind, lambda data: node.arrive(unpack_frame(data)))
+        served.node(NODE)
         served.pacer.paused = True
         served.punctual.counting = False
 
@@ -147,7 +144,7 @@ class Steps:
         served.entry.running = False
         for member in sorted(self._members.values(), key=lambda each: each.name):
             for frame in member.sent:
-                served.entry.enter(self._kind, pack_frame(frame))
+                served.frame(NODE, frame)
             member.sent.clear()
         return over
 

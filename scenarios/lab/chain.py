@@ -6,19 +6,15 @@ The boards keep their supply. An open chain is latched: it closes when no cause 
 No source shows a chain on this telescope: all of it is an ASSUMPTION, made as is usual on machines.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from math import ceil
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from boards.core import PeriodicBoard
 from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, AxisMode, unpack_motion
 from plant.gears import RATIO
-
-if TYPE_CHECKING:
-    from scenarios.lab.network import Network
+from scenarios.lab.network import Network
 
 NONE, SWITCHES, WATCHDOG = "none", "switches", "watchdog"
 """Chains of `network.chain`: none; button and switches; these and watchdogs."""

@@ -1,11 +1,8 @@
 """A picture taken with the telescope, as far as a run needs it: how far a star is from the middle."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
 
 from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
@@ -13,10 +10,9 @@ from host.camera.look import Look
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe
-
-if TYPE_CHECKING:
-    from plant.plant import Plant
-    from scenarios.language.model import Scenario
+from plant.mount import sky
+from plant.plant import Plant
+from scenarios.language.model import Scenario
 
 NOISE_ARCSEC = 0.3
 """Standard deviation of a solved place in each coordinate. ASSUMPTION: seeing of 2″ over some 50 stars."""
@@ -68,8 +64,6 @@ def look(plant: Plant, scenario: Scenario, t_ns: int) -> Look:
     focus_m, errors = plant.focus.position_m(t_ns), plant.model.mount
     if errors is None:
         return Look(t_ns, ra, dec, 0.0, focus_m)
-    from plant.mount import sky
-
     hour_angles, declinations = sky([ra, ra], [dec, dec + _UP_RAD], scenario.site.latitude_rad, errors)
     west = (hour_angles[1] - hour_angles[0]) * math.cos(declinations[0])
     roll = math.atan2(west, declinations[1] - declinations[0])

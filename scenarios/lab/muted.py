@@ -1,13 +1,11 @@
 """`schmidt run --mute BOARD --feed LOG`: a board's frames from a candump log; the rest compared."""
 
-from __future__ import annotations
-
 from collections import defaultdict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from bus.can import Frame
 from bus.can.bits import INTERMISSION_BITS
@@ -15,9 +13,7 @@ from bus.can.candump import parsed
 from bus.can.length import frame_bits
 from bus.protocol import COMMAND_BASE, REPLY_BASE
 from plant.yamltext import TextError, check_regular
-
-if TYPE_CHECKING:
-    from scenarios.lab.network import Network
+from scenarios.lab.network import Network
 
 _LONGEST = 200
 """Characters of a line read at once: candump's are shorter, and a file without lines may be large."""

@@ -9,6 +9,7 @@ from boards.core.declared import DeclaredBoard
 from bus.protocol import Device
 from bus.protocol.nodes import KINDS
 from scenarios.lab.nodes import firmware_file, load_board
+from scenarios.language.model import Scenario
 
 LAB = (
     Device.AXIS_RA,
@@ -86,6 +87,11 @@ def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
         )
     own = dict.fromkeys(device for board in config.extra for device in board.KIND.devices())
     return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
+
+
+def devices_in(scenario: Scenario) -> tuple[Device, ...]:
+    """The boards of a scenario's network, those of one's own too; raises as `devices_of` and `load_board`."""
+    return devices_of(config_from(scenario.network, {}, scenario.file.parent))
 
 
 def in_order(devices: Sequence[Device]) -> tuple[Device, ...]:

@@ -108,17 +108,18 @@ def prepare(source: Path | Document, changes: Changes | None = None) -> tuple[Sc
 
 def check_boards(scenario: Scenario) -> None:
     """Raise `ScenarioError` for the first step or fault that speaks of a board which is not there."""
-    from scenarios.lab.networks import config_from, devices_of
+    from scenarios.lab.networks import devices_in
 
-    config = config_from(scenario.network, {}, scenario.file.parent)
-    names = [device.name for device in devices_of(config)]
+    names = [device.name for device in devices_in(scenario)]
     wanted = [(step.where, _NEEDS[step.action]) for step in scenario.steps if step.action in _NEEDS]
     wanted += [
         (fault.where, fault.arguments["node"]) for fault in scenario.faults if "node" in fault.arguments
     ]
     for where, board in wanted:
         if board not in names:
-            raise ScenarioError(f"{where}: the network '{config.name}' has no board {board}")
+            raise ScenarioError(
+                f"{where}: the network '{scenario.network.get('name', 'lab')}' has no board {board}"
+            )
 
 
 def chosen(

@@ -1,11 +1,9 @@
 """Everything a run leaves behind while it runs: can.log, the logs of the host, traces. All of it streams."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, cast
+from typing import BinaryIO, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -22,10 +20,9 @@ from host.logs.space import check as check_space
 from host.logs.traces import Trace
 from host.procedures.manual import AXES
 from host.serial_link import SerialLink
+from plant.grid import TRUTH_COLUMNS
+from plant.plant import Plant
 from scenarios.language.model import Scenario
-
-if TYPE_CHECKING:
-    from plant.plant import Plant
 
 HOST_COLUMNS = ("t_s", "ra_steps", "dec_steps", "ra_error_arcsec", "dec_error_arcsec", "focus_half_steps")
 FOCUS_COLUMNS = ("t_s", "true_half_steps", "encoder_counts")
@@ -56,8 +53,6 @@ class Recorder:
         self._can_file = ZstdFile(folder / "can.log.zst") if packed else BlockFile(folder / "can.log")
         self.can = CandumpWriter(cast(BinaryIO, self._can_file))
         self._can_digest = ""
-        from plant.grid import TRUTH_COLUMNS
-
         columns = ("t_s", *(str(name) for name in TRUTH_COLUMNS[1:]))
         self.truth = {name: Trace(folder / f"truth-{name}.parquet", columns, {"t_s": "s"}) for name in AXES}
         self.host = Trace(folder / "host.parquet", HOST_COLUMNS, _HOST_UNITS)

@@ -1,6 +1,6 @@
 """One run, wired: plant, boards, host and recorder on one event queue."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,9 @@ from scenarios.lab.recorder import Recorder
 from scenarios.lab.wiring import powered
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Programme
+
+Rows = tuple[tuple[float, ...], tuple[float, ...]]
+"""Of the host's trace and of the focus', at one tick."""
 
 
 class Session:
@@ -44,13 +47,11 @@ class Session:
         self.faults.schedule(scenario.faults)
         self.ticked: Callable[[int], None] | None = None
         """Told of every tick, for who records what the host hears."""
-        self.host_rows: list[tuple[float, ...]] = []
-        self.focus_rows: list[tuple[float, ...]] = []
-        """All rows so far, while somebody records."""
+        self.rows: list[Rows] = []
+        """All so far, while somebody records."""
         self._status_ns = round(scenario.status_period_s * 1e9)
         self._next_status_ns = 0
-        self._host_rows: list[tuple[float, ...]] = []
-        self._focus_rows: list[tuple[float, ...]] = []
+        self._rows: list[Rows] = []
         self.network.queue.at(TICK_NS, self._tick)
 
     def advance(self, t_ns: int) -> None:
@@ -60,14 +61,13 @@ class Session:
 
     def flush_traces(self) -> None:
         """Hand the host's rows to their traces."""
-        if self._host_rows:
-            self.recorder.host.append(np.array(self._host_rows))
-            self.recorder.focus.append(np.array(self._focus_rows))
+        if self._rows:
+            host, focus = zip(*self._rows, strict=True)
+            self.recorder.host.append(np.array(host))
+            self.recorder.focus.append(np.array(focus))
             if self.ticked is not None:
-                self.host_rows += self._host_rows
-                self.focus_rows += self._focus_rows
-            self._host_rows.clear()
-            self._focus_rows.clear()
+                self.rows += self._rows
+            self._rows.clear()
 
     def chain_says(self, t_ns: int, text: str) -> None:
         """A contact of the safety chain on the observer's PC (ASSUMPTION): a line in the error log."""
@@ -80,10 +80,10 @@ class Session:
         self.recorder.adopt(network.plant)
         self.link._send = network.hid.write
 
-    def forget_rows(self) -> None:
-        """The traces of the host begin afresh."""
-        self._host_rows.clear()
-        self._focus_rows.clear()
+    def begin_traces(self, rows: Iterable[Rows]) -> None:
+        """The traces of the host begin with these."""
+        self._rows[:] = rows
+        self.flush_traces()
 
     def _tick(self, t_ns: int) -> None:
         if self.ticked is not None:
@@ -109,17 +109,15 @@ class Session:
         errors = self.programme.pointing.errors_arcsec()
         focus = client.focus()
         nan = float("nan")
-        self._host_rows.append(
-            (
-                t_ns * 1e-9,
-                ra.position if ra else nan,
-                dec.position if dec else nan,
-                *(errors or (nan, nan)),
-                focus.position if focus else nan,
-            )
+        seen = (
+            t_ns * 1e-9,
+            ra.position if ra else nan,
+            dec.position if dec else nan,
+            *(errors or (nan, nan)),
+            focus.position if focus else nan,
         )
         port = self.plant.focus
-        self._focus_rows.append((t_ns * 1e-9, port.position(t_ns), float(port.encoder(t_ns))))
+        self._rows.append((seen, (t_ns * 1e-9, port.position(t_ns), float(port.encoder(t_ns)))))
 
 
 def plugged(network: Network) -> HidLink:

@@ -1,24 +1,21 @@
 """The network as it stands before anybody commands it: what `run`, `serve` and the checks work on."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
 from host.procedures.manual import AXES
 from host.sky.mount import STEP_ARCSEC
+from plant.model import PlantModel
+from plant.plant import Plant
+from plant.stops import with_stops
 from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
+from scenarios.lab.faults import Faults
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
 from scenarios.language.model import Scenario
-
-if TYPE_CHECKING:
-    from plant.model import PlantModel
-    from scenarios.lab.faults import Faults
 
 _FOCUS_START = 5
 """The focus is found at most this many electrical periods from the middle. ASSUMPTION."""
@@ -32,9 +29,6 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
 
     Its steps are not run: whoever is on the bus commands.
     """
-    from plant.plant import Plant
-    from plant.stops import with_stops
-
     limits = soft_limits(scenario)
     soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
     wind_from = scenario.network.get("wind_from")
@@ -50,8 +44,6 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
 
 def wired(scenario: Scenario, model: PlantModel) -> tuple[Network, Faults]:
     """The same and the scenario's faults, which come at their times."""
-    from scenarios.lab.faults import Faults
-
     made = powered(scenario, model)
     faults = Faults(made, scenario.seed)
     faults.schedule(scenario.faults)

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from plant.model import PlantModel
 from scenarios.language.compensation import Compensation
 from scenarios.language.configure import with_compensation
 from scenarios.language.model import Scenario
 from scenarios.run import run as runner
 from scenarios.run.errors import NoData, rate_errors
 from scenarios.run.outcome import Array, Outcome
+from scenarios.run.report import html
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from plant.model import PlantModel
 
 WRONG_SCALE, WRONG_TURN = 0.8, 0.2
 """The table beside it: 20 % too small and turned by 0.2 rad, as the issue asks."""
@@ -53,8 +53,6 @@ def run(
     scenario: Scenario, model: PlantModel, folder: Path, table: Compensation, bar: Bar
 ) -> tuple[runner.Result, list[Gain]]:
     """Run it in folder/before, folder/wrong and folder; the report in `folder` shows all three."""
-    from scenarios.run.report.html import write
-
     outcomes: dict[str, Outcome] = {}
     for name, part in (
         ("before", scenario),
@@ -70,7 +68,7 @@ def run(
     gains = list(_gains(outcomes, table.axis))
     if gains:
         rows = [gain._asdict() | {"run": LABELS[gain.run]} for gain in gains]
-        write(outcomes["after"], result.verdicts, result.summary, (rows, draw(gains)))
+        html.write(outcomes["after"], result.verdicts, result.summary, (rows, draw(gains)))
     return result, gains
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from host.logs import traces
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.language.model import Expectation
 from scenarios.language.programme import Record
@@ -126,8 +127,6 @@ def guiding_error(outcome: Outcome, given: dict[str, Any]) -> float:
 
 def focus_error(outcome: Outcome, given: dict[str, Any]) -> float:
     """True focus position less the commanded one, half steps."""
-    from host.logs import traces
-
     parts = []
     for record, low_s, high_s in _windows(outcome, given, "focus_error"):
         if record.focus_goal is None:

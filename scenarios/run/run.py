@@ -1,7 +1,5 @@
 """`schmidt run`: load, check, run, judge, report."""
 
-from __future__ import annotations
-
 import dataclasses
 import gc
 import json
@@ -10,20 +8,22 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from host.logs.canformats import FORMATS, convert
 from host.logs.files import LogError, write_file
+from plant.model import PlantModel
+from scenarios.lab.muted import Feed
+from scenarios.lab.session import Session
+from scenarios.lab.snapshot.run import Order, Progress, resume
 from scenarios.language.model import Scenario
 from scenarios.language.targets import STARS
 from scenarios.progress import shown
-
-if TYPE_CHECKING:
-    from plant.model import PlantModel
-    from scenarios.lab.session import Session
-    from scenarios.lab.snapshot.run import Order, Progress
-    from scenarios.run.evaluate import Verdict
-    from scenarios.run.outcome import Outcome
+from scenarios.run.evaluate import Verdict, judge
+from scenarios.run.guiding import write_guiding
+from scenarios.run.outcome import Outcome
+from scenarios.run.pointing import write_runs
+from scenarios.run.report import html
 
 _PIECE_NS = 1_000_000_000
 """Between two pieces of simulated time files are flushed, the disk is asked for room, the bar moves."""
@@ -74,9 +74,6 @@ def run(
     An interruption (KeyboardInterrupt) ends the run early with readable logs; a disk that is full raises
     `LogError` after everything that could be closed was closed.
     """
-    from scenarios.lab.session import Session
-    from scenarios.lab.snapshot.run import Progress, resume
-
     way = way or Way()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -89,8 +86,6 @@ def run(
     else:
         session, state = resume(way.begun, folder), way.begun["progress"]
     if way.mute is not None:
-        from scenarios.lab.muted import Feed
-
         try:
             Feed(session.network, *way.mute)
         except ValueError:
@@ -152,11 +147,6 @@ def _loop(session: Session, state: Progress, progress: Show, snapshot: Order | N
 def _conclude(
     session: Session, bus: list[tuple[float, float, int]], wall_s: float, interrupted: bool, report: bool
 ) -> Result:
-    from scenarios.run.evaluate import judge
-    from scenarios.run.guiding import write_guiding
-    from scenarios.run.outcome import Outcome
-    from scenarios.run.pointing import write_runs
-
     network, recorder = session.network, session.recorder
     simulated_s = network.queue.now_ns * 1e-9
     records = session.programme.records
@@ -185,9 +175,7 @@ def _conclude(
     text = json.dumps(summary, indent=2, ensure_ascii=False)
     write_file(recorder.folder / "summary.json", text + "\n")
     if report:
-        from scenarios.run.report.html import write
-
-        write(outcome, verdicts, summary)
+        html.write(outcome, verdicts, summary)
     return Result(summary, verdicts, recorder.folder, outcome, interrupted)
 
 

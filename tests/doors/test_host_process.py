@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from bus.protocol import Device
+from host.console.decoded import words
 from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.livenetwork import LiveNetwork
@@ -50,10 +51,11 @@ def test_the_mirror_shows_the_bus_and_its_frames_in_words() -> None:
     assert not both.mirror.watching
     for _ in range(10):
         both.carry()
-    assert {node.name for node in both.mirror.nodes()} >= set(both.mirror.faults())
-    assert 0.0 < both.mirror.load() < 1.0 and both.mirror.watching
-    frames = both.mirror.frames(25)
-    assert len(frames) == 25 and all(each.text and each.sender in Device.__members__ for each in frames)
+    now = both.mirror.look()
+    assert {node.name for node in now.nodes} >= set(both.mirror.boards)
+    assert 0.0 < now.load < 1.0 and both.mirror.watching
+    assert len(now.frames) == 25
+    assert all(words(number, data) and sender in Device.__members__ for _, sender, number, data in now.frames)
 
 
 def test_a_wish_is_done_or_refused_with_its_reason() -> None:
@@ -62,12 +64,12 @@ def test_a_wish_is_done_or_refused_with_its_reason() -> None:
     wrong = both.mirror.start_fault("nonsense", "")
     torn = both.mirror.start_fault("node_off", "node")
     both.carry()
-    assert "is on" in on.result(0) and both.mirror.running()
+    assert "is on" in on.result(0) and both.mirror.look().running
     assert not both.served.network.boards["FOCUS"].on
     for refused in (wrong, torn):
         with pytest.raises(ValueError, match=r"\w"):
             refused.result(0)
-    both.mirror.clear_fault(both.mirror.running()[0][0])
+    both.mirror.clear_fault(both.mirror.look().running[0][0])
     both.mirror.switch("DISPLAY", False)
     for _ in range(40):  # it boots
         both.carry()

@@ -15,9 +15,8 @@ from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command
 from bus.protocol.report import pack_report
 from scenarios.doors.can import CanDoor
 from scenarios.doors.keeper import Keeper
-from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.livenetwork import LiveNetwork, pack_frame, unpack_frame
 from scenarios.doors.parking import park
-from scenarios.doors.payload import pack_frame, unpack_frame
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import ReplayError, replay
 from scenarios.lab.prepare import chosen

@@ -15,9 +15,10 @@ from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
 from host.links.ports import CanPort
 from host.links.task import LinkTask, Port
-from scenarios.doors.cabled_host import CabledHost, expected
+from scenarios.doors.cabled_host import CabledHost
 from scenarios.doors.hid_unix import UnixDoor
 from scenarios.doors.options import HostOptions
+from scenarios.lab.networks import devices_in
 from scenarios.lab.prepare import chosen
 from tests.host.telescope.conftest import Rig
 
@@ -139,5 +140,5 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
 
 @pytest.mark.parametrize(("network", "count"), [(None, 11), ("lab", 11), ("serial", 5), ("final", 18)])
 def test_the_host_expects_the_boards_of_the_network_it_is_told(network: str | None, count: int) -> None:
-    boards = expected(chosen(network_name=network)[0])
+    boards = devices_in(chosen(network_name=network)[0])
     assert len(boards) == count and ("DOME" in [board.name for board in boards]) == (network == "final")

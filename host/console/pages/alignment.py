@@ -22,10 +22,8 @@ def alignment(shell: Shell) -> None:
         with box("Reference star"):
             ui.label("1. Go to a star and centre it with the paddle.").classes("small")
             ui.label("2. Choose it here and align: both encoders get an offset.").classes("small")
-            chosen = shell.control(
-                ui.select(sorted(STARS), label="Star in the middle of the field", with_input=True)
-                .classes("w-full")
-                .props("outlined dense")
+            chosen = shell.field(
+                ui.select(sorted(STARS), label="Star in the middle of the field", with_input=True), wide=True
             )
             result = ui.label().classes("mid").props('role="status"')
 
@@ -46,6 +44,7 @@ def alignment(shell: Shell) -> None:
         paddle(shell)
         target(shell)
 
+    @shell.each
     def refresh() -> None:
         now, mount = shell.desk.now, shell.telescope.observatory.mount
         rows = []
@@ -58,8 +57,6 @@ def alignment(shell: Shell) -> None:
         stale(here, not now.stale.isdisjoint(ENCODERS))
         here.set_text(f"RA {place.right_ascension}, Dec {place.declination}")
         show_model()
-
-    shell.each(refresh)
 
 
 def _model(shell: Shell) -> Callable[[], None]:

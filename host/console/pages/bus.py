@@ -5,11 +5,12 @@ from concurrent.futures import Future
 
 from nicegui import ui
 
+from host.console.decoded import words
 from host.console.shell import Shell, box, button, log_of, table
 from host.console.views import BusView
 from host.logs.journal import Entry
 
-FRAMES, LINES = 25, 14
+LINES = 14
 ANSWER_S = 5.0
 """Wall time until the next slice must have come. ASSUMPTION: slices are a millisecond."""
 
@@ -33,25 +34,25 @@ def bus(shell: Shell, view: BusView) -> None:
             running = ui.switch("follow", value=True).props('aria-label="Follow the frames"')
             frames = table(("t, s", "from", "id", "data", "says"))
 
+    @shell.each
     def refresh() -> None:
-        load.set_text(f"{100 * view.load():.1f} % in the last second")
-        found = view.errors()
-        errors.set_text(", ".join(f"{name} {count}" for name, count in found.items() if count) or "no errors")
+        now = view.look()
+        load.set_text(f"{100 * now.load:.1f} % in the last second")
+        counts = (f"{name} {count}" for name, count in now.errors.items() if count)
+        errors.set_text(", ".join(counts) or "no errors")
         nodes(
             [
                 (n.name, "on" if n.powered else "OFF", n.state, str(n.tec), str(n.rec), f"{100 * n.load:.2f}")
-                for n in view.nodes()
+                for n in now.nodes
             ]
         )
         if running.value:
             frames(
                 [
-                    (f"{f.t_s:.4f}", f.sender, f"{f.identifier:03X}", f.data.hex(" "), f.text)
-                    for f in reversed(view.frames(FRAMES))
+                    (f"{t_ns * 1e-9:.4f}", sender, f"{number:03X}", data.hex(" "), words(number, data))
+                    for t_ns, sender, number, data in reversed(now.frames)
                 ]
             )
-
-    shell.each(refresh)
 
 
 def _entries(entries: list[Entry]) -> list[tuple[float, str]]:
@@ -59,11 +60,11 @@ def _entries(entries: list[Entry]) -> list[tuple[float, str]]:
 
 
 def _supply(shell: Shell, view: BusView) -> None:
-    names = view.faults()
+    names = view.boards
     if not names:
         ui.label("This is no emulated bus: nothing can be broken from here.").classes("mid")
         return
-    chosen = shell.control(ui.select(list(names), value=names[0], label="Board").props("outlined dense"))
+    chosen = shell.field(ui.select(list(names), value=names[0], label="Board"))
     with ui.row():
         for text, on in (("Cut its supply", False), ("Give it back", True)):
             shell.control(button(text, on_click=lambda state=on: view.switch(chosen.value, state)))
@@ -71,18 +72,14 @@ def _supply(shell: Shell, view: BusView) -> None:
 
 def _faults(shell: Shell, view: BusView) -> None:
     """Any fault of the table, with its arguments; what is on, and its end."""
-    kinds = {kind.name: kind for kind in view.fault_kinds()}
+    kinds = {kind.name: kind for kind in view.kinds}
     if not kinds:
         return
     first = next(iter(kinds.values()))
     names = {name: f"{kind.level}: {name}" for name, kind in kinds.items()}
-    chosen = shell.control(
-        ui.select(names, value=first.name, label="Fault").classes("w-full").props("outlined dense")
-    )
+    chosen = shell.field(ui.select(names, value=first.name, label="Fault"), wide=True)
     text = ui.label(first.text).classes("small")
-    given = shell.control(
-        ui.input("Arguments, name=value", value=first.needed).classes("w-full").props("outlined dense")
-    )
+    given = shell.field(ui.input("Arguments, name=value", value=first.needed), wide=True)
     hint = ui.label(first.arguments).classes("small")
 
     def show() -> None:
@@ -99,15 +96,13 @@ def _faults(shell: Shell, view: BusView) -> None:
     shell.control(button("Start it", on_click=start))
     fill = table(("number", "on"))
     with ui.row().classes("items-center"):
-        number = shell.control(
-            ui.number("Number", value=0, min=0, format="%d").props("outlined dense").classes("w-24")
-        )
+        number = shell.field(ui.number("Number", value=0, min=0, format="%d").classes("w-24"))
 
         async def clear() -> None:
             await _tell(shell, view.clear_fault(int(number.value or 0)))
 
         shell.control(button("Clear it", on_click=clear))
-    shell.each(lambda: fill([(str(each), words) for each, words in view.running()]))
+    shell.each(lambda: fill([(str(each), text) for each, text in view.look().running]))
 
 
 async def _tell(shell: Shell, future: Future[str]) -> None:

@@ -45,11 +45,10 @@ def calibrate(shell: Shell, runs: Runs) -> None:
 
         plots(shell)
 
+    @shell.each
     def refresh() -> None:
         count = len(runs.logs("ra"))
         state.set_text(f"recording run {count + 1}" if runs.recording else f"{count} runs recorded")
-
-    shell.each(refresh)
 
 
 def _tell(shell: Shell, act: Callable[[], None]) -> None:

@@ -26,9 +26,7 @@ def _dome(shell: Shell) -> None:
     with box("Dome"):
         state = ui.label("–").classes("mid")
         with ui.row().classes("items-center"):
-            place = shell.control(
-                ui.number("Azimuth, °", value=0, min=0, max=359.9, format="%.1f").props("outlined dense")
-            )
+            place = shell.field(ui.number("Azimuth, °", value=0, min=0, max=359.9, format="%.1f"))
 
             async def go() -> None:
                 wanted = float(place.value or 0)
@@ -45,6 +43,7 @@ def _dome(shell: Shell) -> None:
                 shell.control(button(text, on_click=shell.doing(_slave(on))))
         interlock = ui.label("–").classes("mid")
 
+    @shell.each
     def refresh() -> None:
         found = house.reading("DOME") if house.boards(DOME) else None
         state.set_text("No dome board on this network." if found is None else dome_text(found))
@@ -54,8 +53,6 @@ def _dome(shell: Shell) -> None:
         doing = "follows the telescope" if house.slaved else "stays where it is"
         following.set_text(f"The slit {doing}; the telescope needs it at {slit}.")
         interlock.set_text(interlock_text(house.unsafe(), found))
-
-    shell.each(refresh)
 
 
 def _slave(on: bool) -> Callable[[Telescope], None]:
@@ -88,6 +85,7 @@ def _weather(shell: Shell) -> None:
     with box("Weather"):
         fill = table(("station", "air, °C", "humid, %", "wind, m/s", "rain", "verdict"))
 
+    @shell.each
     def refresh() -> None:
         rows = []
         for name in house.boards(WEATHER):
@@ -104,14 +102,13 @@ def _weather(shell: Shell) -> None:
             )
         fill(rows or [("No weather board on this network.", "", "", "", "", "")])
 
-    shell.each(refresh)
-
 
 def _power(shell: Shell) -> None:
     house = shell.telescope.house
     with box("Power"):
         fill = table(("board", "supply, V", "current, A", "relays off"))
 
+    @shell.each
     def refresh() -> None:
         rows = []
         for name in house.boards(POWER):
@@ -120,5 +117,3 @@ def _power(shell: Shell) -> None:
             supply = number(found["Voltage"], ".2f"), number(found["Current"], ".2f")
             rows.append((name + OLD * house.stale(name), *supply, ", ".join(off) or "none"))
         fill(rows or [("No power board on this network.", "", "", "")])
-
-    shell.each(refresh)

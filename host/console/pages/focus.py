@@ -37,6 +37,7 @@ def _readings(shell: Shell) -> None:
                 ui.label(name).classes("small")
                 labels[name] = ui.label("–").classes("mid")
 
+    @shell.each
     def refresh() -> None:
         now = shell.desk.now.focus
         moving = now is not None and now.moving
@@ -54,8 +55,6 @@ def _readings(shell: Shell) -> None:
         words.append("referenced" if now.referenced else "not referenced")
         labels["state"].set_text(", ".join(words))
 
-    shell.each(refresh)
-
 
 def _moves(shell: Shell) -> None:
     with box("Move"):
@@ -66,9 +65,7 @@ def _moves(shell: Shell) -> None:
                     button(f"{step:+d}", on_click=act).props(f'aria-label="Focus {step:+d} half steps"')
                 )
         with ui.row().classes("items-center"):
-            place = shell.control(
-                ui.number("Half steps", value=0, min=-800, max=800, format="%d").props("outlined dense")
-            )
+            place = shell.field(ui.number("Half steps", value=0, min=-800, max=800, format="%d"))
 
             async def go() -> None:
                 wanted = int(place.value or 0)

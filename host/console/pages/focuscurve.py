@@ -32,9 +32,7 @@ def curve(shell: Shell) -> None:
         chart.props('role="img" aria-label="Star width by focus position"')
         said = ui.label().classes("mid").props('role="status"')
         with ui.row().classes("items-center"):
-            width = shell.control(
-                ui.number("Star width here, ″ or pixels", value=3.0, min=0.01).props("outlined dense")
-            )
+            width = shell.field(ui.number("Star width here, ″ or pixels", value=3.0, min=0.01))
 
             def add() -> None:
                 now = shell.desk.now.focus
@@ -57,6 +55,7 @@ def curve(shell: Shell) -> None:
             shell.control(button("Clear the points", on_click=points.clear))
     shown: list[object] = [None]
 
+    @shell.each
     def refresh() -> None:
         if (state := (len(points), shell.day)) == shown[0]:
             return
@@ -77,5 +76,3 @@ def curve(shell: Shell) -> None:
         )
         chart.options.update(fresh)
         chart.update()
-
-    shell.each(refresh)

@@ -42,6 +42,7 @@ def _place(shell: Shell) -> None:
         ui.label("errors").classes("small")
         errors = ui.label("–").classes("mid")
 
+    @shell.each
     def refresh() -> None:
         now, here = shell.desk.now, pointing(shell.telescope)
         for name, text in zip(labels, here[:5], strict=True):
@@ -55,8 +56,6 @@ def _place(shell: Shell) -> None:
             stale(label, not old.isdisjoint(mine[:1] if name in ("RA", "HA", "Dec") else mine))
         stale(errors, not old.isdisjoint((Device.POSITION_RA, Device.POSITION_DEC)))
         stale(rates, not old.isdisjoint((Device.AXIS_RA, Device.AXIS_DEC)))
-
-    shell.each(refresh)
 
 
 def _motors(shell: Shell) -> None:
@@ -160,15 +159,9 @@ def _parameters(shell: Shell) -> None:
     kinds = {parameter.name.lower(): int(parameter) for parameter in AxisParameter}
     with box("Parameters"):
         with ui.row().classes("w-full"):
-            board = shell.control(
-                ui.select(list(devices), value="RA axis", label="Board").props("outlined dense")
-            )
-            kind = shell.control(
-                ui.select(list(kinds), value="kp_q12", label="Parameter")
-                .classes("w-full")
-                .props("outlined dense")
-            )
-            value = shell.control(ui.number("Value", value=0, format="%d").props("outlined dense"))
+            board = shell.field(ui.select(list(devices), value="RA axis", label="Board"))
+            kind = shell.field(ui.select(list(kinds), value="kp_q12", label="Parameter"), wide=True)
+            value = shell.field(ui.number("Value", value=0, format="%d"))
 
         async def read() -> None:
             device, which = devices[board.value], kinds[kind.value]

@@ -23,6 +23,7 @@ def _motors(shell: Shell) -> None:
     with box("Motors"):
         fill = table(("motor", "current, A", "tachometer, turns/s"))
 
+    @shell.each
     def refresh() -> None:
         now = shell.desk.now
         rows = []
@@ -33,8 +34,6 @@ def _motors(shell: Shell) -> None:
                 rows.append((f"{name} {motor}", current, turns))
         fill(rows)
 
-    shell.each(refresh)
-
 
 def _gears(shell: Shell) -> None:
     with box("Gear reduction and play"):
@@ -44,6 +43,7 @@ def _gears(shell: Shell) -> None:
             " 419″ is the play between them (42° of a motor), and the train's wind-up."
         ).classes("small")
 
+    @shell.each
     def refresh() -> None:
         if not shell.live.samples:
             return
@@ -59,8 +59,6 @@ def _gears(shell: Shell) -> None:
             ]
         )
 
-    shell.each(refresh)
-
 
 def _encoders(shell: Shell) -> None:
     with box("Encoders"):
@@ -72,6 +70,7 @@ def _encoders(shell: Shell) -> None:
             f" milliseconds apart. Beyond {APART:g} σ of their difference the one on the shaft stands alone."
         ).classes("small")
 
+    @shell.each
     def refresh() -> None:
         now = shell.desk.now
         rows = []
@@ -91,5 +90,3 @@ def _encoders(shell: Shell) -> None:
                 )
             )
         fill(rows)
-
-    shell.each(refresh)

@@ -18,14 +18,12 @@ from host.telescope.house import DOME_BOARD
 def target(shell: Shell) -> None:
     """Both boxes."""
     with box("Go to"):
-        chosen = shell.control(
-            ui.select(list(listed()), label="Name", with_input=True, clearable=True)
-            .classes("w-full")
-            .props("outlined dense")
+        chosen = shell.field(
+            ui.select(list(listed()), label="Name", with_input=True, clearable=True), wide=True
         )
         with ui.row().classes("w-full"):
-            ra = shell.control(ui.input("RA, ICRS", placeholder="05:16:41.36").props("outlined dense"))
-            dec = shell.control(ui.input("Dec, ICRS", placeholder="+45:59:52.8").props("outlined dense"))
+            ra = shell.field(ui.input("RA, ICRS", placeholder="05:16:41.36"))
+            dec = shell.field(ui.input("Dec, ICRS", placeholder="+45:59:52.8"))
 
         async def go() -> None:
             try:
@@ -57,6 +55,7 @@ def target(shell: Shell) -> None:
         chart.props("aria-hidden=true")  # the list of names holds the same
         sky, caption = chart.add_layer(), ui.label().classes("small")
 
+    @shell.each
     def refresh() -> None:
         now = shell.desk.now
         far = max(abs(now.ra.to_go_arcsec), abs(now.dec.to_go_arcsec))
@@ -74,7 +73,6 @@ def target(shell: Shell) -> None:
             if layer.content != picture:
                 layer.set_content(picture)
 
-    shell.each(refresh)
     shell.each(seldom(look))
 
 

@@ -1,10 +1,8 @@
 """Faults of a running network: started and cleared by a call, or by a scenario's clock."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,10 +12,8 @@ from scenarios.lab.faults.kind import Active, Kind
 from scenarios.lab.faults.parameter import FaultError
 from scenarios.lab.faults.place import Place
 from scenarios.lab.faults.table import BY_NAME, KINDS
-
-if TYPE_CHECKING:
-    from scenarios.lab.network import Network
-    from scenarios.language.model import Fault
+from scenarios.lab.network import Network
+from scenarios.language.model import Fault
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,15 @@
 """Where a fault acts: the network, and what several faults share on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from bus.can.stuck import StuckDominant
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.lab.faults.layers import Laid, Stacks, chained, last, turned
 from scenarios.lab.faults.parameter import FaultError
-
-if TYPE_CHECKING:
-    from bus.can.stuck import StuckDominant
-    from scenarios.lab.network import Network
+from scenarios.lab.network import Network
 
 _OF_AN_AXIS = {
     "incremental": ("AXIS_{}", "qei", "pin", None),
@@ -85,10 +81,7 @@ class Place:
     def let_go(self, name: str) -> bool:
         """One fewer; whether it was the last."""
         self.held[name] -= 1
-        if self.held[name]:
-            return False
-        del self.held[name]
-        return True
+        return not self.held[name]
 
     def known(self) -> dict[str, tuple[str, ...]]:
         """The words an argument may be, by its type."""

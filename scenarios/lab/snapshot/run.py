@@ -4,17 +4,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from bus.protocol import Device
-from plant.model import PlantModel
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.file import read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 from scenarios.lab.snapshot.tape import SEEN, Tape, listeners
-from scenarios.language.model import Scenario
-
-__all__ = ["Order", "Progress", "begun", "parts", "read", "resume"]
 
 
 @dataclass
@@ -42,7 +36,7 @@ class Order:
             raise SnapshotError("snapshots of a run need a network with a gateway")
         self.tape = Tape(session, [] if begun is None else begun["heard"])
         if begun is not None:
-            session.host_rows, session.focus_rows = begun["rows"]
+            session.rows = begun["rows"]
 
     def due(self, until_ns: int) -> bool:
         """Whether its time lies before `until_ns`."""
@@ -61,7 +55,7 @@ class Order:
             "progress": progress,
             "heard": self.tape.heard,
             "can": (session.recorder.folder / "can.log").read_bytes(),
-            "rows": (session.host_rows, session.focus_rows),
+            "rows": session.rows,
             "network": take((session.network, session.faults), outside),
         }
         write(whole, self.file)
@@ -69,11 +63,6 @@ class Order:
 
 def _outside(session: Session) -> dict[str, Any]:
     return {"session": session, "can": session.recorder.can, "recorder": session.recorder}
-
-
-def parts(whole: dict[str, Any]) -> tuple[Scenario, PlantModel]:
-    """Scenario and plant."""
-    return whole["scenario"], whole["model"]
 
 
 def begun(file: Path) -> dict[str, Any]:
@@ -86,18 +75,14 @@ def begun(file: Path) -> dict[str, Any]:
 
 def resume(whole: dict[str, Any], folder: Path) -> Session:
     """A session in a new folder as it was, its files written again up to then."""
-    scenario, model = parts(whole)
-    session = Session(scenario, model, folder)
+    session = Session(whole["scenario"], whole["model"], folder)
     session.link._send = _nobody
     calls = listeners(session) | {"tick": session.work}
     session.eye.replay(arguments for kind, arguments in whole["heard"] if kind == SEEN)
     for kind, arguments in whole["heard"]:
         if kind != SEEN:
             calls[kind](*arguments)
-    session.forget_rows()
-    for trace, rows in zip((session.recorder.host, session.recorder.focus), whole["rows"], strict=True):
-        if rows:
-            trace.append(np.array(rows))
+    session.begin_traces(whole["rows"])
     session.recorder.can.resume(whole["can"])
     network, session.faults = restore(whole["network"], {**listeners(session), **_outside(session)})
     session.adopt(network)

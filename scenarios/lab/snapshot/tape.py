@@ -3,13 +3,10 @@
 Its programme is made of generators, which nothing can take apart: it lives again by hearing the same.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from scenarios.lab.session import Session
+from scenarios.lab.session import Session
 
 Heard = list[tuple[str, tuple[Any, ...]]]
 """(what, arguments), in order: "usb", "tick", "truth", "chain", SEEN, or the name of a board on RS232."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from host.logs.traces import extremes
 from scenarios.run.outcome import Array
 
 if TYPE_CHECKING:
@@ -54,13 +53,5 @@ def title(view: Axes, text: str) -> None:
 
 def thin(t: Array, values: Array, points: int = _POINTS) -> tuple[Array, Array]:
     """At most about `points` samples; of every stretch the extremes are kept, so that no peak is lost."""
-    if len(t) <= points:
-        return t, values
-    width = -(-len(t) * 2 // points)
-    whole = len(t) // width * width
-    blocks = values[:whole].reshape(-1, width)
-    rows = np.arange(len(blocks))
-    first = np.minimum(blocks.argmin(axis=1), blocks.argmax(axis=1)) + rows * width
-    second = np.maximum(blocks.argmin(axis=1), blocks.argmax(axis=1)) + rows * width
-    picked = np.stack([first, second], axis=1).reshape(-1)
+    picked = extremes(values, max(1, -(-2 * len(t) // points)))
     return t[picked], values[picked]

@@ -10,7 +10,7 @@ import numpy as np
 
 from scenarios.run.report.style import new_figure
 from scenarios.studies.paper.coasting import coast
-from scenarios.studies.paper.experiments.e08 import SPEEDS
+from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
 from scenarios.studies.paper.log import Log
 from scenarios.studies.paper.record import Record
 from scenarios.studies.paper.runs import LOW, STEP_TO, TRACKING
@@ -119,7 +119,7 @@ def _figure_9(record: Record) -> Figure | None:
     t = (np.arange(shown) + 1.0) * LOG_PERIOD_S
     degrees = COUNT_RATE * ARCSEC * 180.0 / np.pi
     axes[1].plot(t, log.counts[:shown] * degrees, "o", markersize=4, label="log, 10 ms")
-    curve = coast(record.drive, fit, down, np.array([SPEEDS[0] * ARCSEC]), shown)[0]
+    curve = coast(record.drive, fit, down, np.array([RUN_DOWN_SPEEDS[0] * ARCSEC]), shown)[0]
     axes[1].plot(t, curve * degrees, color="black", linewidth=1.0,
                  label=f"J = {down.inertia / 1e3:.3f}e6 N mm s²")  # fmt: skip
     axes[1].set(title="(b) deceleration", xlabel="time, s", ylabel="velocity, °/s")

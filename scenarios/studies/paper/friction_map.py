@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from plant.parts import PlantModel
 from scenarios.studies.paper.log import Array, Log
@@ -175,8 +176,6 @@ def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> F
     """
     if len(points) < 6:
         raise ValueError(f"a torque-velocity map needs at least 6 steady points, not {len(points)}")
-    from scipy.optimize import least_squares
-
     rate = np.array([p.rate for p in points])
     torque = np.array([p.torque for p in points])
     spread = np.array([p.spread for p in points])

@@ -5,8 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant.parts import PlantModel
-from scenarios.studies.paper.log import Array
-from scenarios.studies.paper.scales import ARCSEC, CONTROL_PERIOD_S, COUNT_RATE, EFFORT_SCALE, GEAR_RATIO
+from scenarios.studies.paper.log import Array, Log
+from scenarios.studies.paper.runs import STEP_TO
+from scenarios.studies.paper.scales import (
+    ARCSEC,
+    CONTROL_PERIOD_S,
+    COUNT_RATE,
+    EFFORT_SCALE,
+    GEAR_RATIO,
+    LOG_PERIOD_S,
+)
+from scenarios.studies.paper.starts import Benches
+
+RAMP_ARCSEC_S2 = 7200.0
+"""The firmware's acceleration limit, 2 deg/s2 (Table 1)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +71,13 @@ def linear_axis(model: PlantModel) -> LinearAxis:
         voltage=model.supply.voltage.si,
         drive=1.0 - model.controller.counter_split.si,
     )
+
+
+def beside(benches: Benches, log: Log) -> tuple[Array, Array, Array]:
+    """Return what `simulate_loop` makes of a bench's low preload for as long as its log of a step."""
+    plant = benches.plants["low"]
+    steps, seconds = round(plant.controller.pwm_steps.si), log.t_s.size * LOG_PERIOD_S
+    return simulate_loop(linear_axis(plant), benches.gains, steps, STEP_TO, seconds, RAMP_ARCSEC_S2)
 
 
 def simulate_loop(

@@ -4,15 +4,13 @@ from dataclasses import dataclass
 
 from scenarios.studies.paper import runs
 from scenarios.studies.paper.coasting import Coasting, Drive, drive
-from scenarios.studies.paper.experiments.e08 import SPEEDS
-from scenarios.studies.paper.experiments.e09 import RAMP_ARCSEC_S2
+from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
 from scenarios.studies.paper.experiments.frictionmap import friction_map
 from scenarios.studies.paper.experiments.noise import Noise
 from scenarios.studies.paper.friction_map import FrictionFit, MapPoint
-from scenarios.studies.paper.linear import linear_axis, simulate_loop
+from scenarios.studies.paper.linear import beside
 from scenarios.studies.paper.log import Array, Log
 from scenarios.studies.paper.rundown import fit_run_downs
-from scenarios.studies.paper.scales import LOG_PERIOD_S
 from scenarios.studies.paper.starts import Benches
 
 OPENED_S = 60.0
@@ -36,15 +34,13 @@ class Record:
 
 def record(benches: Benches) -> Record:
     """Run what the figures need; what cannot be evaluated on these plants stays empty."""
-    plant = benches.plants["low"]
     maps = {
         preload: friction_map(benches, preload, Noise(benches.start.seed, "figures"))
         for preload in ("low", "high")
     }
     fits = {preload: found.fit for preload, found in maps.items() if found.fit is not None}
     step = runs.step(benches("low"), runs.STEP_TO)
-    steps, seconds = round(plant.controller.pwm_steps.si), float(step.t_s.size * LOG_PERIOD_S)
-    sheet = drive(plant)
+    sheet = drive(benches.plants["low"])
     return Record(
         tracking={preload: runs.tracking(benches(preload)) for preload in ("low", "high")},
         high=[
@@ -58,7 +54,7 @@ def record(benches: Benches) -> Record:
         run_down=_run_down(benches, fits.get("low"), sheet),
         drive=sheet,
         step=step,
-        linear=simulate_loop(linear_axis(plant), benches.gains, steps, runs.STEP_TO, seconds, RAMP_ARCSEC_S2),
+        linear=beside(benches, step),
     )
 
 
@@ -66,7 +62,7 @@ def _run_down(benches: Benches, friction: FrictionFit | None, sheet: Drive) -> t
     """None where it was at rest at once: then there is no figure 9."""
     if friction is None:
         return None
-    setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
+    setpoints = [way * speed for speed in RUN_DOWN_SPEEDS for way in (1, -1)]
     try:
         logs = [runs.run_down(benches("low"), setpoint) for setpoint in setpoints]
         return logs[0], fit_run_downs(logs, setpoints, friction, sheet)

@@ -63,25 +63,31 @@ class Row:
         count = self.misses(limit)
         return f"{text} at {count} of {len(self.found) + len(self.failed)} starts" if count else text
 
+    def lines(self, met: bool) -> list[str]:
+        """What was found for each limit that is met, or missed."""
+        return [self._line(limit) for limit in self.experiment.limits if self.holds(limit) is met]
+
+    @property
+    def unevaluated(self) -> list[str]:
+        """Why there are no figures, of the first start without."""
+        return [f"not evaluated: {why}" for why in list(self.failed.values())[:1]]
+
+    @property
+    def beside(self) -> list[str]:
+        """Medians of what is printed and decides nothing."""
+        medians = ((name, self.median(name), unit) for name, unit in self.experiment.beside)
+        return [f"{name} {_short(value)} {unit}" for name, value, unit in medians if value == value]
+
     @property
     def reason(self) -> str:
         """What was found; misses first."""
-        limits = self.experiment.limits
-        missed = [self._line(limit) for limit in limits if not self.holds(limit)]
-        met = [self._line(limit) for limit in limits if self.holds(limit)]
-        parts = ["MISS: " + "; ".join(missed)] if missed else []
-        if self.failed:
-            parts.append(f"not evaluated: {next(iter(self.failed.values()))}")
-        if met:
-            parts.append("; ".join(met))
-        beside = [
-            f"{name} {_short(self.median(name))} {unit}"
-            for name, unit in self.experiment.beside
-            if self.median(name) == self.median(name)
-        ]
-        if beside:
-            parts.append("beside (medians): " + ", ".join(beside))
-        return ". ".join(parts)
+        missed, met, beside = (
+            "; ".join(self.lines(False)),
+            "; ".join(self.lines(True)),
+            ", ".join(self.beside),
+        )
+        parts = [f"MISS: {missed}" * bool(missed), *self.unevaluated, met]
+        return ". ".join(filter(None, [*parts, f"beside (medians): {beside}" * bool(beside)]))
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as the JSON file has it."""

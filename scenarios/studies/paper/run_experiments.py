@@ -10,6 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
+from host.logs.files import write_file
 from plant.model import default_files, load
 from plant.parts import PlantModel
 from scenarios.progress import shown
@@ -83,15 +84,6 @@ def as_json(
     }
 
 
-def _write(path: Path, text: str) -> None:
-    """Write a file of the user's; raises ValueError with the reason when that cannot be done."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be written: {error.strerror}") from None
-
-
 def paper(options: PaperOptions) -> int:
     """Run the paper's experiments.
 
@@ -102,7 +94,7 @@ def paper(options: PaperOptions) -> int:
     files = pair(options.plant, options.plant_high, options.reading)
     plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
     chosen, starts = select(options.rows), QUICK if options.quick else ALL if options.every else STARTS
-    _write(out / ".probe", "")  # find out before minutes of work, not after
+    write_file(out / ".probe", "")  # find out before minutes of work, not after
     (out / ".probe").unlink()
     begin = monotonic()
     with shown("experiments", len(chosen) * len(starts)) as tell:
@@ -118,7 +110,7 @@ def paper(options: PaperOptions) -> int:
     seconds = monotonic() - begin
     show(found, console)
     document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
-    _write(options.json_file or out / "paper.json", document)
+    write_file(options.json_file or out / "paper.json", document)
     if options.rows is None:
         with console.status("figures"):
             drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
@@ -126,9 +118,9 @@ def paper(options: PaperOptions) -> int:
             console.print(f"  {path}")
     command = "schmidt paper" + ("" if options.reading == "motor" else f" --reading {options.reading}")
     table = markdown(found, names_of(files), command, date.today())
-    _write(out / "experiments.md", table)
+    write_file(out / "experiments.md", table)
     if options.markdown is not None:
-        _write(options.markdown, table)
+        write_file(options.markdown, table)
     met = sum(row.passed for row in found)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if options.quick else "")
     console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")

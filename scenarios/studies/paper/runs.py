@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import ceil
+from typing import Protocol
 
 import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
-from scenarios.studies.paper.bench import Bench
 from scenarios.studies.paper.log import Log, join
 from scenarios.studies.paper.measures import stalled
 from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
@@ -24,6 +24,21 @@ SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
 LOW = 100.0
 """arcsec/s, Fig. 7."""
+
+
+class Bench(Protocol):
+    """One axis with its controller, powered, at rest at the start. Time goes on from run to run.
+
+    The emulator is one, the compiled loop another.
+    """
+
+    def closed_loop(self, arcsec_s: float, seconds: float) -> Log:
+        """Run the velocity loop at a set point, arcsec/s, for `seconds`."""
+        ...
+
+    def open_loop(self, effort: int, seconds: float) -> Log:
+        """Run with a fixed effort, 1/3000 of the supply, for `seconds`."""
+        ...
 
 
 def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:

@@ -1,12 +1,12 @@
 """Where and with which seed an experiment begins, and the benches it may ask for there."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 from plant.model import with_value
 from plant.parts import PlantModel
-from scenarios.studies.paper.bench import Bench
+from scenarios.studies.paper.runs import Bench
+from scenarios.studies.paper.scales import GEAR_RATIO
 
 STEPS_PER_DEGREE = (1 << 29) / 360.0
 ANGLES_DEG = (97.3, 123.1, 149.6, 172.9, 193.4, 217.7, 241.2, 268.9)
@@ -38,14 +38,8 @@ QUICK = STARTS[::4]
 """For a look; decides nothing."""
 
 
-class MakeBench(Protocol):
-    """Makes a bench of a plant at a start; gains instead of the plant file's when given."""
-
-    def __call__(
-        self, model: PlantModel, seed: int, gains: tuple[float, float] | None, start_steps: float
-    ) -> Bench:
-        """Return a fresh bench, at rest and powered."""
-        ...
+MakeBench = Callable[[PlantModel, int, tuple[float, float] | None, float], Bench]
+"""Makes a bench, at rest and powered, of (plant, seed, gains instead of the plant file's, start in steps)."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +74,6 @@ def viscous_only(model: PlantModel) -> PlantModel:
 
 def with_inertia(model: PlantModel, factor: float) -> PlantModel:
     """Return a plant whose whole moment of inertia, rotors included, is `factor` times its own."""
-    from scenarios.studies.paper.scales import GEAR_RATIO
-
     axis = model.axes.ra
     rotors = 2.0 * axis.motor.rotor_inertia.si * GEAR_RATIO**2
     load = factor * (axis.inertia.si + rotors) - rotors

@@ -1,6 +1,5 @@
 """The table of rows: for the terminal and as Markdown."""
 
-import re
 from collections.abc import Sequence
 from datetime import date
 
@@ -58,12 +57,9 @@ def _line(row: Row) -> str:
 
 def _figures(row: Row) -> list[str]:
     """A line for each limit, and for each figure that is only printed beside them."""
-    limits, _, beside = row.reason.removeprefix("MISS: ").partition("beside (medians): ")
-    pieces = [
-        *re.split(r"; |\. ", limits.rstrip(". ")),
-        *(f"no limit: {each}" for each in beside.split(", ")),
-    ]
-    return [f"| {row.id} | {piece} |" for piece in pieces if piece not in ("", "no limit: ")]
+    beside = (f"no limit: {each}" for each in row.beside)
+    pieces = [*row.lines(False), *row.unevaluated, *row.lines(True), *beside]
+    return [f"| {row.id} | {piece} |" for piece in pieces]
 
 
 def markdown(rows: Sequence[Row], plants: Sequence[str], command: str, day: date) -> str:

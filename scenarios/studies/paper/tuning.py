@@ -34,51 +34,32 @@ def _gains(proportional: float, integral_s: float) -> Gains:
     return Gains(proportional, proportional * CONTROL_PERIOD_S / integral_s)
 
 
-def ziegler_nichols(m: FirstOrder) -> Gains:
-    """Reaction curve."""
-    return _gains(0.9 * m.lag_s / (m.gain * m.dead_s), 3.33 * m.dead_s)
-
-
-def chien_0(m: FirstOrder) -> Gains:
-    """Servo, no overshoot."""
-    return _gains(0.35 * m.lag_s / (m.gain * m.dead_s), 1.17 * m.lag_s)
-
-
-def chien_20(m: FirstOrder) -> Gains:
-    """Servo, 20 % overshoot."""
-    return _gains(0.6 * m.lag_s / (m.gain * m.dead_s), m.lag_s)
-
-
-def cohen_coon(m: FirstOrder) -> Gains:
-    """Quarter decay ratio."""
+def _cohen_coon(m: FirstOrder) -> Gains:
     r = m.dead_s / m.lag_s
     kc = (0.9 / r + 0.083) / m.gain
     return _gains(kc, m.dead_s * (3.33 + 0.31 * r) / (1.0 + 2.22 * r))
 
 
-def rivera(m: FirstOrder) -> Gains:
-    """Internal model control, improved PI, lambda = 1.7 L."""
-    return _gains((2.0 * m.lag_s + m.dead_s) / (2.0 * m.gain * 1.7 * m.dead_s), m.lag_s + m.dead_s / 2.0)
-
-
-def skogestad(m: FirstOrder) -> Gains:
-    """SIMC with the tightest closed-loop time constant that is advised."""
-    return _gains(m.lag_s / (2.0 * m.gain * m.dead_s), min(m.lag_s, 8.0 * m.dead_s))
-
-
-def amigo(m: FirstOrder) -> Gains:
-    """Largest integral gain at a maximum sensitivity of 1.4."""
+def _amigo(m: FirstOrder) -> Gains:
     dead, lag = m.dead_s, m.lag_s
     kc = (0.15 + (0.35 - dead * lag / (dead + lag) ** 2) * lag / dead) / m.gain
     return _gains(kc, 0.35 * dead + 13.0 * dead * lag**2 / (lag**2 + 12.0 * dead * lag + 7.0 * dead**2))
 
 
 RULES: dict[str, Callable[[FirstOrder], Gains]] = {
-    "Ziegler-Nichols": ziegler_nichols,
-    "Chien 0 %": chien_0,
-    "Chien 20 %": chien_20,
-    "Cohen-Coon": cohen_coon,
-    "Rivera": rivera,
-    "Skogestad": skogestad,
-    "AMIGO": amigo,
+    # reaction curve
+    "Ziegler-Nichols": lambda m: _gains(0.9 * m.lag_s / (m.gain * m.dead_s), 3.33 * m.dead_s),
+    # servo, without and with overshoot
+    "Chien 0 %": lambda m: _gains(0.35 * m.lag_s / (m.gain * m.dead_s), 1.17 * m.lag_s),
+    "Chien 20 %": lambda m: _gains(0.6 * m.lag_s / (m.gain * m.dead_s), m.lag_s),
+    # quarter decay ratio
+    "Cohen-Coon": _cohen_coon,
+    # internal model control, improved PI, lambda = 1.7 L
+    "Rivera": lambda m: _gains(
+        (2.0 * m.lag_s + m.dead_s) / (2.0 * m.gain * 1.7 * m.dead_s), m.lag_s + m.dead_s / 2.0
+    ),
+    # SIMC with the tightest closed-loop time constant that is advised
+    "Skogestad": lambda m: _gains(m.lag_s / (2.0 * m.gain * m.dead_s), min(m.lag_s, 8.0 * m.dead_s)),
+    # largest integral gain at a maximum sensitivity of 1.4
+    "AMIGO": _amigo,
 }

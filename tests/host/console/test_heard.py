@@ -15,6 +15,7 @@ import pytest
 from bus.protocol import Device, pack_heartbeat
 from bus.protocol.report import pack_report
 from host.client import SILENCE_NS, Client
+from host.console.decoded import words
 from host.console.heard import HeardBus
 from host.link import HidLink
 from host.logs.journal import Journal
@@ -48,9 +49,10 @@ def test_nodes_load_and_frames_are_those_of_the_wire() -> None:
             client.now_ns = rig.served.now_ns
         end_s = rig.served.now_ns * 1e-9
         load = (wire.load * end_s - busy_s) / (end_s - start_s)
-        assert 0.9 * load < heard.load() <= 1.01 * load
-        shares = {node.name: node.load for node in heard.nodes()}
-        assert sum(shares.values()) == pytest.approx(heard.load()) and shares["POSITION_RA"] > 0.01
+        now = heard.look()
+        assert 0.9 * load < now.load <= 1.01 * load
+        shares = {node.name: node.load for node in now.nodes}
+        assert sum(shares.values()) == pytest.approx(now.load) and shares["POSITION_RA"] > 0.01
         seen = EmulatedBus(rig.served)
         seen.look()
         rig.served.run_until(rig.served.now_ns + 1_000_000_000)
@@ -58,12 +60,11 @@ def test_nodes_load_and_frames_are_those_of_the_wire() -> None:
         sent = {node.name: node.load for node in told.nodes}
         assert sum(sent.values()) == pytest.approx(told.load, rel=0.02)  # the rest: frames that were cut
         assert sent["POSITION_RA"] == pytest.approx(shares["POSITION_RA"], rel=0.1)
-        assert {n.name for n in heard.nodes() if n.powered and n.state == "active"} == {
+        assert {n.name for n in now.nodes if n.powered and n.state == "active"} == {
             name for name, board in rig.served.network.boards.items() if board.on and name != "GATEWAY"
         } | ({"GATEWAY"} if int(Device.GATEWAY) in link.heard_ns else set())
-        frames = heard.frames(25)
-        assert len(frames) == 25 and heard.errors() == {"bad reports": 0}
-        assert all(each.data in on_wire[each.identifier] and each.text for each in frames)
+        assert len(now.frames) == 25 and now.errors == {"bad reports": 0}
+        assert all(data in on_wire[number] and words(number, data) for _, _, number, data in now.frames)
     finally:
         rig.host.close()
 
@@ -78,16 +79,16 @@ def test_a_boards_error_state_is_what_its_heartbeat_says_and_silence_is_shown(te
     beat = pack_heartbeat(Device.FOCUS, 1, 5, 0, tec)
     link.receive(1_000, pack_report([bytes((beat[0] | 0x80,)) + beat[1:]]))
     client.now_ns = 1_000 + SILENCE_NS
-    assert [(n.name, n.powered, n.state, n.tec) for n in heard.nodes()] == [
+    assert [(n.name, n.powered, n.state, n.tec) for n in heard.look().nodes] == [
         ("FOCUS", True, said, tec), ("DISPLAY", False, "silent", 0),
     ]  # fmt: skip
     client.now_ns += 1
-    assert not any(node.powered for node in heard.nodes())
+    assert not any(node.powered for node in heard.look().nodes)
 
 
 def test_nothing_can_be_broken_on_a_real_bus() -> None:
     heard = HeardBus(Client(HidLink(lambda _t, _report: None), Journal(None), ()))
-    assert not heard.faults() and not heard.fault_kinds() and not heard.running()
+    assert not heard.boards and not heard.kinds and not heard.look().running
     for future in (heard.start_fault("babbler", ""), heard.clear_fault(1)):
         with pytest.raises(ValueError, match="no emulated bus"):
             future.result(0)

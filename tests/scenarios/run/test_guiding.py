@@ -15,7 +15,8 @@ from host.camera.models import GUIDE
 from host.sky.catalogue import star
 from host.sky.observed import observe_many
 from scenarios.lab.eye import NOISE_ARCSEC
-from scenarios.lab.snapshot.run import Order, read
+from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.run import Order
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
 from scenarios.language.plants import plant_model

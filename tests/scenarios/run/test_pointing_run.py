@@ -16,7 +16,8 @@ from host.sky.catalogue import star
 from host.sky.observed import observe_many
 from plant.model import MountErrors
 from plant.mount import sky
-from scenarios.lab.snapshot.run import Order, read
+from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.run import Order
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
 from scenarios.language.model import Scenario

@@ -19,7 +19,7 @@ RAMP = 7200.0 * LOG_PERIOD_S
 
 
 class CompiledBench:
-    """A bench (see bench.py); gains: (Kp, Ki) instead of the plant file's."""
+    """A bench (see runs.py); gains: (Kp, Ki) instead of the plant file's."""
 
     def __init__(
         self,

@@ -5,10 +5,12 @@ import numpy as np
 import pytest
 
 from plant.model import load
-from scenarios.studies.paper.experiments import e01, e03, e04, e05, e11, e13, e15
+from scenarios.studies.paper.experiments import closed as in_loop
+from scenarios.studies.paper.experiments import opened as out_of_loop
+from scenarios.studies.paper.experiments import tracking
 from scenarios.studies.paper.experiments.identify import fit, second_order
 from scenarios.studies.paper.experiments.noise import CONSTANT_ERROR, Noise
-from scenarios.studies.paper.experiments.stickslip import stick_slips
+from scenarios.studies.paper.experiments.tracking import stick_slips
 from scenarios.studies.paper.rows import Row
 from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.scales import COUNT_RATE
@@ -38,14 +40,14 @@ class Axis:
         return log_of(self.speed * (1.0 + percent / 100.0 * np.sin(2 * np.pi * self.hertz * t)))
 
 
-def met(module, make):
+def met(experiment, make):
     benches = Benches(lambda *_: make(), PLANTS, STARTS[0])
-    return Row(module.ROW, {STARTS[0]: module.measure(benches)}).passed
+    return Row(experiment, {STARTS[0]: experiment.measure(benches)}).passed
 
 
 @pytest.mark.parametrize(("percent", "passed"), [(9.0, False), (12.0, True), (24.9, True), (26.0, False)])
 def test_E1_between_10_and_25_percent(percent, passed):
-    assert met(e01, lambda: Axis(lambda v: percent)) is passed
+    assert met(tracking.low_preload, lambda: Axis(lambda v: percent)) is passed
 
 
 @pytest.mark.parametrize(
@@ -53,44 +55,46 @@ def test_E1_between_10_and_25_percent(percent, passed):
     [(3.0, 5.0, True), (3.0, 2.0, False), (1.0, 5.0, False), (7.5, 9.0, False)],
 )
 def test_E3_within_the_band_and_no_worse_than_the_open_loop(closed, opened, passed):
-    assert met(e03, lambda: Axis(lambda v: closed, lambda v: opened)) is passed
+    assert met(in_loop.higher_speeds, lambda: Axis(lambda v: closed, lambda v: opened)) is passed
 
 
 def test_E3_one_speed_outside_is_a_miss():
-    assert not met(e03, lambda: Axis(lambda v: 7.4 if v == 900.0 else 4.0, lambda v: 9.0))
+    assert not met(in_loop.higher_speeds, lambda: Axis(lambda v: 7.4 if v == 900.0 else 4.0, lambda v: 9.0))
 
 
 @pytest.mark.parametrize(("percent", "passed"), [(0.9, True), (1.1, False)])
 def test_E4_below_one_percent(percent, passed):
-    assert met(e04, lambda: Axis(lambda v: percent)) is passed
+    assert met(in_loop.slow_slews, lambda: Axis(lambda v: percent)) is passed
 
 
 @pytest.mark.parametrize(("opened", "passed"), [(12.0, True), (16.0, False), (7.0, False), (8.5, True)])
 def test_E5_at_most_15_percent_and_as_much_more_than_the_closed_loop_as_printed(opened, passed):
-    assert met(e05, lambda: Axis(lambda v: 4.0, lambda v: opened, 0.3)) is passed
+    assert met(out_of_loop.higher_speeds, lambda: Axis(lambda v: 4.0, lambda v: opened, 0.3)) is passed
 
 
 def test_E5_a_drift_is_no_oscillation():
     t = np.arange(0.0, 70.0, 0.01)
     drift = 600.0 * (1.0 + 0.12 * np.sin(2 * np.pi * 0.004 * t))
-    assert e05.fast_peak(drift, 600.0) < 0.5
-    assert e05.fast_peak(drift + 30.0 * np.sin(2 * np.pi * 0.3 * t), 600.0) == pytest.approx(5.0, abs=0.5)
+    assert out_of_loop.fast_peak(drift, 600.0) < 0.5
+    assert out_of_loop.fast_peak(drift + 30.0 * np.sin(2 * np.pi * 0.3 * t), 600.0) == pytest.approx(
+        5.0, abs=0.5
+    )
 
 
 def test_E13_an_error_that_stays_for_seconds_is_not_negligible():
-    assert met(e13, lambda: Axis(lambda v: 1.2))
-    assert not met(e13, lambda: Axis(lambda v: 15.0, hertz=0.05))
+    assert met(in_loop.negligible, lambda: Axis(lambda v: 1.2))
+    assert not met(in_loop.negligible, lambda: Axis(lambda v: 15.0, hertz=0.05))
 
 
 def test_E13_a_fast_ripple_that_means_of_a_second_hide_is_not_negligible():
-    ripple = e13.measure(Benches(lambda *_: Axis(lambda v: 5.0), PLANTS, STARTS[0]))
+    ripple = in_loop.negligible.measure(Benches(lambda *_: Axis(lambda v: 5.0), PLANTS, STARTS[0]))
     assert ripple["worst"] < 0.1
     assert ripple["worst raw"] == pytest.approx(5.0 / np.sqrt(2.0), rel=0.01)
 
 
 def test_E15_high_preload_may_not_err_by_more_than_a_quarter():
-    assert met(e15, lambda: Axis(lambda v: 20.0))
-    assert not met(e15, lambda: Axis(lambda v: 30.0))
+    assert met(in_loop.both_preloads, lambda: Axis(lambda v: 20.0))
+    assert not met(in_loop.both_preloads, lambda: Axis(lambda v: 30.0))
 
 
 def slips(rate, still_s=1.0, leap=60.0):
@@ -110,7 +114,7 @@ def test_E2_a_cycle_needs_a_stick_phase_and_a_leap():
 
 
 def test_E11_a_loop_that_never_sticks_misses_the_row():
-    assert not met(e11, lambda: Axis(lambda v: 20.0))
+    assert not met(tracking.low_gains, lambda: Axis(lambda v: 20.0))
 
 
 @pytest.mark.parametrize(("gain", "lag", "dead"), [(1.9, 0.066, 0.0085), (3.0, 0.02, 0.03), (0.5, 0.2, 0.01)])

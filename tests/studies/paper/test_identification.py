@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from plant.model import load, with_effects, with_value
 from scenarios.studies.paper.coasting import Coasting, Drive, coast, drive
 from scenarios.studies.paper.emulator import EmulatorBench
-from scenarios.studies.paper.experiments.e08 import SPEEDS
+from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
 from scenarios.studies.paper.experiments.frictionmap import friction_map
 from scenarios.studies.paper.experiments.identify import identify
 from scenarios.studies.paper.experiments.noise import Noise
@@ -224,7 +224,7 @@ def test_E7_and_E8_find_the_numbers_of_a_plant_that_nobody_tuned_them_on(preload
     assert found.fit.coulomb == pytest.approx(truth.coulomb.si, rel=0.20)
     assert found.fit.stribeck_rate == pytest.approx(truth.stribeck_rate.si, rel=0.20)
     if preload == "low":
-        setpoints = [way * speed for speed in SPEEDS for way in (1, -1)]
+        setpoints = [way * speed for speed in RUN_DOWN_SPEEDS for way in (1, -1)]
         logs = [noise.log(run_down(benches("low"), setpoint)) for setpoint in setpoints]
         inertia = fit_run_downs(logs, setpoints, found.fit, drive(plants["low"])).inertia
         assert inertia == pytest.approx(1.3 * INERTIA, rel=0.05)

@@ -1,11 +1,13 @@
-"""The rows, one file each; E1 to E10 are the paper's experiments, E11 to E15 sentences of its text."""
+"""The rows: E1 to E10 are the paper's experiments, E11 to E15 sentences of its text."""
 
-from importlib import import_module
-
+from scenarios.studies.paper.experiments import closed, friction, models, opened, tracking
 from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
 
-EXPERIMENTS: tuple[Experiment, ...] = tuple(
-    import_module(f"{__package__}.e{number:02d}").ROW for number in range(1, 16)
-)
+EXPERIMENTS: tuple[Experiment, ...] = (
+    tracking.low_preload, tracking.high_preload, closed.higher_speeds, closed.slow_slews,
+    opened.higher_speeds, opened.slowest, friction.table_2, friction.inertia, models.equation_6,
+    models.tuning_rules, tracking.low_gains, friction.viscous_branch, closed.negligible, friction.at_rest,
+    closed.both_preloads,
+)  # fmt: skip
 
 __all__ = ["EXPERIMENTS", "Experiment", "Figures", "Limit"]

@@ -85,11 +85,11 @@ class Experiment:
 
 
 def row(
-    name: str, measure: Callable[[Benches], Figures], beside: tuple[tuple[str, str], ...] = ()
-) -> Experiment:
-    """The experiment of this name in rows.yaml. beside: more of these figures, whose names code makes."""
+    name: str, beside: tuple[tuple[str, str], ...] = ()
+) -> Callable[[Callable[[Benches], Figures]], Experiment]:
+    """Makes a function the experiment of this name in rows.yaml. beside: more of these figures, whose names
+    code makes."""
     told = _rows()[name]
     limits = tuple(Limit(**each) for each in told["limits"])
-    return Experiment(
-        id=name, limits=limits, measure=measure, beside=(*map(tuple, told.get("beside", ())), *beside)
-    )
+    shown = (*map(tuple, told.get("beside", ())), *beside)
+    return lambda measure: Experiment(id=name, limits=limits, measure=measure, beside=shown)

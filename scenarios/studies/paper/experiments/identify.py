@@ -22,9 +22,8 @@ from math import floor
 import numpy as np
 from scipy.optimize import least_squares
 
-from scenarios.studies.paper.bench import Bench
 from scenarios.studies.paper.log import Array
-from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC
+from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC, Bench
 from scenarios.studies.paper.scales import CONTROL_PERIOD_S, EFFORT_SCALE, LOG_PERIOD_S
 from scenarios.studies.paper.tuning import FirstOrder
 
@@ -98,36 +97,32 @@ def averaged_step(make: Callable[[], Bench]) -> Array:
 def second_order(t_s: Array, response: Array) -> SecondOrder:
     """Return the model whose step response fits samples best; t_s: time since the effort changed."""
     settled = max(1e-6, float(response[response.size // 2 :].mean()))
-    best = None
-    for frequency in (10.0, 30.0, 100.0):
-        for damping in (0.3, 1.5):
-            found = least_squares(
-                lambda x: SecondOrder(*x).response(t_s) - response, [settled, frequency, damping, 0.005],
-                bounds=([1e-9, 1.0, 0.05, 0.0], [1e3, 1e3, 20.0, 0.2]),
-                x_scale=[settled, frequency, 1.0, 0.01],
-            )  # fmt: skip
-            if best is None or found.cost < best.cost:
-                best = found
-    assert best is not None
-    return SecondOrder(*(float(v) for v in best.x))
+    found = [
+        least_squares(
+            lambda x: SecondOrder(*x).response(t_s) - response, [settled, frequency, damping, 0.005],
+            bounds=([1e-9, 1.0, 0.05, 0.0], [1e3, 1e3, 20.0, 0.2]),
+            x_scale=[settled, frequency, 1.0, 0.01],
+        )
+        for frequency in (10.0, 30.0, 100.0)
+        for damping in (0.3, 1.5)
+    ]  # fmt: skip
+    return SecondOrder(*map(float, min(found, key=lambda each: each.cost).x))
 
 
 def first_order(model: SecondOrder) -> FirstOrder:
     """Return the first order whose step response is nearest to that of `model` for a second."""
     t: Array = np.arange(1, 1001, dtype=np.float64) * 1e-3
     wanted = model.response(t)
-    best = None
-    for dead in (0.005, 0.015, 0.03, 0.06):
-        for lag in (0.01, 0.03, 0.1):
-            found = least_squares(
-                lambda x: x[0] * (1.0 - np.exp(-np.maximum(0.0, t - x[2]) / x[1])) - wanted,
-                [model.gain, lag, dead], bounds=([1e-9, 1e-3, 0.0], [1e3, 5.0, 0.2]),
-                x_scale=[model.gain, lag, 0.01],
-            )  # fmt: skip
-            if best is None or found.cost < best.cost:
-                best = found
-    assert best is not None
-    return FirstOrder(*(float(v) for v in best.x))
+    found = [
+        least_squares(
+            lambda x: x[0] * (1.0 - np.exp(-np.maximum(0.0, t - x[2]) / x[1])) - wanted,
+            [model.gain, lag, dead], bounds=([1e-9, 1e-3, 0.0], [1e3, 5.0, 0.2]),
+            x_scale=[model.gain, lag, 0.01],
+        )
+        for dead in (0.005, 0.015, 0.03, 0.06)
+        for lag in (0.01, 0.03, 0.1)
+    ]  # fmt: skip
+    return FirstOrder(*map(float, min(found, key=lambda each: each.cost).x))
 
 
 def fit(response: Array) -> FirstOrder:
