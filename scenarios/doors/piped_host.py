@@ -26,7 +26,7 @@ class PipedHost:
         self._now_ns = 0
         options = settings.options
         self.pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
-        self.pc.cameras = cameras(settings.scenario, options)
+        self.pc.cameras = cameras(settings.scenario, options, self.pc.guiding)
         self.outside = Outside()
         self.bus = BusMirror(settings.boards, settings.kinds, self._send)
         self.runs = RecordedRuns(options.runs, settings.headers, self.pc.journal)
