@@ -222,6 +222,11 @@ def with_effects(model: PlantModel, axis: str, effects: Sequence[EffectModel]) -
     return dataclasses.replace(model, axes=dataclasses.replace(model.axes, **{axis: part}))
 
 
-def with_mount_errors(model: PlantModel) -> PlantModel:
-    """Return the model with errors of its mount: typical ones where its file declares none."""
+def with_mount_errors(model: PlantModel, wanted: bool = True) -> PlantModel:
+    """Return the model with errors of its mount, typical ones where its file declares none.
+
+    wanted: False for a mount without errors, whatever the file declares.
+    """
+    if not wanted:
+        return dataclasses.replace(model, mount=None)
     return model if model.mount is not None else dataclasses.replace(model, mount=MountErrors())

@@ -23,8 +23,10 @@ def sky(
     hour_angle, declination: of the axes, rad, both of one shape, which the results have. latitude: rad.
     """
     h = np.asarray(hour_angle, dtype=float) - errors.hour_angle_index.si
+    h = h - errors.hour_angle_eccentricity.si * np.sin(h)
     # The fork's arms give way towards the ground, about the declination axis.
     d = np.asarray(declination, dtype=float) - errors.declination_index.si
+    d = d - errors.declination_eccentricity.si * np.sin(d)
     d = d - errors.fork_flexure.si * np.cos(h)
     cone, tilt = errors.collimation.si, errors.non_perpendicularity.si
     sight = np.stack([cos(cone) * np.cos(d), np.full_like(d, -sin(cone)), cos(cone) * np.sin(d)])

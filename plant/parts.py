@@ -202,7 +202,8 @@ class MountErrors:
     """Errors between the axes and the sky (plant/mount.py). A number that is not given is typical.
 
     Signs are Wallace's: what the axes read less where the telescope looks. So a pointing model finds these
-    numbers under the names in brackets.
+    numbers under the names in brackets. An encoder off its centre is here a matter of pointing: the
+    drive does not feel a slope of 5e-6. The effect `encoder_eccentricity` is in the readings themselves.
     """
 
     hour_angle_index: Number = field(
@@ -235,6 +236,14 @@ class MountErrors:
     axis_flexure: Number = field(
         default=_typical(8.0, "held at both ends by the yoke, DAF"),
         metadata=bounds("arcsec", -300.0, 300.0),
+    )
+    hour_angle_eccentricity: Number = field(
+        default=_typical(1.0, "the RCN 829's catalogue has ±1 arcsec; times sin h, HCES"),
+        metadata=bounds("arcsec", -60.0, 60.0),
+    )
+    declination_eccentricity: Number = field(
+        default=_typical(1.0, "as in hour angle; times sin dec, DCES"),
+        metadata=bounds("arcsec", -60.0, 60.0),
     )
     refraction: Number = field(
         default=_typical(2.0, "4 % of 46 arcsec at 1950 m: air 10 K off; times tan z, TX"),

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bus.time import generator
+from host.camera.flat import flat
 from host.camera.light import Window, light
 from host.camera.look import Look
 from host.camera.models import CameraModel
@@ -159,7 +160,8 @@ def expose(
     seconds = (looks[-1].t_ns - looks[0].t_ns) * 1e-9
     electrons = np.full((window.height, window.width), model.dark_e_s * seconds)
     if order.lit:
-        electrons += light(model, looks, window, sky, site, clock, wander)
+        response = flat(model, window.left, window.top, window.width, window.height)
+        electrons += response * light(model, looks, window, sky, site, clock, wander)
     return Frame(
         model=model, order=order, looks=looks, counts=read_out(model, electrons, order.binning, random)
     )

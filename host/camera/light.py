@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
+from host.camera.flat import cosines
 from host.camera.look import Look
 from host.camera.models import CameraModel
 from host.camera.place import catalogued, observed, plane, turning
@@ -66,7 +67,8 @@ def light(
     path = _sampled(model, looks, wander)
     seconds = (looks[-1].t_ns - looks[0].t_ns) * 1e-9
     background = model.zero_point_e_s * 10 ** (-0.4 * SKY_MAGNITUDE) * model.pixel_arcsec**2 * seconds
-    image = np.full((window.height, window.width), background)
+    # a pixel beside the axis sees less of the sky: its solid angle, by the cube of the cosine
+    image = background * cosines(model, window.left, window.top, window.width, window.height) ** 3
     disc = _disc(model, looks)
     edge = len(disc) // 2
     sigma = sigma_arcsec(model.aperture_m) / model.pixel_arcsec

@@ -17,7 +17,7 @@ class CameraModel:
     """A detector and the optics before it; SI units unless a name says otherwise.
 
     throughput: electrons per photon above the air. dark_e_s: dark current of a pixel at `temperature_c`.
-    focusing: the focus drive moves it.
+    focusing: the focus drive moves it. blooms: full wells spill along their columns.
     """
 
     name: str
@@ -36,6 +36,7 @@ class CameraModel:
     temperature_c: float
     shortest_s: float
     focusing: bool
+    blooms: bool
 
     @property
     def pixel_rad(self) -> float:
@@ -66,7 +67,9 @@ MAIN = CameraModel(
     pixel_m=9e-6,  # paper, section 2.1
     width=4096,
     height=4096,
-    full_well_e=100e3,  # KAF-16801E data sheet: saturation signal
+    # ASSUMPTION: as the same 9 µm pixel without anti-blooming in the KAF-0401E and KAF-1602E (SBIG, manual of
+    # the ST-7XE to ST-10XE, table 4.3). The KAF-16801E's own data sheet was not found.
+    full_well_e=100e3,
     read_noise_e=15.0,  # ASSUMPTION: a slow readout of that amplifier
     dark_e_s=0.02,  # ASSUMPTION: cooled
     gain_e_adu=1.6,  # ASSUMPTION: the full well fills the converter
@@ -75,6 +78,7 @@ MAIN = CameraModel(
     temperature_c=-20.0,  # ASSUMPTION
     shortest_s=0.1,  # ASSUMPTION: a mechanical shutter
     focusing=True,
+    blooms=True,  # ASSUMPTION: the letter E without L is a detector without an anti-blooming drain
 )
 GUIDE = CameraModel(
     name="Guide camera",
@@ -93,6 +97,7 @@ GUIDE = CameraModel(
     temperature_c=10.0,  # ASSUMPTION: that of the night
     shortest_s=0.01,  # ASSUMPTION: an electronic shutter
     focusing=False,
+    blooms=False,  # ASSUMPTION: CMOS pixels with a drain
 )
 CAMERAS = (MAIN, GUIDE)
 """By Alpaca's device number."""

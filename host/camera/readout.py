@@ -1,8 +1,9 @@
-"""From expected electrons to numbers: shot noise, full well, binning, readout noise, converter."""
+"""From expected electrons to numbers: shot noise, full well, blooming, binning, readout noise, converter."""
 
 import numpy as np
 import numpy.typing as npt
 
+from host.camera.bloom import bloom
 from host.camera.models import CameraModel
 from host.camera.stars import Array
 
@@ -10,8 +11,12 @@ Counts = npt.NDArray[np.uint16]
 
 
 def read_out(model: CameraModel, electrons: Array, binning: int, random: np.random.Generator) -> Counts:
-    """ADU of every bin. Charge beyond the full well is lost. Bins are summed on the chip and read once."""
-    charge = np.minimum(random.poisson(electrons).astype(float), model.full_well_e)
+    """ADU of every bin. Bins are summed on the chip and read once.
+
+    Charge beyond the full well blooms, where the detector does; a drain takes it otherwise.
+    """
+    charge = random.poisson(electrons).astype(float)
+    charge = bloom(charge, model.full_well_e)[0] if model.blooms else np.minimum(charge, model.full_well_e)
     height, width = charge.shape[0] // binning, charge.shape[1] // binning
     cut = charge[: height * binning, : width * binning]
     summed = cut.reshape(height, binning, width, binning).sum(axis=(1, 3))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from datetime import timedelta
 
 from host.camera.models import GUIDE
-from host.procedures.autoguide import LEAST_ARCSEC, LONGEST_S, Guided, Guiding
+from host.procedures.autoguide import LEAST_ARCSEC, LONGEST_S, Guided
 from host.sky.catalogue import Star
 from host.sky.observed import Clock
 from host.sky.tracks import GUIDE_ARCSEC_S
@@ -22,10 +22,25 @@ def opening(version: str, clock: Clock, t_s: float) -> str:
     return f"{made} Log enabled at {_when(clock, t_s)}\n"
 
 
+def hysteresis(aggressiveness: float) -> str:
+    """The algorithm of `autoguide` in PHD2's words: a share of the error, above a least one."""
+    least = LEAST_ARCSEC / GUIDE.pixel_arcsec
+    words = f"Hysteresis, Hysteresis = 0.000, Aggression = {aggressiveness:.3f}"
+    return f"{words}, Minimum move = {least:.3f}"
+
+
 def section(
-    name: str, begin_s: float, star: Star, clock: Clock, how: Guiding, frames: Sequence[Guided]
+    name: str,
+    begin_s: float,
+    star: Star,
+    clock: Clock,
+    frames: Sequence[Guided],
+    *,
+    exposure_s: float,
+    algorithm: str,
+    longest_s: float = LONGEST_S,
 ) -> str:
-    """One session of guiding.
+    """One session of guiding. algorithm: of both axes; longest_s: of a pulse.
 
     The camera's x axis runs along right ascension. As in PHD2, positive distances are corrected to the west
     and to the south. There is no picture, so a star has neither mass nor signal-to-noise ratio.
@@ -41,17 +56,13 @@ def section(
             f" Focal length = {GUIDE.focal_length_m * 1e3:.0f} mm",
             f"Camera = {GUIDE.name}, full size = {GUIDE.width} x {GUIDE.height},"
             f" pixel size = {GUIDE.pixel_m * 1e6:.2f} um",
-            f"Exposure = {how.exposure_s * 1e3:.0f} ms",
+            f"Exposure = {exposure_s * 1e3:.0f} ms",
             f"Mount = Schmidt telescope,  connected, guiding enabled, xAngle = 0.0,"
             f" xRate = {GUIDE_ARCSEC_S * west / px:.3f}, yAngle = 90.0, yRate = {GUIDE_ARCSEC_S / px:.3f},"
             " parity = +/+",
-            *(
-                f"{axis} guide algorithm = Hysteresis, Hysteresis = 0.000,"
-                f" Aggression = {how.aggressiveness:.3f}, Minimum move = {LEAST_ARCSEC / px:.3f}"
-                for axis in "XY"
-            ),
+            *(f"{axis} guide algorithm = {algorithm}" for axis in "XY"),
             "Backlash comp = disabled, pulse = 0 ms",
-            f"Max RA duration = {LONGEST_S * 1e3:.0f}, Max DEC duration = {LONGEST_S * 1e3:.0f},"
+            f"Max RA duration = {longest_s * 1e3:.0f}, Max DEC duration = {longest_s * 1e3:.0f},"
             " DEC guide mode = Auto",
             f"RA Guide Speed = {GUIDE_ARCSEC_S:.1f} a-s/s, Dec Guide Speed = {GUIDE_ARCSEC_S:.1f} a-s/s",
             f"Dec = {math.degrees(star.declination_rad):.1f} deg",

@@ -21,7 +21,7 @@ class RotatingFile(LineFile):
         self._bytes = 0
         self._header = ""
         if path.exists() and path.stat().st_size:
-            _put_aside(path, kept)
+            put_aside(path, kept)
         super().__init__(path, _BUFFER_BYTES)
 
     def write(self, text: str) -> None:
@@ -31,7 +31,7 @@ class RotatingFile(LineFile):
         size = len(text.encode())
         if self._bytes and self._bytes + size > self._full_bytes:
             self.close()
-            _put_aside(self.path, self._kept)
+            put_aside(self.path, self._kept)
             self.reopen()
             self._bytes = len(self._header.encode())
             super().write(self._header)
@@ -44,7 +44,8 @@ def rotating(path: Path) -> LineFile:
     return RotatingFile(path)
 
 
-def _put_aside(path: Path, kept: int) -> None:
+def put_aside(path: Path, kept: int) -> None:
+    """Give a file the number 1, and those that have one the next; the last of `kept` is gone."""
     names = [path.with_name(f"{path.name}.{number}") for number in range(1, kept + 1)]
     for younger, older in zip(reversed([path, *names][:-1]), reversed(names), strict=True):
         if younger.exists():

@@ -1,5 +1,6 @@
 """A guider's pulses: the axis runs at the guide rate for the time, beside what it tracks."""
 
+from collections.abc import Callable
 from typing import Final
 
 from bus.protocol import Opcode
@@ -33,6 +34,8 @@ class Guider:
 
     def __init__(self, drive: Drive, side: Side) -> None:
         self._drive, self._side = drive, side
+        self.told: Callable[[Pulse], None] | None = None
+        """Hears of every pulse that is taken, begun when it came."""
         self._ends_s = [-1.0, -1.0]
         self._jobs: list[Job[None] | None] = [None, None]
 
@@ -52,6 +55,8 @@ class Guider:
         pulse = Pulse(axis, arcsec_s, begin_s, seconds)
         track.guide(pulse)
         self._ends_s[axis] = pulse.end_s
+        if self.told is not None:
+            self.told(pulse._replace(begin_s=self._now_s))
         job = self._jobs[axis]
         if job is None or not job.running:
             self._jobs[axis] = self._side.start(Job("guide", self._guide(axis, track), Activity.TRACKING))

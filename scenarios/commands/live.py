@@ -16,7 +16,7 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 @click.argument("scenario", type=PATH, required=False)
 @doors(*ON_NETWORK, *ON_HOST)
 @runs
-@click.option("--logs", type=PATH, help="Folder of the host's four logs.")
+@click.option("--logs", type=PATH, help="Folder of the host's four logs and of its guide log.")
 @click.option("--stars", type=PATH, help="The cameras' stars: a CSV with name, ra, dec, magnitude.")
 @click.option("--frames", type=PATH, metavar="DIR", help="Folder for the cameras' frames as FITS files.")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")

@@ -12,6 +12,7 @@ from host.client import TICK_NS, Client
 from host.console.views import BusView
 from host.link import HidLink
 from host.logs.ascii import AsciiLogs
+from host.logs.clientguiding import ClientGuiding
 from host.logs.journal import Journal
 from host.logs.rotation import rotating
 from host.logs.sensors import readings
@@ -59,6 +60,8 @@ class TelescopePc:
         self.link = HidLink(send)
         client = Client(self.link, self.journal, in_order(devices))
         self.telescope = Telescope(client, self.observatory, self.journal)
+        self.guiding = None if logs is None else ClientGuiding(logs / "guiding.txt", self.telescope)
+        """Of clients that guide by an emulated camera."""
         self.cameras: tuple[Camera, ...] = ()
         """Of an emulated sky; a real telescope's cameras have programs of their own."""
         self._log_ns = round(scenario.status_period_s * 1e9)
@@ -77,6 +80,8 @@ class TelescopePc:
         elif not self.telescope.urgent:
             return
         self.telescope.tick(t_ns)
+        if self.guiding is not None:
+            self.guiding.tick()
         if self.files is not None and t_ns >= self._next_log_ns:
             self._next_log_ns = t_ns + self._log_ns
             self.journal.sensors(t_ns, readings(self.telescope.client, self.observatory.mount))
@@ -85,6 +90,8 @@ class TelescopePc:
     def close(self) -> None:
         """Bring the logs to disk; whoever still waits for the telescope is told that it is gone."""
         self.telescope.close()
+        if self.guiding is not None:
+            self.guiding.write()
         if self.files is not None:
             self.files.close()
 

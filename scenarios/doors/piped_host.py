@@ -23,7 +23,7 @@ class PipedHost(Host):
         self._now_ns = 0
         options = settings.options
         pc = TelescopePc(settings.scenario, self._report, settings.devices, options.logs)
-        pc.cameras = cameras(settings.scenario, options)
+        pc.cameras = cameras(settings.scenario, options, pc.guiding)
         self._mirror = BusMirror(settings.boards, settings.kinds, self._send)
         runs = RecordedRuns(options.runs, settings.headers, pc.journal)
         super().__init__(pc, self._mirror, runs, options, lambda text: self._send(Said(text)))

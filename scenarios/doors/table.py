@@ -160,7 +160,7 @@ ON_HOST: tuple[DoorKind[Host], ...] = (
     DoorKind(
         name="alpaca",
         form="[HOST:]PORT",
-        help="ASCOM Alpaca telescope, focuser and cameras, with discovery.",
+        help="ASCOM Alpaca telescope and focuser, of an emulated sky (serve) cameras, too; with discovery.",
         make=_alpaca,
         attach={"": "ASCOM Alpaca at http://{at}/"},
         extra="alpaca",

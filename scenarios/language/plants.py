@@ -27,8 +27,7 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
             extra = [_effect(each) for each in given.get("effects", []) if _on(each, axis)]
             if extra:
                 model = plants.with_effects(model, axis, (*getattr(model.axes, axis).effects, *extra))
-        if given.get("mount"):
-            model = plants.with_mount_errors(model)
+        model = plants.with_mount_errors(model, given.get("mount", True))
         for path, value in given.get("overrides", {}).items():
             model = plants.with_value(model, path, _number(path, value), "scenario override")
         if given.get("overrides"):

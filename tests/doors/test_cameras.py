@@ -1,5 +1,6 @@
 """Cameras of a served network: they look at the truth and change nothing; their options."""
 
+import math
 import os
 from pathlib import Path
 from time import monotonic, sleep
@@ -11,8 +12,10 @@ from bus.can import Frame
 from host.camera.camera import Camera, Order, State
 from host.camera.light import Window
 from host.camera.stars import from_file
+from host.sky.observed import observe
 from scenarios.doors.making import check
 from scenarios.doors.options import DoorOptions, OptionError
+from tests.host.inprocess import HostInProcess
 from tests.host.telescope.conftest import Rig
 
 ALPACA = {"alpaca": ("0",)}
@@ -59,6 +62,30 @@ def test_an_open_shutter_changes_nothing_on_bus_or_plant() -> None:
     assert none == 0 and looks > 1000
     assert np.ptp([ra for ra, _ in truth]) > 1e-3  # it has moved
     assert again == frames and true_again == truth
+
+
+def test_cameras_see_what_another_host_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As `schmidt host` beside `schmidt serve`: the telescope is its own, the cameras are here."""
+    rig = Rig()
+    rig.host.open_cameras(DoorOptions(asked=ALPACA))
+    here, other = rig.host.poll, HostInProcess(rig.served)
+    monkeypatch.setattr(rig.host, "poll", lambda now_ns: (here(now_ns), other.poll(now_ns)))
+    rig.telescope = other.pc.telescope
+    rig.advance(2.0)
+    rig.run(lambda t: t.drive.power_on())
+    star = rig.up(hour_angle_h=-0.5)
+    rig.run(lambda t: t.drive.goto(star))
+    camera = rig.pc.cameras[1]
+    camera.start(order(camera, 0.5))
+    rig.advance(1.0)
+    read_out(camera)
+    rig.host.close()
+    other.close()
+    assert other.pc.cameras == () and camera.frame is not None
+    look = camera.frame.looks[-1]
+    place = observe(star, rig.pc.observatory.site, rig.pc.clock, look.t_ns * 1e-9)
+    off = look.hour_angle_rad - place.hour_angle_rad, look.declination_rad - place.declination_rad
+    assert math.degrees(math.hypot(*off)) < 0.2  # a mount with errors, and far from where it was parked
 
 
 def test_a_catalogue_of_ones_own_is_the_sky(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ class HostInProcess:
         self._scenario = served.scenario
 
     def open_cameras(self, options: DoorOptions) -> None:
-        self.pc.cameras = cameras(self._scenario, options)
+        self.pc.cameras = cameras(self._scenario, options, self.pc.guiding)
 
     def poll(self, now_ns: int) -> None:
         self.looks.wanted = any(camera.looking for camera in self.pc.cameras)

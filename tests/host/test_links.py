@@ -119,6 +119,7 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
     missing = f"AXIS_RA={tmp_path / 'missing'}"
     options = HostOptions(usb=f"unix:{served}", serial=(missing,), logs=tmp_path / "logs")
     program = CabledHost(options, Console(file=text))
+    assert program.pc.cameras == ()  # there is no sky in this process
     for task in program.tasks:
         task.start()
     telescope = program.pc.telescope

@@ -71,6 +71,18 @@ def test_a_tilted_declination_axis_never_reaches_the_pole() -> None:
     assert np.degrees(np.max(d)) == pytest.approx(90 - LARGE_DEG, abs=1e-6)
 
 
+def test_an_encoder_off_its_centre_reads_most_a_quarter_turn_away() -> None:
+    """Reading less angle of the shaft: a sine of its turn, nothing at 0, all of it at 90 degrees."""
+    errors = only(hour_angle_eccentricity=30, declination_eccentricity=-20)
+    places = np.radians([0.0, 30.0, 90.0])
+    h, d = sky(places, places, LATITUDE, errors)
+    assert np.degrees(places - h)[:2] * 3600 == pytest.approx([0, 15], abs=0.01)
+    assert np.degrees(places - d)[:2] * 3600 == pytest.approx([0, -10], abs=0.01)
+    h, d = sky(-math.pi / 2, math.radians(-45), LATITUDE, errors)
+    assert math.degrees(-math.pi / 2 - float(h)) * 3600 == pytest.approx(-30)
+    assert math.degrees(math.radians(-45) - float(d)) * 3600 == pytest.approx(20 * math.sqrt(0.5), abs=0.01)
+
+
 def test_a_drooping_tube_loses_altitude_and_no_azimuth() -> None:
     h, d = sky(HOUR_ANGLES, DECLINATIONS, LATITUDE, only(tube_flexure=-300))
     before, after = horizontal(HOUR_ANGLES, DECLINATIONS), horizontal(h, d)

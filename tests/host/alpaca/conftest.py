@@ -17,6 +17,7 @@ DISCOVERY_PORT = 32227
 class AlpacaLive(Live):
     def __init__(self, logs: Path, network: str = "lab", speed: float = 30.0, cameras: bool = False) -> None:
         super().__init__(logs, speed, network=network, cameras=cameras)
+        self.logs = logs
         self.alpaca = Alpaca(self.telescope, self.host.pc.cameras)
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))

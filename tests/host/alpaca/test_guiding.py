@@ -1,5 +1,6 @@
 """A guider of a few lines closes the loop through Alpaca: frames of the guide camera in, PulseGuide out."""
 
+import csv
 import math
 from collections.abc import Iterator
 
@@ -8,6 +9,7 @@ import pytest
 from alpaca.camera import Camera
 from alpaca.telescope import GuideDirections, Telescope
 
+from calibration.inputs.guidelog import read_guide_log
 from host.camera.models import GUIDE
 from host.sky.apparent import apparent_of_observed
 from host.sky.catalogue import STARS
@@ -18,7 +20,7 @@ from tests.host.alpaca.test_camera import exposed
 
 SIZE_PX = 101
 SHIFT_ARCSEC = (12.0, -9.0)
-"""Where the star shall stand beside the middle: to the right (west) and up (north)."""
+"""Where the star shall stand beside where it is: to the right (west) and up (north)."""
 GAIN = 0.8
 """Share of an error that a pulse corrects: PHD2's default for declination is near it."""
 
@@ -55,7 +57,9 @@ def test_pulses_bring_the_star_where_it_shall_stand(skies: AlpacaLive) -> None:
         math.degrees(place.right_ascension_rad) / 15, math.degrees(place.declination_rad)
     )
     until(lambda: not telescope.Slewing)
-    camera.StartX, camera.StartY = (GUIDE.width - SIZE_PX) // 2, (GUIDE.height - SIZE_PX) // 2
+    field = exposed(camera, 1.0)  # a mount with errors: the star is somewhere beside the middle
+    row, column = np.unravel_index(np.argmax(field), field.shape)
+    camera.StartX, camera.StartY = int(column) - SIZE_PX // 2, int(row) - SIZE_PX // 2
     camera.NumX = camera.NumY = SIZE_PX
     at = star(camera)
     wanted = at + SHIFT_ARCSEC
@@ -67,13 +71,41 @@ def test_pulses_bring_the_star_where_it_shall_stand(skies: AlpacaLive) -> None:
         (GuideDirections.guideWest, GuideDirections.guideEast),
         (GuideDirections.guideNorth, GuideDirections.guideSouth),
     )
-    errors = []
+    errors, seen, sent = [], [], []
     for _ in range(8):
         off = star(camera) - wanted
+        seen.append(off)
         errors.append(np.abs(off).max())
         for error, rate, (ahead, back) in zip(off, rates, ways, strict=True):
-            telescope.PulseGuide(ahead if error > 0 else back, round(GAIN * abs(error) / rate * 1000))
+            milliseconds = round(GAIN * abs(error) / rate * 1000)
+            telescope.PulseGuide(ahead if error > 0 else back, milliseconds)
+            sent.append((milliseconds if error > 0 else -milliseconds) / 1000)
         until(lambda: not telescope.IsPulseGuiding)
     print("largest error of each frame, arcsec:", " ".join(f"{each:.1f}" for each in errors))
     assert errors[0] > 8.0
     assert np.mean(errors[4:]) < 1.5  # seeing moves an image of 4 s by some tenths of an arcsec
+    log = skies.logs / "guiding.txt"
+    assert not log.exists()
+    telescope.Tracking = False  # the star is left: its session is over
+    until(log.exists)
+    (run,) = read_guide_log(log)
+    table = list(csv.DictReader(_table(log.read_text())))
+    told = [
+        int(row[f"{axis}Duration"]) / 1000 * (1 if row[f"{axis}Direction"] in "WN" else -1)
+        for row in table
+        for axis in ("RA", "DEC")
+    ]
+    assert told == pytest.approx(sent, abs=6e-4)  # what the client sent is what is logged
+    scale = GUIDE.pixel_arcsec
+    true = scale * np.array([[float(row["RARawDistance"]), -float(row["DECRawDistance"])] for row in table])
+    # the client's own measure of the pictures, seeing included, against the true place that is logged
+    assert true - true[0] == pytest.approx(np.array(seen) - seen[0], abs=1.5)
+    assert len(run.columns["t"]) == len(errors) and np.all(np.diff(run.columns["t"]) > 4.0)
+    # the drive alone, pulses taken out, is still but for the telescope's drift
+    assert np.ptp(run.columns["ra"]) < 3.0 and np.ptp(run.columns["dec"]) < 3.0
+
+
+def _table(text: str) -> list[str]:
+    lines = text.splitlines()
+    begin = next(k for k, line in enumerate(lines) if line.startswith("Frame,"))
+    return lines[begin : next(k for k, line in enumerate(lines) if line.startswith("Guiding Ends"))]

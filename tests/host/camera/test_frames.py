@@ -70,7 +70,7 @@ def test_who_does_not_follow_draws_a_trail_of_the_right_length() -> None:
 
 def test_out_of_focus_a_star_is_a_disc_of_the_cone() -> None:
     away_m = 40 * MAIN.pixel_m  # at f/1 the cone is as wide as it is long
-    _, _, across, down = middle(frame(1.0, focus_m=away_m, model=MAIN))
+    _, _, across, down = middle(frame(0.3, focus_m=away_m, model=MAIN))  # no well is full
     assert (across, down) == pytest.approx((10.0, 10.0), rel=0.1)  # an even disc: a quarter of its diameter
 
 
@@ -95,7 +95,7 @@ def test_a_sky_without_a_star_there_is_dark() -> None:
     far = stars([0.0], [-1.5], [5.0])
     window = Window(left=0, top=0, width=40, height=30)
     image = light(GUIDE, path(0.5), window, far, NAINITAL, CLOCK, Wander(GUIDE.aperture_m, 1, GUIDE.name))
-    assert image.shape == (30, 40) and np.ptp(image) == 0
+    assert image.shape == (30, 40) and np.ptp(image) < 1e-5 * image.mean()
 
 
 def test_the_same_seed_is_the_same_frame() -> None:

@@ -248,7 +248,8 @@ def test_a_step_or_fault_of_a_board_that_is_not_there_is_one_line(tmp_path: Path
 def test_L3_the_host_runs_the_five_boards_by_their_serial_lines(tmp_path: Path) -> None:
     file = tmp_path / "x.yaml"
     file.write_text(
-        "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: serial}\nsteps:\n"
+        "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: serial}\n"
+        "plant: {file: low-preload, mount: false}\nsteps:\n"
         "  - power_on: {}\n  - name: go\n    goto: {target: {ra: '04:31:00.0', dec: '+29:40:00'}}\n"
         "  - name: follow\n    track: {for: 8 s}\n"
         "expect: [{pointing_error: {during: follow, settle: 3 s, source: truth, at_most: 10 arcsec}},"

@@ -14,7 +14,7 @@ from host.procedures.pointing_run import directions
 from host.sky import pointmodel
 from host.sky.catalogue import star
 from host.sky.observed import observe_many
-from plant.model import MountErrors
+from plant.model import MountErrors, dumps, load
 from plant.mount import sky
 from scenarios.lab.snapshot.file import read
 from scenarios.lab.snapshot.run import Order
@@ -34,7 +34,6 @@ name: pointing
 start_utc: 2026-02-10T14:00:00Z
 plant:
   file: low-preload-motor-units
-  mount: true
   effects: [{name: encoder_eccentricity, stage: axis}]
 """
 RUN = """\
@@ -144,15 +143,38 @@ def test_directions_are_within_reach_all_over_the_sky_and_other_ones_every_time(
     assert not set(places) & set(directions(count, scenario, 2.0))
 
 
-def test_errors_of_the_mount_are_off_unless_asked_for(tmp_path: Path) -> None:
-    assert plant_model({"file": "low-preload"}, tmp_path).mount is None
-    model = plant_model(
-        {"file": "low-preload", "mount": True, "overrides": {"mount.collimation": 7}}, tmp_path
-    )
+def test_a_mount_has_errors_unless_the_scenario_takes_them_away(tmp_path: Path) -> None:
+    assert plant_model({"file": "low-preload"}, tmp_path).mount == MountErrors()
+    model = plant_model({"file": "low-preload", "overrides": {"mount.collimation": 7}}, tmp_path)
     assert model.mount is not None
     assert model.mount.collimation.value == 7
+    without: dict[str, Any] = {"file": "low-preload", "mount": False}
+    assert plant_model(without, tmp_path).mount is None
     with pytest.raises(ScenarioError, match=r"no number at 'mount\.collimation'"):
-        plant_model({"file": "low-preload", "overrides": {"mount.collimation": 7}}, tmp_path)
+        plant_model(without | {"overrides": {"mount.collimation": 7}}, tmp_path)
+
+
+def test_a_mount_that_the_plant_file_declares_stays_and_can_be_taken_away(tmp_path: Path) -> None:
+    file = tmp_path / "own.yaml"
+    errors = "mount:\n  collimation: {value: 5, unit: arcsec, source: measured}\n"
+    file.write_text(dumps(load("low_preload")) + errors)
+    own = plant_model({"file": str(file)}, tmp_path).mount
+    assert own is not None and own.collimation.value == 5
+    assert plant_model({"file": str(file), "mount": False}, tmp_path).mount is None
+
+
+def test_errors_of_the_mount_move_no_axis(tmp_path: Path) -> None:
+    """The trace, axes and bus, is the same to the last bit; only the sky is another."""
+    text = HEAD + "steps:\n  - power_on: {}\n  - goto: {target: Pollux}\n  - name: f\n    track: {for: 5 s}\n"
+    text += "expect: [{pointing_error: {during: f, settle: 3 s, source: truth, statistic: mean,"
+    text += " at_least: 0 arcsec}}]\n"
+    digests, errors = [], []
+    for number, given in enumerate((text, text.replace("plant:\n", "plant:\n  mount: false\n"))):
+        result = go(made(given, tmp_path), tmp_path / str(number), runner.Way(report=False))
+        digests.append(result.summary["trace_digest"])
+        errors.append(result.verdicts[-1].value)
+    assert digests[0] == digests[1]
+    assert errors[0] > 60 > 10 > errors[1]
 
 
 def test_a_model_file_of_a_scenario_is_checked(tmp_path: Path) -> None:
