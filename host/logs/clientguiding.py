@@ -104,7 +104,9 @@ class ClientGuiding:
             if not self._begun and self._file.exists():
                 put_aside(self._file, KEPT)
             self._begun = True
-            write_file(self._file, "\n".join([opening(version("schmidt"), about.clock, 0.0), *sections]))
+            fresh = self._file.with_suffix(".new")  # whoever reads the log finds a whole one
+            write_file(fresh, "\n".join([opening(version("schmidt"), about.clock, 0.0), *sections]))
+            fresh.replace(self._file)
         except (LogError, OSError) as error:
             self._telescope.journal.error(self._telescope.client.now_ns, "HOST", f"guide log: {error}")
 
