@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from calibration.finding import Parameter
+from calibration.finding import UNKNOWN, Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import Beside, Finding, Name
+from calibration.names.name import Beside, Finding, Name, Scene
 from calibration.names.onsets import steps
 
 # s: longer than any log. ASSUMPTION
@@ -23,6 +23,14 @@ def to_plant(f: Finding, facts: Facts) -> Made:
         made.numbers = {"friction.coulomb": torque, "friction.stiction": torque}
         made.remarks.append("brake_drag: it lets go, so Tc and Ts of the plant are those without it")
     return made
+
+
+def one_way(f: Finding, s: Scene) -> Finding:
+    """Where all goes one way, a sensor's offset that changes looks the same."""
+    if f.name != NAME.name or s.both or s.pair is not None:
+        return f
+    alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
+    return replace(f, name=UNKNOWN, equivalent=alike).noted("so does an offset of the column that changes")
 
 
 NAME = Name(

@@ -272,6 +272,9 @@ NAME = Name(
         "*_feedforward": "of that law",
         "*speed_limit": "below which that law has other gains",
         # of a finding that was taken for a name first
+        "torque": "of a step in the response's column",
+        "start*": "of that step, on the log's clock",
+        "duration*": "of that step",
         "*gap": "along the position column",
         "*_force": "of the response's column",
         "*_travel": "along the position column",
