@@ -11,7 +11,7 @@ from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
-from calibration.names.bearing_pass import of_no_stage
+from calibration.names.bearing_pass import of_a_guess, of_no_stage
 from calibration.names.brake_drag import one_way
 from calibration.names.friction_warmup import OF_COULOMB
 from calibration.names.gravity_imbalance import once_a_turn
@@ -87,7 +87,7 @@ def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> l
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
     """Findings of a balance of forces with the names that the log carries."""
     named = findings
-    for told in (of_no_stage, once_a_turn, one_way, _wide_loop):
+    for told in (of_no_stage, of_a_guess, once_a_turn, one_way, _wide_loop):
         named = [told(f, scene) for f in named]
     named = [_turned_gap(f) for f in named]
     return _one_loop(named) if scene.force else named

@@ -56,6 +56,10 @@ class Column:
     integrated: bool = False  # over time, after all that
 
 
+#: kind of a stage of which nobody said whether it is a gear or a motor
+GUESSED = "unknown"
+
+
 @dataclass(frozen=True)
 class Stage:
     """A rotating part: its period in position units; `period_s` for a drive at constant rate."""
@@ -73,9 +77,14 @@ class Stage:
         return tuple(h for h in self.listed or range(1, self.harmonics + 1) if h <= self.harmonics)
 
     @property
+    def declared(self) -> str | None:
+        """Name of its lines, where the rig file knows it."""
+        return None if self.kind == GUESSED else self.kind
+
+    @property
     def of_motor(self) -> bool:
         """Whether it is a motor: its shaft, or what its torque does over its angle."""
-        effect = REGISTRY.get(self.kind or "")
+        effect = REGISTRY.get(self.declared or "")
         return self.kind == "motor" or (effect is not None and effect.domain == "motor_angle")
 
 

@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
+from calibration.inputs.declaration import GUESSED
 from calibration.inputs.loose import Loose, Said, read_loose, said
 from calibration.inputs.repair import counter_length
 from calibration.inputs.run import quantum
@@ -243,7 +244,7 @@ def _unit(d: _Draft, p: _Role) -> None:
         d.fields["turn"] = length, "the counter's length is a turn"
     if turn and np.ptp(p.x) > TURNS * turn:
         d.fields["stages"] = (
-            [{"name": "shaft", "period": float(turn), "harmonics": 12}],
+            [{"name": "shaft", "period": float(turn), "harmonics": 12, "kind": GUESSED}],
             "one turn of the position; give the gear table",
         )
     else:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import ceil, floor, pi
 
-from calibration.inputs.declaration import Stage
+from calibration.inputs.declaration import GUESSED, Stage
 from calibration.inputs.train import MESH, SHAFT
 from calibration.names.freelines import free_lines
 from calibration.names.inplant import Facts, Made, value
@@ -22,7 +22,7 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     stage, harmonic = _harmonic_of(f, s)
     if stage is None and has_train(s):
         return f
-    name = (stage.kind if stage else None) or SHAFT
+    name = (stage.declared if stage else None) or SHAFT
     alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, MESH, COGGING.name, NAME.name]) if x != name]
     if stage is None:
         gears = replace(f, name=name, stage=None, equivalent=alike)
@@ -30,6 +30,13 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
     shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)
     return shaft.noted(f"the order's interval holds {harmonic} times that of {stage.name}")
+
+
+def of_a_guess(f: Finding, s: Scene) -> Finding:
+    """A line of a stage of which nobody said whether it is a gear or a motor."""
+    guessed = any(g.name == f.stage and g.kind == GUESSED for g in s.view.rig.stages)
+    alike = dict.fromkeys([*f.equivalent, MESH, COGGING.name])
+    return replace(f, equivalent=list(alike)) if guessed and f.name == SHAFT else f
 
 
 def _harmonic_of(f: Finding, s: Scene) -> tuple[Stage | None, int]:

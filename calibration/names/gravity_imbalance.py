@@ -34,14 +34,16 @@ def gravity(s: Scene) -> Array:
 
 def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
     """Names of forces that stages of this period (position units) have; a kind of shaft is no effect."""
-    kinds = (g.kind or "" for g in stages if g.period and abs(g.period / turn - 1) < SAME)
+    kinds = (g.declared or "" for g in stages if g.period and abs(g.period / turn - 1) < SAME)
     shown = (REGISTRY.get(kind, REGISTRY[SHAFT]) for kind in kinds)
     return tuple(dict.fromkeys(effect.name for effect in shown if effect.channel == "T"))
 
 
 def once_a_turn(f: Finding, s: Scene) -> Finding:
     """A force once per turn: a weight first; of a declared motor that turns on and on, its own force."""
-    if f.channel != "T" or s.pair is not None or f.harmonic != 1 or abs((f.order or 0.0) - 1) > SAME:
+    if not s.force or s.view.response.is_speed or s.pair is not None:
+        return f
+    if f.harmonic != 1 or abs((f.order or 0.0) - 1) > SAME:
         return f
     turning = s.view.rig.stages if s.span > SWUNG * s.turn else ()
     motors = [g for g in turning if g.of_motor and forces_once_a_turn([g], s.turn)]

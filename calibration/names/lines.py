@@ -69,7 +69,7 @@ def stage_lines(s: Scene, kind: str, default: bool = False, of: str = "") -> lis
     `default`: stages without a kind, too; `of`: stages of that kind, whose own name the log cannot show."""
     out = []
     for stage in s.view.rig.stages:
-        if stage.period is None or (stage.kind or (kind if default else "")) != (of or kind):
+        if stage.period is None or (stage.declared or (kind if default else "")) != (of or kind):
             continue
         of_motor = s.pair is not None and stage.name == s.pair.train.motor
         blank = line(s, kind, 0.0, twins=(of,) if of else ())

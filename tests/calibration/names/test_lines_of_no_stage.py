@@ -68,3 +68,27 @@ def test_once_per_turn_of_a_motor_its_own_force_comes_first(tmp_path: Path) -> N
     first = told(tmp_path, MOTOR, 1.0)
     assert (first["name"], first["stage"], first["harmonic"]) == ("motor_cogging", "motor", 1)
     assert first["equivalent"] == ["gravity_imbalance"]
+
+
+def test_a_stage_that_was_guessed_is_a_gear_or_a_motor(tmp_path: Path) -> None:
+    first = told(tmp_path, "  - {name: shaft, period: 360, harmonics: 12, kind: unknown}", 6.0)
+    assert (first["name"], first["stage"], first["harmonic"]) == ("gear_eccentricity", "shaft", 6)
+    assert set(first["equivalent"]) == {"gear_mesh", "motor_cogging"}
+
+
+def test_a_speed_as_the_response_has_no_weight(tmp_path: Path) -> None:
+    t = np.arange(0.0, SECONDS, 1 / RATE_HZ)
+    x = 50.0 * t
+    v = 50.0 + 0.5 * np.cos(np.radians(x)) + 0.05 * np.random.default_rng(8).standard_normal(len(t))
+    rig = """rig: motor at one speed
+columns:
+  time: {column: t, unit: s}
+  position: {column: x, unit: deg}
+  velocity: {column: u, unit: deg/s}
+response: {channel: velocity, unit: deg/s}
+estimate: [offset]
+stages:
+  - {name: shaft, period: 360, harmonics: 4}
+"""
+    names = {n for e in answer(tmp_path, rig, (t, x, v))["effects"] for n in (e["name"], *e["equivalent"])}
+    assert "gear_eccentricity" in names and "gravity_imbalance" not in names
