@@ -48,7 +48,9 @@ def fit_stars(
         raise TooFewStars(f"a pointing model needs {FEWEST_STARS} stars, there are {count}")
     if np.linalg.matrix_rank(stars.columns(GEOMETRY), tol=_APART) < len(GEOMETRY):
         raise TooFewStars("the stars stand too close together; take some all over the sky")
-    names = _chosen(stars, declared) if names is None else names
+    if names is None:
+        found = (_grown(stars, declared), _pruned(stars, declared))
+        names = min(found, key=lambda each: held_out(stars.columns(each), stars.left(each)))
     values = stars.solve(names)
     after = stars.residuals(names, values)
     design = stars.columns(names)
@@ -64,11 +66,43 @@ def fit_stars(
     )
 
 
-def _chosen(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
+def _most(stars: Stars) -> int:
+    """Terms that so many stars can hold."""
+    return len(GEOMETRY) + (len(stars.h) - FEWEST_STARS) // STARS_PER_TERM
+
+
+def _pruned(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
+    """All terms that this sky tells apart, less one by one what is not significant beside the others.
+
+    Two errors that hide each other are found this way only. The declared terms where stars are too few.
+    """
+    names = declared
+    for name in (each for each in TERMS if each not in declared):
+        basis, _ = np.linalg.qr(stars.columns(names))
+        names += (name,) if beside(stars.columns((name,))[:, 0], basis) is not None else ()
+    if len(names) > _most(stars):
+        return declared
+    while more := [name for name in names if name not in declared]:
+        scores = {name: _beside_others(stars, names, name) for name in more}
+        least = min(scores, key=lambda each: scores[each])
+        if scores[least] > SIGNIFICANT:
+            break
+        names = tuple(name for name in names if name != least)
+    return names
+
+
+def _beside_others(stars: Stars, names: tuple[str, ...], name: str) -> float:
+    """Significance of one of the terms beside the others."""
+    others = tuple(each for each in names if each != name)
+    basis, _ = np.linalg.qr(stars.columns(others))
+    return significance(stars.columns((name,))[:, 0], basis, stars.left(others))
+
+
+def _grown(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
     """The declared terms, then one by one what is significant and helps stars that are held out."""
     names = declared
     best = held_out(stars.columns(names), stars.left(names))
-    while len(stars.h) >= FEWEST_STARS + STARS_PER_TERM * (len(names) + 1 - len(GEOMETRY)):
+    while len(names) < _most(stars):
         found = _candidate(stars, names)
         if found is None:
             break

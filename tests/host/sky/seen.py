@@ -18,7 +18,8 @@ MOUNT = limits_mount(math.radians(100), math.radians(-45), math.radians(92), LAT
 NAMES = {
     "hour_angle_index": "IH", "declination_index": "ID", "polar_azimuth": "MA", "polar_altitude": "ME",
     "collimation": "CH", "non_perpendicularity": "NP", "tube_flexure": "TF", "fork_flexure": "FO",
-    "axis_flexure": "DAF", "refraction": "TX",
+    "axis_flexure": "DAF", "refraction": "TX", "hour_angle_eccentricity": "HCES",
+    "declination_eccentricity": "DCES",
 }  # fmt: skip
 """Numbers of a plant file to Wallace's names."""
 
