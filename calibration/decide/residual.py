@@ -16,6 +16,7 @@ from calibration.decide.rules import clear, displaced, leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
+from calibration.names import NAMES
 from calibration.names.scene import Scene
 from calibration.names.unknown import domains, smooth_functions
 from calibration.statistics.tails import rms
@@ -26,6 +27,8 @@ from calibration.statistics.whitening import APART, coherence
 MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: sound drives stay below 1.4 (seeds 1036 and 1038)
 TELLING = 1.6
+# share of the mean square of what is left, over the turn of a stage: most of it. ASSUMPTION
+OVER_ITS_TURN = 0.5
 # smooth functions at most: of a force one; of two sensors one over the place, one of a flank of teeth
 MOST = {True: 1, False: 2}
 
@@ -156,6 +159,27 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     note = f"{', '.join(names)} would take {taken} only: {size}"
     most = replace(_unknown(first.domain, channel, left, note), equivalent=names)
     return [most, *[f for f in findings if f.name == UNKNOWN]]
+
+
+def of_one_place(findings: list[Finding], left: Left | None) -> list[Finding]:
+    """Guesses at a function of the place, where the place has more of it: together they are that function.
+
+    A smooth function beside them says so, or a residual that lives over the turn of their own stage.
+    """
+    smooth = any(f.name == UNKNOWN and f.domain == "axis_angle" and f.stage is None for f in findings)
+    turn = left.where if left is not None and left.share > OVER_ITS_TURN else ""
+    out: list[Finding] = []
+    for f in findings:
+        own = f.stage is not None and turn.startswith(f"over the turn of {f.stage}")
+        if f.name not in NAMES or not NAMES[f.name].a_guess or not (smooth or own):
+            out.append(f)
+            continue
+        kept = {k: p for k, p in f.parameters.items() if NAMES[UNKNOWN].knows(k)}
+        alike = [f.name, *(x for x in f.equivalent if x != UNKNOWN)]
+        one = replace(f, name=UNKNOWN, harmonic=None, order=None, equivalent=alike, parameters=kept)
+        if not any(x.name == UNKNOWN and x.stage == f.stage and x.equivalent == alike for x in out):
+            out.append(one.noted("the place has more of it than this form"))
+    return out
 
 
 def _unknown(domain: str, channel: str, left: Left, note: str) -> Finding:

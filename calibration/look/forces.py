@@ -12,7 +12,7 @@ from calibration.balances.slowoffset import offset_order
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
 from calibration.decide.parameters import findings_of
-from calibration.decide.residual import beyond_names, left_over, quick_lines, settle
+from calibration.decide.residual import beyond_names, left_over, of_one_place, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.twins import told_by_the_clock, weight_first
 from calibration.decide.verdict import ROWS
@@ -113,7 +113,8 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str], tell: T
     s, together, beyond = beyond_names(s, scene)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
-    findings = settle(findings, left_over(s, scene, floor), problem.channel) + quick_lines(view, problem)
+    left = left_over(s, scene, floor)
+    findings = settle(of_one_place(findings, left), left, problem.channel) + quick_lines(view, problem)
     tried = controls(s, order_beside(s, scene))
     needs = [] if floor and together.held.after <= floor else close(together)
     return Balance(

@@ -65,5 +65,6 @@ NAME = Name(
     experiment="a full turn both ways: a cable pulls back more the further it is wound, a weight comes "
     "round again",
     lacks=lacks,
+    a_guess=True,
     beside=Beside(consequences={"T": ("preload_change", "friction_warmup")}, single=True),
 )

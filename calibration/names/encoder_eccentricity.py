@@ -45,6 +45,7 @@ NAME = Name(
     name="encoder_eccentricity",
     channels=(SENSORS, RATES),
     columns=columns,
+    a_guess=True,
     experiment="turn one sensor's disc against its shaft: the error turns with it, a gear's does not",
     to_plant=to_plant,
     beside=Beside(consequences={"K": ("roller_ratio",)}, single=True),

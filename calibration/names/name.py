@@ -99,10 +99,11 @@ class Name:
     that are its trace.
     searched: its lines are looked for in what is left by what was found, and again under that. scaled: they
     are no plain sine of an order of their own over the position. waves_of_friction: they are friction's over
-    the place. random: its course is another one in every run. worth: share of the final held-out mean square
-    that leaving it out must add. observed: parameters that no plant file has, and what each is: a property of
-    the log, of one of its columns, or of a drive that a rig file describes; `*` for any end. loop: parameters
-    that are the width of a loop after every reversal. changed: the declared numbers that it is a change of,
+    the place. a_guess: of a function of the place it is the simplest form. random: its course is another one
+    in every run. worth: share of the final held-out mean square that leaving it out must add. observed:
+    parameters that no plant file has, and what each is: a property of the log, of one of its columns, or of a
+    drive that a rig file describes; `*` for any end. loop: parameters that are the width of a loop after
+    every reversal. changed: the declared numbers that it is a change of,
     where it is no more. beside: how it stands to others.
     """
 
@@ -122,6 +123,7 @@ class Name:
     searched: bool = False
     scaled: bool = False
     waves_of_friction: bool = False
+    a_guess: bool = False
     random: bool = False
     worth: float = WORTH
     observed: Mapping[str, str] = field(default_factory=dict)

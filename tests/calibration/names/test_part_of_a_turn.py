@@ -37,9 +37,11 @@ def swept(reach_turns: float) -> tuple[np.ndarray, np.ndarray]:
     return t, 180.0 * reach_turns * sway
 
 
-@pytest.mark.parametrize("width_deg", [12.0, 25.0])
-def test_a_bump_between_two_sensors_is_no_runout(tmp_path: Path, width_deg: float) -> None:
-    t, x = swept(0.6)
+@pytest.mark.parametrize(("width_deg", "reach_turns"), [(12.0, 0.6), (25.0, 0.6), (12.0, 1.3)])
+def test_a_bump_between_two_sensors_is_no_runout(
+    tmp_path: Path, width_deg: float, reach_turns: float
+) -> None:
+    t, x = swept(reach_turns)
     bump = 0.5 * np.exp(-0.5 * ((x - 20.0) / width_deg) ** 2)
     noise = 0.01 * np.random.default_rng(3).standard_normal(len(t))
     first = answer(tmp_path, SENSORS, (t, x, x + bump + noise))["effects"][0]

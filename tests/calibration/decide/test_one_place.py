@@ -1,0 +1,47 @@
+"""A guess at a function of the place keeps its name only where the place has no more of it."""
+
+import pytest
+
+from calibration.decide.residual import Left, of_one_place
+from calibration.finding import UNKNOWN, Finding, Parameter
+
+SIZE = {"amplitude": Parameter(2.0, "deg")}
+RUNOUT = [
+    Finding("encoder_eccentricity", "K", "axis_angle", stage="output", harmonic=h, parameters=SIZE)
+    for h in (1, 2)
+]
+CABLE = Finding("cable_wrap", "T", "axis_angle", parameters={"stiffness": Parameter(1.0, "N m/deg")})
+WEIGHT = Finding("gravity_imbalance", "T", "axis_angle", stage="axis", harmonic=1, parameters=SIZE)
+SMOOTH = Finding(UNKNOWN, "T", "axis_angle")
+
+
+def told(findings: list[Finding], left: Left | None = None) -> list[tuple[str, tuple[str, ...]]]:
+    return [(f.name, tuple(f.equivalent)) for f in of_one_place(findings, left)]
+
+
+def test_alone_it_keeps_its_name() -> None:
+    assert told(RUNOUT) == [("encoder_eccentricity", ())] * 2
+    assert told([CABLE]) == [("cable_wrap", ())]
+
+
+def test_beside_a_function_of_the_place_it_is_a_class_of_that() -> None:
+    assert told([CABLE, SMOOTH]) == [(UNKNOWN, ("cable_wrap",)), (UNKNOWN, ())]
+    assert told([*RUNOUT, SMOOTH]) == [(UNKNOWN, ("encoder_eccentricity",)), (UNKNOWN, ())]
+
+
+def test_a_weight_is_no_guess() -> None:
+    assert told([WEIGHT, SMOOTH]) == [("gravity_imbalance", ()), (UNKNOWN, ())]
+
+
+@pytest.mark.parametrize(
+    ("where", "share", "named"),
+    [
+        ("over the turn of output", 0.7, False),
+        ("over the turn of output", 0.3, True),
+        ("over the turn of motor", 0.7, True),
+        ("over time", 0.7, True),
+    ],
+)
+def test_what_lives_over_its_own_turn_speaks_against_it(where: str, share: float, named: bool) -> None:
+    left = Left(2.5, 0.4, "axis_angle", where, share)
+    assert (told(RUNOUT, left)[0][0] == "encoder_eccentricity") is named
