@@ -30,8 +30,9 @@ LONGEST = 20
 
 @dataclass(frozen=True)
 class Agreement:
-    """`channel` is late against the position by `delay_s` +- `error_s` (one standard error); rms of the
-    difference on held-out rows with and without it; the sensors' noise; `scale` of its rate, with error."""
+    """`channel` is late against the position by `delay_s` +- `error_s` (one standard error). rms is that of
+    the difference on held-out rows with and without it. The sensors' noise stands beside it, and `scale` of
+    its rate, with error."""
 
     channel: str
     unit: str

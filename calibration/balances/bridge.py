@@ -3,9 +3,9 @@
 A register that followed every step would jerk a motor that only holds the counter torque: it may wait. Half a
 step of a small effort is some per cent of the volts, as much as a counter torque partly lost.
 
-The loop runs at 5 ms, every second tick is logged, and a winding settles in 2 ms: the current of a row is of
+The loop runs at 5 ms, every second tick is logged, and a winding settles in 2 ms. The current of a row is of
 the tick before. That one's effort is the mean of two logged ones plus the gain times its error less the mean
-of its neighbours'. The errors are known: the absolute encoder says how far the axis went over the row, the
+of its neighbours'. The errors are known. The absolute encoder says how far the axis went over the row, the
 incremental one what of it fell to the logged tick. Without this a set point that is held over a row passes
 for a supply that gives way.
 """

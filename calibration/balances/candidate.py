@@ -17,7 +17,7 @@ class Candidate:
     """One effect at one place: `columns` (n, k) in the channel's unit per unit of each coefficient.
 
     `labels` names one parameter per column, or one amplitude for a whole sine pair (kind "line": columns are
-    cos, sin per session). `fixed` are parameters chosen on a grid (a time constant, a time of step); those
+    cos, sin per session). `fixed` are parameters chosen on a grid (a time constant, a time of step). Those
     that `shape` depends on are refined once the candidate is chosen.
     """
 

@@ -92,7 +92,7 @@ def _windings(frame: Frame, m: Motion, effort: Array, spin: Array) -> Windings:
 def _spin(frame: Frame, m: Motion, key: str, softness: float) -> tuple[Array, Mask]:
     """rad/s (n_analysis,) of a motor the way it pulls, and the rows in which it turns as the axis makes it.
 
-    A motor is ahead of the axis by its train's wind-up: in a leap out of stiction it stands while the axis
+    A motor is ahead of the axis by its train's wind-up. In a leap out of stiction it stands while the axis
     turns, which makes the constant up to 0.7 % too small. One that crosses the play has an EMF of its own.
     """
     ratio, side = frame.scale["gear_ratio"], 1.0 if key == "a" else -1.0

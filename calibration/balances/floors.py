@@ -25,8 +25,8 @@ OWN_COUNT = 0.5
 
 
 def floor_of(view: View, p: Problem) -> tuple[float | None, str]:
-    """rms, never from the fit of an effect, and how it was had: by repeats of the motion, or by the columns'
-    noise, which volts hold as their floor already; None when neither can be told."""
+    """rms, never from the fit of an effect, and its source. The source is repeats of the motion, or the
+    columns' noise, which volts hold as their floor already. None when neither can be estimated."""
     # what the declared terms leave: motion that differs a little from turn to turn is taken out so
     e = np.where(p.valid, p.plain_fit(p.valid)[1], np.nan)
     again = None if view.dynamic else stroke_scatter(view, e)
@@ -42,7 +42,7 @@ def floor_of(view: View, p: Problem) -> tuple[float | None, str]:
     if noise is not None:
         travel = "" if volts else ", and travel that the position does not resolve"
         return noise, f"the columns' noise from row to row{travel}"
-    return None, "the motion does not repeat itself, and the columns' noise cannot be told"
+    return None, "the motion does not repeat itself, and the columns' noise cannot be estimated"
 
 
 def _by_lag(view: View, p: Problem, e: Array, lag: int) -> float | None:
@@ -58,7 +58,7 @@ def _by_lag(view: View, p: Problem, e: Array, lag: int) -> float | None:
 
 def sensors_floor(view: View, p: Problem) -> float | None:
     """rms of the column's noise, the position's through the inertia, and friction in travel that it does not
-    resolve; None where the log is too short."""
+    resolve. None where the log is too short."""
     r = view.response
     if not r.is_force:
         return _of_two(view)
@@ -92,9 +92,9 @@ def _bent(view: View, by: Filter) -> float:
 
 
 def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
-    """rms of the force's column and of the position through the inertia; and (n_fitted,) friction within a
-    step of the sensor after every reversal, less what the declared terms take of it. None for what is not
-    told."""
+    """rms of the force's column and of the position through the inertia. The second value (n_fitted,) is
+    friction within a step of the sensor after every reversal, less what the declared terms take of it. None
+    for what is not estimated."""
     declared, _ = p.plain_fit(p.train)
     own = passed(view, response_of(view, 0.0)[0])
     step = view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain)

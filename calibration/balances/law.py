@@ -82,9 +82,10 @@ def command_of(view: View, balance: Problem, law: Controller) -> Command:
 def _command_of(view: View, balance: Problem, law: Controller, known: Array, before: int) -> Command:
     """Two-stage least squares with the position `before` rows earlier and instruments `known` (n_fitted, m).
 
-    A disturbance of the command moves the drive, and the error that the law sees has it, too: least squares
-    would read it into the gains. The reference does not know of it, so only what follows the reference counts
-    (instruments: Van den Hof 1998; Janot, Gautier, Brunot 2019 for a drive's own parameters).
+    A disturbance of the command moves the drive, and the error that the law sees has it, too. Least squares
+    would read it into the gains. The reference does not know of it, so only what follows the reference
+    counts. These are instruments (Van den Hof 1998; Janot, Gautier, Brunot 2019 for a drive's own
+    parameters).
     """
     moved = {**view.columns, "position": view.delayed(view.x, -before * view.period_s)}
     view = replace(view, columns=moved)

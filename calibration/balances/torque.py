@@ -37,8 +37,9 @@ FRICTION = {
 class Transmission:
     """From currents to the axis: what electrical and encoder channels say of it.
 
-    `per_ampere` N m at the axis; `left` (n,) per motor of its torque constant; `softness_s2`: a rotor's
-    inertia over its train's stiffness, which takes that times the torque's second derivative.
+    `per_ampere` is in N m at the axis. `left` (n,) is the part left per motor of its torque constant.
+    `softness_s2` is a rotor's inertia over its train's stiffness, which takes that times the torque's second
+    derivative.
     """
 
     per_ampere: float

@@ -1,7 +1,7 @@
 """A drive's records at full rate, and the way from there to the rows that are fitted.
 
 Every column of a balance goes through the same filter, so that the balance holds between filtered columns
-without bias: rates are plain differences of the position, smoothed afterwards like everything else.
+without bias. Rates are plain differences of the position, smoothed afterwards like everything else.
 """
 
 from dataclasses import dataclass, field
@@ -209,9 +209,9 @@ def _regular(record: Run, period: float) -> dict[str, Array]:
 def _stood_over(x: Array, gap: Mask, rig: Rig) -> Mask:
     """Rows of gaps over which the position (n,) goes no further than a limit.
 
-    The limit is the larger of two: the usual travel within as short a time as makes no gap, and a part of the
-    shortest declared wave. A log of events has few rows while nothing moves, and a balance without
-    accelerations needs no rate.
+    The limit is the larger of two. One is the usual travel within as short a time as makes no gap, the other
+    a part of the shortest declared wave. A log of events has few rows while nothing moves, and a balance
+    without accelerations needs no rate.
     """
     rows = round(GAP)
     steps = np.abs(x[rows:] - x[:-rows])[~gap[rows:]]
@@ -239,8 +239,8 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
 
 
 def _passing(x: Array, file: NDArray[np.int64], rig: Rig, sigma: float) -> float:
-    """Rows: the filter that leaves the quickest declared wave 0.6 of its amplitude at the usual top speed;
-    LEAST at least, as quicker accelerations than the position tells are in the response, too."""
+    """Rows: the filter that leaves the quickest declared wave 0.6 of its amplitude at the usual top speed. It
+    is LEAST at least, as quicker accelerations than the position tells are in the response, too."""
     soft = np.concatenate(
         [np.gradient(gaussian_filter1d(x[i:j], sigma)) for i, j in pieces(file) if j > i + 1]
     )

@@ -39,8 +39,9 @@ class Windings:
 
     At full rate (n,): current A; duty, and the supply V that it is of, empty where volts are measured. `at`
     takes such columns to the fitted rows. On these (n_fitted,): rate of the motor that makes back-EMF (of two
-    motors rad/s while it turns the way it pulls, else zero); clock s, and the time in every file where files
-    are several runs of a rig. resistance ohm, constant V per unit of the rate: fitted without any effect.
+    motors rad/s while it turns the way it pulls, else zero). Also (n_fitted,): clock s, and the time in every
+    file where files are several runs of a rig. resistance ohm, constant V per unit of the rate: fitted
+    without any effect.
     """
 
     at: Callable[[Array], Array]

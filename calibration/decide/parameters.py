@@ -145,7 +145,9 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
         whole = replace(whole, frequency=whole.parameters["frequency"].value)
     sections = pairs_by_section(c.columns) if c.kind == "line" else [[]]
     pairs = min(len(section) for section in sections)
-    if c.harmonic is not None or c.stage is None or pairs < 2 or c.name == UNKNOWN:
+    if c.name == UNKNOWN:  # of its order is the first harmonic alone
+        return [replace(whole, order=None) if pairs > 1 else whole]
+    if c.harmonic is not None or c.stage is None or pairs < 2:
         return [whole]
     beta, cov, (size, unit) = s.sizes(k), s.covariance(k), c.labels[0]
     out = []

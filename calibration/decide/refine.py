@@ -105,8 +105,8 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
 
 
 def never_begins(problem: Problem, c: Candidate) -> str:
-    """Why a change in time is none: on all rows it is what it would be had it come long before, or declared
-    terms move as it does; or empty."""
+    """Why a change in time is none, or empty. Either it is on all rows what it would be had it come long
+    before, or declared terms move as it does."""
     if "start" not in c.free:
         return ""
     if _alike(c, _step(c, _begin(c) - limits.LONGEST_UNSEEN_S), problem.valid):

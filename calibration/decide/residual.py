@@ -35,8 +35,8 @@ MOST = {True: 1, False: 2}
 
 @dataclass(frozen=True)
 class Left:
-    """What remains of a balance: `times` the floor, `part` of what was above it before; the domain it is a
-    function of (None: of none that was tried), in words, and the share of its mean square there."""
+    """Remainder of a balance: `times` the floor, `part` of what was above it before. The domain it is a
+    function of (None: of none that was tried) is in words, with the share of its mean square there."""
 
     times: float
     part: float
@@ -167,10 +167,11 @@ def of_one_place(findings: list[Finding], left: Left | None) -> list[Finding]:
     A smooth function beside them says so, or a residual that lives over the turn of their own stage.
     """
     smooth = any(f.name == UNKNOWN and f.domain == "axis_angle" and f.stage is None for f in findings)
-    turn = left.where if left is not None and left.share > OVER_ITS_TURN else ""
+    where = left.where if left is not None and left.share > OVER_ITS_TURN else ""
+    turn = where.removesuffix(", against the motion").removesuffix(", in size")
     out: list[Finding] = []
     for f in findings:
-        own = f.stage is not None and turn.startswith(f"over the turn of {f.stage}")
+        own = f.stage is not None and turn == f"over the turn of {f.stage}"
         if f.name not in NAMES or not NAMES[f.name].a_guess or not (smooth or own):
             out.append(f)
             continue

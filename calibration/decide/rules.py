@@ -69,7 +69,7 @@ def needless(margin: float) -> Rule:
             return ""
         others = s.without(k)
         again = fit_with(s.problem, others.columns, s.candidates[k])
-        text = "cannot be told" if again is None else refuse(again, *scores(others, again), margin)
+        text = "cannot be determined" if again is None else refuse(again, *scores(others, again), margin)
         return f"beside the others: {text}" if text else ""
 
     return each(why)

@@ -79,8 +79,8 @@ def _first_of_class(forms: list[Contender]) -> Contender:
 def _neighbours(
     p: Problem, base: Array, null: Fit, first: Contender, without: float, common: Whitener
 ) -> list[Contender]:
-    """Lines a little off the order of `first` that gain clearly more; beside a whole stage at once, which
-    follows any line over hardly a turn, more than they cost."""
+    """Lines a little off the order of `first` that gain clearly more. Beside a whole stage at once, which
+    follows any line over hardly a turn, they gain more than they cost."""
     whole = first.candidate.kind == "line" and first.candidate.harmonic is None
     fits = _fits_beside(p, base, null, first.candidate.neighbours)
     tried = [_scored(p, base, c, fit, common, without) for c, fit in fits]

@@ -204,7 +204,7 @@ def unsettled_reading(stiffness: Parameter | None, d: Declared) -> str:
     if not near or d.readings[0] in near:
         return ""
     return (
-        f"channel K: shaft_compliance was close: a train's stiffness of {stiffness.value:.3g} N m/rad is"
-        f" {times:.2f} of Table 1's, if that is one train's, and as declared if it is both trains': a plant"
+        f"channel K: shaft_compliance was close. A train's stiffness of {stiffness.value:.3g} N m/rad is"
+        f" {times:.2f} of Table 1's, if that is one train's, and as declared if it is both trains'. A plant"
         " file (--plant) or the log's header (train_stiffness_Nm_per_rad) says which"
     )

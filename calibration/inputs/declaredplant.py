@@ -73,8 +73,8 @@ class Declared(Friction):
 def declared_model(header: dict[str, str], base: Path | None) -> tuple[PlantModel, bool]:
     """The plant a log is held against, and whether its effects are part of what is declared.
 
-    `base` when given; for the emulator's own logs the plant file their note names; else the project's plant
-    of that preload, whose effects are a choice of the project and not the paper's.
+    It is `base` when given. For the emulator's own logs it is the plant file their note names. Else it is the
+    project's plant of that preload, whose effects are a choice of the project and not the paper's.
     """
     note, files = header.get("note", "").lower(), default_files()
     own = note.startswith(OWN)

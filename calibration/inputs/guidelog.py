@@ -4,7 +4,7 @@ The open-loop drive error of a section is the raw distance plus the running sum 
 times the pixel scale. PHD2's own log analysis uses the same sum. A dither moves the star, not the drive, by
 the amount in its line, along the mount's axes: it is added. A new lock position without a dither starts a new
 segment with an offset of its own. Frames while settling are left out. PHD2 writes the distance it wanted to
-correct even when no pulse was sent (guiding disabled); such a row's RADuration is 0 and nothing is added.
+correct even when no pulse was sent (guiding disabled). Such a row's RADuration is 0 and nothing is added.
 """
 
 import re

@@ -64,8 +64,8 @@ def read_drive(logs: list[Path], rig: Rig | None) -> Drive:
 
 
 def sections_of(records: list[Run], rig: Rig) -> list[Run]:
-    """Tables of a position at constant rate, as the sections that a guide log has: `ra` the response, in its
-    unit; no dithers, no jumps but repaired ones."""
+    """Tables of a position at constant rate, as the sections that a guide log has. `ra` is the response, in
+    its unit. They have no dithers, and no jumps but repaired ones."""
     response = next(r for r in rig.responses if r.channel == "position")
     out = []
     for r in records:

@@ -1,5 +1,5 @@
-"""Every column of a file that no rig file describes: what it holds, what its name says of channel and unit,
-and what a rig file must say of the file."""
+"""Every column of a file that no rig file describes. For each it says what it holds and what its name says of
+channel and unit. It also says what a rig file must say of the file."""
 
 import re
 from dataclasses import dataclass, field

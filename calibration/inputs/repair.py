@@ -74,8 +74,8 @@ def counter_length(x: Array) -> float:
 
 
 def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:
-    """Whether jumps are a counter's and not the column's own: a counter jumps by its length less what moves
-    in a row; or the column uses it from end to end, and then a real step may fall on a wrap."""
+    """Whether jumps are a counter's and not the column's own. A counter jumps by its length less what moves
+    in a row. Or the column uses it from end to end, and then a real step may fall on a wrap."""
     moved = limits.MOVED_TIMES * float(np.quantile(np.abs(step[~jumps]), 0.99)) + 2.0 * _least_step(step)
     near = np.abs(np.abs(step[jumps]) - length) <= min(moved, limits.NEAR_LENGTH * length)
     whole = length in WORDS and np.ptp(x) >= length - 1 - moved

@@ -30,8 +30,9 @@ def _two_motors(rig: Rig, motors: Motors) -> Iterator[str]:
 
 
 def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
-    """What is explained; stages, which turn with the position, or with the clock at constant rate; terms that
-    are estimated or known, the shape of friction, and columns that something uses."""
+    """Checks of what is explained, and of stages, which turn with the position, or with the clock at constant
+    rate. Checks also of terms that are estimated or known, the shape of friction, and columns that something
+    uses."""
     columns, responses = rig.columns, rig.responses
     have, channels = ", ".join(columns), [r.channel for r in responses]
     for r in responses:

@@ -1,5 +1,5 @@
 """Rows of a log that repeat the row before, rows that are missing, and time stamps that shake while the
-samples are taken on time: the position says which of the two it was."""
+samples are taken on time. The position says which of the two it was."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ def lost_rows(run: Run) -> None:
 
 def _moved_on(run: Run, whole: Array) -> Mask:
     """Steps (n - 1,) of `whole` periods between rows of one run, over which the drive moved on as the clock
-    did: over a stamp that jumps it moves by one row, over a rest not at all."""
+    did. Over a stamp that jumps it moves by one row, over a rest not at all."""
     x, label = run.columns["position"], run.columns.get("run")
     same = np.ones(len(whole), dtype=bool) if label is None else np.diff(label) == 0
     step = np.nan_to_num(np.abs(np.diff(x)))
@@ -88,8 +88,8 @@ def steady_stamps(run: Run) -> None:
 
 
 def _places(t: Array, period_s: float) -> Array:
-    """Sample number of every row: one on from the row before; more where rows are missing, which is where the
-    rows on either side are far apart, too."""
+    """Sample number of every row: one on from the row before. It is more where rows are missing, which is
+    where the rows on either side are far apart, too."""
     step = np.diff(t) / period_s
     pairs = step[1:] + step[:-1]
     apart = np.minimum(np.append(pairs, np.inf), np.insert(pairs, 0, np.inf))
@@ -123,8 +123,8 @@ def _quick(place: Array, x: Array) -> Mask:
 
 
 def jumps_of_clock(x: Array, steps: NDArray[np.int64]) -> Mask:
-    """Which of the steps (n - 1,), in periods, between rows at positions x (n,) are the clock's alone: the
-    position went on by one row's motion, and not by theirs.
+    """Which of the steps (n - 1,), in periods, between rows at positions x (n,) are the clock's alone. There
+    the position went on by one row's motion, and not by theirs.
 
     The motion is that of limits.BESIDE_A_GAP rows on either side, which go one way; at rest nothing tells.
     """

@@ -1,5 +1,6 @@
-"""Columns that hold one number while the drive moves under them: such a column measures nothing; and columns
-that stop at the end of their converter: noise would spread them over the neighbouring counts."""
+"""Columns that hold one number while the drive moves under them, and columns that stop at the end of their
+converter. A column of the first kind measures nothing. Noise would spread one of the second over the
+neighbouring counts."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -32,7 +32,7 @@ def check_file(path: Path) -> None:
 
 def load_text(path: Path) -> tuple[str, int | None]:
     """The file's text, with or without a byte order mark and with any line ends, and the first line that is
-    not UTF-8: names in a guide log may be in the computer's code page, its numbers are ASCII."""
+    not UTF-8. Names in a guide log may be in the computer's code page, its numbers are ASCII."""
     try:
         raw = path.read_bytes()
     except OSError as error:
@@ -72,7 +72,7 @@ def check_width(path: Path, count: int, line: int) -> None:
 
 class Heading(NamedTuple):
     """Lines of a table, names of its columns, the index of its first row, the delimiter, and the index of the
-    header row; `first` where there is none."""
+    header row. That index is `first` where there is none."""
 
     lines: list[str]
     fields: list[str]
@@ -112,7 +112,7 @@ def read_columns(
     delimiter: str | None = None,
     stamps: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, Array]:
-    """The wanted columns (by name, or place from 0) of a table's `text`, keyed by `str(column)`; `stamps`:
+    """The wanted columns (by name, or place from 0) of a table's `text`, keyed by `str(column)`. `stamps` are
     the formats of those that are stamps and become s."""
     lines, fields, first, mark, at = heading(path, text, names, delimiter)
     places = [_place(path, c, fields, first > at, at + 1) for c in wanted]
@@ -134,8 +134,8 @@ def read_long(
     time: str,
     stamps: Mapping[str, str],
 ) -> dict[str, Array]:
-    """The wanted signals of a long table, whose rows hold a name, a stamp and a value (`long`: the columns of
-    name and value), on the stamps of the first signal wanted."""
+    """The wanted signals of a long table, on the stamps of the first signal wanted. Its rows hold a name, a
+    stamp and a value (`long`: the columns of name and value)."""
     got = read_columns(path, text, [time, long["value"]], (), None, stamps)
     lines, fields, first, mark, at = heading(path, text)
     place = _place(path, long["name"], fields, True, at + 1)

@@ -37,7 +37,7 @@ def runs_of(records: list[Run], rig: Rig) -> list[Run]:
         for name in CURRENTS:
             if name in si and float(np.nanmin(si[name])) < -3 * steps[name]:
                 what = (
-                    "is negative: a motor pulls one way only here, and its current counts as it pulls; give a"
+                    "is negative. A motor pulls one way only here, and its current counts as it pulls. Give a"
                     " scale of -1 or leave the column out"
                 )
                 raise CalibrationInputError(r.path, what, None, r.signals[name].column)

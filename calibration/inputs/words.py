@@ -5,14 +5,19 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
-from calibration.inputs.repair import MOVING, WORDS
-from calibration.inputs.run import Repair, Run
+from calibration.inputs.repair import MOVING, SLOW
+from calibration.inputs.run import Repair, Run, signal_of
+
+#: values of a word that a logger writes; shorter ones are counts and duties as they are
+LENGTHS = (2.0**16, 2.0**24, 2.0**32)
 
 
 def read_signed(runs: list[Run], rig: Rig) -> None:
     """Read such columns with their sign, in place and in every run alike; `run.repairs` says so."""
     for channel, where in rig.columns.items():
-        if channel in ("time", *MOVING) or where.wrap is not None:
+        signed = where.wrap is not None or where.sign_bit is not None
+        made = signed or where.steps or where.integrated or where.files
+        if channel in ("time", *MOVING, *SLOW) or made:
             continue
         words = [(r.columns[channel] - where.offset) / where.scale for r in runs]
         length = word_length(np.concatenate(words))
@@ -20,6 +25,8 @@ def read_signed(runs: list[Run], rig: Rig) -> None:
         for r, x in zip(runs, words, strict=True):
             if count := int(np.count_nonzero(x > length / 2)) if length else 0:
                 r.columns[channel] = np.where(x > length / 2, x - length, x) * where.scale + where.offset
+                name = str(where.column) or channel
+                r.signals[channel] = signal_of(channel, name, where.unit, r.columns[channel], 0)
                 r.repairs.append(Repair("signed", channel, count, length * abs(where.scale), note))
 
 
@@ -29,10 +36,15 @@ def word_length(x: Array) -> float:
     Numbers of either sign fill the two ends of the word, and the middle quarter of it stays empty.
     """
     x = x[np.isfinite(x)]
-    if len(x) < limits.FEWEST_SAMPLES or x.min() < 0 or not np.array_equal(x, np.round(x)):
+    whole = np.round(x)
+    if len(x) < limits.FEWEST_SAMPLES or not np.allclose(x, whole, rtol=limits.ROUNDED, atol=limits.ROUNDED):
         return 0.0
-    length = next((w for w in WORDS if x.max() < w), 0.0)
-    lower, upper = x < length * 3 / 8, x >= length * 5 / 8
+    length = next((w for w in LENGTHS if whole.max() < w), 0.0)
+    lower, upper = whole[whole < length * 3 / 8], whole[whole >= length * 5 / 8]
     # one value at the end of a word is a reading that failed
-    several = len(np.unique(x[upper])) >= limits.FEWEST_SIGNED
-    return length if several and bool(np.all(lower | upper)) else 0.0
+    several = len(np.unique(upper)) >= limits.FEWEST_SIGNED
+    if whole.min() < 0 or not several or len(lower) + len(upper) < len(whole):
+        return 0.0
+    beyond = length - upper.max() + (lower.min() if len(lower) else 0.0)  # about zero, from either side
+    empty = upper.min() - (lower.max() if len(lower) else 0.0)
+    return length if beyond < limits.ABOUT_ZERO * empty else 0.0

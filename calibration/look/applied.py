@@ -1,4 +1,4 @@
-"""A named effect of a column is applied: the late column is shifted, a coupling's gap is taken out, and the
+"""A named effect of a column is applied. The late column is shifted, a coupling's gap is taken out, and the
 whole analysis is made once more on the corrected logs."""
 
 from dataclasses import replace
@@ -101,7 +101,7 @@ def axis_by_motors(result: AxisResult) -> Array | None:
 
 def before_of(result: AxisResult, again: AxisResult, f: Finding) -> dict[str, float]:
     """Per channel, the held-out error of the declared model on the logs as they are, on the rows that the
-    corrected logs have, too; before a late column is shifted its delay is held at a sound log's."""
+    corrected logs have, too. Before a late column is shifted its delay is held at a sound log's."""
     out = {}
     for key in "TEKS":
         if key not in result.selections or key not in again.selections:

@@ -163,7 +163,7 @@ def too_little(runs: list[Run]) -> str:
 
 
 def within_tolerance(result: AxisResult, effects: Sequence[Finding]) -> dict[str, float]:
-    """Per channel, the held-out error "before" where a declared number is another one: the numbers that are
+    """Per channel, the held-out error "before" where a declared number is another one. The numbers that are
     changed may only be re-calibrated within the tolerance of the declared ones."""
     out, names = {}, {f.name for f in effects}
     t, k = result.selections.get("T"), result.selections.get("K")

@@ -75,7 +75,7 @@ def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
         else:
             view.slow_offset = slow
             remarks.append(
-                f"{response.channel}: its offset wanders by {wander:.2g} {response.unit} rms within a file;"
+                f"{response.channel}: its offset wanders by {wander:.2g} {response.unit} rms within a file."
                 f" {slow} slow functions of time are fitted anew in every file, as the offset is"
             )
     return (_sharper(when, view, made, attempt) if view.dynamic else when), remarks

@@ -220,8 +220,8 @@ def unnamed_where_missing(
 
 
 def calibrated(s: Selection, skip: tuple[str, ...] = (), model: float | None = None) -> dict[str, Parameter]:
-    """The declared model's parameters with intervals, where the log has them at all; `model`: the model's own
-    error, of a value, where it is known to be another one than `interval` takes."""
+    """The declared model's parameters with intervals, where the log has them at all. `model` is the model's
+    own error, of a value, where it is known to be another one than `interval` takes."""
     out: dict[str, Parameter] = {}
     for k, (name, unit) in enumerate(s.problem.base_labels):
         if name in (*skip, SLOW) or name in out or not s.problem.base[:, k].any():

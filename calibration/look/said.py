@@ -91,8 +91,8 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
 
 
 def wound_up(view: View, s: Selection) -> float:
-    """rms, in the response's unit, of the effort's own noise through a shaft's wind-up that was found: its
-    column is noisy, the shaft winds up by the torque; 0 where none was."""
+    """rms, in the response's unit, of the effort's own noise through a shaft's wind-up that was found. Its
+    column is noisy, the shaft winds up by the torque. 0 where none was found."""
     for c, beta in s.fitted:
         if c.name == COMPLIANCE.name:
             channel = next(k for k in WINDS if k in view.columns)

@@ -40,8 +40,8 @@ def _terms(p: Problem) -> Array:
 
 
 def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
-    """How sharply friction turns with the speed, of STANDSTILLS: by what the declared terms leave on fitted
-    rows, beside the effects of `known` where there is something."""
+    """How sharply friction turns with the speed, of STANDSTILLS. It follows from what the declared terms
+    leave on fitted rows, beside the effects of `known` where there is something."""
     shown = (view.standstill, view.direction)
     delay = known.delay.parameters["delay"].value if known is not None and known.delay is not None else 0.0
     s = known.found[0] if known is not None else None
@@ -86,5 +86,5 @@ def turned(view: View, problem: Problem) -> list[str]:
     view.response = replace(r, gain=-r.gain)
     return [
         f"{r.channel}: points against the motion, so it is what acts on the drive, or the position"
-        " counts the other way; its sign is turned here, and so are the signs of what is found in it"
+        " counts the other way. Its sign is turned here, and so are the signs of what is found in it"
     ]

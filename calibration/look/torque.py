@@ -110,7 +110,7 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
 
 
 def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:
-    """Whether a motor's line has the order of a gear's that the encoders have shown: a motor's torque moves
+    """Whether a motor's line has the order of a gear's that the encoders have shown. A motor's torque moves
     no encoder against another, and a pinion's teeth are harmonics of its motor."""
     if not c.order or REGISTRY[c.name].domain != "motor_angle":
         return False

@@ -113,7 +113,7 @@ def weakened(
     chosen: Sequence[tuple[Candidate, Array]], clock: Array, quotient: float = 1.0
 ) -> dict[str, Array]:
     """Part of what its current reads that each motor makes torque of, (n,) over `clock`, from the accepted
-    effects; `quotient` of the torque constant, as in `Name`."""
+    effects. `quotient` is that of the torque constant, as in `Name`."""
     out = {"a": np.ones(len(clock)), "b": np.ones(len(clock))}
     for c, beta in chosen:
         kept = NAMES[c.name].torque_kept

@@ -97,7 +97,7 @@ def _periodic(problem: Problem, name: str, rate: float, waves: Sequence[int], **
 def best_count(problem: Problem, selection: Selection, mount: Mount, part: Part) -> list[Candidate]:
     """An accepted part with as many harmonics as predict best the pieces that they were not fitted to.
 
-    A worm's error is a periodic function, not a sine: its first harmonics establish the period, how many of
+    A worm's error is a periodic function, not a sine. Its first harmonics establish the period. How many of
     them to keep is a question of prediction.
     """
 
@@ -149,7 +149,7 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
 
 def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
     """Every part and period that was found, with its neighbours within the resolution and a wheel that is
-    assumed in its note; `span` s as in `longest_span`."""
+    assumed in its note. `span` is in s, as in `longest_span`."""
     out = []
     for f in (finding_of(s, k) for k, c in enumerate(s.candidates) if c.frequency):
         others = [

@@ -1,7 +1,7 @@
 """A line over position at a period of no stage."""
 
 from dataclasses import replace
-from math import ceil, floor, pi
+from math import pi
 
 from calibration.inputs.declaration import GUESSED, Stage
 from calibration.inputs.train import MESH, SHAFT
@@ -10,6 +10,10 @@ from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import has_train
 from calibration.names.motor_cogging import NAME as COGGING
 from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Finding, Name, Scene
+from plant.effects import REGISTRY
+
+# of a stage's harmonic: an interval that holds a whole one by chance once in five. ASSUMPTION
+NARROW = 0.2
 
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
@@ -22,20 +26,26 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     stage, harmonic = _harmonic_of(f, s)
     if stage is None and has_train(s):
         return f
-    name = (stage.declared if stage else None) or SHAFT
-    alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, MESH, COGGING.name, NAME.name]) if x != name]
+    name = _called(stage, f)
+    alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, *_others(f), NAME.name]) if x != name]
     if stage is None:
         gears = replace(f, name=name, stage=None, equivalent=alike)
-        return gears.noted("no gear table was given, so its stage cannot be named")
+        table = "no declared stage turns quicker" if s.view.rig.stages else "no gear table was given"
+        return gears.noted(f"{table}, so its stage cannot be named")
     sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
     shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)
     return shaft.noted(f"the order's interval holds {harmonic} times that of {stage.name}")
 
 
+def _others(f: Finding) -> tuple[str, ...]:
+    """What else turns, in this balance: two sensors see no magnets."""
+    return (MESH, COGGING.name) if f.channel == "T" else (MESH,)
+
+
 def of_a_guess(f: Finding, s: Scene) -> Finding:
     """A line of a stage of which nobody said whether it is a gear or a motor."""
     guessed = any(g.name == f.stage and g.kind == GUESSED for g in s.view.rig.stages)
-    alike = dict.fromkeys([*f.equivalent, MESH, COGGING.name])
+    alike = dict.fromkeys([*f.equivalent, *_others(f)])
     return replace(f, equivalent=list(alike)) if guessed and f.name == SHAFT else f
 
 
@@ -45,10 +55,16 @@ def _harmonic_of(f: Finding, s: Scene) -> tuple[Stage | None, int]:
     if order is None or order.low is None or order.high is None:
         return None, 0
     for stage in sorted((g for g in s.view.rig.stages if g.period), key=lambda g: g.period or 0.0):
-        low, high = (x * (stage.period or 0.0) / s.turn for x in (order.low, order.high))
-        if floor(high) >= max(ceil(low), 1):
-            return stage, ceil(low)
+        at, low, high = (x * (stage.period or 0.0) / s.turn for x in (order.value, order.low, order.high))
+        if high - low < NARROW and low <= (harmonic := max(round(at), 1)) <= high:
+            return stage, harmonic
     return None, 0
+
+
+def _called(stage: Stage | None, f: Finding) -> str:
+    """What a stage's line is called in this balance."""
+    effect = REGISTRY.get((stage.declared if stage else None) or SHAFT)
+    return effect.name if effect is not None and effect.channel == f.channel else SHAFT
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

@@ -32,8 +32,8 @@ def tried(
     steps: tuple[float, ...] | None = None,
     **more: Any,
 ) -> Candidate:
-    """A first value of a search: `shape` gives columns (n, k) of the first len(steps) values of `at`, which
-    hold a number and a unit each; `steps` are small changes of them, STEP of the first one unless given. What
+    """A first value of a search. `shape` gives columns (n, k) of the first len(steps) values of `at`, which
+    hold a number and a unit each. `steps` are small changes of them, STEP of the first one unless given. What
     is searched for must pay, unless `more` says otherwise."""
     values = [value for value, _ in at.values()]
     steps = (STEP * values[0],) if steps is None else steps

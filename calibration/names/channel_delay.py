@@ -23,7 +23,7 @@ COLUMNS |= {"tachometers": 4, "tach_a": 4, "tach_b": 4}
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The rate of change of the column: a late one falls behind by its rate times the delay; over many rows
+    """The rate of change of the column. A late one falls behind by its rate times the delay, over many rows
     by what it was then. A force's is settled before its names (look/delay.py); a pair's base holds it."""
     if s.pair is not None or s.force:
         return []

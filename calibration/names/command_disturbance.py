@@ -41,7 +41,7 @@ def columns(s: Scene) -> list[Candidate]:
     """Sines of a fixed frequency, alone and with a square wave's overtones; every file has its own phase.
 
     Multiples of the frequency at which the motion repeats itself are left out, where the declared force has
-    more of them than what it leaves: whatever follows the motion has them.
+    more of them than what it leaves. Whatever follows the motion has them.
     """
     if s.windings is not None:
         return _of_volts(s)
@@ -87,7 +87,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
 
 def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
     """Names that a line on the clock may have instead, where the log's one speed does not tell it from a line
-    over the place; None where a declared stage has that line."""
+    over the place. None where a declared stage has that line."""
     speed = abs(s.one_speed[0])
     rate = hertz / speed if speed else np.inf
     if not on_clock(s, rate):

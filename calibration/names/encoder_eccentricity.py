@@ -14,8 +14,8 @@ LEAST_TURN = 0.4
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Sines at the stages of this kind and at one turn of the position, where no stage is as long; of an
-    axis' absolute encoder, which all the others are compared with, both harmonics as one."""
+    """Sines at the stages of this kind and at one turn of the position, where no stage is as long. An axis'
+    absolute encoder, which all the others are compared with, has both harmonics as one."""
     out = stage_lines(s, "encoder_eccentricity", default=True)
     if s.pair is not None:
         out = [replace(c, labels=(("amplitude", "arcsec"),)) for c in out]

@@ -10,7 +10,7 @@ AXIS_LEAST_K = 0.3
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The temperature less its mean; of an axis' absolute encoder, which is subtracted, minus that, and the
+    """The temperature less its mean. An axis' absolute encoder, which is subtracted, has minus that, and the
     time, in which a log without a temperature may have warmed."""
     out, sense = [], 1.0 if s.pair is None else -1.0
     if not lacks(s):

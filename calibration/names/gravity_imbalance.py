@@ -6,8 +6,8 @@ from math import pi
 
 import numpy as np
 
-from calibration.inputs.declaration import Stage
-from calibration.inputs.train import SHAFT
+from calibration.inputs.declaration import GUESSED, Stage
+from calibration.inputs.train import MESH, SHAFT
 from calibration.names.lines import SAME, line
 from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
 from plant.effects import REGISTRY
@@ -16,6 +16,8 @@ from plant.evaluate import evaluate, signals
 
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
+#: what a stage may be of which nobody said whether it is a gear or a motor
+OF_A_GUESS = (SHAFT, MESH, "motor_cogging")
 # turns: what carries a weight is hardly swung round more often. ASSUMPTION
 SWUNG = 2.0
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
@@ -23,8 +25,8 @@ SLOPE_TURN = 1 / 72
 
 
 def gravity(s: Scene) -> Array:
-    """cos and sin of the angle (n_full, 2): the effect's own formula at phases 0 and 90 degrees; of a load
-    that is declared, per unit of it."""
+    """cos and sin of the angle (n_full, 2): the effect's own formula at phases 0 and 90 degrees. Those of a
+    load that is declared are per unit of it."""
     rows = signals(len(s.view.t), {ANGLE: s.view.x / s.turn * 2 * pi})
     carried = s.view.columns.get("load", 1.0)
     return np.column_stack(
@@ -34,7 +36,8 @@ def gravity(s: Scene) -> Array:
 
 def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
     """Names of forces that stages of this period (position units) have; a kind of shaft is no effect."""
-    kinds = (g.declared or "" for g in stages if g.period and abs(g.period / turn - 1) < SAME)
+    once = [g for g in stages if g.period and abs(g.period / turn - 1) < SAME]
+    kinds = [k for g in once for k in (OF_A_GUESS if g.kind == GUESSED else (g.declared or "",))]
     shown = (REGISTRY.get(kind, REGISTRY[SHAFT]) for kind in kinds)
     return tuple(dict.fromkeys(effect.name for effect in shown if effect.channel == "T"))
 

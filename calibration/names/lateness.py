@@ -50,11 +50,11 @@ ALIKE = 0.35
 
 
 def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
-    """The delay of the response's column against the motion, positive when it tells of earlier times; and,
-    where one stands clear of its error but changes next to nothing, what would be needed to tell.
+    """The delay of the response's column against the motion, positive when it tells of earlier times. Where
+    one stands clear of its error but changes next to nothing, also what would be needed to tell.
 
-    It is looked for beside `lines` (n_fitted, k), loops, asymmetry, weight and friction over the speed; its
-    size is then taken beside a friction curve of any smooth shape, where that can be told from it.
+    It is looked for beside `lines` (n_fitted, k), loops, asymmetry, weight and friction over the speed. Its
+    size is then taken beside a friction curve of any smooth shape, where that can be distinguished from it.
     """
     v = s.view
     # without the rows near rest: there friction turns, which looks late or early by itself

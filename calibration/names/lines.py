@@ -65,8 +65,8 @@ def line(s: Scene, name: str, rate: float, size: Size = "", **more: Any) -> Cand
 
 
 def stage_lines(s: Scene, kind: str, default: bool = False, of: str = "") -> list[Candidate]:
-    """A sine pair at every harmonic of every stage of this kind that the log travels far enough for;
-    `default`: stages without a kind, too; `of`: stages of that kind, whose own name the log cannot show."""
+    """A sine pair at every harmonic of every stage of this kind that the log travels far enough for.
+    `default`: stages without a kind, too. `of`: stages of that kind, whose own name the log cannot show."""
     out = []
     for stage in s.view.rig.stages:
         if stage.period is None or (stage.declared or (kind if default else "")) != (of or kind):
@@ -148,8 +148,8 @@ def beside_stage(s: Scene, stage: Stage) -> tuple[Candidate, ...]:
 
 
 def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = None) -> list[Candidate]:
-    """`blank` with the sine pair of `rate` cycles per position unit, its phase bound to the place; and with
-    a phase of every file's own where the files' zeros may differ. `weight` is at full rate."""
+    """`blank` with the sine pair of `rate` cycles per position unit, its phase bound to the place. It comes
+    also with a phase of every file's own where the files' zeros may differ. `weight` is at full rate."""
     phase = 2 * np.pi * rate * s.view.x
     w = 1.0 if weight is None else weight
     pair = s.at(np.column_stack([w * np.cos(phase), w * np.sin(phase)]))
@@ -197,8 +197,8 @@ def cell(rate: float, span: float) -> tuple[float, float]:
 
 
 def movable(s: Scene, rate: float, within: tuple[float, float]) -> list[Candidate]:
-    """A line of no stage at `rate` cycles per position unit, whose order may move `within` these bounds:
-    where the drive is at some places more often than at others, the spectrum's peak lies beside it."""
+    """A line of no stage at `rate` cycles per position unit, whose order may move `within` these bounds.
+    Where the drive is at some places more often than at others, the spectrum's peak lies beside it."""
     at = {"order": (float(rate * s.turn), "1/turn" if s.view.turn else f"1/{s.angle_unit}")}
     step = (STEP_OF_CELL * s.turn / s.span,)
     blank = line(s, "bearing_pass", rate, apart=float(rate), searched=1, fixed=at, steps=step)
@@ -233,7 +233,7 @@ def _waves(s: Scene, turns: Array, order: float) -> Array:
 def motor_lines(s: Scene, name: str, size: Size, weights: tuple[Array, ...]) -> list[Candidate]:
     """A line of motor A, of motor B, and of both at every small order; `weights` (n_fitted,) of A and B.
 
-    Only the KEEP strongest in the residual become candidates: high orders are all but orthogonal to the
+    Only the KEEP strongest in the residual become candidates. High orders are all but orthogonal to the
     declared model, so that a plain projection ranks them.
     """
     assert s.pair is not None
@@ -257,8 +257,9 @@ def motor_lines(s: Scene, name: str, size: Size, weights: tuple[Array, ...]) -> 
 
 
 def over_motor(f: Finding, facts: Facts, size: str, turn: float) -> Made:
-    """In a plant file, over the angle of a motor, which lies half the play off the axis'; `turn` rad from the
-    residual's phase to the plant's. A finding without a motor has motor A's wave first and motor B's second.
+    """In a plant file, over the angle of a motor, which lies half the play off the axis'. `turn` is in rad
+    from the residual's phase to the plant's. A finding without a motor has motor A's wave first and motor B's
+    second.
     """
     made, number, cycles = Made(), motor_of(f), float(f.harmonic or 1)
     second = f"{size}_2" in f.parameters

@@ -16,8 +16,8 @@ STEP = 0.02
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Back-EMF that one of two motors lacks all along, or that all lack from an onset over a ramp; of an
-    axis' torque a share of all that currents promise and the magnets do not give."""
+    """Back-EMF that one of two motors lacks all along, or that all lack from an onset over a ramp. For an
+    axis' torque, a share of all that currents promise and the magnets do not give."""
     w, pair = s.windings, s.pair
     if w is not None:
         lost = -w.constant * w.rate

@@ -44,7 +44,7 @@ class Changed:
     """A name that is declared numbers being other ones.
 
     numbers: number of the drive (an attribute of `Declared`) -> parameter of the finding, the first one being
-    its evidence; a parameter of the effect is the quotient with the declared number, another one the number.
+    its evidence. A parameter of the effect is the quotient with the declared number, another one the number.
     written: where the plant file holds them. factor: either way, within which a number is as declared. seen:
     what the speeds must show (`decide.tolerance.seen_speeds`). precise: largest relative standard error.
     """
@@ -91,8 +91,8 @@ class Name:
     Of what moves the torque that a current promises: torque_kept gives the part (n,) that its motors keep. It
     takes a candidate, its size, the session time (n,) and the torque constant's quotient (before the effect
     was known, over now). torque_doubt is the relative standard error of all torques, of its size.
-    relative: parameters whose columns were made with a coefficient of the base: that one's name, and the
-    power of its quotient (before the effect was known, over now). told: what a finding
+    relative: parameters whose columns were made with a coefficient of the base. Each has that one's name, and
+    the power of its quotient (before the effect was known, over now). told: what a finding
     is whose sizes do not go together. nuisances: parameters of the search that the plant lacks, and what is
     noted of a finding that has one; none is reported.
     stamps: what the rows and stamps of an axis' log show of it; repairs: kinds of repair in any log's columns
@@ -101,9 +101,9 @@ class Name:
     are no plain sine of an order of their own over the position. waves_of_friction: they are friction's over
     the place. a_guess: of a function of the place it is the simplest form. random: its course is another one
     in every run. worth: share of the final held-out mean square that leaving it out must add. observed:
-    parameters that no plant file has, and what each is: a property of the log, of one of its columns, or of a
-    drive that a rig file describes; `*` for any end. loop: parameters that are the width of a loop after
-    every reversal. changed: the declared numbers that it is a change of,
+    parameters that no plant file has, and what each is. It is a property of the log, of one of its columns,
+    or of a drive that a rig file describes. `*` stands for any end. loop: parameters that are the width of a
+    loop after every reversal. changed: the declared numbers that it is a change of,
     where it is no more. beside: how it stands to others.
     """
 
@@ -132,9 +132,11 @@ class Name:
     beside: Beside = field(default_factory=Beside)
 
     def knows(self, parameter: str) -> bool:
-        """Whether a report may print it: the plant's effect has it, the plant file where the name changes a
-        number of it, or `observed` says what it is. A harmonic ends in its number, a time from the start of
-        every run in IN_RUN."""
+        """Whether a report may print it: the plant's effect has it, or `observed` says what it is.
+
+        It may too where the name changes a number of the plant file. A harmonic ends in its number. A time
+        from the start of every run ends in IN_RUN.
+        """
         known = parameter.removesuffix(IN_RUN)
         plain = known.rstrip("0123456789").removesuffix("_")
         plants = {p.name for p in REGISTRY[self.name].parameters}

@@ -15,10 +15,10 @@ from calibration.inputs.train import Train
 class Pair:
     """The log on one grid, what moved, and of stacked rows the motor (n_fitted,), 0 for A and 1 for B.
 
-    In the balance of torques also the friction along the motion, and either motor, A first: torques
-    in N m at the axis, signed, and angles in turns, on the fitted rows. `lagging` is the torque of
-    the one that holds the counter torque, `load` what the declared model needs: the measured one would
-    explain itself. `softness_s2`: a rotor's inertia over its train's stiffness.
+    In the balance of torques also the friction along the motion, and either motor, A first. Torques are
+    signed, in N m at the axis, and angles in turns, on the fitted rows. `lagging` is the torque of the one
+    that holds the counter torque, `load` what the declared model needs: the measured one would explain
+    itself. `softness_s2`: a rotor's inertia over its train's stiffness.
     """
 
     frame: Frame

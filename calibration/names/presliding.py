@@ -18,8 +18,8 @@ PRECISE = {"sigma_0": 0.2}
 
 def columns(s: Scene) -> list[Candidate]:
     """One or two elastoplastic elements, or bristles that give way by and by (Dahl's law, LuGre without its
-    dip), less the declared friction: the loop alone, sliding friction as it is. A positive size only: the
-    other sign would feed energy."""
+    dip), less the declared friction. This is the loop alone, sliding friction as it is. A positive size only:
+    the other sign would feed energy."""
     if not s.both:
         return []
     v, stroke = s.view, s.stroke

@@ -25,7 +25,7 @@ SHARP = 0.005
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The supply in the direction of the duty, in proportion below a knee: a pulse that is shorter than the
+    """The supply in the direction of the duty, in proportion below a knee. A pulse that is shorter than the
     dead band is lost whole, which tells it from an ADC's offset. A knee above every duty would be the supply.
 
     Of two motors behind the split of the effort, or before it: as much of the lagging motor's duty as it has
@@ -64,7 +64,7 @@ def lacks(s: Scene) -> str:
 
 
 def told(f: Finding) -> Finding:
-    """A bridge that loses a part of every pulse loses shorter pulses whole, and no longer ones in part; one
+    """A bridge that loses a part of every pulse loses shorter pulses whole, and no longer ones in part. One
     whose loss grows over far longer pulses is something else over the command."""
     if value(f, "knee") < REACH * value(f, "deadband") + SHARP:
         return f

@@ -48,8 +48,8 @@ def since_first(t: Array, label: NDArray[Any]) -> Array:
 
 @dataclass
 class Scene:
-    """`declared` are the fitted coefficients of the balance's base by name; `residual` (n_fitted,) what a
-    flexible fit leaves, for the search of lines; `wander` the columns of that flexible fit."""
+    """`declared` are the fitted coefficients of the balance's base by name. `residual` (n_fitted,) is what a
+    flexible fit leaves, for the search of lines. `wander` are the columns of that flexible fit."""
 
     view: View
     problem: Problem
@@ -187,7 +187,7 @@ class Scene:
 
     @cached_property
     def one_speed(self) -> tuple[float, float]:
-        """Speed, position units per s, that all files have, and the rms by which the position leaves it; none
+        """Speed, position units per s, that all files have, and the rms by which the position leaves it. None
         of an axis with two motors, whose volts tell a line in time."""
         v, p = self.view, self.problem
         own = [(p.session == k).astype(float) for k in np.unique(p.session)]

@@ -35,8 +35,8 @@ QUICKEST = 0.45
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """What a second mass takes: of any drive beyond moving along rigidly, of an axis with two motors all of
-    it, so that the declared inertia is the first mass's."""
+    """Columns of a second mass. Of any drive they are what it takes beyond moving along rigidly. Of an axis
+    with two motors they are all that it takes, so that the declared inertia is the first mass's."""
     v = s.view
     if s.pair is not None:
         m = s.pair.motion  # where it is not sound (a gap, the seam between two runs) nothing excites a mode

@@ -54,8 +54,9 @@ def spline_columns(x: Array, knots: int) -> Array:
 
 
 def domains(s: Scene) -> list[tuple[str, Array]]:
-    """Name and fitted-row values of everything that an effect may be a smooth function of: nothing that is
-    the response itself, which explains it without saying why; and no place that along one speed is a time."""
+    """Name and fitted-row values of everything that an effect may be a smooth function of. No domain is the
+    response itself, which explains it without saying why. No domain is a place that along one speed is a
+    time."""
     v, at = s.view, s.view.rows
     speed = [] if v.response.is_speed else [("velocity", v.speed[at])]
     place = [] if s.span > 0 and on_clock(s, KNOTS / s.span) else [("axis_angle", v.x[at])]
@@ -104,8 +105,8 @@ def _each(label: str, columns: Array, unit: str) -> list[tuple[str, str]]:
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """What stands beside the names because they would follow it: a scale that moves with time, a spring, lost
-    motion; of a pair any function of speed and travel, and lines at fixed Hz; of volts brushes."""
+    """Columns beside the names because they would follow it: a scale that moves with time, a spring, lost
+    motion. Of a pair: any function of speed and travel, and lines at fixed Hz. Of volts: brushes."""
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
@@ -114,9 +115,9 @@ def columns(s: Scene) -> list[Candidate]:
 
 
 def moving_scale(s: Scene) -> list[Candidate]:
-    """Two sensors whose ratio moves with time, steadily or by a smooth function: thermal growth errs in
-    proportion to the distance from where it is held (ISO 230-3), which no sensor knows the place of: a drift
-    goes with it. A gap and a delay together follow it, too."""
+    """Two sensors whose ratio moves with time, steadily or by a smooth function. Thermal growth errs in
+    proportion to the distance from where it is held (ISO 230-3). No sensor knows that place, so a drift goes
+    with it. A gap and a delay together follow it, too."""
     if s.force:
         return []
     x = s.view.x[s.view.rows]
@@ -179,7 +180,7 @@ def flexible(s: Scene) -> Array:
 
 
 def plain(s: Scene) -> Array:
-    """Columns (n_fitted, k) of loops, asymmetry and a weight, but nothing that is free over the speed: along
+    """Columns (n_fitted, k) of loops, asymmetry and a weight, but nothing that is free over the speed. Along
     one kind of ramp a delay is a function of the speed, too."""
     v = s.view
     parts = [np.zeros((len(s.problem.y), 0))]

@@ -9,7 +9,7 @@ from plant.units import ARCSEC
 
 
 def repair_stuck_bit(run: Run) -> Finding | None:
-    """The finding where one bit of the position's counts stays what it is between others that change; in
+    """The finding where one bit of the position's counts stays what it is between others that change. In
     place, the bit is put back by the motion.
 
     A range of four of the bit's steps holds both of its values, whatever the motion. Bits below the lowest
@@ -45,8 +45,8 @@ def repair_stuck_bit(run: Run) -> Finding | None:
 
 
 def _hidden(x: Array, moved: Array, step: float) -> Array:
-    """What each row (n,) of the counts x lacks, 0 or `step`, where the roller has `moved` (n - 1,) counts
-    from row to row: the path of the smallest distance from it (Viterbi's, of two states)."""
+    """Counts that each row (n,) of x lacks, 0 or `step`, where the roller has `moved` (n - 1,) counts from
+    row to row. It is the path of the smallest distance from it (Viterbi's, of two states)."""
     states = np.array([0.0, step])
     cost, came = np.zeros(2), np.zeros((len(x), 2), dtype=int)
     for k, off in enumerate(np.diff(x) - moved, start=1):

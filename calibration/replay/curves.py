@@ -30,7 +30,7 @@ def places(domain: str, u: Array) -> Array:
 def curve_of(s: Selection, index: int, view: View) -> Curve | None:
     """The torque on the axis that chosen effect `index` adds, over its domain; None where it is no function.
 
-    Least squares of the plant's own interpolation through the effect's contribution on training rows; the
+    Least squares of the plant's own interpolation through the effect's contribution on training rows. The
     half-widths follow from the covariance of its coefficients, with Student's reach over blocks.
     """
     chosen, rows = s.chosen[index].candidate, s.problem.train

@@ -21,7 +21,7 @@ from calibration.replay.trace import Loop, Trace, repeats
 from plant.model import PlantModel
 
 Compared = tuple[Trace, Trace, Mask]  # log, replay, rows of the run
-AGAIN = "closed loop run again"
+AGAIN = "closed loop replayed"
 IDENTIFIED = "identified from set point, velocity and effort"
 
 
@@ -86,9 +86,9 @@ def replay(
                 time = frame.t[whole] - frame.t[whole][0]
                 shown = {"run": run.name, "time": time, "log": log, "use": use & ~chaos[-1], **traces}
     except ValueError as error:
-        return Replay(reasons=[f"closed loop not run again: {error}"])
+        return Replay(reasons=[f"closed loop not replayed: {error}"])
     if not shown:
-        return Replay(reasons=["closed loop not run again: the held-out rows hold no settled motion"])
+        return Replay(reasons=["closed loop not replayed: the held-out rows hold no settled motion"])
     rows, reasons = _judge(pairs, chaos)
     reasons += [*_beside(offsets), *_conditions(gains, left_out, frame)]
     return Replay(rows=rows, reasons=reasons, **shown)
@@ -140,8 +140,8 @@ def _judge(
         told = ", ".join(f"{c} {first[c][0]:.3g} before, {last[c][0]:.3g} {UNITS[c]} after" for c in last)
         reasons.append(
             f"{AGAIN}: {100 * (1 - rows / all_rows):.0f} % of the settled rows are within a "
-            f"second of a passage through the Stribeck speed and left out: the moment of breaking away "
-            f"cannot be repeated; with them {told}"
+            f"second of a passage through the Stribeck speed and left out. The moment of breaking away "
+            f"cannot be repeated. With them {told}"
         )
     return out, reasons
 
@@ -171,9 +171,9 @@ def _conditions(gains: Gains | None, left_out: set[str], frame: Frame) -> list[s
 
 
 def drive(loop: Loop, model: PlantModel, rows: Mask, use: Mask) -> tuple[Trace, Array]:
-    """Run `model` along the run `rows` (mask of the log's rows), of whose rows `use` are compared; with how
-    far each of its transients, run as it is, moves the axis against the log, arcsec. Raises ValueError where
-    the plant cannot be run."""
+    """Run `model` along the run `rows` (mask of the log's rows), of whose rows `use` are compared. The second
+    value is how far each of its transients, run as it is, moves the axis against the log, arcsec. Raises
+    ValueError where the plant cannot be run."""
     period_s, position = loop.frame.period_s, loop.measured(rows).position
     half = round(SETTLE_S / period_s / 2)
     least = max(LEAST_ROWS, half)

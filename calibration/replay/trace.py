@@ -47,9 +47,9 @@ class Loop:
         )
 
     def again(self, model: PlantModel, rows: Mask, nudge: Array) -> Trace:
-        """Run `model` from the state of the first of `rows` (one run) under the run's own command: closed
-        loop where the log has a set point, to which `nudge` (arcsec/s, one per row) is added; open loop on
-        the logged effort elsewhere. Raises ValueError where the plant cannot be run."""
+        """Run `model` from the state of the first of `rows` (one run) under the run's own command. It is
+        closed loop where the log has a set point, to which `nudge` (arcsec/s, one per row) is added.
+        Elsewhere it is open loop on the logged effort. Raises ValueError where the plant cannot be run."""
         from plant.loop import Excitation, simulate
 
         frame, scale = self.frame, self.frame.scale
@@ -143,7 +143,7 @@ def before_start(frame: Frame, rows: Mask) -> Array | None:
 
 
 def _held(x: Array, present: Mask) -> Array:
-    """A set point through rows that are missing: the last row's stays in force; one without any is open loop,
+    """A set point through rows that are missing: the last row's stays in force. One without any is open loop,
     and so is what follows it."""
     at = np.where(present, np.arange(len(x)), -1)
     np.maximum.accumulate(at, out=at)

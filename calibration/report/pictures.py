@@ -47,7 +47,7 @@ def _effect(b: Balance, k: int) -> Picture:
     """An effect over the domain that explains it, the other effects taken away. A line whose phase is every
     section's own is drawn for the first."""
     s, c = b.selection, b.selection.chosen[k].candidate
-    alt = "Fitted rows, the declared model and the other effects taken away"
+    alt = "Fitted rows, the declared model and the other effects removed"
     assert b.over is not None
     values, label = b.over(c)
     if c.kind == "line" and len(sections := pairs_by_section(c.columns)) > 1:
@@ -84,8 +84,8 @@ def replay_picture(again: Replay) -> dict[str, str]:
     first = int(np.argmax(np.where(whole > WHOLE, spread, 0.0)))
     part = slice(first, first + size)
     top.plot(t[part], measured[part], color=GREY, lw=2.6, alpha=0.7, label="measured")
-    top.plot(t[part], before[part], color=RED, lw=0.8, label="declared model, closed loop run again")
-    top.plot(t[part], after[part], color=BLUE, lw=0.8, label="corrected plant, closed loop run again")
+    top.plot(t[part], before[part], color=RED, lw=0.8, label="declared model, closed loop replayed")
+    top.plot(t[part], after[part], color=BLUE, lw=0.8, label="corrected plant, closed loop replayed")
     top.set(xlabel="time in the run, s", ylabel=f"motor {channel}, {unit}", title=f"Held-out run {again.run}")
     top.margins(y=0.25)
     top.legend(frameon=False, fontsize=8, loc="upper center", ncol=3)
@@ -97,5 +97,5 @@ def replay_picture(again: Replay) -> dict[str, str]:
     low.legend(frameon=False, fontsize=8, markerscale=6)
     return {
         "image": png(fig),
-        "alt": f"Closed loop run again on {again.run}: measured, declared and corrected",
+        "alt": f"Closed loop replayed on {again.run}: measured, declared and corrected",
     }

@@ -1,6 +1,6 @@
 """Scores of candidate blocks and the surrogate distribution of their maximum.
 
-The whitened residual's sign is drawn anew per block of rows (a wild block bootstrap): that keeps colour and
+The whitened residual's sign is drawn anew per block of rows (a wild block bootstrap). That keeps colour and
 bursts, and destroys coherence with angle, speed or time beyond a block. The threshold is a quantile of the
 largest score over all candidates.
 """

@@ -10,7 +10,7 @@ from calibration.statistics.thresholds import SMALLEST_TAIL
 
 def wald_log10(wald: Array | float, width: Array | float, blocks: float) -> Array:
     """-log10 p of a Wald statistic of `width` coefficients with covariance from independent `blocks`, so wald
-    / width is F(width, blocks - 1); the leading term where the tail underflows."""
+    / width is F(width, blocks - 1). It is the leading term where the tail underflows."""
     x, b = np.broadcast_arrays(np.maximum(np.asarray(wald, dtype=float), 0.0), np.asarray(width) / 2)
     a = max(blocks - 1.0, 1.0) / 2
     part = 2 * a / (2 * a + x)

@@ -38,7 +38,8 @@ def test_a_weight_is_no_guess() -> None:
     [
         ("over the turn of output", 0.7, False),
         ("over the turn of output", 0.3, True),
-        ("over the turn of motor", 0.7, True),
+        ("over the turn of output, in size", 0.7, False),
+        ("over the turn of output2", 0.7, True),
         ("over time", 0.7, True),
     ],
 )

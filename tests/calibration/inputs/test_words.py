@@ -30,7 +30,17 @@ def test_numbers_of_both_signs_show_their_word(bits: int, low: int, high: int, s
         np.arange(1000.0),
         np.linspace(0.0, 65535.0, 100) + 0.25,  # no whole numbers
         np.array([1.0, 65535.0, 65534.0, 65533.0]),  # too few rows
+        np.concatenate([np.arange(200.0, 900.0), np.arange(6000.0, 7500.0)]),  # mA, idle and running
+        np.concatenate([np.arange(0.0, 10.0), np.arange(180.0, 200.0)] * 3),  # a duty of 8 bits
+        np.concatenate([np.zeros(50), np.arange(23900.0, 24100.0)]),  # mV, off and on
+        np.concatenate([np.arange(9000.0, 9100.0), np.arange(56000.0, 56100.0)]),  # far off zero
     ],
 )
 def test_what_is_no_signed_word_is_left(x: np.ndarray) -> None:
     assert word_length(x) == 0.0
+
+
+@pytest.mark.parametrize("scale", [0.1, 0.01, 0.001, 0.3])
+def test_a_scale_there_and_back_leaves_whole_numbers(scale: float) -> None:
+    x = np.random.default_rng(3).integers(-700, 700, 500).astype(float) % 65536
+    assert word_length(x * scale / scale) == 65536.0

@@ -10,6 +10,7 @@ from calibration.names.gravity_imbalance import forces_once_a_turn
     ("kind", "names"),
     [
         (None, ("gear_eccentricity",)),
+        ("unknown", ("gear_eccentricity", "gear_mesh", "motor_cogging")),
         ("motor", ("gear_eccentricity",)),
         ("motor_cogging", ("motor_cogging",)),
         ("encoder_eccentricity", ()),
