@@ -8,7 +8,7 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.repair import MOVING, SLOW
 from calibration.inputs.run import Repair, Run, signal_of
 
-#: values of a word that a logger writes; shorter ones are counts and duties as they are
+# values of a logger's word of 16, 24 or 32 bits. definition; shorter ones are counts and duties as they are
 LENGTHS = (2.0**16, 2.0**24, 2.0**32)
 
 
