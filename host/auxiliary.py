@@ -4,12 +4,13 @@ Estimator: the mean of both readings weighted by their inverse variances, the be
 of two independent readings of one angle. Its variance is 1 / (1/s1² + 1/s2²).
 
     s1² = (1″)² / 3                                         on the shaft: within ±1″, taken as uniform
+
     s2² = (15″/10.8)² / 3 + (0.9155″)² / 12 + (rate · t)²   auxiliary: accuracy, step, and time between
 
 The two are latched by clocks of their own, some milliseconds apart. The auxiliary reading is brought to the
-moment of the other by the axis' rate; what is left is how well that moment is known, t. At tracking speed it
+moment of the other by the axis' rate. What is left is how well that moment is known, t. At tracking speed it
 counts 0.03″; at slew it is some 15″ and the shaft's encoder decides alone. Readings further apart than five
-standard deviations of their difference are not combined: one of the two is wrong, which is what the auxiliary
+standard deviations of their difference are not combined. One of the two is wrong, which is what the auxiliary
 one is for. Both encoders are taken to be aligned to one zero (ASSUMPTION; the plant's are).
 """
 
@@ -32,7 +33,7 @@ ABSOLUTE_ARCSEC = 1.0 / math.sqrt(3.0)
 AUXILIARY_ARCSEC = math.hypot(15.0 / RATIO / math.sqrt(3.0), AUXILIARY_STEP_ARCSEC / math.sqrt(12.0))
 """Of the auxiliary one at rest: ±15″ through 1:10.8 (paper, section 3.2), uniform, and its step."""
 TIME_S = 0.005 * math.sqrt(2.0 / 12.0)
-"""Of the time between two frames' arrivals: each waits 0 to 5 ms for its USB report (the gateway's 4 ms
+"""Of the time between two frames' arrivals. Each waits 0 to 5 ms for its USB report (the gateway's 4 ms
 and a USB frame), uniform."""
 APART = 5.0
 """Standard deviations of the difference beyond which the two do not measure the same. ASSUMPTION."""

@@ -1,6 +1,6 @@
 """Who may look: this machine always, others only with the token, once in the address, then by a cookie.
 
-A request that names a foreign host, or comes from a page of one, is refused: a name server can point any name
+A request that names a foreign host, or comes from a page of one, is refused. A name server can point any name
 at this machine, and a browser lets any page open a websocket.
 """
 

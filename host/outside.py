@@ -1,7 +1,7 @@
 """The thread in which doors for other programs live: one asyncio loop, away from the ticking thread.
 
 Sockets, HTTP and browsers wait, block and break on wall time. None of it may hold up a tick, and nothing a
-tick does may depend on it: commands go through `Telescope.call`, readings come from its snapshot.
+tick does may depend on it. Commands go through `Telescope.call`, readings come from its snapshot.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The LVDT with its carrier: excitation, secondary voltage, synchronous rectifier, low pass (P12).
 
-`FocusPort.lvdt` gives the mean of the rectified signal at once. Here it is made of the 2 kHz it comes from:
-it lags, ripples at 4 kHz and loses the cosine of the transducer's phase error. Carrier: paper. The rest is an
+`FocusPort.lvdt` gives the mean of the rectified signal at once. Here it is made of the 2 kHz it comes from.
+It lags, ripples at 4 kHz and loses the cosine of the transducer's phase error. Carrier: paper. The rest is an
 ASSUMPTION: a filter of 5 ms, two orders below the ripple and faster than the 50 ms of a FOCUS frame.
 """
 
@@ -62,7 +62,7 @@ class CarrierLvdt:
 
 
 def ripple(size: float, filter_s: float = FILTER_S) -> float:
-    """Amplitude of the 4 kHz ripple, V, for a rectified mean of `size`: the second harmonic of |sin| is 2/3
-    of its mean, two first-order low passes take 1 / (1 + (w t)^2) of it."""
+    """Amplitude of the 4 kHz ripple, V, for a rectified mean of `size`. The second harmonic of |sin| is 2/3
+    of its mean. Two first-order low passes take 1 / (1 + (w t)^2) of it."""
     reach = 2 * pi * 2 * CARRIER_HZ * filter_s
     return size * 2 / 3 / (1 + reach * reach)

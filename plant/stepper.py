@@ -4,6 +4,7 @@ Two-phase hybrid motor (K: any text on stepping motors). Electrical angle e = 50
 electrical turn is eight half steps.
 
     L di/dt = v - R i - emf;       emf_a = -K w sin e,  emf_b = K w cos e;
+
     torque  = K (i_b cos e - i_a sin e);
     J dw/dt = torque - load - friction sign(w) - damping w.
 

@@ -1,6 +1,6 @@
 """The auxiliary encoder's reading brought to this board's sampling instants, for the axis log.
 
-The encoder's board runs on its own crystal, so its 10 ms slide past this board's: the last position is
+The encoder's board runs on its own crystal, so its 10 ms slide past this board's. The last position is
 carried on by a low-pass of the frames' differences, as the motors' counts are. Nothing here steers the axis.
 """
 

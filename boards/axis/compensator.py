@@ -1,8 +1,8 @@
 """Effort that is known beforehand: waves over the position, and friction that turns at a reversal.
 
-All integers as a dsPIC has them: phases are 32 bit and wrap, the sine is a table of 1024 values in flash,
+All are integers as a dsPIC has them. Phases are 32 bit and wrap, the sine is a table of 1024 values in flash,
 products fit 64 bits. A shaft of the gear train turns with the axis while the teeth touch, so one angle, that
-of the absolute encoder, serves every stage: line k has its order in cycles per turn of the axis.
+of the absolute encoder, serves every stage. Line k has its order in cycles per turn of the axis.
 """
 
 from math import cos, pi, sin

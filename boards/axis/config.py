@@ -40,7 +40,7 @@ class AxisConfig:
 
     kp, ki: PWM steps per count/5 ms, and per count (ASSUMPTION; fitted to the paper's rows by plant file).
     counter_split: share of the effort the lagging motor gets, percent, 10..25 (paper, section 3.3).
-    split_fade_counts: speed, counts/5 ms, at which that share has fallen to nothing; 0: it never falls
+    split_fade_counts: speed, counts/5 ms, at which that share has fallen to nothing. 0: it never falls
         (hardware.md 2.3: 25 % is not compatible with 24 V at slew for some motor constants).
     pwm_steps, pwm_hz: resolution and frequency of the motor PWM.
     position_gain: 1/s, of the position loop around the velocity loop (ASSUMPTION).

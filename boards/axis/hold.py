@@ -18,7 +18,7 @@ from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
 
 LOCK_LIMIT_Q16: Final = round(2.0 / ARCSEC_PER_TURN * COUNTS_PER_TURN) << 16
-"""Largest position error the lock remembers, 2 arcsec: more is a set point that the axis cannot follow, and
+"""Largest position error the lock remembers, 2 arcsec. More is a set point that the axis cannot follow, and
 would be paid back with a swing. ASSUMPTION."""
 
 
@@ -46,8 +46,8 @@ class RateLock:
 class Blend:
     """shift: time constant, 2**shift ticks.
 
-    The position is kept, not a sum of counts, so nothing grows with the night: 64 bits, and never farther
-    from the absolute encoder than 2**shift ticks of counts (2^15 ticks of 2^33: 2^48).
+    The position is kept, not a sum of counts, so nothing grows with the night. It has 64 bits and is never
+    farther from the absolute encoder than 2**shift ticks of counts (2^15 ticks of 2^33: 2^48).
     """
 
     __slots__ = ("_begun", "_position_q18", "shift")

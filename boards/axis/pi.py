@@ -1,6 +1,6 @@
 """The incremental PI of the paper (section 4) in fixed point.
 
-Gains in Q12, errors in Q16, the effort in Q16 PWM steps: with Ki = 0.037 plain integers would truncate
+Gains in Q12, errors in Q16, the effort in Q16 PWM steps. With Ki = 0.037 plain integers would truncate
 the integral action to nothing (hardware.md 1.4). The effort is limited where it is accumulated, before
 the PWM register, so it cannot wind up. A change of set point enters through the difference of errors only, so
 it is bumpless.

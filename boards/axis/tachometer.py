@@ -1,7 +1,7 @@
 """A motor board's counts brought to this board's sampling instants.
 
-Both boards run on their own crystals, so their 10 ms slide past each other: the count is carried on
-to the moment of the sample, and the sample is the difference of two such counts. Carrying on needs a
+Both boards run on their own crystals, so their 10 ms slide past each other. The count is carried on to the
+moment of the sample, and the sample is the difference of two such counts. Carrying on needs a
 rate finer than the whole counts of one frame, so the differences go through a low-pass of four frames.
 """
 

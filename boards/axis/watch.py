@@ -10,7 +10,7 @@ _LIMIT: Final = round(40.0 / ARCSEC_PER_TURN * COUNTS_PER_TURN) << UNIT_SHIFT
 """Difference that may build up between two looks, 250 ms apart: 40 arcsec, in Q18 counts. ASSUMPTION.
 
 The age of a position is known to 0.1 ms, 0.7 arcsec at slew. A position loop whose encoder is stuck
-corrects by far more than this, so a stuck absolute encoder shows as well as a stuck incremental one."""
+corrects by far more than this. So a stuck absolute encoder shows as well as a stuck incremental one."""
 
 
 class EncoderWatch:

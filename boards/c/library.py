@@ -47,7 +47,7 @@ extern "Python" int64_t firmware_ask(void *, int64_t, int64_t, int64_t, void *, 
 
 DUTIES_FROM: Final = 8
 """Bits of a signal, or of a call's place in CALLS. Above them are the duties of write_pwm(), 16 bits each,
-and a bit that says so: they come with the next call or the routine's end, whatever is first."""
+and a bit that says so. They come with the next call or the routine's end, whatever is first."""
 
 Ask = Callable[[int, int, int, bytes], int]
 """(call by its place in CALLS, + duties, two numbers, bytes) -> what firmware gets."""

@@ -71,8 +71,9 @@ _CODES: Final = (
     (Health.OVERRUN, 0x6100, 0x81),
     (Health.STALE, 0x8100, 0x11),
 )
-"""Health bit, emergency error code and error register (CiA 301, tables 26 and 48), the first that is set: CAN
-overrun, error passive, device hardware, two of the device's own, internal software, communication."""
+"""Health bit, emergency error code and error register (CiA 301, tables 26 and 48), the first that is set. In
+order: CAN overrun, error passive, device hardware, two of the device's own, internal software,
+communication."""
 
 
 class _Task:

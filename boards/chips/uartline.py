@@ -29,7 +29,7 @@ def line_levels(byte: int) -> list[int]:
 
 
 def sample(levels: list[int], sent_baud: float, baud: float) -> Received:
-    """What a receiver at `baud` takes for a byte sent at `sent_baud`: it looks at the middle of each bit,
+    """What a receiver at `baud` takes for a byte sent at `sent_baud`. It looks at the middle of each bit,
     counted from the falling edge of the start bit. After the byte the line idles high."""
 
     def level(bit: int) -> int:

@@ -1,7 +1,7 @@
 """The interrupt controller: priorities, latency, cost, preemption, lost flags.
 
-A board's table names its sources. The routine of the highest priority can not be interrupted: its end
-is known at its start, so it runs in one event and stamps its outputs with that end. Everything below
+A board's table names its sources. The routine of the highest priority can not be interrupted. Its end is
+known at its start, so it runs in one event and stamps its outputs with that end. Everything below
 may be interrupted: its body runs at its end, which every interruption moves.
 """
 

@@ -1,7 +1,7 @@
 """Quadrature encoder interface: a 16-bit position counter that nobody but the encoder touches.
 
 dsPIC30F3011 with QEIM = 111 and MAXCNT = 0xFFFF, PIC18F4431 with MAXCNT = 0xFFFF: the counter wraps freely
-(hardware.md 3.4, 3.5), so firmware may use differences modulo 65536 and nothing else.
+(hardware.md 3.4, 3.5). So firmware may use differences modulo 65536 and nothing else.
 """
 
 from collections.abc import Callable

@@ -1,8 +1,8 @@
 """A duty finer than a PWM step: the fraction is spread over successive periods (first-order delta-sigma).
 
-What the PWM interrupt of the dsPIC does, once a period and for each channel: add the fraction to a 16-bit
-accumulator and load the whole steps plus the carry. Over n periods the registers sum up to n times the wanted
-value, to within one step, whatever n.
+What the PWM interrupt of the dsPIC does, once a period and for each channel. It adds the fraction to a 16-bit
+accumulator and loads the whole steps plus the carry. Over n periods the registers sum up to n times the
+wanted value, to within one step, whatever n.
 """
 
 from collections.abc import Iterator

@@ -22,7 +22,7 @@ class Uart:
     """Transmitter. sink: whoever listens, or None (the cable is out; the board cannot tell).
 
     line: called with (t_ns of the first start bit, packet) when a packet is handed in, for who needs the time
-    of every byte: the byte numbered i is through `duration_ns(i + 1)` after that.
+    of every byte. The byte numbered i is through `duration_ns(i + 1)` after that.
     """
 
     __slots__ = ("_free_ns", "_packets", "_queue", "baud", "dropped", "line", "sink")

@@ -69,7 +69,7 @@ def seen_by_all(frame: Frame, bit: int) -> Verdict | None:
 
 
 def overloads(frame: Frame, bit: int) -> bool:
-    """Whether `bit` is the last of EOF: a receiver that sees it dominant has the frame already and answers
+    """Whether `bit` is the last of EOF. A receiver that sees it dominant has the frame already. It answers
     with an overload frame, which counts nowhere (ISO 11898-1, overload conditions)."""
     return bit == len(stuff(stuffed_field(frame))) + TAIL_BITS - 3 - 1
 

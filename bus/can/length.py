@@ -2,7 +2,7 @@
 
 CRC-15 is linear, so the CRC of an eight-byte frame is the header's share XOR one table entry per
 16-bit word. Stuffing is a state machine of nine states (nothing yet; last bit and run of 1..4),
-tabulated for 16 bits at a time: one byte per entry, new state in bits 0..3, inserted stuff bits in
+tabulated for 16 bits at a time. An entry is one byte: new state in bits 0..3, inserted stuff bits in
 bits 4..6. Built once with numpy, 0.9 MB in all. `bits.py` is the reference it is tested against.
 """
 
@@ -19,7 +19,7 @@ from bus.can.frame import MAX_STANDARD, Frame, check
 
 _STATES: Final = 9
 _START: Final = 0
-"""State 0 is never reached by a bit: state = 1 + 4 * last + (run - 1), run 1..4, gives 1..8; 0 is
+"""State 0 is never reached by a bit. State = 1 + 4 * last + (run - 1), run 1..4, gives 1..8. 0 is
 "nothing yet"."""
 _words: Final[Callable[[bytes], tuple[int, int, int, int]]] = Struct(">4H").unpack
 
@@ -66,7 +66,7 @@ _CRC0: Final = _SHARES[0]
 _CRC1: Final = _SHARES[1]
 _CRC2: Final = _SHARES[2]
 _CRC3: Final = _SHARES[3]
-"""Rows follow one another: entry of state s and value v at s << 16 | v, or s << 15 | v for the CRC."""
+"""Rows follow one another. The entry of state s and value v is at s << 16 | v, or s << 15 | v for the CRC."""
 
 
 _BYTES: Final = [[int(share[k << shift]) for k in range(256)] for share in _SHARES for shift in (8, 0)]

@@ -40,7 +40,7 @@ class Door:
     the error frames of the node's controller (`ErrorFrames`): bus off, passive, missing acknowledge.
 
     enter: what to do with a frame that comes in; by default it arrives at the node.
-    frames_in, frames_out; refused: the wire could not carry more; rejected: no CAN 2.0 frame; lost_out: the
+    frames_in, frames_out; refused: the wire could not carry more; rejected: no CAN 2.0 frame. lost_out: the
     interface took no more; `system_lost`: dropped by the operating system before the door saw them.
     """
 

@@ -29,7 +29,7 @@ PROT_PLACES: Final = {"crc": 0x08, "ack": 0x19}
 OF_A_SENDER: Final = {"stuff": "bit", "crc": "form"}
 OF_A_RECEIVER: Final = {"bit": "stuff"}
 """What one node calls an error that the other side has found first: the six dominant bits of its flag. They
-are a bit error to who sends a recessive one, a stuff error to who listens, and behind a wrong CRC they fall
+are a bit error to who sends a recessive one, a stuff error to who listens. Behind a wrong CRC they fall
 into the recessive end of frame, a form error (ISO 11898-1, error detection)."""
 WARNING: Final = 96
 """Counts from which a controller warns (ISO 11898-1; MCP2515 EFLG.EWARN)."""

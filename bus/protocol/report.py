@@ -1,8 +1,8 @@
 """The 64-byte USB HID report between gateway and PC: eight slots of eight frame bytes, byte 0 names the
 device.
 
-Each of the paper's eight measuring nodes has a place of its own (row L2), the same in every report; what
-else there is to say takes the places that are free.
+Each of the paper's eight measuring nodes has a place of its own (row L2), the same in every report. What else
+there is to say takes the places that are free.
 
 There is no room for identifiers. Bit 7 of byte 0 marks what is not a 0x200+D measurement. Byte 1 then
 tells a REPLY (an opcode, below 0x80) from a SUMMARY or TARGET (0xF3) and a HEARTBEAT (0xF7). A slot

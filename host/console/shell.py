@@ -41,7 +41,7 @@ for (const kind of ['keydown', 'keyup']) window.addEventListener(kind, event => 
   document.dispatchEvent(new KeyboardEvent(kind, {key: ' ', code: 'Space', repeat: event.repeat}));
 }, true);
 </script>"""
-"""The space bar is the stop wherever the focus is but in a text: a focused button would swallow the key and
+"""The space bar is the stop wherever the focus is but in a text. A focused button would swallow the key and
 be clicked by it instead, and the telescope sent on."""
 
 _BEEP = """(() => { const sound = new AudioContext(), tone = sound.createOscillator();

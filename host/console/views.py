@@ -21,7 +21,7 @@ class Node(NamedTuple):
 
 
 class FaultKind(NamedTuple):
-    """A fault that can be made: its level (bus, board …), what happens, the arguments it needs as
+    """A fault that can be made: its level (bus, board …) and what happens. Then the arguments it needs as
     `name=` words, and all of its arguments with units and bounds."""
 
     name: str

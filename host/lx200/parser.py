@@ -11,7 +11,7 @@ class Parser:
 
     A command is what stands between `:` and `#`, as Latin-1 text (the degree sign is 0xDF). What stands
     outside is dropped. A colon and a letter begin a command anew, since within one a colon is followed by a
-    digit: a command that was torn off costs itself only.
+    digit. A command that was torn off costs itself only.
     """
 
     def __init__(self) -> None:

@@ -43,8 +43,8 @@ class Parameter:
 class Term:
     """One formula and the hook it acts at; `update` advances its memory once per step.
 
-    Both take the signals x (plant/effects/signals.py), `update` the step dt, s, and then by name what they
-    need, in this order: memory, `order` of a staged effect, parameters, constants; SI units. `seed` is a
+    Both take the signals x (plant/effects/signals.py), `update` the step dt, s. Then they take by name what
+    they need, in this order: memory, `order` of a staged effect, parameters, constants; SI units. `seed` is a
     whole number of the effect's own, for noise. They are compiled: numbers in, numbers out.
     hook: `encoder`: at the encoder that the parameter `encoder` or the stage names; `target`: where the
     function says. A parameter `motor` chooses the motor: at the other one the value is 0.

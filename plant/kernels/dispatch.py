@@ -2,7 +2,7 @@
 
 Compiled code cannot call through a table without losing inlining and caching, so the two functions are chains
 of calls. The chains are written here, from the registry, and with them which number of the row each argument
-of a formula is: a new effect is its own file and nothing else.
+of a formula is. A new effect is its own file and nothing else.
 """
 
 from collections.abc import Callable

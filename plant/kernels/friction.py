@@ -1,6 +1,7 @@
 """LuGre friction with the exact bristle update (paper, equations (3) to (5); errors in print corrected).
 
 T = sigma0 z + sigma1 dz/dt + sigma2 w;  dz/dt = w - |w| z / g(w);
+
 sigma0 g(w) = Tc + (Ts - Tc) exp(-(|w| / ws)^delta).
 The parameters are eight numbers of an array `w` from place `f` on (layout.F_*). For a constant rate the
 bristle relaxes exponentially, so its update is exact for any step (no |w| dt / g limit).

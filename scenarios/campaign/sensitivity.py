@@ -89,7 +89,7 @@ class Indices(NamedTuple):
 
 
 def sobol(metric: str, y: Array, inputs: int, seed: int = 1) -> Indices | None:
-    """First-order and total indices from the runs of a `saltelli` sample in its order; None while a run is
+    """First-order and total indices from the runs of a `saltelli` sample in its order. None while a run is
     missing or has no such figure, or nothing changes it. By scipy.stats.sobol_indices."""
     n = len(y) // (inputs + 2)
     if n < 2 or n * (inputs + 2) != len(y) or not np.isfinite(y).all() or np.ptp(y) == 0.0:

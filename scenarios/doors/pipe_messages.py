@@ -1,6 +1,6 @@
 """What `schmidt serve` and the host program beside it tell each other, over a pipe.
 
-The host has a process of its own, as it has on the telescope: browsers and HTTP would otherwise hold Python's
+The host has a process of its own, as it has on the telescope. Browsers and HTTP would otherwise hold Python's
 lock when a tick is due. Nothing but these values crosses; the emulator's side is `host_door`, the host's
 `piped_host`.
 """

@@ -23,8 +23,8 @@ _THREADS = Path("/proc/self/task")
 def first(asked: bool = True) -> Iterator[str]:
     """This process before all ordinary programs; the line that says so.
 
-    Where the system has no such class or does not grant it: raises DoorError, or, if nobody asked for it, the
-    line says what to do.
+    Where the system has no such class or does not grant it, this raises DoorError. If nobody asked for it,
+    the line says what to do.
     """
     said = AHEAD
     before: dict[int, int] = {}

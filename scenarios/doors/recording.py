@@ -21,7 +21,7 @@ BEGUN = "begun.snapshot"
 class Recording:
     """Owns the folder: the files of a run (`scenarios.lab.recorder`), and
 
-    entered.log: `t_ns kind hex` for every entry; session.json: what the session was made of, its digest, and
+    entered.log: `t_ns kind hex` for every entry. session.json: what the session was made of, its digest, and
     the digest of the rest from each snapshot on. begun: the snapshot that the session goes on from; a copy
     stays in the folder.
     """

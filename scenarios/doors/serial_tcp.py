@@ -1,7 +1,7 @@
 """`--serial tcp:[HOST:]PORT` and `rfc2217:[HOST:]PORT`: the five lines on five TCP ports in a row.
 
-tcp is the bare byte stream (pyserial: `socket://`); rfc2217 speaks Telnet's port control option in pyserial's
-own implementation (`rfc2217://`), so that a program may set what it likes: the board's side does not follow.
+tcp is the bare byte stream (pyserial: `socket://`). rfc2217 speaks Telnet's port control option in pyserial's
+own implementation (`rfc2217://`), so that a program may set what it likes. The board's side does not follow.
 """
 
 from typing import Any

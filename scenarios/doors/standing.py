@@ -24,8 +24,8 @@ _OF_A_RUN = ("session", "can", "recorder", "usb", "truth", "chain", *(device.nam
 
 @dataclass(frozen=True, kw_only=True)
 class Standing:
-    """A network as it stood. entries: how many inputs the session had had; nodes: of the doors to CAN, by
-    their kinds of entry; usb: the cable with what is on it."""
+    """A network as it stood. entries: how many inputs the session had had. nodes: of the doors to CAN, by
+    their kinds of entry. usb: the cable with what is on it."""
 
     scenario: Scenario
     model: PlantModel

@@ -1,7 +1,7 @@
 """The doors there are, one row each.
 
-A new door is a file beside this one, with a class that is a `Door`, and a row here: `schmidt serve` has its
-option then, and `schmidt host`, too, when it stands on the host program. Doors are imported when one is asked
+A new door is a file beside this one, with a class that is a `Door`, and a row here. Then `schmidt serve` has
+its option, and `schmidt host`, too, when it stands on the host program. Doors are imported when one is asked
 for, as the command line needs the rows alone.
 """
 

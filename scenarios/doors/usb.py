@@ -3,7 +3,7 @@
     usb = Usb(queue, network.hid)
     usb.enter_by(entry)
     plug = usb.plug("alpaca")
-    link = HidLink(plug.write)                      # host/link.py; the client sends through it
+    link = HidLink(plug.write)                      # host/link.py. The client sends through it
     for t_ns, report in plug.reports():             # in the door's poll: what the gateway has sent since
         link.receive(t_ns, report)
 
@@ -22,7 +22,7 @@ KIND = "usb"
 OUT_LIMIT = 1024
 """OUT reports that wait for the gateway; a driver's write blocks or fails beyond. ASSUMPTION."""
 IN_LIMIT = 4096
-"""IN reports kept for a host program that does not read: Linux' hidraw keeps 64, a program in this process
+"""IN reports kept for a host program that does not read. Linux' hidraw keeps 64; a program in this process
 may be busy for a second. Older ones are lost and counted. ASSUMPTION."""
 
 

@@ -8,7 +8,7 @@ from host.link import HidLink
 
 
 class Cables:
-    """Joins the debug ports of a network to a host's link: reports of commands go out line by line, frames
+    """Joins the debug ports of a network to a host's link. Reports of commands go out line by line; frames
     come back in reports of one slot.
 
     ports: by device type.

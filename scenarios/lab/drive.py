@@ -12,8 +12,8 @@ from plant.plant import Plant
 _FRAME_BITS = 120
 """Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
 POINTING_BANDWIDTH = 22.0
-"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors
-against the axis (about 130 rad/s, 5 % damped), which 10 ms of delay would otherwise drive."""
+"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors against
+the axis (about 130 rad/s, 5 % damped). Otherwise 10 ms of delay would drive that mode."""
 _POINTING_KI = 0.08
 """Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
 _CREEP_KI = 0.15

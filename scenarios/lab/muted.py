@@ -97,7 +97,7 @@ def _drop(_frame: Frame, _ready_ns: int) -> bool:
 
 @dataclass
 class Rest:
-    """What the other boards said, against the log: frames that are the same, frames in the log, frames in the
+    """What the other boards said, against the log. Frames that are the same, frames in the log, frames in the
     run, and the largest difference of their times."""
 
     same: int

@@ -32,7 +32,7 @@ _HOST_UNITS = {"t_s": "s", "ra_error_arcsec": "arcsec", "dec_error_arcsec": "arc
 class Recorder:
     """Owns every file of the output folder that grows during a run.
 
-    The digest is SHA-256 over can.log, the axis logs and the truth samples, in this order: nothing in it
+    The digest is SHA-256 over can.log, the axis logs and the truth samples, in this order. Nothing in it
     depends on the wall clock, the speed factor or the folder.
     """
 

@@ -87,6 +87,6 @@ class Scenario:
     """Period of the status and sensor logs; the paper's consoles refresh every 250 ms."""
     can_log: str = "text"
     """`text` or `candump` (can.log), `zstd` (can.log.zst, the same text packed; the digest is that of the
-    text); `mf4`, `blf`, `asc`: the same frames once more, in can.ENDING beside can.log."""
+    text). `mf4`, `blf`, `asc`: the same frames once more, in can.ENDING beside can.log."""
     trace_period_s: float = 0.01
     """Period of the Parquet traces; the boards log at 10 ms."""

@@ -39,8 +39,9 @@ class BitTimes(NamedTuple):
         return (1 + self.propagation + self.phase1) / self.quanta
 
     def wire_timing(self) -> BitTiming:
-        """The same for the bus. Two nodes may differ by twice what each oscillator may (Bosch CAN 2.0,
-        part A, section 9: df <= min(phase 1, phase 2) / 2 (13 bit - phase 2), df <= SJW / 20 bit)."""
+        """The same for the bus. Two nodes may differ by twice what each oscillator may. The bounds are those
+        of Bosch CAN 2.0, part A, section 9. df <= min(phase 1, phase 2) / 2 (13 bit - phase 2), df <= SJW /
+        20 bit."""
         bit = self.quanta
         shortest = min(self.phase1, self.phase2)
         each = min(shortest / (2 * (13 * bit - self.phase2)), self.jump / (20 * bit))

@@ -13,7 +13,7 @@ LEAST = 4
 
 
 def best(points: Sequence[tuple[float, float]]) -> tuple[float, float, float] | None:
-    """(a, x, b) of width² = a + b (position - x)², the hyperbola of a cone of light and a spot; None when the
+    """(a, x, b) of width² = a + b (position - x)², the hyperbola of a cone of light and a spot. None when the
     points have no least width."""
     if len({position for position, _ in points}) < LEAST:
         return None

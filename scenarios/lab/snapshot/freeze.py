@@ -155,8 +155,8 @@ def take(what: Any, outside: Mapping[str, Any] | None = None, outsiders: tuple[t
     """Everything that can be reached from `what`, between two slices of simulated time.
 
     outside: what is not taken, by name. outsiders: classes whose objects are not taken either; there will be
-    nobody in their place. Raises SnapshotError, also when the compiled library is in use: its
-    instances cannot be taken apart (SCHMIDT_PURE=1 runs the same source plain, to the same bits).
+    nobody in their place. Raises SnapshotError, also when the compiled library is in use: its instances
+    cannot be taken apart. SCHMIDT_PURE=1 runs the same source plain, to the same bits.
     """
     if compiled():
         raise SnapshotError(_PLAIN)

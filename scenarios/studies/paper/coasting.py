@@ -57,8 +57,8 @@ def drive(plant: PlantModel) -> Drive:
 
 
 def opposing(emf: Array, drop: float) -> Array:
-    """Return the voltage against the current, V: the EMF of a motor that turns as it pulls; of one that is
-    turned against its pull what drives current through the diode (negative)."""
+    """Return the voltage against the current, V: the EMF of a motor that turns as it pulls. For one that is
+    turned against its pull: what drives current through the diode (negative)."""
     return np.asarray(np.where(emf >= 0.0, emf, np.minimum(0.0, emf + drop)), dtype=np.float64)
 
 

@@ -44,7 +44,7 @@ def data_sheet(plant: PlantModel) -> DataSheet:
 def ripple_free(log: Log, sheet: DataSheet) -> tuple[Array, Array]:
     """Return the mean currents of motors A and B, A.
 
-    The converter samples at the falling edge of the PWM, "where the motor current peaks" (paper 3.3): half
+    The converter samples at the falling edge of the PWM, "where the motor current peaks" (paper 3.3). Half
     the ripple, V D (1 - D) / (2 L f), is known from the duty and taken off.
     """
     lead = np.abs(log.effort) / EFFORT_SCALE
@@ -83,10 +83,10 @@ def over_angle(log: Log) -> Array:
 
 
 def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
-    """Return the mean torque and rate of two steady runs over the angle, there and back: without acceleration
+    """Return the mean torque and rate of two steady runs over the angle, there and back. Without acceleration
     half the difference of the drive torques is the friction, whatever the balance of the axis adds to both.
 
-    The standard error is that of white noise and the converter: over whole half turns the gears' part is no
+    The standard error is that of white noise and the converter. Over whole half turns the gears' part is no
     error, though it is most of what the torque does within a run.
     """
     torque, rate, noise, unrest = [], [], [], []

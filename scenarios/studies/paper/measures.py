@@ -56,7 +56,7 @@ class Line:
 def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float = LOG_PERIOD_S) -> Line:
     """Return the strongest sinusoid of `record` between two frequencies.
 
-    Strongest is the one that explains most of what an offset and a trend leave: its amplitude alone would
+    Strongest is the one that explains most of what an offset and a trend leave. Its amplitude alone would
     favour slow sinusoids that offset and trend cancel again. Frequencies are tried on a grid of a tenth of
     the record's resolution. Raises ValueError when not one period of `high_hz` fits.
     """

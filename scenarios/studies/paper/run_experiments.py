@@ -33,8 +33,8 @@ READINGS = {
     "motor": DEFAULTS,
     "printed": {preload: str(_PRINTED / f"{preload}_preload_fitted.yaml") for preload in ("low", "high")},
 }
-"""Table 2's Tc and Ts as N mm at the motor, or as printed, N m at the axis (hardware.md 2.3): the best pair
-known in each."""
+"""Table 2's Tc and Ts as N mm at the motor, or as printed, N m at the axis (hardware.md 2.3). They are the
+best pair known in each."""
 
 
 def pair(low: Path | None, high: Path | None, reading: str = "motor") -> dict[str, str]:

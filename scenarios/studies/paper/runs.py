@@ -62,8 +62,8 @@ def high_speed(
 ) -> HighSpeed:
     """E3, E5: closed loop at a speed, then for `opened_s` open loop at the effort that had held it.
 
-    The open-loop run is as long as a slew across the sky: what throws an open-loop drive off its speed is not
-    only the gears but the balance, which changes over tens of degrees.
+    The open-loop run is as long as a slew across the sky. Not only the gears throw an open-loop drive off its
+    speed but also the balance, which changes over tens of degrees.
     """
     closed = bench.closed_loop(setpoint, settle + seconds).after(settle)
     if not opened_s:

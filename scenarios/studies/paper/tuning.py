@@ -2,7 +2,7 @@
 
 All are in O'Dwyer's Handbook of PI and PID Controller Tuning Rules (the paper's ref. 15), under their
 authors: Ziegler and Nichols (1942, reaction curve); Chien, Hrones and Reswick (1952, servo, without and with
-20 % overshoot); Cohen and Coon (1953); Rivera, Morari and Skogestad (1986, improved PI, lambda = 1.7 L);
+20 % overshoot). Cohen and Coon (1953); Rivera, Morari and Skogestad (1986, improved PI, lambda = 1.7 L).
 Skogestad (2003, closed-loop time constant = dead time); Astrom and Hagglund (2006, AMIGO; also the paper's
 ref. 16).
 """

@@ -35,7 +35,7 @@ ADC_FULL = 1023.0
 """Largest count of the 10-bit converter: 6.24 A."""
 BREAK_AWAYS = (0.15, 0.2, 0.3)
 """s that each effort lasts on the way to break-away. Three, because the rate at that moment, some 10
-arcsec/s, is read in counts of 2.3 and is all that is known of the curve's steep end."""
+arcsec/s, is read in counts of 2.3. It is all that is known of the curve's steep end."""
 TRIALS = 80
 """Pairs of efforts tried at most."""
 

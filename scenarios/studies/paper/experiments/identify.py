@@ -65,8 +65,8 @@ class SecondOrder:
 
 
 def averaged_step(make: Callable[[], Bench]) -> Array:
-    """Return the mean response in counts per step of effort, baseline removed: rows 10 ms apart, the first
-    one 2.5 ms (on average) after the effort has changed.
+    """Return the mean response in counts per step of effort, baseline removed. Rows are 10 ms apart, the
+    first one 2.5 ms (on average) after the effort has changed.
 
     Up and down in turn. Raises ValueError when a log does not show its step.
     """
@@ -126,8 +126,8 @@ def first_order(model: SecondOrder) -> FirstOrder:
 
 
 def fit(response: Array) -> FirstOrder:
-    """Return the model of the loop for an averaged step (see `averaged_step`): gain in counts per step, lag
-    and dead time in s, half a period of holding included."""
+    """Return the model of the loop for an averaged step (see `averaged_step`). Gain is in counts per step,
+    lag and dead time in s, half a period of holding included."""
     t: Array = np.arange(response.size, dtype=np.float64) * LOG_PERIOD_S + HALF_ROW_S / 2.0
     found = first_order(second_order(t, response))
     return FirstOrder(found.gain, found.lag_s, found.dead_s + HOLD_S)

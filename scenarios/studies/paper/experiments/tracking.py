@@ -53,7 +53,7 @@ def high_preload(benches: Benches) -> Figures:
 
 @row("E11", tuple((f"at {factor:g}", "cycles") for factor in FACTORS))
 def low_gains(benches: Benches) -> Figures:
-    """Cycles with lowered gains, less those that the same axis shows without Coulomb friction: gears alone
+    """Cycles with lowered gains, less those that the same axis shows without Coulomb friction. Gears alone
     can push a loop that is weak enough through zero and beyond, which is no stick-slip."""
     kp, ki = benches.gains
     smooth = viscous_only(benches.plants["low"])
