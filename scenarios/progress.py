@@ -65,11 +65,15 @@ def shown(what: str, total: float, begun: float = 0.0, stream: TextIO | None = N
         console = get_console() if out is sys.stdout else Console(file=out)
         with Progress(*columns, console=console, transient=True) as bar:
             task = bar.add_task(what, total=total, completed=int(begun), left="")
+            said = ""
 
             def update(done: float | None, step: str) -> None:
+                nonlocal said
                 words = f"{what}: {step}" if step else what
                 share = None if done is None else min(done, total)
-                bar.update(task, completed=share, description=words, left=text(done))
+                # a new step shows at once, however soon the next follows
+                bar.update(task, completed=share, description=words, left=text(done), refresh=words != said)
+                said = words
 
             yield update
         return
