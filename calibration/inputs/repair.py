@@ -49,11 +49,19 @@ def _wraps(run: Run, channel: str, where: Column) -> None:
         return
     if np.abs(np.diff(joined)).max() > 0.5 * float(x.max() - x.min()):
         return
+    kind, note = "wrap", f"a counter of {length:g} wraps: joined"
+    if np.allclose(x, np.round(x)) and channel not in MOVING and np.ptp(turns) == 1:
+        joined = np.where(x > length / 2, x - length, x)
+        kind, note = "signed", signed_note(length)
     raw[good] = joined
     run.columns[channel] = raw * where.scale + where.offset
     count = int(np.count_nonzero(np.diff(turns)))
-    note = f"a counter of {length:g} wraps: joined"
-    run.repairs.append(Repair("wrap", channel, count, length * abs(where.scale), note))
+    run.repairs.append(Repair(kind, channel, count, length * abs(where.scale), note))
+
+
+def signed_note(length: float) -> str:
+    """How a report tells of words of `length` values that are read with a sign."""
+    return f"signed numbers of {length:g} values written unsigned: {length - 1:g} is -1"
 
 
 def counter_length(x: Array) -> float:

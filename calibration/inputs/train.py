@@ -11,6 +11,8 @@ from calibration.inputs.units import units_per_turn
 
 #: what the lines of a gear's stage are called: of a shaft that runs out of true, of teeth in mesh
 SHAFT, MESH = "gear_eccentricity", "gear_mesh"
+#: what a line once or more per turn of a part may be, where nobody said what the part is
+OF_A_GUESS = (SHAFT, MESH, "motor_cogging")
 
 
 @dataclass(frozen=True)

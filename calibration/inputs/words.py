@@ -1,11 +1,14 @@
-"""Numbers of both signs that a logger wrote as unsigned words: 65535 is -1."""
+"""Numbers of both signs that a logger wrote as unsigned words: 65535 is -1.
+
+The values of all runs tell it. A run that crosses zero also jumps by a whole word, of any length (`repair`).
+"""
 
 import numpy as np
 
 from calibration.arrays import Array
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
-from calibration.inputs.repair import MOVING, SLOW
+from calibration.inputs.repair import MOVING, SLOW, signed_note
 from calibration.inputs.run import Repair, Run, signal_of
 
 # values of a logger's word of 16, 24 or 32 bits. definition; shorter ones are counts and duties as they are
@@ -21,13 +24,14 @@ def read_signed(runs: list[Run], rig: Rig) -> None:
             continue
         words = [(r.columns[channel] - where.offset) / where.scale for r in runs]
         length = word_length(np.concatenate(words))
-        note = f"signed numbers of {length:g} values written unsigned: {length - 1:g} is -1"
         for r, x in zip(runs, words, strict=True):
             if count := int(np.count_nonzero(x > length / 2)) if length else 0:
                 r.columns[channel] = np.where(x > length / 2, x - length, x) * where.scale + where.offset
                 name = str(where.column) or channel
                 r.signals[channel] = signal_of(channel, name, where.unit, r.columns[channel], 0)
-                r.repairs.append(Repair("signed", channel, count, length * abs(where.scale), note))
+                r.repairs.append(
+                    Repair("signed", channel, count, length * abs(where.scale), signed_note(length))
+                )
 
 
 def word_length(x: Array) -> float:

@@ -4,11 +4,10 @@ from dataclasses import replace
 from math import pi
 
 from calibration.inputs.declaration import GUESSED, Stage
-from calibration.inputs.train import MESH, SHAFT
+from calibration.inputs.train import MESH, OF_A_GUESS, SHAFT
 from calibration.names.freelines import free_lines
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import has_train
-from calibration.names.motor_cogging import NAME as COGGING
 from calibration.names.name import FORCE, SEARCHED_WORTH, SENSORS, SPEED, Finding, Name, Scene
 from plant.effects import REGISTRY
 
@@ -27,7 +26,7 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     if stage is None and has_train(s):
         return f
     name = _called(stage, f)
-    alike = [x for x in dict.fromkeys([*f.equivalent, SHAFT, *_others(f), NAME.name]) if x != name]
+    alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f), NAME.name]) if x != name]
     if stage is None:
         gears = replace(f, name=name, stage=None, equivalent=alike)
         table = "no declared stage turns quicker" if s.view.rig.stages else "no gear table was given"
@@ -38,15 +37,15 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
 
 
 def _others(f: Finding) -> tuple[str, ...]:
-    """What else turns, in this balance: two sensors see no magnets."""
-    return (MESH, COGGING.name) if f.channel == "T" else (MESH,)
+    """Names that a part of unknown kind has in this balance: two sensors see no magnets."""
+    return OF_A_GUESS if f.channel == "T" else (SHAFT, MESH)
 
 
 def of_a_guess(f: Finding, s: Scene) -> Finding:
     """A line of a stage of which nobody said whether it is a gear or a motor."""
     guessed = any(g.name == f.stage and g.kind == GUESSED for g in s.view.rig.stages)
-    alike = dict.fromkeys([*f.equivalent, *_others(f)])
-    return replace(f, equivalent=list(alike)) if guessed and f.name == SHAFT else f
+    alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f)]) if x != f.name]
+    return replace(f, equivalent=alike) if guessed and f.name == SHAFT else f
 
 
 def _harmonic_of(f: Finding, s: Scene) -> tuple[Stage | None, int]:

@@ -30,7 +30,8 @@ def one_way(f: Finding, s: Scene) -> Finding:
     if f.name != NAME.name or s.both or s.pair is not None:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
-    return replace(f, name=UNKNOWN, equivalent=alike).noted("so does an offset of the column that changes")
+    why = "one way only, an offset of the column that changes looks the same"
+    return replace(f, name=UNKNOWN, equivalent=alike).noted(why)
 
 
 NAME = Name(

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from calibration.inputs.declaration import GUESSED, Stage
-from calibration.inputs.train import MESH, SHAFT
+from calibration.inputs.train import OF_A_GUESS, SHAFT
 from calibration.names.lines import SAME, line
 from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
 from plant.effects import REGISTRY
@@ -16,8 +16,6 @@ from plant.evaluate import evaluate, signals
 
 # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
 LEAST_TURN = 1 / 12
-#: what a stage may be of which nobody said whether it is a gear or a motor
-OF_A_GUESS = (SHAFT, MESH, "motor_cogging")
 # turns: what carries a weight is hardly swung round more often. ASSUMPTION
 SWUNG = 2.0
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION

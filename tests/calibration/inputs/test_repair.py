@@ -129,3 +129,15 @@ def test_a_step_of_an_effort_through_zero_is_no_wrap(tmp_path: Path) -> None:
     repair(r, rig(tmp_path))
     assert not r.repairs
     assert np.array_equal(r.columns["effort"], counts)
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+def test_a_word_with_a_sign_is_read_so_wherever_the_run_begins(tmp_path: Path, bits: int) -> None:
+    """Of a short word only the jump through zero tells; the first row is below it."""
+    t = PERIOD_S * np.arange(ROWS)
+    noise = np.random.default_rng(bits).standard_normal(ROWS)
+    counts = np.round(-200 * np.cos(2 * np.pi * t / 7.0) + 2 * noise)
+    r = recorded(40 * np.sin(t), counts % 2.0**bits, t)
+    repair(r, rig(tmp_path))
+    assert [x.kind for x in r.repairs] == ["signed"]
+    assert np.array_equal(r.columns["effort"], counts)
