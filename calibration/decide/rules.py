@@ -120,8 +120,6 @@ def within_bounds(resolved: float) -> Rule:
         at = {n: value for n, (value, _) in s.candidates[k].fixed.items()}
         if larger_than_the_response(s, k):
             return "larger than the response's own range: it cancels against something else"
-        if cancels(s, k):
-            return "its harmonics cancel each other over so short a travel"
         if any(at[n] <= resolved for n in loops if n in at):
             return "narrower than the sensor's steps show"
         told = parameters_of(s, k)
@@ -141,15 +139,6 @@ def larger_than_the_response(s: Selection, k: int) -> bool:
         return False
     waves = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2).sum(axis=2)
     return bool(np.ptp(waves, axis=0).max(initial=0.0) > np.ptp(s.problem.y[rows]))
-
-
-def cancels(s: Selection, k: int) -> bool:
-    """Whether harmonics of a line are far larger than their sum: over part of a turn they make any shape."""
-    c = s.candidates[k]
-    if c.kind != "line" or c.width <= 2 or c.name == UNKNOWN:
-        return False
-    waves = (c.columns * s.sizes(k))[s.problem.valid].reshape(int(s.problem.valid.sum()), -1, 2).sum(axis=2)
-    return bool(np.var(waves.sum(axis=1)) < limits.OWN * np.sum(np.var(waves, axis=0)))
 
 
 def worth_little(s: Selection) -> tuple[int, str] | None:

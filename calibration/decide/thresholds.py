@@ -118,9 +118,9 @@ ONSET_ALIKE = 0.01
 SHORTEST_UNSEEN_S = 2.0
 # s: longer than any log's pause. ASSUMPTION
 LONGEST_UNSEEN_S = 1e4
-# of an effect that begins, that declared terms must leave, and of harmonics, that their sum must be: a
-# variance inflation of ten is the usual limit of collinearity (Kutner et al., Applied Linear Statistical
-# Models, 10.5). Seed 1922: a false beginning 0.001, true ones from 0.43 on
+# of an effect that begins, that declared terms must leave: a variance inflation of ten is the usual limit of
+# collinearity (Kutner et al., Applied Linear Statistical Models, 10.5). Seed 1922: a false one 0.001, true
+# ones from 0.43 on
 OWN = 0.1
 # s to which a stretch's ends are told. ASSUMPTION
 ONSET_FINE_S = 0.25

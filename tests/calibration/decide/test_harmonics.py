@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 
 from calibration.decide.parameters import findings_of
-from calibration.decide.rules import cancels
-from calibration.decide.scan import fit_with
 from calibration.decide.select import select
-from calibration.decide.selection import Selection
 from tests.calibration.decide.made import line, problem
 
 ROWS, ORDER = 4000, 3.0
@@ -46,16 +43,3 @@ def test_a_harmonic_that_is_surely_a_trifle_is_not_listed() -> None:
     whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
     s = select(p, [whole], np.random.default_rng(1))
     assert [f.harmonic for f in findings_of(s, 0)] == [2]
-
-
-@pytest.mark.parametrize(("travel_turns", "cancel"), [(3.0, False), (0.5, True)])
-def test_harmonics_over_half_a_turn_that_cancel_are_no_lines(travel_turns: float, cancel: bool) -> None:
-    """A bump of a twentieth of the turn: over half of it harmonics make one, each far larger."""
-    turns = travel_turns * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0)) / 2
-    noise = np.random.default_rng(4).standard_normal(ROWS)
-    bump = np.exp(-0.5 * (((turns % 1.0) - 0.25) / 0.05) ** 2)
-    p = problem(bump + 0.01 * noise)
-    columns = np.hstack([line("encoder_eccentricity", turns, h).columns for h in (1, 2, 3, 4)])
-    whole = replace(line("encoder_eccentricity", turns, 1.0), columns=columns, stage="disc", searched=1)
-    s = Selection.of(p, [c for c in [fit_with(p, p.base, whole)] if c is not None])
-    assert cancels(s, 0) is cancel
