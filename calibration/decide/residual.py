@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.arrays import Array, Mask
+from calibration.balances.candidate import Candidate
 from calibration.balances.pickup import pick_up
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
@@ -197,7 +198,7 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         return s, s, []
     for _ in range(MOST[scene.force]):
         scene.model = np.asarray(together.columns @ together.after.beta)
-        offered = smooth_functions(scene)
+        offered = [beside(c, together) for c in smooth_functions(scene)]
         if scene.force:  # one by one; of two sensors what is left of the best is no second function
             offered = [replace(c, apart=float(k)) for k, c in enumerate(offered)]
         own = tuple(together.model.phases)
@@ -212,6 +213,18 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         together = names.keep([*names.chosen, *more.chosen])
         findings.append(finding_of(together, len(names.chosen)))
     return s, together, findings
+
+
+def beside(c: Candidate, s: Selection) -> Candidate:
+    """The candidate, less all that the fit has of it where that holds a function of the same domain.
+
+    The fit predicts the same; two functions of one domain would cancel each other, each far too large.
+    """
+    if not any((x.name, x.domain) == (UNKNOWN, c.domain) for x in s.candidates):
+        return c
+    rows = s.problem.train
+    x, y = s.columns[rows], c.columns[rows]
+    return replace(c, columns=c.columns - s.columns @ np.linalg.lstsq(x, y, rcond=None)[0])
 
 
 def quick_lines(view: View, problem: Problem) -> list[Finding]:

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from calibration.decide.verdict import ROWS
+from calibration.finding import UNKNOWN
 from calibration.report.htmlpage import size, summary
 
 WIDE = 140
@@ -48,10 +49,12 @@ def _table(data: dict[str, Any]) -> Table:
 
 
 def _where(effect: dict[str, Any]) -> str:
-    """Its stage and harmonic; of a line that no stage has, its order or its frequency."""
+    """Its stage and harmonic; of a line that no stage has, its order or its frequency; or a domain alone."""
     words = [effect["stage"] or "", f"harmonic {effect['harmonic']}" if effect["harmonic"] else ""]
     if not effect["stage"] and effect["order"]:
         words = [f"order {effect['order']:.4g}"]
+    if effect["name"] == UNKNOWN and effect["domain"]:
+        words.append(f"over {effect['domain'].replace('_', ' ')}")
     hertz = [f"{effect['frequency_Hz']:.4g} Hz"] if effect["frequency_Hz"] else []
     return ", ".join(filter(None, [*words, *hertz]))
 

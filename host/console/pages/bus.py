@@ -37,9 +37,9 @@ def bus(shell: Shell, view: BusView) -> None:
     @shell.each
     def refresh() -> None:
         now = view.look()
-        load.set_text(f"{100 * now.load:.1f} % in the last second")
+        load.set_text(f"{100 * now.load:.1f} %")
         counts = (f"{name} {count}" for name, count in now.errors.items() if count)
-        errors.set_text(", ".join(counts) or "no errors")
+        errors.set_text(f"of the last second; {', '.join(counts) or 'no errors'}")
         nodes(
             [
                 (n.name, "on" if n.powered else "OFF", n.state, str(n.tec), str(n.rec), f"{100 * n.load:.2f}")

@@ -1,9 +1,15 @@
 """A guess at a function of the place keeps its name only where the place has no more of it."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
-from calibration.decide.residual import Left, of_one_place
+from calibration.decide.residual import Left, beside, of_one_place
+from calibration.decide.scan import fit_with
+from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
+from tests.calibration.decide.made import line, problem
 
 SIZE = {"amplitude": Parameter(2.0, "deg")}
 RUNOUT = [
@@ -46,3 +52,23 @@ def test_a_weight_is_no_guess() -> None:
 def test_what_lives_over_its_own_turn_speaks_against_it(where: str, share: float, named: bool) -> None:
     left = Left(2.5, 0.4, "axis_angle", where, share)
     assert (told(RUNOUT, left)[0][0] == "encoder_eccentricity") is named
+
+
+@pytest.mark.parametrize("domain", ["axis_angle", "time"])
+def test_a_second_function_of_a_domain_is_what_the_first_lacks(domain: str) -> None:
+    turns = 0.3 * (1 - np.cos(2 * np.pi * np.arange(2000) / 500.0))  # over 0.6 of a turn
+    p = problem(np.sin(9 * turns) + 0.01 * np.random.default_rng(2).standard_normal(2000))
+    harmonics = np.hstack([line(UNKNOWN, turns, h).columns for h in (1, 2, 3)])
+    first = replace(line(UNKNOWN, turns, 1.0), columns=harmonics, domain="axis_angle")
+    found = fit_with(p, p.base, first)
+    assert found is not None
+    s = Selection.of(p, [found])
+    powers = np.column_stack([turns**k for k in range(1, 5)])
+    second = beside(replace(first, columns=powers, domain=domain), s)
+    if domain == "time":
+        assert second.columns is powers
+        return
+    assert np.abs(s.columns[p.train].T @ second.columns[p.train]).max() < 1e-6
+    both = np.hstack([s.columns, powers]), np.hstack([s.columns, second.columns])
+    one, other = (x @ np.linalg.lstsq(x[p.train], p.y[p.train], rcond=None)[0] for x in both)
+    assert other == pytest.approx(one, abs=1e-6)

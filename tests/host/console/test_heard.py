@@ -138,7 +138,7 @@ def test_the_host_by_itself_has_the_consoles(browser: Any, program: Any) -> None
     page.get_by_text("motors on").first.wait_for()
     page.get_by_role("link", name="Bus").click()
     page.get_by_text("no emulated bus").wait_for()
-    page.wait_for_function("/[1-9].* % in the last second/.test(document.body.innerText)")
+    page.wait_for_function("/[1-9].* %\\s+of the last second/.test(document.body.innerText)")
     page.get_by_text("AXIS_RA").first.wait_for()
     page.get_by_role("link", name="Calibrate").click()
     press(page, "Start a run")
