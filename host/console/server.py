@@ -36,6 +36,14 @@ _PING_S, _SILENT_S = 2, 5
 a dead link hardly sooner. They drop a browser that a busy machine holds up for two seconds, and its click."""
 
 
+def connected(client: Client) -> bool:
+    """Whether a page's browser is there.
+
+    NiceGUI lists a page before it is whole, and the host looks from another thread.
+    """
+    return getattr(client, "tab_id", None) is not None
+
+
 class _Counter(logging.Handler):
     """Counts instead of printing."""
 
@@ -83,7 +91,7 @@ class Consoles:
     @property
     def browsers(self) -> int:
         """Pages that are open and connected."""
-        return sum(client.has_socket_connection for client in list(Client.instances.values()))
+        return sum(map(connected, list(Client.instances.values())))
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer browsers on a listening socket until cancelled."""

@@ -109,11 +109,16 @@ def opened(browser: Any, served: Consoles, path: str, used: Used | None = None) 
 
 
 def state(page: Any, pattern: str) -> None:
-    """Wait until the state line says this."""
-    page.wait_for_function(
-        "text => new RegExp(text).test(document.querySelector('[role=status]')?.textContent ?? '')",
-        arg=pattern,
-    )
+    """Wait until the state line says this; fails with what the page says in its place."""
+    from playwright.sync_api import TimeoutError as Late
+
+    try:
+        page.wait_for_function(
+            "text => new RegExp(text).test(document.querySelector('[role=status]')?.textContent ?? '')",
+            arg=pattern,
+        )
+    except Late:
+        pytest.fail(f"never '{pattern}': {page.evaluate('document.body.innerText')}")
 
 
 def choose(page: Any, label: str, name: str) -> None:
