@@ -142,7 +142,7 @@ def test_a_plot_has_only_points_that_it_shows() -> None:
 
 
 def test_a_page_that_is_still_being_made_is_no_browser() -> None:
-    """NiceGUI lists it before it is whole; the host's thread, which counts browsers, must not fall over it."""
+    """NiceGUI lists it before it is whole; the thread that counts browsers must not fall over it."""
     page = Client.__new__(Client)
     assert not connected(page)
     page.tab_id = "a tab"
