@@ -1,6 +1,7 @@
 """Noise floors: what is left of a balance when everything is known, measured apart from the fit."""
 
 import numpy as np
+from scipy.stats import norm
 
 from calibration.arrays import Array, Mask
 from calibration.balances.balance import response_of
@@ -8,7 +9,6 @@ from calibration.balances.filters import Filter, smooth
 from calibration.balances.motion import Motion
 from calibration.balances.noise import ROUNDING, column_noise, position_noise, rough
 from calibration.balances.problem import Problem
-from calibration.balances.recursions import stop_operator
 from calibration.balances.repeats import repeat_lag, stroke_scatter
 from calibration.balances.torque import Transmission
 from calibration.balances.view import View
@@ -79,9 +79,15 @@ def resolved_rows(view: View, p: Problem) -> tuple[Mask, float] | None:
     return None if known is None or turning is None else (p.valid & (np.abs(turning) < known), known)
 
 
-def passed(view: View, full: Array) -> float | None:
-    """A column's white noise behind the filter, the median over files."""
-    found = [rough(full[view.file == k], 2) for k in np.unique(view.file)]
+def passed(view: View, full: Array, beside: Array | None = None) -> float | None:
+    """A column's white noise behind the filter, the median over files.
+
+    beside: the position, where its own steps come back in the column through a loop, as real force.
+    """
+    found = [
+        rough(full[rows], 2, None if beside is None else beside[rows])
+        for rows in (view.file == k for k in np.unique(view.file))
+    ]
     good = [x for x in found if np.isfinite(x)]
     return float(np.median(good) * np.sqrt(view.filter.passes)) if good else None
 
@@ -96,7 +102,7 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
     friction within a step of the sensor after every reversal, less what the declared terms take of it. None
     for what is not estimated."""
     declared, _ = p.plain_fit(p.train)
-    own = passed(view, response_of(view, 0.0)[0])
+    own = passed(view, response_of(view, 0.0)[0], view.x)
     step = view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain)
     if own is not None and not view.response.divide_by:  # a held or slow column hides its rounding
         own = max(own, step * ROUNDING * float(np.sqrt(view.filter.passes)))
@@ -105,9 +111,9 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
     coulomb = declared.get("coulomb", 0.0)
     if coulomb <= 0 or not view.dynamic or not p.valid.any():
         return known, None
-    width = float(np.sqrt(12.0)) * position_noise(view.x, view.file)
-    loop = stop_operator(view.x, view.file, width) / width - np.sign(view.since)
-    column = coulomb * view.at(loop)
+    noise = position_noise(view.x, view.file)
+    wrong = norm.cdf(-np.abs(view.since) / (np.sqrt(2.0) * noise)) if noise > 0 else 0.0 * view.since
+    column = 2 * coulomb * view.at(np.sqrt(wrong))
     beta = np.linalg.lstsq(p.base[p.train], column[p.train], rcond=None)[0]
     return known, np.asarray(column - p.base @ beta)
 

@@ -20,6 +20,8 @@ from plant.units import ARCSEC
 ROUNDING = 1.0 / np.sqrt(12.0)
 # rows: the median over blocks of a second leaves out transients and lost packets. ASSUMPTION
 BLOCK = 100
+# rows over which a loop answers a step of its sensor: its rate's two, and as many until it is sent. ASSUMPTION
+LOOP_ROWS = 5
 # blocks, before their median is told. ASSUMPTION
 LEAST_BLOCKS = 3
 # mean square of the smaller four fifths of normal values, of all: (0.8 - 2 q f(q)) / 0.8; arithmetic, a share
@@ -28,10 +30,18 @@ QUIET_PART = 0.4377
 CONDUCTING = 2.0
 
 
-def rough(x: Array, order: int) -> float:
-    """rms of white noise in x (n,) from its `order`-th differences, by blocks; NaN when too short."""
-    d = np.diff(x, order) ** 2
-    blocks = [float(np.mean(b)) for b in np.split(d, range(BLOCK, len(d), BLOCK)) if np.isfinite(b).all()]
+def rough(x: Array, order: int, beside: Array | None = None) -> float:
+    """rms of white noise in x (n,) from its `order`-th differences, by blocks; NaN when too short.
+
+    beside (n,): what x follows through a loop, with the last rows' differences of which the noise is no part.
+    """
+    d = np.diff(x, order)
+    if beside is not None and len(d) > BLOCK:
+        steps = np.diff(beside, order)
+        own = np.column_stack([np.pad(steps, (k, 0))[: len(d)] for k in range(LOOP_ROWS)])
+        d = d - own @ solve(own, d)
+    squares = [b**2 for b in np.split(d, range(BLOCK, len(d), BLOCK)) if np.isfinite(b).all()]
+    blocks = [float(np.mean(b)) for b in squares]
     gain = comb(2 * order, order)  # sum of the squared binomials
     return float(np.sqrt(np.median(blocks) / gain)) if len(blocks) >= LEAST_BLOCKS else float("nan")
 

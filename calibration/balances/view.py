@@ -43,6 +43,8 @@ NOISE = 0.01
 LEAST = 2.0
 # rows likewise at most. ASSUMPTION
 MOST = 40.0
+# cycles per row. by arithmetic
+NYQUIST = 0.5
 # steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
 RESOLVED = 6.0
 
@@ -190,7 +192,7 @@ def _regular(record: Run, period: float) -> dict[str, Array]:
     grid: Array = np.arange(int(np.floor((t[-1] - t[0]) / period)) + 1) * np.float64(period)
     out = {"t": grid}
     right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
-    wide = t[right] - t[right - 1] > GAP * max(period, record.period_s)
+    wide = t[right] - t[right - 1] > max(record.gap_s, GAP * period)
     inside = np.minimum(np.abs(t[right] - grid), np.abs(t[right - 1] - grid)) > 0.51 * period
     nearest = np.clip(np.rint(np.interp(grid, t, np.arange(len(t)))).astype(int), 0, len(t) - 1)
     ok = np.ones(len(grid), dtype=bool)
@@ -245,7 +247,7 @@ def _passing(x: Array, file: NDArray[np.int64], rig: Rig, sigma: float) -> float
         [np.gradient(gaussian_filter1d(x[i:j], sigma)) for i, j in pieces(file) if j > i + 1]
     )
     waves = max((g.harmonics / g.period for g in rig.stages if g.period), default=0.0)
-    cycles = min(float(np.quantile(np.abs(soft), 0.95)) * waves, 0.5)  # per row, at most Nyquist's
+    cycles = min(float(np.quantile(np.abs(soft), 0.95)) * waves, NYQUIST)
     return max(1 / (2 * np.pi * cycles), LEAST) if cycles > 0 else np.inf
 
 

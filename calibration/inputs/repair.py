@@ -99,7 +99,7 @@ def _leaps(run: Run, channel: str) -> None:
     """Join a position that leaps by a constant while the motion goes on: a counter that lost its zero."""
     step = np.diff(run.columns[channel])
     size = np.abs(step[np.isfinite(step)])
-    if len(size) < limits.FEWEST_ROWS or np.any(np.diff(run.columns["t"]) > limits.GAP * run.period_s):
+    if len(size) < limits.FEWEST_ROWS or np.any(np.diff(run.columns["t"]) > run.gap_s):
         return
     usual = limits.LEAP_TIMES * float(np.quantile(size, 0.995))
     at = np.flatnonzero(np.abs(np.nan_to_num(step)) > max(usual, 20 * _least_step(step)))
@@ -123,7 +123,7 @@ def _spikes(run: Run, channel: str) -> None:
     if n >= limits.FEWEST_SAMPLES:
         for width in (1, 2):  # single rows, then pairs
             bad |= _far_off(x, width)
-    gap = np.concatenate([[False], np.diff(run.columns["t"]) > limits.GAP * run.period_s])
+    gap = np.concatenate([[False], np.diff(run.columns["t"]) > run.gap_s])
     bad &= ~(gap | np.roll(gap, -1))
     if not 0 < bad.sum() <= max(3, limits.MOST_SPIKES * n):
         return

@@ -70,6 +70,13 @@ class Run:
         t = self.columns["t"]
         return float(t[-1] - t[0]) if len(t) > 1 else 0.0
 
+    @property
+    def gap_s(self) -> float:
+        """A step of the clock in s beyond which rows are missing: longer than its own jitter makes it."""
+        steps = np.diff(self.columns["t"])
+        usual = float(np.quantile(steps, limits.USUAL_STEPS)) if len(steps) else 0.0
+        return limits.GAP * max(self.period_s, usual)
+
     def among(self, names: Collection[str]) -> bool:
         """Whether `names` have this run, or its file."""
         return not {self.name, str(self.path), self.path.name, self.path.stem}.isdisjoint(names)
@@ -77,7 +84,7 @@ class Run:
     def gaps(self) -> list[tuple[float, float]]:
         """Begin and end in s of every stretch without rows."""
         t = self.columns["t"]
-        at = np.flatnonzero(np.diff(t) > limits.GAP * self.period_s)
+        at = np.flatnonzero(np.diff(t) > self.gap_s)
         return [(float(t[k]), float(t[k + 1])) for k in at]
 
 

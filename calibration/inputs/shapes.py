@@ -110,6 +110,6 @@ def wide(path: Path, names: list[str], stamps: Array, values: Array, wanted: lis
         step = np.diff(t)
         after = np.clip(np.searchsorted(t, base, side="right"), 1, len(t) - 1) - 1
         inside = (base != t[after]) & (base != t[after + 1])
-        found[inside & (step[after] > limits.GAP * np.median(step))] = np.nan
+        found[inside & (step[after] > limits.GAP * np.quantile(step, limits.USUAL_STEPS))] = np.nan
         out[name] = found
     return out

@@ -90,6 +90,8 @@ MOST_REPEATS = 0.2
 COARSE_STEPS = 4
 # sample periods between two rows: a row is missing. ASSUMPTION: between one missing row's two and three
 GAP = 2.5
+# share of a clock's steps that are no gaps: serial stamps shake by whole periods in every tenth. ASSUMPTION
+USUAL_STEPS = 0.95
 
 # --- a column's step
 

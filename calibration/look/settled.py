@@ -6,37 +6,46 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.arrays import Array
-from calibration.balances.candidate import waves
+from calibration.balances.candidate import sine_columns, waves
 from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
-from calibration.balances.view import STANDSTILLS, View, choose_rows, fade
+from calibration.balances.view import NYQUIST, STANDSTILLS, View, choose_rows, fade
+from calibration.decide.heldout import cross_validate
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
 
-# times the mean square that a balance leaves behind the wide filter, by coefficients of two filters, at most.
-# ASSUMPTION: measured arms have 1.0 and 1.1 (ur10e), one whose joint is quick behind a coarse encoder 17
-DISAGREE = 2.0
+# amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
+HARDLY = 0.5
 
 
 def one_filter(view: View, made: Callable[[], Problem]) -> None:
-    """Filter the response like the rates where coefficients fitted behind two filters are wrong behind one.
+    """Filter the response like the rates, unless a declared wave shows that this filter would take away.
 
     A narrower filter lets quick waves through that the position's rates cannot follow. Where the drive
     accelerates as quickly, the response then holds what its inertia's column lacks, and every term is biased.
     """
-    if view.rates <= view.sigma:
-        return
-    shown, two = (view.filter, view.rows), _terms(made())
-    view.filter = Filter(view.rates)
-    choose_rows(view)
-    p = made()
-    left = [float(np.mean((p.y - p.base @ x)[p.valid] ** 2)) for x in (two, _terms(p))]
-    if left[0] <= DISAGREE * left[1]:
-        view.filter, view.rows = shown
+    if view.rates > view.sigma and not _quick_waves_show(view, made()):
+        view.filter = Filter(view.rates)
+        choose_rows(view)
 
 
-def _terms(p: Problem) -> Array:
-    return np.asarray(np.linalg.lstsq(p.base[p.valid], p.y[p.valid], rcond=None)[0])
+def _quick_waves_show(view: View, p: Problem) -> bool:
+    """Whether waves that the wider filter would take away explain rows that they were not fitted to."""
+    wide, top = Filter(view.rates), view.top * view.period_s
+    quick = [
+        h / g.period
+        for g in view.rig.stages
+        if g.period
+        for h in g.orders
+        if wide.gain(min(top * h / g.period, NYQUIST)) < HARDLY
+    ]
+    if not quick:
+        return False
+    turns = view.x[view.rows]
+    shared = view.rig.runs.get("origin") == "shared"
+    session = np.zeros_like(p.session) if shared else p.session
+    beside = np.hstack([p.base, *[sine_columns(turns * k, session) for k in quick]])
+    return cross_validate(p, p.base, beside, p.fit().whitener).sure
 
 
 def sharpest(view: View, made: Make, known: Timed | None = None) -> float:

@@ -13,7 +13,7 @@ from calibration.inputs.declaration import FrictionLaw, Response, Rig
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, Signal, signal_of
-from calibration.inputs.thresholds import GAP, MOST_POINTS
+from calibration.inputs.thresholds import MOST_POINTS
 from calibration.report.plots import drawn, figure
 
 
@@ -148,7 +148,7 @@ def _draw(records: list[Run], rig: Rig, out: Path) -> None:
         for k, r in enumerate(records):
             step = max(r.rows // MOST_POINTS, 1)
             t, x = r.columns["t"][::step] + (r.start_s or 0.0), r.columns[name][::step]
-            broken = np.diff(t, prepend=t[0]) > GAP * step * r.period_s
+            broken = np.diff(t, prepend=t[0]) > step * r.gap_s
             ax.plot(t, np.where(broken, np.nan, x), lw=0.7, color=f"C{k % 2}")
         ax.set_ylabel(f"{name}\n{rig.columns[name].unit}")
     axes[-1, 0].set_xlabel("time, s")
