@@ -20,6 +20,11 @@ LOADED = 0.5
 STANDS = 0.2
 # of the logged time, for the block-robust covariance. ASSUMPTION
 BLOCKS = 60
+# rows of a block at least, where no filter tells how long a row is remembered. ASSUMPTION
+BLOCK_ROWS = 20
+# memories of the filter in a block: 2 sqrt(pi) standard deviations each, the sum over a Gaussian's
+# autocorrelation (arithmetic). ASSUMPTION: blocks are then all but independent
+MEMORIES = 2.0
 # of its own quantile range that a held-out file may exceed the others. ASSUMPTION
 COVER = 0.02
 
@@ -51,12 +56,19 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
         held=held,
         period_s=period,
         ar_order=0,
-        block_s=max(20 * period, float(np.sum(valid)) * period / BLOCKS),
+        block_s=max(_memory(view) * period, float(np.sum(valid)) * period / BLOCKS),
     )
     if not response.is_force:  # an incremental sensor starts anywhere: every file has its own offset
         problem.fresh = np.column_stack([(session == k).astype(float) for k in np.unique(session)])
     problem = with_slow_offset(problem, view, view.slow_offset)
     return problem if hold_out or len(records) < FEWEST_FILES else problem.in_turn()
+
+
+def _memory(view: View) -> float:
+    """Fitted rows that a block has at least."""
+    if not view.dynamic:
+        return BLOCK_ROWS
+    return float(np.ceil(MEMORIES * 2 * np.sqrt(np.pi) * max(view.sigma / view.step, 1.0)))
 
 
 def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:

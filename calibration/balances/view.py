@@ -38,7 +38,7 @@ SENSOR_ROWS = 4_000
 # standard deviations of the filter in `smooth_s`. definition
 WINDOW = 5.0
 # of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
-NOISE = 0.01
+NOISE = 0.03
 # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
 LEAST = 2.0
 # rows likewise at most. ASSUMPTION

@@ -90,8 +90,8 @@ FITTED_SHARE = 0.7
 FEWEST_HELD = 20
 # held-out rows that one figure is told of: a floor, a law's gains. ASSUMPTION: fewer are a few moves
 FEWEST_TOLD = 60
-# rows to cross-validate on, all folds together. ASSUMPTION: twenty to a fold
-FEWEST_VALIDATED = 100
+# rows to cross-validate on, all folds together. ASSUMPTION: ten to a fold, whose gains must all be gains
+FEWEST_VALIDATED = 50
 # folds of the cross-validation, the usual five (Hastie 2009, 7.10)
 FOLDS = 5
 # s per piece at most: pieces of one fold are spread over all runs. ASSUMPTION: longer than a noise's memory
