@@ -49,6 +49,9 @@ def _one(order: Order, rng: Rng, number: int, name: str) -> Made | None:
     a, weight = arm.draw(rng)
     if order.cell == "short":
         a.files, a.seconds = 1, wide(rng, 1.5, 4.0)
+    if name == "gear_eccentricity":
+        a.gear = min(a.gear, 0.1 / (a.speed * a.period_s))  # the motor's line is well below the rows' rate
+        a.values["STEP"] = min(a.values["STEP"], TURN / a.gear / 60)
     effect = WHERE[name](rng, a, weight) if name else None
     lifted = {"GRAV": weight * rng.uniform(0.5, 1.2), "GRAV_P": float(rng.uniform(-0.6, 0.6))}
     declares = effect.weight if effect else rng.random() < 0.6
@@ -61,9 +64,6 @@ def _one(order: Order, rng: Rng, number: int, name: str) -> Made | None:
         a.loads = [float(x) for x in rng.choice([0.5, 0.8, 1.2, 1.5, 2.0], a.files)]
     if not name and rng.random() < 0.3:
         a.values["STIC"] = a.values["COUL"] * rng.uniform(1.2, 1.6)  # and declared
-    if name == "gear_eccentricity":
-        a.gear = min(a.gear, 0.1 / (a.speed * a.period_s))  # the line is well below the rows' rate
-        a.values["STEP"] = min(a.values["STEP"], TURN / a.gear / 60)
     goals = arm.paths(rng, a)
     size, reached, tells, runs = 0.0, 0.0, 1.0, arm.run(a, lifted, goals, number)
     if effect is not None:
