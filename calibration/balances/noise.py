@@ -20,7 +20,7 @@ from plant.units import ARCSEC
 ROUNDING = 1.0 / np.sqrt(12.0)
 # rows: the median over blocks of a second leaves out transients and lost packets. ASSUMPTION
 BLOCK = 100
-# rows over which a loop answers a step of its sensor: its rate's two, and as many until it is sent. ASSUMPTION
+# rows over which a loop answers a step of its sensor: a rate's two, and until it is sent. ASSUMPTION
 LOOP_ROWS = 5
 # blocks, before their median is told. ASSUMPTION
 LEAST_BLOCKS = 3

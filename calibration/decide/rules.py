@@ -11,16 +11,14 @@ import numpy as np
 
 from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
-from calibration.balances.slowoffset import slowness, with_slow_offset
-from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
 from calibration.decide.parameters import parameters_of
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
-from calibration.finding import UNKNOWN
+from calibration.finding import UNKNOWN, Parameter
 from calibration.names import NAMES
-from calibration.names.structural_mode import MOST_DAMPED
+from calibration.names.structural_mode import MOST_DAMPED, STRUCTURES_DAMPED
 from calibration.statistics.regression import under
 from calibration.statistics.thresholds import SURE_Z
 
@@ -125,20 +123,28 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
-        if "damping" in told and (told["damping"].high or 0.0) >= MOST_DAMPED:
+        if "damping" in told and ((told["damping"].high or 0.0) >= MOST_DAMPED or _no_structure(told["damping"])):
             return "damped too much for a resonance, by its interval"
         return "damped too much for a resonance" if at.get("damping", 0.0) >= MOST_DAMPED else ""
 
     return each(why)
 
 
+def _no_structure(damping: Parameter) -> bool:
+    """Whether all of a damping's interval lies above what structures have."""
+    return damping.low is not None and damping.low > STRUCTURES_DAMPED
+
+
 def larger_than_the_response(s: Selection, k: int) -> bool:
-    """Whether a harmonic of a line goes further than the response does: it cancels against another."""
+    """Whether a harmonic of a line goes further than the response does, and leaves more than there was: it
+    cancels against another."""
     c, rows = s.candidates[k], s.problem.valid
     if c.kind != "line" or c.name == UNKNOWN:
         return False
     waves = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2).sum(axis=2)
-    return bool(np.ptp(waves, axis=0).max(initial=0.0) > np.ptp(s.problem.y[rows]))
+    y = s.problem.y[rows]
+    widest = np.argmax(np.ptp(waves, axis=0))
+    return bool(np.ptp(waves[:, widest]) > np.ptp(y) and np.std(y - waves[:, widest]) > np.std(y))
 
 
 def worth_little(s: Selection) -> tuple[int, str] | None:
@@ -212,19 +218,6 @@ def harmful(s: Selection) -> tuple[int, str] | None:
         return None
     best = int(np.argmin([_left(x) for x in _each_left_out(s)]))
     return best, "the held-out error grows with what was found"
-
-
-def no_more_than_an_offset(view: View) -> Rule:
-    """What a wandering offset predicts as well: along a few moves a walk follows the direction."""
-
-    def why(s: Selection, k: int) -> str:
-        if not view.dynamic:
-            return ""
-        wandering = with_slow_offset(s.problem, view, 2 * view.slow_offset or slowness(view))
-        others = Selection.of(wandering, [x for j, x in enumerate(s.chosen) if j != k])
-        return "an offset that wanders slowly leaves as little" if _left(others) <= _left(s) else ""
-
-    return each(why)
 
 
 def below_floor(s: Selection) -> tuple[int, str] | None:

@@ -27,6 +27,9 @@ from calibration.look.settled import few_values, one_filter, sharpest, turned
 
 Tell = Callable[[str], None]
 
+# of what an offset takes that is fitted anew in every file, by effects that stand in its place. ASSUMPTION
+AS_MUCH = 0.9
+
 
 def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     """The view's response, a force or one sensor against another."""
@@ -70,7 +73,7 @@ def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
     if view.slow_offset:
         slow, view.slow_offset = view.slow_offset, 0
         steady = attempt()
-        if _better(steady, when):
+        if _instead(steady, when):
             when = steady
         else:
             view.slow_offset = slow
@@ -79,6 +82,15 @@ def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
                 f" {slow} slow functions of time are fitted anew in every file, as the offset is"
             )
     return (_sharper(when, view, made, attempt) if view.dynamic else when), remarks
+
+
+def _instead(steady: Timed, slow: Timed) -> bool:
+    """Whether effects of one size for all files explain what an offset fitted anew in every file does."""
+    one, other = steady.found[0], slow.found[0]
+    if not one.chosen or other.chosen:
+        return _better(steady, slow)
+    before = one.held.before
+    return before**2 - one.held.after**2 > AS_MUCH * (before**2 - other.held.after**2)
 
 
 def _better(one: Timed, other: Timed) -> bool:

@@ -88,8 +88,7 @@ def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[
     s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved)))
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
-    last = (rules.feeds_energy, rules.harmful, rules.no_more_than_an_offset(view), rules.below_floor)
-    return rules.leave_out(s, *last), scene
+    return rules.leave_out(s, rules.feeds_energy, rules.harmful, rules.below_floor), scene
 
 
 def _select(

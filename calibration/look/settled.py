@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.arrays import Array
 from calibration.balances.candidate import sine_columns, waves
 from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
