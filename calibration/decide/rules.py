@@ -123,7 +123,7 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
-        if "damping" in told and ((told["damping"].high or 0.0) >= MOST_DAMPED or _no_structure(told["damping"])):
+        if "damping" in told and _no_structure(told["damping"]):
             return "damped too much for a resonance, by its interval"
         return "damped too much for a resonance" if at.get("damping", 0.0) >= MOST_DAMPED else ""
 
@@ -131,8 +131,8 @@ def within_bounds(resolved: float) -> Rule:
 
 
 def _no_structure(damping: Parameter) -> bool:
-    """Whether all of a damping's interval lies above what structures have."""
-    return damping.low is not None and damping.low > STRUCTURES_DAMPED
+    """Whether all of a damping's interval lies above what structures have, or it reaches to the bound."""
+    return (damping.low or 0.0) > STRUCTURES_DAMPED or (damping.high or 0.0) >= MOST_DAMPED
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:

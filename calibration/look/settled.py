@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.balances.balance import response_of
 from calibration.balances.candidate import sine_columns, waves
 from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
@@ -49,7 +50,7 @@ def _quick_waves_show(view: View, p: Problem) -> bool:
 
 def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
     """How sharply friction turns with the speed, of STANDSTILLS. It follows from what the declared terms
-    leave on fitted rows, beside the effects of `known` where there is something."""
+    leave on fitted rows, beside the effects of `known` and a delay, where there are any."""
     shown = (view.standstill, view.direction)
     delay = known.delay.parameters["delay"].value if known is not None and known.delay is not None else 0.0
     s = known.found[0] if known is not None else None
@@ -58,7 +59,9 @@ def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
     for part in STANDSTILLS:
         fade(view, part)
         p = made(delay)
-        left.append(left_by_the_declared(view, replace(p, y=p.y - effects)))
+        late = view.at(view.rate(response_of(view, delay)[0]))
+        p = replace(p, y=p.y - effects, base=np.column_stack([p.base, late]))
+        left.append(left_by_the_declared(view, p))
     view.standstill, view.direction = shown
     return STANDSTILLS[int(np.argmin(left))]
 
