@@ -17,3 +17,9 @@ def __getattr__(name: str) -> Any:
     from scenarios.lab.lab import Lab
 
     return {"Lab": Lab, "Stepped": Stepped}[name]
+
+
+if __name__ == "__main__":
+    from scenarios.cli import main
+
+    main()

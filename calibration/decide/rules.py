@@ -26,6 +26,8 @@ Rule = Callable[[Selection], tuple[int, str] | None]
 
 #: declared terms that are positive in every drive: a fit with a negative one feeds energy
 POSITIVE = ("inertia", "viscous", "coulomb", "resistance", "torque_constant")
+#: domains that a column of the log tells which is neither the motion nor the clock
+OTHER_COLUMNS = ("current", "temperature")
 
 
 def leave_out(s: Selection, *rules: Rule) -> Selection:
@@ -136,15 +138,15 @@ def _no_structure(damping: Parameter) -> bool:
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:
-    """Whether a harmonic of a line goes further than the response does, and leaves more than there was: it
-    cancels against another."""
-    c, rows = s.candidates[k], s.problem.valid
-    if c.kind != "line" or c.name == UNKNOWN:
+    """Whether an effect, or a harmonic of a line, goes further than the response does, and leaves more than
+    there was: it cancels against another."""
+    c, rows, y = s.candidates[k], s.problem.valid, s.problem.y[s.problem.valid]
+    if c.name == UNKNOWN:
         return False
-    waves = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2).sum(axis=2)
-    y = s.problem.y[rows]
-    widest = np.argmax(np.ptp(waves, axis=0))
-    return bool(np.ptp(waves[:, widest]) > np.ptp(y) and np.std(y - waves[:, widest]) > np.std(y))
+    parts = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2 if c.kind == "line" else c.width)
+    waves = parts.sum(axis=2)
+    widest = waves[:, np.argmax(np.ptp(waves, axis=0))]
+    return bool(np.ptp(widest) > np.ptp(y) and np.std(y - widest) > np.std(y))
 
 
 def worth_little(s: Selection) -> tuple[int, str] | None:
@@ -156,13 +158,20 @@ def worth_little(s: Selection) -> tuple[int, str] | None:
 
 
 def remainder(s: Selection) -> tuple[int, str] | None:
-    """An effect worth a few per cent of all: an imperfect model of the strongest one leaves as much."""
+    """An effect worth a few per cent of all: an imperfect model of the strongest one leaves as much.
+
+    Not one that follows another column of the log, and takes much of what is left without it.
+    """
     strongest = dominant(s)
     if not strongest:
         return None
     taken = s.held.before**2 - _left(s)
     each_worth = [_left(x) - _left(s) for x in _each_left_out(s)]
-    worth = np.where([c.name == strongest for c in s.candidates], np.inf, each_worth)
+    told = [
+        c.name == strongest or (c.domain in OTHER_COLUMNS and x > limits.PLAINLY * (x + _left(s)))
+        for c, x in zip(s.candidates, each_worth, strict=True)
+    ]
+    worth = np.where(told, np.inf, each_worth)
     k = int(np.argmin(worth))
     part = f"{100 * max(worth[k], 0.0) / taken:.1f} %"
     why = f"worth {part} of what is found: a remainder of {strongest} as well"

@@ -13,6 +13,9 @@ from plant.effects import REGISTRY
 
 # of a stage's harmonic: an interval that holds a whole one by chance once in five. ASSUMPTION
 NARROW = 0.2
+# rollers that pass in a turn of a shaft: a bearing has 7 to 30, six tenths of which pass (Harris, Rolling
+# Bearing Analysis, 25). ASSUMPTION: slewing rings, which have more, sit on shafts that turn slowly
+MOST_ROLLERS = 18.0
 
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
@@ -23,7 +26,8 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     if s.pair is not None:
         return f
     stage, harmonic = _harmonic_of(f, s)
-    if stage is None and has_train(s):
+    quickest = max((s.turn / g.period for g in s.view.rig.stages if g.period), default=0.0)
+    if stage is None and has_train(s) and (f.order or 0.0) <= MOST_ROLLERS * quickest:
         return f
     name = _called(stage, f)
     alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f), NAME.name]) if x != name]

@@ -39,10 +39,14 @@ def _table(data: dict[str, Any]) -> Table:
     for name in ("before", "after", "floor"):
         table.add_column(name, justify="right")
     rest = dict(data["error"])
+    seen: list[list[str]] = []
     for e in data["effects"]:
         row = ROWS.get(e["channel"], "")
         rest.pop(row, None)
-        table.add_row(e["name"], _where(e), _size(e), *_error(row, data["error"].get(row)))
+        cells = [e["name"], _where(e), _size(e), *_error(row, data["error"].get(row))]
+        if cells not in seen:  # two functions of one domain read alike
+            seen.append(cells)
+            table.add_row(*cells)
     for row, error in rest.items():
         table.add_row("(no effect)", "", "", *_error(row, error))
     return table
@@ -60,10 +64,17 @@ def _where(effect: dict[str, Any]) -> str:
 
 
 def _size(effect: dict[str, Any]) -> str:
-    """Its main parameter with the interval, where one was computed."""
+    """Its main parameter with the interval, where one was computed, and what further harmonics have."""
     name, unit, p = next(iter(size(effect)), ("", "", {}))
+    if not p:
+        return ""
     interval = f" ({p['low']:.4g} to {p['high']:.4g})" if p.get("low") is not None else ""
-    return f"{name} {p['value']:.4g}{interval} {unit}".rstrip() if p else ""
+    further = [
+        f"; harmonic {at} {other['value']:.4g}"
+        for key, other in effect["parameters"].items()
+        if (at := key.removeprefix("amplitude_")).isdigit()
+    ]
+    return f"{name} {p['value']:.4g}{interval} {unit}".rstrip() + "".join(further)
 
 
 def _error(row: str, error: dict[str, Any] | None) -> list[str]:
