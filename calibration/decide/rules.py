@@ -137,6 +137,19 @@ def _no_structure(damping: Parameter) -> bool:
     return (damping.low or 0.0) > STRUCTURES_DAMPED or (damping.high or 0.0) >= MOST_DAMPED
 
 
+@each
+def cancelled(s: Selection, k: int) -> str:
+    """An effect of which another one takes most away again: neither is as large as it is said to be."""
+    rows = s.problem.train
+    own = s.effect(k)[rows]
+    for j, other in enumerate(s.candidates):
+        if j != k and (both := s.effect(j)[rows]).any():
+            least = min(float(np.std(own)), float(np.std(both)))
+            if np.std(own + both) < limits.CANCELS * least:
+                return f"cancels against {other.say()}"
+    return ""
+
+
 def larger_than_the_response(s: Selection, k: int) -> bool:
     """Whether an effect, or a harmonic of a line, goes further than the response does, and leaves more than
     there was: it cancels against another."""

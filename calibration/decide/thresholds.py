@@ -132,6 +132,8 @@ ONSET_FINE_S = 0.25
 REMAINDER = 0.03
 # of the same, that the strongest effect takes alone: else others are there for themselves. ASSUMPTION
 DOMINANT = 0.95
+# of the lesser of two effects, that their sum leaves of them: they cancel each other. ASSUMPTION: a half
+CANCELS = 0.5
 # share of the held-out mean square that names must take below the floor: most of it. ASSUMPTION
 CLEAR_SHARE = 0.5
 # standard errors of it, and of an amplitude told among many (opened seed 20261211: 3.4)

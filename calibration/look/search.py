@@ -85,7 +85,7 @@ def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[
             break
     assert s is not None
     s = one_line(s, scene)
-    s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved)))
+    s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled))
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
     return rules.leave_out(s, rules.feeds_energy, rules.harmful, rules.below_floor), scene

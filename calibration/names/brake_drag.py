@@ -9,6 +9,7 @@ from calibration.names.onsets import steps
 
 # s: longer than any log. ASSUMPTION
 FOREVER_S = 1e6
+LESS = ("friction_warmup", "preload_change")  # friction that falls from some time on
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -26,8 +27,12 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 
 def one_way(f: Finding, s: Scene) -> Finding:
-    """Where all goes one way, a sensor's offset that changes looks the same."""
-    if f.name != NAME.name or s.both or s.pair is not None:
+    """Where all goes one way, a sensor's offset that changes looks the same; less friction has other names."""
+    if f.name != NAME.name or s.pair is not None:
+        return f
+    if f.parameters["torque"].value < 0.0:
+        f = replace(f, equivalent=tuple(dict.fromkeys([*f.equivalent, *LESS])))
+    if s.both:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
     why = "one way only, an offset of the column that changes looks the same"

@@ -8,8 +8,6 @@ from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
 
-# places of a mode's frequency that are tried on any drive. ASSUMPTION
-COUNT = 14
 # ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
 DAMPING = 0.05
 # part of critical, of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
@@ -51,7 +49,9 @@ def columns(s: Scene) -> list[Candidate]:
         moves = 1 + np.count_nonzero(np.diff(way))
         lowest = max(max(FEWEST_PERIODS, float(moves)) / max(len(v.t) * v.period_s, 1e-9), SLOWEST_HZ)
         corner = 1 / (2 * np.pi * max(v.wide, 1.0) * v.period_s)
-        modes = [(f, DAMPING) for f in np.geomspace(lowest, max(BELOW * corner, 2 * lowest), COUNT)]
+        top = max(BELOW * corner, 2 * lowest)
+        count = int(np.ceil(np.log(top / lowest) / (2 * DAMPING)))  # one within the width of every resonance
+        modes = [(f, DAMPING) for f in np.geomspace(lowest, top, count)]
 
     def shape(p: Array) -> Array:
         frequency = min(max(float(p[0]), lowest), QUICKEST / v.period_s)
