@@ -38,7 +38,11 @@ SENSOR_ROWS = 4_000
 # standard deviations of the filter in `smooth_s`. definition
 WINDOW = 5.0
 # of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
-NOISE = 0.03
+NOISE = 0.01
+# the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
+NOISE_OF_FEW = 0.03
+# rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
+FEW = 600
 # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
 LEAST = 2.0
 # rows likewise at most. ASSUMPTION
@@ -234,7 +238,8 @@ def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: 
     while sigma < MOST:
         a = np.concatenate([np.diff(gaussian_filter1d(x[i:j], sigma), 2) for i, j in pieces(file)])
         size = float(np.sqrt(np.mean(np.clip(a, *np.quantile(a, [0.005, 0.995])) ** 2)))
-        if noise * np.sqrt(3 / (8 * np.sqrt(np.pi)) / sigma**5) < NOISE * size:
+        most = NOISE if len(x) > FEW * sigma else NOISE_OF_FEW
+        if noise * np.sqrt(3 / (8 * np.sqrt(np.pi)) / sigma**5) < most * size:
             break
         sigma *= 1.25
     return sigma if dynamic else max(sigma, 4.0)

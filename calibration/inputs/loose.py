@@ -60,7 +60,7 @@ class Loose:
 def read_loose(path: Path) -> Loose:
     """Raises CalibrationInputError for a file that is no table, or that needs no rig file."""
     check_file(path)
-    if path.suffix.lower() == ".mat":
+    if path.suffix.lower() in (".mat", ".npz"):
         names = columns_of(path)
         return Loose(dict(read_matlab(path, names)[0].items()) if names else {})
     if path.suffix.lower() in RECORDINGS:

@@ -1,4 +1,7 @@
-"""MATLAB files in MATLAB's own words: q, log.motor.q, data(:,3), Y{2}(1,:), Y{*}(1,:) for a run per cell."""
+"""MATLAB files in MATLAB's own words: q, log.motor.q, data(:,3), Y{2}(1,:), Y{*}(1,:) for a run per cell.
+
+NumPy's archives (.npz) are read in the same words.
+"""
 
 import re
 from collections.abc import Iterator
@@ -15,17 +18,7 @@ TOKEN = re.compile(r"\.?([A-Za-z]\w*)|\{(\d+|\*)\}|\(([^()]*)\)")
 
 def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     """The wanted columns, one dictionary per run (more than one when a name has {*})."""
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
-    try:
-        content = loadmat(path)
-    except NotImplementedError:
-        what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
-        raise CalibrationInputError(path, what) from None
-    except (OSError, ValueError, TypeError, MatReadError) as error:
-        text = " ".join(str(error).split())
-        raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({text})") from None
+    content = _content(path)
     found: dict[str, list[Array]] = {}
     for name in wanted:
         try:
@@ -44,13 +37,28 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     return runs
 
 
+def _content(path: Path) -> dict[str, Any]:
+    """Variables by their names. Raises CalibrationInputError for what is no such file."""
+    from zipfile import BadZipFile
+
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    kind = "NumPy archive" if path.suffix.lower() == ".npz" else "MATLAB file"
+    try:
+        return dict(np.load(path).items()) if kind.startswith("NumPy") else loadmat(path)
+    except NotImplementedError:
+        what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
+        raise CalibrationInputError(path, what) from None
+    except (OSError, ValueError, TypeError, EOFError, AttributeError, BadZipFile, MatReadError) as error:
+        text = "no plain arrays" if kind.startswith("NumPy") else " ".join(str(error).split())
+        raise CalibrationInputError(path, f"is not a {kind} this tool reads ({text})") from None
+
+
 def columns_of(path: Path) -> list[str]:
     """Names of the rows and columns of numbers that a file has most of with one length, in MATLAB's words."""
-    from scipy.io import loadmat
-
-    read_matlab(path, [])  # what is no MATLAB file is told there
     found: dict[tuple[int, int], list[str]] = {}
-    for name, value in loadmat(path).items():
+    for name, value in _content(path).items():
         for count, length, words in _vectors(value, name) if not name.startswith("__") else ():
             found.setdefault((count, length), []).append(words)
     return max(found.items(), key=lambda item: (len(item[1]), item[0]), default=((0, 0), []))[1]
@@ -58,7 +66,7 @@ def columns_of(path: Path) -> list[str]:
 
 def _vectors(value: Any, name: str, count: int = 1) -> Iterator[tuple[int, int, str]]:
     """Cells, rows and name of every row or column of numbers in a variable."""
-    array = np.asarray(value)
+    array = np.atleast_2d(value)
     if array.dtype.names and array.size == 1:
         for field in array.dtype.names:
             yield from _vectors(array.ravel()[0][field], f"{name}.{field}", count)

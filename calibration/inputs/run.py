@@ -74,7 +74,7 @@ class Run:
     def gap_s(self) -> float:
         """A step of the clock in s beyond which rows are missing: longer than its own jitter makes it."""
         steps = np.diff(self.columns["t"])
-        usual = float(np.quantile(steps, limits.USUAL_STEPS)) if len(steps) else 0.0
+        usual = float(np.quantile(steps, limits.USUAL_STEPS)) if len(steps) >= limits.FEWEST_STEPS else 0.0
         return limits.GAP * max(self.period_s, usual)
 
     def among(self, names: Collection[str]) -> bool:

@@ -21,7 +21,7 @@ from calibration.inputs.thresholds import LARGEST_NUMBER
 from calibration.inputs.words import read_signed
 
 #: files that are no text, by the ending of their name
-READERS = {".mat": read_matlab, **RECORDINGS}
+READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
 
 
 def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:

@@ -92,16 +92,26 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     if skip >= len(lines):
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
     mark = delimiter or next((mark for mark in "\t;," if mark in lines[skip]), " ")
+    if mark == " ":  # aligned columns are parted by any number of blanks
+        lines = [" ".join(line.split()) for line in lines]
     check_width(path, lines[skip].count(mark) + 1, skip + 1)
-    fields, first = split(lines[skip], mark), skip + 1
+    fields, first, said = split(lines[skip], mark), skip + 1, list[str]()
     if names or all(f and plain(f) is not None for f in fields):
-        fields, first = list(names) or [str(k) for k in range(len(fields))], skip
+        said = _commented(lines[:skip], mark, len(fields))
+        fields, first = list(names) or said or [str(k) for k in range(len(fields))], skip
     if first >= len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
     rows = len(lines[first].split(mark))
     if len(fields) != rows:
         raise CalibrationInputError(path, f"{rows} fields, {len(fields)} names", first + 1)
-    return Heading(lines, fields, first, mark, skip)
+    return Heading(lines, fields, first, mark, skip - 1 if fields == said else skip)
+
+
+def _commented(above: list[str], mark: str, count: int) -> list[str]:
+    """Names in the last comment above rows of numbers, where it has one for each of `count` columns."""
+    names = split(above[-1].lstrip("#% "), mark) if above else []
+    words = all(name and plain(name) is None for name in names)
+    return names if len(names) == count > 1 and words and len(set(names)) == count else []
 
 
 def read_columns(

@@ -27,7 +27,7 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 
 def one_way(f: Finding, s: Scene) -> Finding:
-    """Where all goes one way, a sensor's offset that changes looks the same; less friction has other names."""
+    """Where all goes one way, a sensor's offset that changes looks the same. Less drag has other names."""
     if f.name != NAME.name or s.pair is not None:
         return f
     if f.parameters["torque"].value < 0.0:

@@ -12,8 +12,9 @@ from calibration.names.scene import HALF
 DAMPING = 0.05
 # part of critical, of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
 LEAST_DAMPED = 0.001
-# part of critical likewise, at most (Altintas 2012): the upper end, and twice that where it is not well told
+# part of critical, of the most damped structures (Altintas 2012)
 STRUCTURES_DAMPED = 0.1
+# part of critical, at most: twice that, where it is not well told. ASSUMPTION
 MOST_DAMPED = 0.2
 # part of critical: more comes to the bound of the fit on an axis, and is no resonance. ASSUMPTION
 RINGS = 0.145
@@ -21,6 +22,8 @@ RINGS = 0.145
 BELOW = 0.5
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
 FEWEST_PERIODS = 8.0
+# share of the moves that are shorter than one in which a mode rings: a sweep has quick ones. ASSUMPTION
+LONG_MOVES = 0.9
 # Hz. ASSUMPTION: slower than the first mode of a steerable structure; antennas of 70 to 100 m begin above it
 SLOWEST_HZ = 0.5
 # Hz, on a telescope's axis: 4.5 % apart, as wide as a mode of 2 % damping
@@ -45,9 +48,11 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     else:
         a, way = np.asarray(v.second(v.x)), np.sign(v.direction[np.abs(v.direction) > HALF])
-        # a mode rings within one of the usual moves, and often in the log; slower, it is the motion
-        moves = 1 + np.count_nonzero(np.diff(way))
-        lowest = max(max(FEWEST_PERIODS, float(moves)) / max(len(v.t) * v.period_s, 1e-9), SLOWEST_HZ)
+        # a mode rings within one of the longer moves, and often in the log; slower, it is the motion
+        moves = np.diff(np.flatnonzero(np.diff(way)), prepend=-1, append=len(way) - 1)
+        longest = float(np.quantile(moves, LONG_MOVES)) * v.period_s
+        often = FEWEST_PERIODS / max(len(v.t) * v.period_s, 1e-9)
+        lowest = max(often, 1 / max(longest, v.period_s), SLOWEST_HZ)
         corner = 1 / (2 * np.pi * max(v.wide, 1.0) * v.period_s)
         top = max(BELOW * corner, 2 * lowest)
         count = int(np.ceil(np.log(top / lowest) / (2 * DAMPING)))  # one within the width of every resonance

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.text import _slowly, load_text, load_utf8, plain, read_numbers
+from calibration.inputs.text import _slowly, load_text, load_utf8, plain, read_columns, read_numbers
 
 PATH = Path("x.csv")
 FIELDS = st.one_of(
@@ -104,3 +104,14 @@ def test_a_byte_of_a_code_page_is_found_in_its_line(tmp_path: Path) -> None:
 def test_a_file_that_is_not_there_says_so(tmp_path: Path) -> None:
     with pytest.raises(CalibrationInputError, match="cannot be read"):
         load_text(tmp_path / "none.log")
+
+
+def test_a_commented_header_names_columns_that_any_number_of_blanks_parts() -> None:
+    text = "# of a logger\n#t q  tau\n0.00   1.0 2\n0.01  -1.5   3\n"
+    got = read_columns(PATH, text, ["tau", "t"])
+    assert got["tau"].tolist() == [2.0, 3.0] and got["t"].tolist() == [0.0, 0.01]
+
+
+def test_a_remark_above_numbers_is_no_header() -> None:
+    got = read_columns(PATH, "# 3 runs, all of them good\n1,2\n3,4\n", [0, 1])
+    assert got["0"].tolist() == [1.0, 3.0]
