@@ -133,8 +133,8 @@ def within_bounds(resolved: float) -> Rule:
 
 
 def _no_structure(damping: Parameter) -> bool:
-    """Whether all of a damping's interval lies above what structures have, or it reaches to the bound."""
-    return (damping.low or 0.0) > STRUCTURES_DAMPED or (damping.high or 0.0) >= MOST_DAMPED
+    """Whether a damping is above what structures have, or its interval reaches to the bound."""
+    return damping.value > STRUCTURES_DAMPED or (damping.high or 0.0) >= MOST_DAMPED
 
 
 @each
@@ -152,9 +152,9 @@ def cancelled(s: Selection, k: int) -> str:
 
 def larger_than_the_response(s: Selection, k: int) -> bool:
     """Whether an effect, or a harmonic of a line, goes further than the response does, and leaves more than
-    there was: it cancels against another."""
+    there was: it cancels against another. A loop takes friction's place, which it cancels."""
     c, rows, y = s.candidates[k], s.problem.valid, s.problem.y[s.problem.valid]
-    if c.name == UNKNOWN:
+    if c.name == UNKNOWN or NAMES[c.name].loop:
         return False
     parts = (c.columns[rows] * s.sizes(k)).reshape(int(rows.sum()), -1, 2 if c.kind == "line" else c.width)
     waves = parts.sum(axis=2)
