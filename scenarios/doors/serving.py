@@ -79,7 +79,7 @@ def serve(options: ServeOptions) -> int:
         finally:
             for keeper in keepers:
                 keeper.close()
-            ended = park(served) if served.steps is None else "left where they stood"
+            ended = park(served, console.print) if served.steps is None else "left where they stood"
             digest = recording.close(served.now_ns) if recording is not None else ""
     console.print(loop.text())
     for door in doors:
