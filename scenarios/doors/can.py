@@ -9,6 +9,7 @@ import can
 
 from bus.outside.door import Door as Fence
 from bus.outside.external import open_bus
+from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 
 _BUFFER_BYTES = 1 << 23
@@ -67,13 +68,11 @@ class CanDoor:
     def state(self) -> str:
         """Frames in and out, and what was not carried."""
         frames_in, frames_out, refused, rejected, lost, dropped = self._counts(self.fence)
-        words = [f"{frames_in} frames in, {frames_out} out"]
-        if refused:
-            words.append(f"{refused} refused (the bus was full)")
-        if dropped:
-            words.append(f"{dropped} dropped by the system's buffer")
-        if rejected:
-            words.append(f"{rejected} were no CAN 2.0 frames")
-        if lost:
-            words.append(f"{lost} not taken outside")
-        return ", ".join(words)
+        return counted(
+            (frames_in, "frames in"),
+            (frames_out, "frames out"),
+            (refused, "refused (the bus was full)"),
+            (dropped, "dropped by the system's buffer"),
+            (rejected, "were no CAN 2.0 frames"),
+            (lost, "not taken outside"),
+        )

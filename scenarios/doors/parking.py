@@ -1,4 +1,4 @@
-"""The end of serving: both axes go to the park position and their motors off, or it is said which does not."""
+"""The end of serving: both axes are parked and their motors off, or it is said which is not."""
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -85,7 +85,7 @@ class _Way:
 
     def _settled(self, axis: Device) -> bool:
         data = self.link.summaries.get(axis)
-        return data is not None and unpack_target(data).settled
+        return data is not None and bool(unpack_target(data).settled)
 
     def _rests(self, axis: Device) -> bool:
         motion = self.client.motion(axis)

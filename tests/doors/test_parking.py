@@ -38,7 +38,8 @@ def off_park(served: LiveNetwork) -> list[float]:
     goals = (mount.ra.steps(mount.park_hour_angle_rad), mount.dec.steps(mount.park_declination_rad))
     ports = (served.network.plant.ra, served.network.plant.dec)
     return [
-        abs(port.absolute(served.now_ns) - goal) * STEP_ARCSEC for port, goal in zip(ports, goals, strict=True)
+        abs(port.absolute(served.now_ns) - goal) * STEP_ARCSEC
+        for port, goal in zip(ports, goals, strict=True)
     ]
 
 
