@@ -1,8 +1,5 @@
 """`--can INTERFACE:CHANNEL`: a python-can bus of the outside joined to the wire."""
 
-import os
-import socket
-from contextlib import suppress
 from functools import partial
 
 import can
@@ -11,9 +8,6 @@ from bus.outside.door import Door as Fence
 from bus.outside.external import open_bus
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
-
-_BUFFER_BYTES = 1 << 23
-"""Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
 
 
 class CanDoor:
@@ -34,11 +28,6 @@ class CanDoor:
     def open(self) -> None:
         """Open the interface; raises SpecError."""
         self._bus = bus = open_bus(self._spec)
-        with (
-            suppress(OSError, NotImplementedError, AttributeError, ValueError),
-            socket.socket(fileno=os.dup(bus.fileno())) as copy,
-        ):
-            copy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         self.fence = Fence(self._network.queue, self._network.wire, bus, self.node, self._enter)
 
     def poll(self, _now_ns: int) -> None:
