@@ -66,7 +66,7 @@ def main() -> None:
     except click.ClickException as error:
         fail(error.format_message(), UNUSABLE)
     except (OSError, ValueError) as error:
-        fail(_said(error), UNUSABLE)
+        fail(_said(error), UNUSABLE, getattr(error, "__notes__", ()))
     except ImportError as error:
         missing = f"this command needs a part that is not installed: {error}"
         fail(advice(error.name or "") or missing, UNUSABLE)

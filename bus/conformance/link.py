@@ -6,6 +6,7 @@ from time import monotonic
 import can
 
 from bus.conformance.settings import Settings
+from bus.outside.overflow import kernel_drops
 from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import COMMAND_BASE, FRAME_BYTES, REPLY_BASE, Opcode, Reply, pack_command, unpack_reply
 
@@ -46,6 +47,11 @@ class Link:
         self._instead: list[str] = []
         self._sent_s = 0.0
         self._bus = bus
+
+    @property
+    def lost(self) -> int:
+        """Frames that this machine has dropped so far, because it was busy."""
+        return kernel_drops(self._bus)
 
     def listen(self, seconds: float) -> list[can.Message]:
         """Everything that arrives within `seconds`."""

@@ -25,11 +25,13 @@ def check_telemetry(link: Link, dbc: "Database", boards: Sequence[Board]) -> Ite
     heard: dict[int, list[can.Message]] = defaultdict(list)
     odd: set[str] = set()
     seconds = link.settings.listen_s / link.settings.speed
+    lost = link.lost
     for message in link.listen(seconds):
         if message.is_extended_id or message.is_remote_frame:
             odd.add(f"{'remote' if message.is_remote_frame else 'extended'} {message.arbitration_id:#05x}")
         else:
             heard[message.arbitration_id].append(message)
+    lost = link.lost - lost
     link.known = set(heard)
     known = {message.frame_id for message in dbc.messages}
     for board in boards:
@@ -39,14 +41,16 @@ def check_telemetry(link: Link, dbc: "Database", boards: Sequence[Board]) -> Ite
                 continue
             known.add(documented.frame_id + shift)
             if documented.cycle_time:
-                yield from _frame(link, dbc, board, documented, heard.get(documented.frame_id + shift, []))
+                yield from _frame(
+                    link, dbc, board, documented, heard.get(documented.frame_id + shift, []), lost
+                )
     strange = sorted(odd) + [f"{identifier:#05x}" for identifier in sorted(set(heard) - known)]
     observed = ", ".join(strange) or "none"
     yield doubted("undocumented", "bus", not strange, "no other frames", observed, seconds)
 
 
 def _frame(
-    link: Link, dbc: "Database", board: Board, documented: Any, heard: list[can.Message]
+    link: Link, dbc: "Database", board: Board, documented: Any, heard: list[can.Message], lost: int
 ) -> Iterator[CheckResult]:
     seconds = link.settings.listen_s / link.settings.speed
     identifier = documented.frame_id + board.device - board.model
@@ -83,7 +87,7 @@ def _frame(
         return
     stamps = [message.timestamp for message in heard]
     queueing = queueing_s(dbc.messages, identifier)
-    yield from check_timing(link.settings, subject, documented.cycle_time, stamps, queueing)
+    yield from check_timing(link.settings, subject, documented.cycle_time, stamps, queueing, lost)
 
 
 def _contents(documented: Any, rows: Sequence[Row]) -> tuple[bool, str, str]:

@@ -17,6 +17,8 @@ _ALL_GROUPS = (
     (socket.AF_INET6, socket.IPPROTO_IPV6, 29),  # IPV6_MULTICAST_ALL
 )
 """Linux' option by which a socket hears every group that anybody on the machine has joined, by default on."""
+_BUFFER_BYTES = 1 << 23
+"""Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
 
 
 _SOCKETCAN = {
@@ -55,8 +57,13 @@ def open_bus(spec: str) -> can.BusABC:
         reason = " ".join(str(error).split()) or type(error).__name__
         remedy = _remedy(error).format(channel) if interface == "socketcan" else ""
         raise SpecError(f'"{spec}" cannot be opened: {reason}{remedy and f"; try: {remedy}"}') from None
-    if interface == "udp_multicast" and sys.platform == "linux":
-        _hear_one_group(bus)
+    with (
+        suppress(OSError, NotImplementedError, AttributeError, ValueError),  # no socket, or not so much
+        socket.socket(fileno=os.dup(bus.fileno())) as copy,
+    ):
+        copy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
+        if interface == "udp_multicast" and sys.platform == "linux":
+            _hear_one_group(copy)
     return bus
 
 
@@ -66,9 +73,8 @@ def _remedy(error: BaseException | None) -> str:
     return _SOCKETCAN[getattr(error, "errno", 0)] if error else ""
 
 
-def _hear_one_group(bus: can.BusABC) -> None:
+def _hear_one_group(copy: socket.socket) -> None:
     """Let a multicast socket hear its own group alone; the port is shared by all buses of this machine."""
-    with socket.socket(fileno=os.dup(bus.fileno())) as copy, suppress(OSError):  # a kernel without it
-        for family, level, option in _ALL_GROUPS:
-            if copy.family == family:
-                copy.setsockopt(level, option, 0)
+    for family, level, option in _ALL_GROUPS:
+        if copy.family == family:
+            copy.setsockopt(level, option, 0)

@@ -20,6 +20,8 @@ DELIMITERS = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}
 #: rig files that ship with the tool
 RIGS = Path(__file__).parent.parent / "rigs"
 SCHEMA = Path(__file__).with_name("rig.schema.json")
+_TOLD = 20
+"""Mistakes of one file: a screen. ASSUMPTION."""
 
 
 class _Loader(yaml.SafeLoader):
@@ -34,7 +36,10 @@ _Loader.add_implicit_resolver(
 
 
 def load_rig(path: Path) -> Rig:
-    """Load and check a rig file; raises CalibrationInputError with the field and, where known, the line."""
+    """Load and check a rig file; raises CalibrationInputError with the field and, where known, the line.
+
+    Of several mistakes against the schema the others are its notes.
+    """
     from jsonschema import Draft202012Validator
 
     data, text = _read(path)
@@ -44,8 +49,13 @@ def load_rig(path: Path) -> Rig:
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     errors = [_innermost(e) for e in Draft202012Validator(schema).iter_errors(data)]
     if errors:  # a rule that the schema says in its own words holds for fields that are sound
-        first = min(errors, key=lambda e: (bool(_says(e)), [str(p) for p in e.absolute_path]))
-        _complain(path, data, text, first)
+        errors = [error for error in errors if not _says(error)] or errors
+        errors.sort(key=lambda e: [str(p) for p in e.absolute_path])
+        first, *others = dict.fromkeys(_complaint(data, text, e, word) for e in errors for word in _words(e))
+        wrong = CalibrationInputError(path, *first)
+        for other in others[:_TOLD]:
+            wrong.add_note(str(CalibrationInputError(path, *other)))
+        raise wrong
     return _build(path, data)
 
 
@@ -84,8 +94,15 @@ def _says(error: Any) -> str:
     return str(inner.get("says") or error.schema.get("says") or "")
 
 
-def _complain(path: Path, data: dict[str, Any], text: str, error: Any) -> None:
-    """One line for the first mistake: field, what is wrong, the nearest word that would be right."""
+def _words(error: Any) -> list[str]:
+    """What was written: each field that is not known, or the value."""
+    if error.validator == "additionalProperties" and isinstance(error.instance, dict):
+        return [key for key in map(str, error.instance) if key not in error.schema.get("properties", {})]
+    return [str(error.instance) if not isinstance(error.instance, dict | list) else ""]
+
+
+def _complaint(data: dict[str, Any], text: str, error: Any, word: str) -> tuple[str, int | None]:
+    """One mistake: field, what is wrong, the nearest word that would be right; and its line."""
     names, keys, at = [], [], data
     for step in error.absolute_path:
         at = at[step]
@@ -93,11 +110,9 @@ def _complain(path: Path, data: dict[str, Any], text: str, error: Any) -> None:
         names.append(name if isinstance(name, str) else str(step))
         keys += [step] if isinstance(step, str) else [name] if isinstance(name, str) else []
     place = ".".join(names) or "top level"
-    word = str(error.instance) if not isinstance(error.instance, dict | list) else ""
     message, choices = str(error.message), []
     if error.validator == "additionalProperties" and isinstance(error.instance, dict):
         choices = list(error.schema.get("properties", {}))
-        word = next(k for k in map(str, error.instance) if k not in choices)
         message = f"unknown field '{word}'"
     elif error.validator == "enum":
         choices = [str(v) for v in error.validator_value]
@@ -109,7 +124,7 @@ def _complain(path: Path, data: dict[str, Any], text: str, error: Any) -> None:
         quoted = [*str(error.message).split("'"), "", "", ""]  # 'a' is a dependency of 'b', 'a' is required
         what = says.format_map({**data, "place": place, "it": word, "missing": quoted[1], "of": quoted[3]})
     keys += [word] if choices and (not keys or error.validator == "additionalProperties") else []
-    raise CalibrationInputError(path, what, _line(text, keys))
+    return what, _line(text, keys)
 
 
 def _line(text: str, keys: list[str]) -> int | None:

@@ -6,8 +6,8 @@ import socket
 from typing import Any
 
 from fastapi import FastAPI
-from nicegui import Client, core, ui
 from nicegui import app as nicegui_app
+from nicegui import core, ui
 
 from host.console.live import Live
 from host.console.pages.alignment import alignment
@@ -36,14 +36,6 @@ _PING_S, _SILENT_S = 2, 5
 a dead link hardly sooner. They drop a browser that a busy machine holds up for two seconds, and its click."""
 
 
-def connected(client: Client) -> bool:
-    """Whether a page's browser is there.
-
-    NiceGUI lists a page before it is whole, and the host looks from another thread.
-    """
-    return getattr(client, "tab_id", None) is not None
-
-
 class _Counter(logging.Handler):
     """Counts instead of printing."""
 
@@ -58,10 +50,11 @@ class _Counter(logging.Handler):
 
 class Consoles:
     """Pages over one telescope, one bus and one folder of recorded runs. One object per process: NiceGUI
-    keeps its pages in the module."""
+    keeps its pages in the module. pages: how many browsers have shown."""
 
     def __init__(self, telescope: Telescope, bus_view: BusView, runs: Runs, token: str) -> None:
         self.live = Live(telescope, bus_view)
+        self.pages = 0
         nicegui_app.add_static_files(REPORTS, runs.folder)
         pages = {
             "/": main,
@@ -77,6 +70,7 @@ class Consoles:
         web = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         ui.run_with(web, title="Schmidt telescope", dark=True, language="en-US", binding_refresh_interval=1.0)
         nicegui_app.on_startup(_patient)
+        nicegui_app.on_connect(self._shown)
         self._app = Guard(web, token)
         self._refused = _Counter()
         for name in _LOGGERS:
@@ -88,10 +82,8 @@ class Consoles:
         """Messages that no page sends, or that a page could do nothing with."""
         return self._refused.count
 
-    @property
-    def browsers(self) -> int:
-        """Pages that are open and connected."""
-        return sum(map(connected, list(Client.instances.values())))
+    def _shown(self) -> None:
+        self.pages += 1
 
     async def serve(self, listener: socket.socket) -> None:
         """Answer browsers on a listening socket until cancelled."""

@@ -6,6 +6,8 @@ import fcntl
 import os
 import termios
 import tty
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from time import monotonic
 
@@ -25,6 +27,11 @@ _BYTES = 4096
 _QUIET_S = 1.0
 """After a silence this long, answers that were not read are nobody's any more. ASSUMPTION: clients wait at
 once for what they ask."""
+Came = Callable[[], None]
+
+
+def _nothing() -> None:
+    """Nobody counts."""
 
 
 class Lx200:
@@ -42,11 +49,12 @@ class Lx200:
         """For one client."""
         return Session(self._desk, self._box, PLAIN, WITH_ARGUMENT, name)
 
-    async def serve_tcp(self, host: str, port: int) -> asyncio.Server:
-        """Listen; port 0 takes a free one. Raises OSError when it is taken."""
-        return await asyncio.start_server(self._client, host, port)
+    async def serve_tcp(self, host: str, port: int, came: Came = _nothing) -> asyncio.Server:
+        """Listen; port 0 takes a free one. Raises OSError when it is taken. came: called for each client."""
+        return await asyncio.start_server(partial(self._client, came), host, port)
 
-    async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _client(self, came: Came, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        came()
         self.clients += 1
         session = self.session(str(writer.get_extra_info("peername")))
         head = b""
@@ -65,8 +73,11 @@ class Lx200:
             self.clients -= 1
             writer.close()
 
-    async def serve_pty(self, name: Path) -> None:
-        """A pseudo-terminal with a stable name, until cancelled. Raises OSError when the name is taken."""
+    async def serve_pty(self, name: Path, came: Came = _nothing) -> None:
+        """A pseudo-terminal with a stable name, until cancelled. Raises OSError when the name is taken.
+
+        came: called when somebody is heard after a silence.
+        """
         master, slave = os.openpty()
         target = os.ttyname(slave)
         try:
@@ -75,19 +86,20 @@ class Lx200:
             if name.is_symlink() and (not name.exists() or os.readlink(name) == target):
                 name.unlink()  # of a server that is no more, whose terminal's number may be this one's
             name.symlink_to(target)
-            await self._pty(master, slave, self.session(str(name)))
+            await self._pty(master, slave, self.session(str(name)), came)
         finally:
             if name.is_symlink() and os.readlink(name) == target:
                 name.unlink()
             os.close(slave)
             os.close(master)
 
-    async def _pty(self, master: int, slave: int, session: Session) -> None:
+    async def _pty(self, master: int, slave: int, session: Session, came: Came) -> None:
         heard_s = 0.0
         while True:
             await _readable(master)
             before_s, heard_s = heard_s, monotonic()
             if heard_s - before_s > _QUIET_S:
+                came()
                 # a port that is closed forgets what nobody has read; this end cannot see that it was
                 termios.tcflush(slave, termios.TCIFLUSH)
             # INDI takes the port for itself; since this end stays open, nobody would ever free it again

@@ -1,6 +1,7 @@
-"""How a command ends that does not end well: one line and a status."""
+"""How a command ends that does not end well: a line, or one for each mistake of a file, and a status."""
 
 import sys
+from collections.abc import Iterable
 from typing import NoReturn
 
 import click
@@ -11,10 +12,11 @@ _LINE = 600
 """Longer messages quote somebody's megabyte."""
 
 
-def fail(text: str, status: int) -> NoReturn:
-    """Say `schmidt: text` on stderr, in one line, and leave with `status`."""
-    text = " ".join(text.split())
-    if len(text) > _LINE:
-        text = text[: _LINE // 2] + " … " + text[-_LINE // 2 :]
-    click.echo(f"schmidt: {text}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)
+def fail(text: str, status: int, more: Iterable[str] = ()) -> NoReturn:
+    """Say `schmidt: text` on stderr, in one line, and a line for each of `more`; leave with `status`."""
+    for each in (text, *more):
+        said = " ".join(each.split())
+        if len(said) > _LINE:
+            said = said[: _LINE // 2] + " … " + said[-_LINE // 2 :]
+        click.echo(f"schmidt: {said}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)
     sys.exit(status)

@@ -3,6 +3,7 @@
 from host.alpaca import discovery
 from host.alpaca.server import Alpaca
 from scenarios.doors.address import address, is_local, listen
+from scenarios.doors.door import counted
 from scenarios.doors.pc import Host
 from scenarios.doors.server import ServerDoor
 
@@ -11,10 +12,10 @@ class AlpacaDoor(ServerDoor):
     """One HTTP port. Without discovery (port 32227 taken) it serves all the same, and says so."""
 
     def __init__(self, spec: str, host: Host) -> None:
-        super().__init__(f"--alpaca {spec}", host)
+        self._asked = f"--alpaca {spec}"
+        super().__init__(self._asked, host)
         self.alpaca = Alpaca(host.pc.telescope, host.pc.cameras)
         self._address = address(spec, "--alpaca")
-        self._found = "discovery off"
 
     def open(self) -> None:
         """Listen; raises OSError."""
@@ -22,10 +23,10 @@ class AlpacaDoor(ServerDoor):
         self.keep(self.alpaca.serve(listen(where, port)))
         try:
             self.keep(discovery.serve(port, is_local(where)))
-            self._found = "discovery on"
+            self.name = self._asked
         except OSError as error:
-            self._found = f"no discovery: {error.strerror}"
+            self.name = f"{self._asked} (no discovery: {error.strerror})"
 
     def state(self) -> str:
         """How much it was asked."""
-        return f"{self.alpaca.requests} requests, {self._found}"
+        return counted((self.alpaca.requests, "requests"))

@@ -18,7 +18,7 @@ class Attached(NamedTuple):
 
 def attached(name: str, boards: Sequence[str]) -> Attached:
     """By a door's name, such as `--serial tcp:7000`. boards: those with an RS232 line, in their order."""
-    option, _, spec = name.partition(" ")
+    option, _, spec = name.partition(" (")[0].partition(" ")  # without what the door has added
     word, _, rest = spec.partition(":")
     kinds: tuple[DoorKind[Any], ...] = (*ON_NETWORK, *ON_HOST)
     forms = next(kind.attach for kind in kinds if f"--{kind.name}" == option)

@@ -1,18 +1,13 @@
 """`--can INTERFACE:CHANNEL`: a python-can bus of the outside joined to the wire."""
 
-import os
-import socket
-from contextlib import suppress
 from functools import partial
 
 import can
 
 from bus.outside.door import Door as Fence
 from bus.outside.external import open_bus
+from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
-
-_BUFFER_BYTES = 1 << 23
-"""Asked for at the socket: the default holds 25 ms of a flood, and the machine may be busy for longer."""
 
 
 class CanDoor:
@@ -33,11 +28,6 @@ class CanDoor:
     def open(self) -> None:
         """Open the interface; raises SpecError."""
         self._bus = bus = open_bus(self._spec)
-        with (
-            suppress(OSError, NotImplementedError, AttributeError, ValueError),
-            socket.socket(fileno=os.dup(bus.fileno())) as copy,
-        ):
-            copy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         self.fence = Fence(self._network.queue, self._network.wire, bus, self.node, self._enter)
 
     def poll(self, _now_ns: int) -> None:
@@ -67,13 +57,11 @@ class CanDoor:
     def state(self) -> str:
         """Frames in and out, and what was not carried."""
         frames_in, frames_out, refused, rejected, lost, dropped = self._counts(self.fence)
-        words = [f"{frames_in} frames in, {frames_out} out"]
-        if refused:
-            words.append(f"{refused} refused (the bus was full)")
-        if dropped:
-            words.append(f"{dropped} dropped by the system's buffer")
-        if rejected:
-            words.append(f"{rejected} were no CAN 2.0 frames")
-        if lost:
-            words.append(f"{lost} not taken outside")
-        return ", ".join(words)
+        return counted(
+            (frames_in, "frames in"),
+            (frames_out, "frames out"),
+            (refused, "refused (the bus was full)"),
+            (dropped, "dropped by the system's buffer"),
+            (rejected, "were no CAN 2.0 frames"),
+            (lost, "not taken outside"),
+        )

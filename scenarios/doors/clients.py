@@ -87,17 +87,30 @@ class Client:
 
 
 class Clients:
-    """Those of one listening socket."""
+    """Those of a door, on one listening socket after the other. came: how many there have been."""
 
-    def __init__(self, listener: socket.socket) -> None:
+    def __init__(self) -> None:
         self.all: list[Client] = []
-        self._listener = listener
+        self.came = 0
+        self._lost = 0
+        self._listener: socket.socket | None = None
         self._poll = select.poll()  # one look at all of them: most have said nothing
+
+    @property
+    def lost(self) -> int:
+        """Bytes that one or another was too slow for."""
+        return self._lost + sum(client.lost for client in self.all)
+
+    def listen(self, listener: socket.socket) -> None:
+        """To this socket from now on."""
+        self._listener = listener
         self._poll.register(listener, select.POLLIN)
 
     def accept(self) -> list[Client]:
         """New ones since the last look."""
         found: list[Client] = []
+        if self._listener is None:
+            return found
         ready = [number for number, _ in self._poll.poll(0)]
         for client in self.all:
             client.ready = client.number in ready
@@ -111,6 +124,7 @@ class Clients:
                 continue
             found.append(Client(connection, str(peer[0]) if isinstance(peer, tuple) else ""))
             self.all.append(found[-1])
+            self.came += 1
             self._poll.register(connection, select.POLLIN)
         return found
 
@@ -123,11 +137,15 @@ class Clients:
         for client in [each for each in self.all if each.gone]:
             self._poll.unregister(client.number)
             client.close()
+            self._lost += client.lost
             self.all.remove(client)
 
     def close(self) -> None:
         """Hang up on everybody and stop listening."""
         for client in self.all:
-            client.close()
-        self.all.clear()
-        self._listener.close()
+            client.gone = True
+        self.sweep()
+        if self._listener is not None:
+            self._poll.unregister(self._listener)
+            self._listener.close()
+            self._listener = None

@@ -7,7 +7,7 @@ from host.console.server import Consoles
 from host.sky.listed import VARIABLE, listed
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.control import TOKEN_VARIABLE
-from scenarios.doors.door import DoorError
+from scenarios.doors.door import DoorError, counted
 from scenarios.doors.pc import Host
 from scenarios.doors.server import ServerDoor
 
@@ -49,6 +49,5 @@ class ConsoleDoor(ServerDoor):
         self._runs.close()
 
     def state(self) -> str:
-        """How many look, and what was sent that no page sends."""
-        refused = self._consoles.refused
-        return f"{self._consoles.browsers} browsers" + (f", {refused} messages refused" if refused else "")
+        """How much was looked at, and what was sent that no page sends."""
+        return counted((self._consoles.pages, "pages shown"), (self._consoles.refused, "messages refused"))

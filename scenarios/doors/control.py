@@ -16,11 +16,11 @@ import os
 import secrets
 from collections.abc import Callable
 from functools import partial
-from time import sleep
 
 from bus.outside.punctual import Punctuality
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.clients import Client, Clients
+from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 
 _LINE_LIMIT = 1000
@@ -61,7 +61,7 @@ class ControlDoor:
         self.name = f"--control {where}"
         if not is_local(self.host):
             self.name += f" (token {self.token})" if token is None else " (with your token)"
-        self._clients: Clients | None = None
+        self._clients = Clients()
         self._rest: dict[Client, bytes] = {}
         self._trusted: set[Client] = set()
         self.refused = 0
@@ -74,12 +74,10 @@ class ControlDoor:
 
     def open(self) -> None:
         """Listen; raises OSError."""
-        self._clients = Clients(listen(self.host, self.port))
+        self._clients.listen(listen(self.host, self.port))
 
     def poll(self, _now_ns: int) -> None:
         """Take commands and answer them."""
-        if self._clients is None:
-            return
         for client in self._clients.accept():
             self._rest[client] = b""
             if is_local(client.peer):
@@ -111,9 +109,7 @@ class ControlDoor:
     def wait(self, timeout_s: float) -> None:
         """Until there is something to do, or wall time is over."""
         more = any(b"\n" in rest and not self._waits(client) for client, rest in self._rest.items())
-        if self._clients is None:
-            sleep(timeout_s)
-        elif not more:
+        if not more:
             self._clients.wait(timeout_s)
 
     def _answer(self, client: Client, line: bytes) -> str | None:
@@ -223,13 +219,10 @@ class ControlDoor:
 
     def close(self) -> None:
         """Hang up and stop listening."""
-        if self._clients is not None:
-            self._clients.close()
-        self._clients = None
+        self._clients.close()
         self._rest.clear()
         self._trusted.clear()
 
     def state(self) -> str:
-        """Who is connected."""
-        count = len(self._clients.all) if self._clients is not None else 0
-        return f"{count} clients" + (f", {self.refused} refused for want of a token" if self.refused else "")
+        """How many came."""
+        return counted((self._clients.came, "clients"), (self.refused, "refused for want of a token"))

@@ -3,6 +3,11 @@
 from typing import Protocol
 
 
+def counted(*told: tuple[int, str]) -> str:
+    """Counts in words, `3 clients, 2 refused`, without what there was none of."""
+    return ", ".join(f"{count} {what}" for count, what in told if count)
+
+
 class DoorError(OSError):
     """A door that cannot be opened, or is broken; one line. It is reported and tried again."""
 
@@ -32,4 +37,4 @@ class Door(Protocol):
         """Let go of everything; twice does nothing, and so does closing what never opened."""
 
     def state(self) -> str:
-        """A few words for the status line: clients, counts, what was refused."""
+        """Words for the end: clients, counts, what was refused. Empty: nobody was there."""

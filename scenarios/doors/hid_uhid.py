@@ -3,7 +3,7 @@
 import os
 from struct import Struct
 
-from scenarios.doors.door import DoorError
+from scenarios.doors.door import DoorError, counted
 from scenarios.doors.hid_report import DESCRIPTOR, NAME, PRODUCT, VENDOR, VERSION, out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbFull, UsbPlug
@@ -28,7 +28,7 @@ _EVENTS = 32
 
 
 class UhidDoor:
-    """One device. opened: programs that have it open, as the kernel counts."""
+    """One device. opened: whether a program has it open, as the kernel says; came: how often."""
 
     def __init__(self, served: LiveNetwork, device: str = DEVICE) -> None:
         self.name = "--hid uhid"
@@ -37,6 +37,7 @@ class UhidDoor:
         self._file: int | None = None
         self._plug: UsbPlug | None = None
         self.opened = False
+        self.came = 0
         self.rejected = 0
         self.lost = 0
 
@@ -72,6 +73,7 @@ class UhidDoor:
         event = event.ljust(_EVENT_BYTES, b"\0")
         if kind == _OPEN:
             self.opened = True
+            self.came += 1
         elif kind == _CLOSE:
             self.opened = False
         elif kind == _OUTPUT:
@@ -109,9 +111,8 @@ class UhidDoor:
         self.opened = False
 
     def state(self) -> str:
-        """Whether somebody has it open."""
-        words = f"{VENDOR:04x}:{PRODUCT:04x}, " + ("open" if self.opened else "not opened by anybody")
-        return words + (f", {self.rejected} were no reports" if self.rejected else "")
+        """How often it was opened, and what did not pass."""
+        return counted((self.came, "times opened"), (self.rejected, "were no reports"))
 
 
 def create_event() -> bytes:

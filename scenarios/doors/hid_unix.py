@@ -9,7 +9,7 @@ import stat
 from pathlib import Path
 
 from scenarios.doors.clients import Client, Clients
-from scenarios.doors.door import DoorError
+from scenarios.doors.door import DoorError, counted
 from scenarios.doors.hid_report import BYTES, out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbPlug
@@ -25,7 +25,7 @@ class UnixDoor:
         self.name = f"--hid unix:{path}"
         self._path = Path(path)
         self._served = served
-        self._clients: Clients | None = None
+        self._clients = Clients()
         self._plug: UsbPlug | None = None
         self.rejected = 0
 
@@ -42,7 +42,7 @@ class UnixDoor:
             listener.close()
             reason = getattr(error, "strerror", None) or str(error)
             raise DoorError(f"--hid unix: {self._path}: {reason}") from None
-        self._clients = Clients(listener)
+        self._clients.listen(listener)
         self._plug = self._served.usb.plug(self.name)
 
     def _clear(self) -> None:
@@ -64,7 +64,7 @@ class UnixDoor:
     def poll(self, _now_ns: int) -> None:
         """Reports both ways; while the gateway is busy nothing is read, so that writers wait."""
         clients, plug = self._clients, self._plug
-        if clients is None or plug is None:
+        if plug is None:
             return
         clients.accept()
         reports = plug.reports()
@@ -91,16 +91,14 @@ class UnixDoor:
         """Hang up and remove the socket."""
         if self._plug is not None:
             self._plug.unplug()
-        if self._clients is not None:
-            self._clients.close()
             self._path.unlink(missing_ok=True)
-        self._clients = self._plug = None
+        self._clients.close()
+        self._plug = None
 
     def state(self) -> str:
-        """Who is connected."""
-        clients = self._clients.all if self._clients is not None else []
-        lost = sum(client.lost for client in clients) // BYTES
-        words = f"{len(clients)} programs"
-        if self.rejected:
-            words += f", {self.rejected} were no reports of {BYTES} bytes"
-        return words + (f", {lost} reports lost by slow readers" if lost else "")
+        """How many came, and what did not pass."""
+        return counted(
+            (self._clients.came, "programs"),
+            (self.rejected, f"were no reports of {BYTES} bytes"),
+            (self._clients.lost // BYTES, "reports lost by slow readers"),
+        )

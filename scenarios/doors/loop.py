@@ -7,6 +7,7 @@ from time import perf_counter
 from rich.console import Console
 
 from scenarios.doors.control import ControlDoor
+from scenarios.doors.door import counted
 from scenarios.doors.keeper import Keeper
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
@@ -34,7 +35,7 @@ class Loop:
         self._console = console
         self._show = show
         self._recording = recording
-        self._start_ns = served.now_ns
+        self._end_ns: int | None = None
         self._slow = False
         self._duration_s = duration_s
 
@@ -43,7 +44,7 @@ class Loop:
         gc.collect()
         gc.freeze()  # a collection that walks the whole network makes a tick late
         served = self._served
-        self._start_s = self._end_wall_s = now_s = perf_counter()
+        now_s = perf_counter()
         self._next_s = now_s + _STATUS_S
         self._flush_s = self._next_s + _STATUS_S / 2
         self._second = (now_s, served.now_ns, 0)
@@ -56,7 +57,7 @@ class Loop:
         finally:
             served.entry.running = False
             served.punctual.counting = False
-            self._end_wall_s = perf_counter()
+            self._end_ns = served.now_ns  # parking comes after it
             gc.unfreeze()
 
     def _slice(self) -> bool:
@@ -90,12 +91,14 @@ class Loop:
 
     def _each_second(self, now_s: float) -> None:
         self._next_s = now_s + _STATUS_S
-        self._end_wall_s = now_s
-        self._show(self.text())
-        self._keeping_up(now_s)
+        pace = self._keeping_up(now_s)
+        self._show(
+            f"{self.text()}, {'paused' if self._served.pacer.paused else f'{pace:.2f} times real time'}"
+        )
 
-    def _keeping_up(self, now_s: float) -> None:
-        """Say it once when the machine is too slow, and once when it is quick enough again."""
+    def _keeping_up(self, now_s: float) -> float:
+        """The pace of the last second; said once when the machine is too slow, and once when it is quick
+        enough again."""
         served = self._served
         before_s, before_ns, slips = self._second
         self._second = (now_s, served.now_ns, served.pacer.slips)
@@ -110,14 +113,14 @@ class Loop:
         elif self._slow and not slow:
             self._console.print(f"keeping up again at {pace:.2f} times real time")
         self._slow = slow
+        return pace
 
     def text(self) -> str:
-        """One line of how things stand."""
+        """One line of how things stand, or stood when the loop ended. Time given up is what the wall had of
+        it and the boards did not; in steps, or paused, nobody wants any."""
         served = self._served
-        pace = (served.now_ns - self._start_ns) * 1e-9 / max(self._end_wall_s - self._start_s, 1e-9)
-        paused = ", paused" if served.pacer.paused else ""
-        return (
-            f"{served.now_ns * 1e-9:.1f} s simulated at {pace:.2f} times real time{paused}, "
-            f"bus load {served.network.wire.load:.1%}, {served.entry.count} entries, "
-            f"{served.pacer.worst_lateness_s * 1e3:.0f} ms late at worst"
-        )
+        words = [f"{(self._end_ns or served.now_ns) * 1e-9:.1f} s simulated"]
+        if served.pacer.slips:
+            words.append(f"{served.pacer.slipped_s:.1f} s given up on a machine too slow")
+        words.append(f"bus load {served.network.wire.load:.1%}")
+        return ", ".join([*words, counted((served.entry.count, "inputs")) or "no input"])

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from scenarios.doors.address import address
-from scenarios.doors.door import DoorError
+from scenarios.doors.door import DoorError, counted
 from scenarios.doors.pc import Host
 from scenarios.doors.server import ServerDoor
 
@@ -14,6 +14,7 @@ class Lx200Door(ServerDoor):
     def __init__(self, spec: str, host: Host) -> None:
         super().__init__(f"--lx200 {spec}", host)
         self._lx200 = host.pc.lx200
+        self._came = 0
         kind, _, rest = spec.partition(":")
         self._pty = Path(rest) if kind == "pty" and rest else None
         self._address = ("", 0) if self._pty else address(spec, "--lx200")
@@ -22,13 +23,16 @@ class Lx200Door(ServerDoor):
         """Listen, or make the pseudo-terminal; raises OSError."""
         try:
             if self._pty is not None:
-                self.keep(self._lx200.serve_pty(self._pty))
+                self.keep(self._lx200.serve_pty(self._pty, self._come))
             else:
-                server = self._host.outside.run(self._lx200.serve_tcp(*self._address))
+                server = self._host.outside.run(self._lx200.serve_tcp(*self._address, self._come))
                 self.keep(server.serve_forever())
         except OSError as error:
             raise DoorError(f"{self.name}: {error.strerror or error}") from None
 
     def state(self) -> str:
-        """How many are connected, on all LX200 doors."""
-        return f"{self._lx200.clients} clients over TCP"
+        """How many came; of a pseudo-terminal how often somebody was heard after a silence."""
+        return counted((self._came, "clients"))
+
+    def _come(self) -> None:
+        self._came += 1

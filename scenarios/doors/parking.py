@@ -1,91 +1,133 @@
-"""The end of serving: the axes go to the park position, or at least to rest, and the motors off."""
+"""The end of serving: both axes are parked and their motors off, or it is said which is not."""
 
 from collections.abc import Callable, Iterable
-from time import perf_counter
+from contextlib import suppress
 
-from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, pack_command, unpack_motion, unpack_target
-from bus.protocol.report import pack_report
+from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, unpack_target
+from host.client import TICK_NS, Client, ClientError, Procedure
 from host.link import HidLink
+from host.logs.journal import Journal
 from host.procedures.manual import AXES
+from host.procedures.pointing import REACH
+from host.procedures.power import powered
+from scenarios.doors.interrupt import interrupts
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.lab.wiring import start_steps
+from scenarios.doors.usb import UsbFull
 
-_WALL_S = 0.5
-"""Simulated time runs as fast as it can for this long; with all the rest it stays below a second."""
-_STEP_NS = 50_000_000
-_FRESH_NS = 1_000_000_000
+BEGUN = "parking the axes; Ctrl-C again stops them where they are"
+_HEARD_S = 1.0
+"""A hundred MOTION frames, four of TARGET: an axis that has sent none is not there."""
+_REST_S = 5.0
+"""From 2°/s an axis stops within a second or two. ASSUMPTION: thrice that."""
 
 
 class _Way:
-    """A host program of its own on the cable, whose time runs as fast as it can. end_s: when it has to be
-    there, wall time."""
+    """A host program of its own on the cable, whose time runs as fast as it can."""
 
     def __init__(self, served: LiveNetwork) -> None:
         self._served = served
         self.plug = served.usb.plug("parking")
-        self.link = HidLink(self.plug.write)
-        self.end_s = perf_counter() + _WALL_S
+        self.link = HidLink(self._send)
+        self.client = Client(self.link, Journal(), tuple(AXES.values()))
+        self.interrupted = False
 
-    def go(self, done: Callable[[], bool], until_s: float) -> bool:
-        """On until `done`; False when wall time is over before."""
-        while not done():
-            if perf_counter() > until_s:
-                return False
-            self._served.run_until(self._served.now_ns + _STEP_NS)
+    def interrupt(self) -> None:
+        """Give up what is under way."""
+        self.interrupted = True
+
+    def go(self, axes: Iterable[Device], what: Callable[[Device], Procedure]) -> dict[Device, str]:
+        """All axes side by side to the end of their procedures; what came between, by axis."""
+        running, failed = {axis: what(axis) for axis in axes}, dict[Device, str]()
+        while running and not self.interrupted:
+            self._served.run_until(self._served.now_ns + TICK_NS)
             for t_ns, report in self.plug.reports():
                 self.link.receive(t_ns, report)
-        return True
+            self.client.tick(self._served.now_ns)
+            for axis, procedure in list(running.items()):
+                try:
+                    next(procedure)
+                    continue
+                except StopIteration:
+                    pass
+                except ClientError as error:
+                    failed[axis] = str(error)
+                del running[axis]
+        for axis in running:
+            self.client.forget(axis)
+            failed[axis] = "interrupted"
+        self.interrupted = False
+        return failed
 
-    def send(self, *commands: bytes) -> None:
-        """In one report."""
-        self.plug.write(self._served.now_ns, pack_report(commands))
+    def heard(self, axis: Device) -> Procedure:
+        """Until the axis has said anything at all."""
+        yield from self.client.until("no frame", lambda: axis in self.link.measurements, _HEARD_S)
 
-    def axes_with(self, flag: int) -> list[Device]:
-        """Axes whose last MOTION frame has a flag."""
-        heard = ((device, self.link.measurements.get(device)) for device in AXES.values())
-        return [device for device, data in heard if data is not None and unpack_motion(data).flags & flag]
+    def move(self, axis: Device, goal: int) -> Procedure:
+        """To a place, steps, and at rest there."""
+        yield from self.client.ask(axis, Opcode.TRACK_RATE, 0)
+        yield from self.client.ask(axis, Opcode.MOVE_TO, goal, SpeedClass.SLEW)
+        yield from self.client.wait(_HEARD_S)  # what it tells of its target is of this one from now on
+        yield from self.client.until("on its way", lambda: self._settled(axis), REACH["slew"].timeout_s)
 
-    def settled(self, devices: Iterable[Device]) -> bool:
-        """Whether all have told that they are there."""
-        told = [self.link.summaries.get(device) for device in devices]
-        return all(data is not None and unpack_target(data).settled for data in told)
+    def halt(self, axis: Device) -> Procedure:
+        """Stop it where it is."""
+        yield from self.client.ask(axis, Opcode.STOP)
+        yield from self.client.until("does not rest", lambda: self._rests(axis), _REST_S)
+
+    def off(self, axis: Device) -> Procedure:
+        """Its motors, and wait until it says so."""
+        yield from self.client.ask(axis, Opcode.POWER, 0)
+        yield from self.client.until("stays on", lambda: not powered(self.client, axis), _HEARD_S)
+
+    def _send(self, t_ns: int, report: bytes) -> None:
+        with suppress(UsbFull):  # as if it were lost on the way: the client asks again
+            self.plug.write(t_ns, report)
+
+    def _settled(self, axis: Device) -> bool:
+        data = self.link.summaries.get(axis)
+        return data is not None and bool(unpack_target(data).settled)
+
+    def _rests(self, axis: Device) -> bool:
+        motion = self.client.motion(axis)
+        return motion is not None and not motion.flags & MotionFlag.MOVING
 
 
-def park(served: LiveNetwork) -> str:
+def park(served: LiveNetwork, say: Callable[[str], None] = print) -> str:
     """Send both axes to the park position, unpaced, and take the power off; says how far that came.
 
-    The doors are closed by now. The commands go through the gateway and are recorded like anybody's.
+    The doors are closed by now. The commands go through the gateway and are recorded like anybody's. say:
+    told when axes have to move. A signal ends the move, whatever is left of it.
     """
     served.entry.running = False
     served.punctual.counting = False
     way = _Way(served)
     try:
-        return _parked(served, way)
+        with interrupts(way.interrupt):
+            return _parked(served, way, say)
     finally:
         way.plug.unplug()
 
 
-def _parked(served: LiveNetwork, way: _Way) -> str:
-    heard_ns = served.now_ns + _FRESH_NS
-    both = set(AXES.values())
-    way.go(lambda: both <= set(way.link.measurements) or served.now_ns > heard_ns, way.end_s)
-    powered, goals = way.axes_with(MotionFlag.POWERED), start_steps(served.scenario)
-    if not powered:
+def _parked(served: LiveNetwork, way: _Way, say: Callable[[str], None]) -> str:
+    mount = served.scenario.mount
+    goals = {
+        Device.AXIS_RA: mount.ra.steps(mount.park_hour_angle_rad),
+        Device.AXIS_DEC: mount.dec.steps(mount.park_declination_rad),
+    }
+    there = [axis for axis in goals if axis.name in served.network.boards]
+    silent = way.go(there, way.heard)
+    moving = [axis for axis in there if axis not in silent and powered(way.client, axis)]
+    if not moving and not silent:
         return "the motors were off"
-    way.link.summaries.clear()
-    way.send(
-        *(
-            pack_command(device, Opcode.MOVE_TO, round(goals[name]), SpeedClass.SLEW)
-            for name, device in AXES.items()
-            if device in powered
-        )
-    )
-    fresh_ns = served.now_ns + _FRESH_NS
-    parked = way.go(lambda: served.now_ns >= fresh_ns and way.settled(powered), way.end_s - 0.1)
-    if not parked:
-        way.send(*(pack_command(device, Opcode.STOP) for device in powered))
-        way.go(lambda: not way.axes_with(MotionFlag.MOVING), way.end_s)
-    way.send(*(pack_command(device, Opcode.POWER, 0) for device in powered))
-    off_ns = served.now_ns + 4 * _STEP_NS
-    way.go(lambda: served.now_ns >= off_ns, way.end_s + 0.1)
-    return "parked, motors off" if parked else "stopped on the way to park (no time), motors off"
+    if moving:
+        say(BEGUN)
+    failed = way.go(moving, lambda axis: way.move(axis, goals[axis]))
+    way.go(failed, way.halt)
+    on = way.go(moving, way.off)
+    words = [f"{axis.name} is silent, its motors are as they were ({why})" for axis, why in silent.items()]
+    words += [f"{axis.name} is not parked ({why})" for axis, why in failed.items()]
+    words += [f"the motors of {axis.name} may be on ({why})" for axis, why in on.items()]
+    if not words:
+        return "parked, motors off"
+    parked = [axis.name for axis in moving if axis not in failed]
+    return "; ".join(words + [f"{' and '.join(parked)} is parked"] * bool(parked))

@@ -6,6 +6,7 @@ from threading import Lock
 
 from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.cameras import cameras
+from scenarios.doors.door import counted
 from scenarios.doors.pc import Host, TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
 from scenarios.doors.runs import RecordedRuns
@@ -70,7 +71,8 @@ class PipedHost(Host):
 
     def _told(self) -> list[tuple[str, str]]:
         now = self.pc.telescope.snapshot
-        state = f"{now.activity}, {self.pc.journal.errors} errors"
+        errors = counted((self.pc.journal.errors, "errors"))
+        state = f"{now.activity}, {errors}" if errors else str(now.activity)
         return [("the host", state), *((each.door.name, each.door.state()) for each in self.keepers)]
 
     def _report(self, _t_ns: int, report: bytes) -> None:

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Protocol
 
-from scenarios.doors.door import DoorError
+from scenarios.doors.door import DoorError, counted
 from scenarios.doors.livenetwork import LiveNetwork
 
 _CHUNK = 4096
@@ -113,6 +113,7 @@ class PtyDoor:
 
     def open(self) -> None:
         """Make folder, terminals and names; raises OSError."""
+        self.ports.clear()
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             for name in self._names():
@@ -148,11 +149,8 @@ class PtyDoor:
     def close(self) -> None:
         """Remove all of them."""
         self._close.close()
-        self.ports.clear()
 
     def state(self) -> str:
-        """Who is open."""
-        used = [port.link.name for port in self.ports if port.in_use]
-        lost = sum(port.lost for port in self.ports)
-        words = f"{sum(port.heard for port in self.ports)} bytes read, in use: {', '.join(used) or 'none'}"
-        return words + (f", {lost} bytes lost by slow readers" if lost else "")
+        """Bytes read at each port, and those that readers were too slow for."""
+        read = [(port.heard, f"bytes read at {port.link.name}") for port in self.ports]
+        return counted(*read, (sum(port.lost for port in self.ports), "bytes lost by slow readers"))

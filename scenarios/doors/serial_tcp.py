@@ -8,6 +8,7 @@ from typing import Any
 
 from scenarios.doors.address import address, listen
 from scenarios.doors.clients import Client, Clients
+from scenarios.doors.door import counted
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
 
@@ -22,14 +23,14 @@ class TcpDoor:
         self._lines = served.lines
         self.host, self.port = address(where, f"--serial {self.kind}", len(served.lines.uarts))
         self._ports: list[tuple[str, Feed, Clients]] = []
-        self._lost = 0
+        self._clients = {name: Clients() for name in served.lines.uarts}
 
     def open(self) -> None:
         """Listen; raises OSError."""
         try:
-            for index, name in enumerate(self._lines.uarts):
-                listener = listen(self.host, self.port + index)
-                self._ports.append((name, self._lines.feed(name), Clients(listener)))
+            for index, (name, clients) in enumerate(self._clients.items()):
+                clients.listen(listen(self.host, self.port + index))
+                self._ports.append((name, self._lines.feed(name), clients))
         except OSError:
             self.close()
             raise
@@ -47,7 +48,6 @@ class TcpDoor:
                 if data:
                     client.send(self.wrap(client, data))
                 if client.gone:
-                    self._lost += client.lost
                     self.forget(client)
             clients.sweep()
 
@@ -74,12 +74,10 @@ class TcpDoor:
         self._ports.clear()
 
     def state(self) -> str:
-        """Who is connected."""
-        used = [f"{name} ({len(clients.all)})" for name, _, clients in self._ports if clients.all]
-        lost = self._lost + sum(client.lost for _, _, clients in self._ports for client in clients.all)
-        return f"connected: {', '.join(used) or 'nobody'}" + (
-            f", {lost} bytes lost by slow readers" if lost else ""
-        )
+        """How many came to which line, and what they were too slow for."""
+        came = [(clients.came, f"at {name}") for name, clients in self._clients.items()]
+        lost = sum(clients.lost for clients in self._clients.values())
+        return counted(*came, (lost, "bytes lost by slow readers"))
 
 
 class _Wire:

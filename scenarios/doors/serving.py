@@ -79,12 +79,10 @@ def serve(options: ServeOptions) -> int:
         finally:
             for keeper in keepers:
                 keeper.close()
-            ended = park(served) if served.steps is None else "left where they stood"
+            ended = park(served, console.print) if served.steps is None else "left where they stood"
             digest = recording.close(served.now_ns) if recording is not None else ""
-    console.print(loop.text())
-    for door in doors:
-        console.print(f"  {door.name}: {door.state()}")
-    console.print(f"{served.punctual.text()}; {ended}")
+    _say_goodbye(console, loop, served, doors)
+    console.print(ended, soft_wrap=True)
     if recording is not None:
         console.print(f"recorded in {folder}, digest {digest[:16]}; schmidt replay {folder} repeats it")
     return 0
@@ -131,6 +129,20 @@ def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> 
     for name in names:
         text = f"  {name:{max(map(len, names))}}  {attached(name, boards).words}"
         console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _say_goodbye(console: Console, loop: Loop, served: LiveNetwork, doors: Sequence[Door]) -> None:
+    """The session in figures, and each door that somebody used."""
+    console.print(loop.text(), soft_wrap=True)
+    states = {door.name.partition(" (")[0]: door.state() for door in doors}  # no token again
+    for name, state in states.items():
+        if state:
+            console.print(f"  {name}: {state}", markup=False, highlight=False, soft_wrap=True)
+    unused = ", ".join(name for name, state in states.items() if not state)
+    if unused:
+        console.print(f"  nobody came to {unused}", markup=False, highlight=False, soft_wrap=True)
+    if served.punctual.ticks:
+        console.print(served.punctual.text(), soft_wrap=True)
 
 
 def _nowhere(_text: str) -> None:

@@ -3,7 +3,7 @@
 import difflib
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -14,6 +14,10 @@ from scenarios.language.units import BASE, UNITS, UnitError, parse, unit_of
 
 SCHEMA_FILE = Path(__file__).parents[1] / "scenario.schema.json"
 
+_TOLD = 20
+"""Mistakes of one file: a screen. ASSUMPTION."""
+Problem = tuple[int, int, str]
+"""Line, rank within it, text."""
 _TYPES = {
     "object": "a block of fields",
     "array": "a list",
@@ -70,28 +74,32 @@ def _limits(bounds: Iterable[float], value: object, kind: str) -> str:
 
 
 def check(document: Document, language: dict[str, Any] | None = None) -> None:
-    """Raise `ScenarioError` for the first thing in the file (by line) that the language does not allow.
+    """Raise `ScenarioError` for what the language does not allow: the first mistake by line, others as notes.
 
     language: a JSON schema; None: that of scenarios.
     """
     validator = _validator()(language or schema())
-    found = (_describe(document, error) for error in validator.iter_errors(_plain(document.data)))
-    problems = sorted({problem for problem in found if problem is not None})
+    errors = validator.iter_errors(_plain(document.data))
+    problems = sorted(
+        {each for error in errors for each in _describe(document, error)} or _infinite(document)
+    )
     if problems:
-        message = problems[0][2]
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise ScenarioError(message + more)
-    _check_finite(document)
+        wrong = ScenarioError(problems[0][2])
+        for _, _, text in problems[1:_TOLD]:
+            wrong.add_note(text)
+        if len(problems) > _TOLD:
+            wrong.add_note(f"{document.file}: and {len(problems) - _TOLD} mistakes more")
+        raise wrong
 
 
-def _check_finite(document: Document) -> None:
-    """Raise `ScenarioError` for a number that is none: `.inf` and `.nan` pass every bound of a schema."""
+def _infinite(document: Document) -> Iterator[Problem]:
+    """Numbers that are none: `.inf` and `.nan` pass every bound of a schema."""
     waiting: list[tuple[Path_, Any]] = [((), document.data)]
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, float) and not math.isfinite(value):
             field = ".".join(str(part) for part in path)
-            raise ScenarioError(f"{document.where(path)}: {field}: {value} is no number to work with")
+            yield _problem(document, path, f"{field}: {value} is no number to work with")
         if isinstance(value, Mapping):
             waiting += [((*path, str(key)), each) for key, each in value.items()]
         elif isinstance(value, list):
@@ -107,31 +115,39 @@ def nearest(word: str, words: Iterable[str]) -> str:
     return "use one of " + ", ".join(known) if known else "none is allowed here"
 
 
-def _describe(document: Document, error: Any) -> tuple[int, int, str] | None:
+def _problem(document: Document, path: Path_, text: str, rank: int = 1) -> Problem:
+    location = document.where(path)
+    return int(location.rsplit(":", 1)[1]), rank, f"{location}: {text}"
+
+
+def _describe(document: Document, error: Any) -> Iterator[Problem]:
     path: Path_ = tuple(error.absolute_path)
     field = ".".join(str(part) for part in path) or "the file"
     kind, expected = error.validator, error.validator_value
+    if kind == "type" and "x-quantity" in error.schema:
+        return  # which says what is expected, too
     if kind == "additionalProperties":
         known = list(error.schema.get("properties", {}))
-        wrong = next(key for key in error.instance if key not in known)
-        path = (*path, wrong)
         inside = f" in {field}" if error.absolute_path else ""
-        text = f"unknown field {str(wrong)!r}{inside}; {nearest(str(wrong), known)}"
-    elif kind == "enum":
+        for wrong in (key for key in error.instance if key not in known):
+            text = f"unknown field {str(wrong)!r}{inside}; {nearest(str(wrong), known)}"
+            yield _problem(document, (*path, wrong), text, rank=0)  # it explains the field that is missing
+        return
+    if kind == "enum":
         text = f"{field}: {error.instance!r} is not known; {nearest(str(error.instance), map(str, expected))}"
     elif kind == "type":
         names = [expected] if isinstance(expected, str) else expected
         wanted = " or ".join(_TYPES[name] for name in names)
         text = f"{field}: expected {wanted}, found {_found(error.instance)}"
     elif kind == "required":
-        missing = [name for name in expected if name not in error.instance]
-        text = f"{field}: field {missing[0]!r} is missing"
+        text = f"{field}: field {error.message.rpartition(' is ')[0]} is missing"
     elif kind == "oneOf" and (inner := _meant(error)) is not None:
-        return _describe(document, inner)
+        yield from _describe(document, inner)
+        return
     elif kind == "oneOf":
         text = _choice(field, error)
         if not text:
-            return None
+            return
     elif kind == "pattern" and "propertyNames" in error.absolute_schema_path:
         text = f"{field}: {error.instance!r} is not a parameter's number (see the protocol page)"
     elif kind == "x-quantity":
@@ -143,9 +159,7 @@ def _describe(document: Document, error: Any) -> tuple[int, int, str] | None:
         text = f"{field}: {len(error.instance)} entries; at most {expected}"
     else:
         text = f"{field}: {error.message}"
-    location = document.where(path)
-    rank = 0 if kind == "additionalProperties" else 1  # a misspelt field explains the missing one
-    return int(location.rsplit(":", 1)[1]), rank, f"{location}: {text}"
+    yield _problem(document, path, text)
 
 
 def _meant(error: Any) -> Any:

@@ -191,6 +191,17 @@ def test_every_rule_of_the_schema_is_broken_here() -> None:
     assert not silent
 
 
+def test_other_mistakes_are_told_beside_the_first(tmp_path: Path) -> None:
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(yaml.safe_dump({**ONE, "supply_V": "much", "foo": 1, "stagez": []}, sort_keys=True))
+    with pytest.raises(CalibrationInputError) as caught:
+        load_rig(rig)
+    told = [str(caught.value), *caught.value.__notes__]
+    assert len(told) == 3 and all(line.startswith(f"{rig}:") for line in told)
+    for words in ("unknown field 'foo'", "unknown field 'stagez'; did you mean 'stages'?", "supply_V"):
+        assert any(words in line for line in told), told
+
+
 def test_the_line_is_that_of_the_field(tmp_path: Path) -> None:
     path = written(tmp_path, ONE, {"columns.effort.scale": 0})
     line = path.read_text().splitlines().index("    scale: 0") + 1

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from nicegui import Client
 
 from host.auxiliary import ABSOLUTE_ARCSEC, AUXILIARY_ARCSEC, combine
 from host.console.figures import hours
 from host.console.live import Sample
 from host.console.plots import series
-from host.console.server import connected
 from host.console.skymap import boundary, label
 from host.guard import COOKIE, Guard
 from host.sky.mount import STEP_ARCSEC, Mount, scale_from_limits
@@ -139,11 +137,3 @@ def test_a_plot_has_only_points_that_it_shows() -> None:
     ra, dec = series(samples, lambda sample: sample.rate_arcsec_s, 2)
     assert ra[-1] == [0.0, 1.0] and ra[0][0] == -120 and {y for _, y in ra} == {1.0}
     assert len(ra) == len(dec) == 41
-
-
-def test_a_page_that_is_still_being_made_is_no_browser() -> None:
-    """NiceGUI lists it before it is whole; the thread that counts browsers must not fall over it."""
-    page = Client.__new__(Client)
-    assert not connected(page)
-    page.tab_id = "a tab"
-    assert connected(page)

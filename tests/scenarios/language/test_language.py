@@ -16,6 +16,7 @@ from scenarios.language.model import Scenario
 from scenarios.language.units import QUANTITIES, UNITS, UnitError, units_of
 from scenarios.language.units import parse as parse_value
 from scenarios.language.validate import SCHEMA_FILE, schema
+from tests.scenarios.conftest import Command
 
 FOLDER = Path(__file__).parents[3] / "scenarios"
 GOOD = """\
@@ -97,6 +98,28 @@ def test_mistakes_name_line_field_and_nearest_word(old: str, new: str, line: int
     assert abs(int(found.group(1)) - line) <= 1, text
     for word in words:
         assert word in text
+
+
+def test_every_mistake_of_a_file_is_told_a_line_each(short: Path, schmidt: Command) -> None:
+    """Two unknown fields in one block are two, and what a quantity says about its type is told once."""
+    text = GOOD.replace("name: test\n", "name: test\nseed: -1\nsed: 1\nsid: 2\n").replace("10 s}", "[3]}")
+    short.write_text(text)
+    done = schmidt("run", short)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.splitlines() == [
+        f"schmidt: {short}:2: seed: -1 is out of range; it must be at least 0",
+        f"schmidt: {short}:3: unknown field 'sed'; did you mean 'seed'?",
+        f"schmidt: {short}:4: unknown field 'sid'; did you mean 'site'?",
+        f"schmidt: {short}:11: steps.2.track.for: [3] is not a value with a unit such as '10 s'",
+    ]
+
+
+def test_of_a_hundred_mistakes_a_screen_is_told() -> None:
+    text = GOOD.replace("name: test\n", "name: test\n" + "".join(f"x{k}: 1\n" for k in range(100)))
+    with pytest.raises(ScenarioError) as caught:
+        load_text(text)
+    assert len(caught.value.__notes__) == 20
+    assert caught.value.__notes__[-1] == "night.yaml: and 80 mistakes more"
 
 
 @given(
