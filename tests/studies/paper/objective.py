@@ -16,7 +16,7 @@ from tests.studies.paper.together import Point, Pricer
 
 READINGS = {
     "printed": (1.0, "{}_preload", "{}_preload_printed"),
-    "motor": (1.0 / 2.774, "{}_preload_motor_units", "{}_preload_motor_units"),
+    "motor": (1.0 / 2.774, "{}_preload_bridge", "{}_preload_bridge"),
 }
 """Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
 per unit of the table, the plant files whose declared numbers stay, and those that are written."""
@@ -36,7 +36,6 @@ class Objective:
     def __init__(
         self,
         reading: str,
-        diode: bool,
         starts: tuple[Start, ...],
         most: int,
         tell: Callable[[str], None],
@@ -45,7 +44,6 @@ class Objective:
     ) -> None:
         self.scale, base, _ = READINGS[reading]
         self.bases = {preload: load(base.format(preload)) for preload in ("low", "high")}
-        self.diode = diode
         self.starts = starts
         self.leave_out = leave_out
         self.together = together
@@ -60,11 +58,11 @@ class Objective:
 
     def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
         """Return the two plants at a search vector."""
-        return models(self.bases, values(x), source, self.diode)
+        return models(self.bases, values(x), source)
 
     def shortfall(self, x: Array) -> float:
         """Return by how much statics say that a point cannot be."""
-        return float(shortfalls_of(values(x), self.scale, self.diode))
+        return float(shortfalls_of(values(x), self.scale))
 
     def beyond(self, x: Array) -> float | None:
         """Return the cost of a point that need not be run: outside the bounds it grows with the distance."""

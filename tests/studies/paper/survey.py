@@ -104,13 +104,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--points", type=int, default=300)
     parser.add_argument("--reading", choices=sorted(READINGS), default="motor", help="units of Table 2")
-    parser.add_argument("--no-diode", action="store_true", help="without the freewheel path")
     chosen = parser.parse_args(arguments)
-    objective = Objective(chosen.reading, not chosen.no_diode, STARTS, chosen.points, print)
+    objective = Objective(chosen.reading, STARTS, chosen.points, print)
     points, share = draw(objective, chosen.seed)
-    circuit = "no freewheel path" if chosen.no_diode else "freewheel diodes"
     units = "as printed" if chosen.reading == "printed" else "in N mm at the motor"
-    said, text = f"seed {chosen.seed}, {circuit}, Table 2 {units}", ""
+    said, text = f"seed {chosen.seed}, Table 2 {units}", ""
     chosen.out.parent.mkdir(parents=True, exist_ok=True)
     found: list[Look] = []
     for look in looks(objective, points[: chosen.points]):
