@@ -90,7 +90,9 @@ def vector(found: Mapping[str, float]) -> Array:
     return np.array([log(found[free.name]) for free in SPACE])
 
 
-DIODE_DROP = Number(0.7, "V", "ASSUMPTION: forward voltage of a silicon diode; hardware.md 2.3: a bridge needs one")
+DIODE_DROP = Number(
+    0.7, "V", "ASSUMPTION: forward voltage of a silicon diode; hardware.md 2.3: a bridge needs one"
+)
 """Of the freewheel diodes: with it, the power stage is solved period by period."""
 DEC_SHARE = 316.0 / 933.0
 """Declination over RA: ratio of the load torques of Table 1. What is fitted on RA, the paper's axis, is
@@ -122,9 +124,7 @@ def _switched(model: PlantModel, axis: str) -> PlantModel:
     return replace(model, axes=replace(model.axes, **{axis: part}))
 
 
-def models(
-    bases: Mapping[str, PlantModel], found: Mapping[str, float], source: str
-) -> dict[str, PlantModel]:
+def models(bases: Mapping[str, PlantModel], found: Mapping[str, float], source: str) -> dict[str, PlantModel]:
     """Return the low and the high preload plant at a point of the space: one drive, one controller, two
     frictions.
 
