@@ -3,7 +3,7 @@
 from plant.parts import Motor, PlantModel
 
 DEAD_BAND = 0.01
-"""Share of a pulse that a driver may swallow: the default of `pwm_deadband` (plant/effects/pwm_deadband.py)."""
+"""Share of a pulse that a driver may swallow: the default of the effect `pwm_deadband`."""
 MARGIN = 1.2
 """Of the bias over what is lost: the drop of a diode and the rest of it are known to 15 %. ASSUMPTION."""
 

@@ -13,8 +13,8 @@ class Numbers(NamedTuple):
     """The declared numbers of one axis, SI units, by their names in a plant file (`world.PATHS`).
 
     Then what effects change once: share of freewheel braking; its drop, V; wind-up of the trains, rad/(N m);
-    inertia taken off the axis, kg m2. Between them the drop of the power stage's diodes, V, 0: none. Then the start: angle, rad, and where within a count the incremental
-    encoders wake up, 0..1.
+    inertia taken off the axis, kg m2. Between them the drop of the power stage's diodes, V, 0: none. Then the
+    start: angle, rad, and where within a count the incremental encoders wake up, 0..1.
     """
 
     grid: float

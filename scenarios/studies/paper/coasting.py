@@ -24,8 +24,9 @@ class Drive:
     """Data sheets of one drive.
 
     torque_constant: N m/A. winding, switch: ohm; the switch is in the loop while it is closed. inductance: H.
-    diode_drop: V of the freewheel diodes; None: the paper's superposition of mean voltages. rotor: kg m2, of a rotor at the axis. stiffness: N m/rad, of one train. voltage: V, of the supply.
-    split: share of the duty for the lagging motor.
+    diode_drop: V of the freewheel diodes; None: the paper's superposition of mean voltages. rotor: kg m2, of
+    a rotor at the axis. stiffness: N m/rad, of one train. voltage: V, of the supply. split: share of the duty
+    for the lagging motor.
     """
 
     torque_constant: float
