@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-LOW, HIGH = "low_preload_motor_units", "high_preload_motor_units"
+LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
 """Plants of `schmidt objective`, as its table is published."""
 
 
