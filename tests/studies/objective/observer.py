@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from plant.deadzone import bias_steps
 from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.model import get, load, with_value
 from plant.parts import PlantModel
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
-from scenarios.language.firmware import COUNTER_BIAS
 from scenarios.studies.objective.bench import SIDEREAL
 from scenarios.studies.objective.cases import starts
 
@@ -137,7 +137,7 @@ def hold(
     reference = 0.0
     ticks = round((seconds + SETTLE_S) / TICK_S)
     errors = np.empty(ticks)
-    steps = model.controller.pwm_steps.si
+    steps, bias = model.controller.pwm_steps.si, bias_steps(model, model.axes.ra.motor)
     split = model.controller.counter_split.si
     for tick in range(ticks):
         t_ns = tick * 5_000_000
@@ -149,7 +149,7 @@ def hold(
         effort = max(-EFFORT_LIMIT, min(EFFORT_LIMIT, effort))
         if whole_steps:
             effort = float(round(effort))
-        lead, lag = ((share * abs(effort) + COUNTER_BIAS) / steps for share in (1.0, split))
+        lead, lag = ((share * abs(effort) + bias) / steps for share in (1.0, split))
         axis.drive(t_ns + delay_ns, *((lead, lag) if effort >= 0 else (lag, lead)))
         x = made.a @ x + made.b * effort
     return errors[round(SETTLE_S / TICK_S) :]

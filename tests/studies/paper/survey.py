@@ -21,7 +21,7 @@ from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.starts import STARTS, Benches
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.cost import BY_ID, Term, stall_term, worst
-from tests.studies.paper.objective import READINGS, Objective
+from tests.studies.paper.objective import Objective
 from tests.studies.paper.space import bounds, values
 
 ROWS = ("E1", "E2", "E3", "E4", "E5", "E6", "E9", "E12", "E13", "E14", "E15")
@@ -103,12 +103,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="Markdown; the points go beside it as JSON")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--points", type=int, default=300)
-    parser.add_argument("--reading", choices=sorted(READINGS), default="motor", help="units of Table 2")
     chosen = parser.parse_args(arguments)
-    objective = Objective(chosen.reading, STARTS, chosen.points, print)
+    objective = Objective(STARTS, chosen.points, print)
     points, share = draw(objective, chosen.seed)
-    units = "as printed" if chosen.reading == "printed" else "in N mm at the motor"
-    said, text = f"seed {chosen.seed}, Table 2 {units}", ""
+    said, text = f"seed {chosen.seed}", ""
     chosen.out.parent.mkdir(parents=True, exist_ok=True)
     found: list[Look] = []
     for look in looks(objective, points[: chosen.points]):

@@ -14,7 +14,7 @@ from tests.studies.paper.survey import Look, draw, looks, markdown
 
 @pytest.fixture(scope="module")
 def objective():
-    return Objective("motor", True, STARTS, 10, print)
+    return Objective(STARTS, 10, print)
 
 
 def test_points_are_the_seeds_lie_everywhere_within_the_bounds_and_pass_the_statics(objective, monkeypatch):
@@ -32,7 +32,7 @@ def test_points_are_the_seeds_lie_everywhere_within_the_bounds_and_pass_the_stat
             assert np.ptp(points[:, k]) > 0.9 * (high[k] - low[k]), free.name
     for x in points[:20]:
         found = {free.name: exp(v) for free, v in zip(SPACE, x, strict=True)}
-        assert shortfalls_of(found, 1.0 / 2.774, True) == 0.0
+        assert shortfalls_of(found, 1.0 / 2.774) == 0.0
 
 
 def test_a_point_is_run_from_the_start_that_its_place_says(objective):
