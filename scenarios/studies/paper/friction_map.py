@@ -26,8 +26,10 @@ class MapPoint:
 
 @dataclass(frozen=True)
 class DataSheet:
-    """What the authors knew of the drive: torque constant, N m/A; largest current ripple V/(2 L f), A, V over
-    the winding from diode to supply; counter split."""
+    """What the authors knew of the drive: torque constant, N m/A; counter split.
+
+    ripple: V / (2 L f), A, V from the diode's drop to the supply.
+    """
 
     torque_constant: float
     ripple: float
