@@ -13,6 +13,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from plant.deadzone import bias_steps
 from plant.effects import REGISTRY
 from plant.effects import signals as sig
 from plant.effects.signals import Hook
@@ -27,8 +28,6 @@ LINES = 8
 """Rows of an axis board's table (bus/protocol/names.py; a test holds the two together). definition."""
 RATE = 15.041 * ARCSEC
 """rad/s: the tracking rate, for which friction and currents are taken."""
-BIAS_STEPS = 36.0
-"""PWM steps that both motors get beside their share (`scenarios/language/firmware.py`): a definition."""
 LEAST_STEPS = 0.05
 """Waves below this are left out, PWM steps: 0.07 N m at the axis, less than half the smallest
 declared. ASSUMPTION."""
@@ -57,8 +56,9 @@ def drive_of(model: PlantModel, axis: AxisModel) -> Drive:
     f, motor, controller = axis.friction, axis.motor, model.controller
     share = exp(-((RATE / f.stribeck_rate.si) ** f.stribeck_exponent.si))
     level = f.coulomb.si + (f.stiction.si - f.coulomb.si) * share
-    ohm = motor.loop
-    amperes = model.supply.voltage.si / ohm / controller.pwm_steps.si  # per step of duty, EMF apart
+    drop = motor.diode_drop.si if motor.diode_drop else 0.0
+    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
+    amperes = (model.supply.voltage.si + drop) / ohm / controller.pwm_steps.si  # per step of duty, EMF apart
     newton = amperes * motor.torque_constant.si * RATIO
     split = controller.counter_split.si
     per_step = newton * (1.0 - split)
@@ -67,7 +67,9 @@ def drive_of(model: PlantModel, axis: AxisModel) -> Drive:
     dead = controller.pwm_steps.si * sum(
         values(each)["deadband"] for each in axis.effects if each.enabled and each.name == "pwm_deadband"
     )
-    duties = [max(0.0, duty + BIAS_STEPS - dead) for duty in (effort, split * effort)]
+    dead += controller.pwm_steps.si * drop / (model.supply.voltage.si + drop)
+    bias = bias_steps(model, motor)
+    duties = [max(0.0, duty + bias - dead) for duty in (effort, split * effort)]
     half, each = 0.5 * axis.gear.backlash.si, 0.5 * axis.gear.stiffness.si
     lead, lag = (half + newton * duty / each for duty in duties)
     return Drive(per_step, friction, level / f.bristle_stiffness.si, (lead, -lag),

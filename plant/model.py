@@ -66,7 +66,7 @@ __all__ = [
 ]
 
 FILES = Path(__file__).parent / "files"
-DEFAULT = "low_preload"
+DEFAULT = "low_preload_bridge"
 FORMAT = "schmidt-plant 1"
 
 

@@ -53,9 +53,6 @@ def build(model: PlantModel, seed: int, start_angles: Mapping[str, float]) -> ND
         if row[at.INERTIA] <= 0.0:
             raise ValueError(f"plant model: axes.{name}.effects: more swings than the axis' inertia")
         write(row, axis.effects, constants(axis), seed, name)
-        if axis.motor.diode_drop is not None:
-            row[at.DIODE_DROP] = axis.motor.diode_drop.si
-            row[at.PULSE] = 1.0 / (model.controller.pwm_frequency.si * axis.motor.inductance.si)
         if axis.stops is not None:
             _put(row, axis.stops)
     return world
@@ -78,6 +75,7 @@ def numbers_of(model: PlantModel, name: str, seed: int, angle: float) -> Numbers
     return Numbers(
         **{word: number.si for word, number in declared(model, name).items()},
         **_switches(axis),
+        stage_drop=axis.motor.diode_drop.si if axis.motor.diode_drop else 0.0,
         angle=angle,
         incremental_phase=_fraction(seed, f"{name}.incremental"),
         phase_a=_fraction(seed, f"{name}.tach.0"),

@@ -184,12 +184,6 @@ static void pi_start(struct board *b, int32_t effort, int32_t setpoint_q16, int1
     b->pi_error = (int32_t)limited(setpoint_q16 - (int64_t)velocity * Q16, INT32_TOP);
 }
 
-static int16_t pi_shift(struct board *b, int16_t steps) {
-    int32_t before = b->effort_q16;
-    b->effort_q16 = (int32_t)limited(before + (int64_t)steps * Q16, effort_limit(b));
-    return (int16_t)(steps_of(b->effort_q16) - steps_of(before));
-}
-
 static int16_t pi_step(struct board *b, int64_t setpoint_q16) {
     int64_t error = limited(setpoint_q16 - (int64_t)b->velocity * Q16, INT32_TOP);
     int64_t change = limited(error - b->pi_error, INT32_TOP);
@@ -204,12 +198,10 @@ static int64_t share_of(const struct board *b, int64_t share) { /* faded with th
     return fade ? share * (left > 0 ? left : 0) / fade : share;
 }
 
-static int16_t counter_follow(struct board *b, int16_t effort) {
+static void counter_follow(struct board *b, int16_t effort) {
     int64_t share = share_of(b, size_of(effort) * b->p[SPLIT]);
-    uint16_t before = b->counter;
-    if (size_of(share - (int64_t)before * 100) < 100) return 0;
+    if (size_of(share - (int64_t)b->counter * 100) < 100) return;
     b->counter = (uint16_t)((share + 50) / 100);
-    return (int16_t)(effort >= 0 ? b->counter - before : before - b->counter);
 }
 
 /* --- small loops: hold.py, compensator.py, watch.py ------------------------------------------------------- */
@@ -856,7 +848,7 @@ static void send_target(struct board *b) { /* every 250 ms */
 void board_timer(struct board *b) {
     uint16_t poscnt = read_encoder();
     int64_t wanted;
-    int16_t effort, moved;
+    int16_t effort;
     b->ticks++;
     b->velocity = (int16_t)(poscnt - b->poscnt);
     b->poscnt = poscnt;
@@ -867,9 +859,7 @@ void board_timer(struct board *b) {
         if (b->fixed) counter_follow(b, effort);
         effort = drive_fine(b, wanted);
     } else {
-        moved = counter_follow(b, effort);
-        if (!b->fixed && moved && effort - b->effort >= -1 && effort - b->effort <= 1)
-            effort = (int16_t)(effort + pi_shift(b, moved)); /* at rest but for single steps: no bump */
+        counter_follow(b, effort);
         if (effort >= 0) write_pwm((uint16_t)effort, b->counter);
         else write_pwm(b->counter, (uint16_t)-effort);
     }

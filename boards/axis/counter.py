@@ -1,10 +1,10 @@
 """Duty register of the lagging motor: a share of the effort, in whole PWM steps (paper, section 3.3).
 
-Rounded anew at every tick, the register would move with the effort itself. At 10 % every tenth step of the
-effort would raise both duties and change no torque. A loop that rests there has a dead band. So the register
-stays until it is a whole step off. When it moves while the loop's effort creeps by single steps, the effort
-takes the same step with it. The torque goes on without a bump. ASSUMPTION: the paper gives the share and not
-its rounding.
+Rounded anew at every tick, the register would move with the effort itself. Where the lagging motor conducts,
+every tenth step of the effort at 10 % would raise both duties and change no torque. A loop that rests there
+has a dead band. So the register stays until it is a whole step off. The effort does not follow when it moves:
+below the drop of a freewheel diode it changes nothing. ASSUMPTION: the paper gives the share and not its
+rounding.
 """
 
 from typing import Final
@@ -31,18 +31,15 @@ class CounterTorque:
         self.register = 0
         self._share_q16 = 0
 
-    def follow(self, effort: int, velocity: int) -> int:
-        """Move the register for an effort (PWM steps); returns by how much, with the effort's sign."""
+    def follow(self, effort: int, velocity: int) -> None:
+        """Move the register for an effort (PWM steps)."""
         size = effort if effort >= 0 else -effort
         share = size * self.split
         fade = self.fade
         if fade:
             share = share * max(0, fade - abs(velocity)) // fade
-        register = self.register
-        if -_PERCENT < share - register * _PERCENT < _PERCENT:
-            return 0
-        self.register = now = (share + _PERCENT // 2) // _PERCENT
-        return now - register if effort >= 0 else register - now
+        if not -_PERCENT < share - self.register * _PERCENT < _PERCENT:
+            self.register = (share + _PERCENT // 2) // _PERCENT
 
     def share_q16(self, effort_q16: int, velocity: int) -> int:
         """The same share without whole steps, of a size in Q16, smoothed over `SHARE_SHIFT`. In one tick more

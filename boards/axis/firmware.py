@@ -132,18 +132,16 @@ class AxisBoard(PeriodicBoard):
         counter = self.counter
         if effort is None:
             effort = self.pi.step(setpoint, velocity)
-            if self.fine is None:
-                moved = counter.follow(effort, velocity)
-                if moved and -1 <= effort - self.effort <= 1:  # at rest but for single steps: no bump
-                    effort += self.pi.shift(moved)
+        if self.fine is not None:
+            if self.effort_command is not None:
+                counter.follow(effort, velocity)
+            effort = self.fine.drive(end, end - self.epoch_ns, velocity, setpoint, self.effort_command)
         else:
             counter.follow(effort, velocity)
-        if self.fine is not None:
-            effort = self.fine.drive(end, end - self.epoch_ns, velocity, setpoint, self.effort_command)
-        elif effort >= 0:
-            self.pwm.write(end, effort, counter.register)
-        else:
-            self.pwm.write(end, counter.register, -effort)
+            if effort >= 0:
+                self.pwm.write(end, effort, counter.register)
+            else:
+                self.pwm.write(end, counter.register, -effort)
         self.effort = effort
         if self.ticks & 1:
             self._slow(t_ns, end)

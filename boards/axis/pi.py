@@ -35,12 +35,6 @@ class IncrementalPi:
         self.effort_q16 = saturate(effort << RATE_SHIFT, self._limit)
         self._error = saturate(setpoint_q16 - (velocity << RATE_SHIFT), INT32_TOP)
 
-    def shift(self, steps: int) -> int:
-        """Take the effort on by `steps` of the PWM, as far as the limit; returns the steps taken."""
-        before = self.effort_q16
-        self.effort_q16 = after = saturate(before + (steps << RATE_SHIFT), self._limit)
-        return (after + _HALF >> RATE_SHIFT) - (before + _HALF >> RATE_SHIFT)
-
     def step(self, setpoint_q16: int, velocity: int) -> int:
         """Effort in PWM steps for a set point (Q16 counts/5 ms) and the counts of the last 5 ms."""
         error = setpoint_q16 - (velocity << 16)

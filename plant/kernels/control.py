@@ -1,8 +1,8 @@
 """The axis board's velocity loop around one axis, in one compiled loop.
 
 The arithmetic is the firmware's. Gains are in Q12, errors and effort in Q16. The effort is limited where it
-accumulates. A counter torque stays until it is a whole step off and then takes the effort along. The current
-is read before the new duty. A test compares the loop with the emulator.
+accumulates. A counter torque stays until it is a whole step off. The current is read before the new duty. A
+test compares the loop with the emulator.
 """
 
 from math import floor
@@ -107,7 +107,6 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
     ki = int(s[KI])
     held = 0  # Q16 PWM steps
     counter = 0
-    last_output = 0
     split = int(s[SPLIT])
     last_error = 0
     last_count = floor(reading(w, at.OUT_INCREMENTAL, s[LATE_VELOCITY]))
@@ -129,14 +128,7 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             held = max(-limit, min(limit, held))
             last_error = 0
         output = (held + HALF) >> 16
-        moved = counter_steps(abs(output), split, counter) - counter
-        counter += moved
-        if wanted == wanted and moved != 0 and abs(output - last_output) <= 1:
-            # an effort that creeps takes the counter register's step with it, so the torque has no bump
-            held += (moved if output >= 0 else -moved) << 16
-            held = max(-limit, min(limit, held))
-            output = (held + HALF) >> 16
-        last_output = output
+        counter = counter_steps(abs(output), split, counter)
         if tick % 2 == 0:
             row = log[tick // 2]
             row[T] = w[at.STEP] * w[at.GRID]

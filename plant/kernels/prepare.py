@@ -13,8 +13,8 @@ class Numbers(NamedTuple):
     """The declared numbers of one axis, SI units, by their names in a plant file (`world.PATHS`).
 
     Then what effects change once: share of freewheel braking; its drop, V; wind-up of the trains, rad/(N m);
-    inertia taken off the axis, kg m2. Then the start: angle, rad, and where within a count the incremental
-    encoders wake up, 0..1.
+    inertia taken off the axis, kg m2. Between them the drop of the power stage's diodes, V, 0: none. Then the
+    start: angle, rad, and where within a count the incremental encoders wake up, 0..1.
     """
 
     grid: float
@@ -49,6 +49,7 @@ class Numbers(NamedTuple):
     tachometer: float
     diode: float
     diode_drop: float
+    stage_drop: float
     compliance: float
     swinging: float
     angle: float
@@ -81,6 +82,9 @@ def prepare(w: Floats, n: Numbers) -> None:
     w[at.RIPPLE] = n.voltage / (2.0 * n.inductance * n.pwm_frequency)
     w[at.DIODE] = n.diode
     w[at.DIODE_DROP] = n.diode_drop
+    if n.stage_drop > 0.0:
+        w[at.DIODE_DROP] = n.stage_drop
+        w[at.PULSE] = 1.0 / (n.pwm_frequency * n.inductance)
     w[at.TEMPERATURE] = n.temperature
     w[at.WARMING] = n.warming
 

@@ -31,17 +31,11 @@ def campaign(options: CampaignOptions) -> None:
 @click.option("--out", type=PATH, default=Path("out/paper"), show_default=True)
 @click.option("--plant", type=PATH, help="Plant file with low preload.")
 @click.option("--plant-high", type=PATH, help="Plant file with high preload.")
-@click.option(
-    "--reading",
-    type=click.Choice(["motor", "printed"]),
-    default="motor",
-    show_default=True,
-    help="Torques of Table 2: N mm at the motor, or N m at the axis as printed.",
-)
 @click.option("--markdown", type=PATH, help="Write the table to this file.")
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
+@click.option("--shift", type=float, default=0.0, show_default=True, help="Move all start angles, degrees.")
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
 @filled(PaperOptions)

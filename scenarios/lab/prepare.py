@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.sky.observed import Clock
-from scenarios.language.configure import read_tables, with_firmware
+from scenarios.language.configure import read_tables, with_firmware, with_parameters
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
 from scenarios.language.model import Scenario
@@ -103,7 +103,8 @@ def prepare(source: Path | Document, changes: Changes | None = None) -> tuple[Sc
     scenario = read_tables(scenario)
     if changes.firmware is not None:
         scenario = with_firmware(scenario, changes.firmware)
-    return scenario, plant_model(scenario.plant, scenario.file.parent)
+    model = plant_model(scenario.plant, scenario.file.parent)
+    return with_parameters(scenario, model), model
 
 
 def check_boards(scenario: Scenario) -> None:

@@ -1,25 +1,26 @@
 """What a host loads into the axis boards before a programme: a firmware's parameters, a compensation."""
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from host.client import Client, Procedure
 from host.procedures import parameters
 from host.procedures.manual import AXES
+from plant.parts import PlantModel
 from scenarios.language import compensation
 from scenarios.language.document import ScenarioError
-from scenarios.language.firmware import FIRMWARES
+from scenarios.language.firmware import parameters_of
 from scenarios.language.model import Scenario, Step
 
 _COMMAND_LINE = "command line"
 
 
-def firmware(client: Client, name: str) -> Procedure:
+def firmware(client: Client, of_axes: Mapping[str, Mapping[int, int]]) -> Procedure:
     """Set the parameters of a firmware on both axis boards."""
-    for device in AXES.values():
-        yield from parameters.load(client, device, FIRMWARES[name].items())
+    for axis, device in AXES.items():
+        yield from parameters.load(client, device, of_axes[axis].items())
 
 
 def compensate(client: Client, wanted: compensation.Compensation) -> Procedure:
@@ -39,6 +40,18 @@ def with_compensation(scenario: Scenario, wanted: compensation.Compensation) -> 
     if first.action == "firmware":
         return dataclasses.replace(scenario, steps=(first, step, *rest))
     return _before(scenario, step)
+
+
+def with_parameters(scenario: Scenario, model: PlantModel) -> Scenario:
+    """The scenario whose firmware steps know what their firmware is on the drives of a plant."""
+    return dataclasses.replace(scenario, steps=tuple(_known(step, model) for step in scenario.steps))
+
+
+def _known(step: Step, model: PlantModel) -> Step:
+    if step.action != "firmware":
+        return step
+    of_axes = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
+    return dataclasses.replace(step, arguments={**step.arguments, "of_axes": of_axes})
 
 
 def _step(action: str, name: str, **arguments: Any) -> Step:

@@ -18,7 +18,7 @@ from scenarios.language.document import Document, ScenarioError
 from scenarios.language.units import parse
 from scenarios.language.validate import check, nearest, schema
 
-DEFAULT_PLANT = "low-preload"
+DEFAULT_PLANT = "low-preload-bridge"
 BESIDE = ("name", "at", "until", "may_not_act")
 """What stands beside a fault's own name."""
 _YEARS = (1960, 2100)

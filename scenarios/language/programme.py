@@ -215,7 +215,7 @@ class Programme:
             case "wait":
                 return client.wait(given["for"])
             case "firmware":
-                return configure.firmware(client, given["use"])
+                return configure.firmware(client, given["of_axes"])
             case "compensation":
                 return configure.compensate(client, given["table"])
             case "set_parameter":

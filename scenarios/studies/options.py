@@ -3,27 +3,26 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-LOW, HIGH = "low_preload_motor_units", "high_preload_motor_units"
-"""Plants of `schmidt objective`, as its table is published."""
+LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
+"""The drive that both tables are published for: what of the rows it meets is in docs/reference/paper.md."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PaperOptions:
     """json_file: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
-    plant_high: plant files for low and high preload instead of the project's own. reading: of Table 2's
-    units, "motor" or "printed", when no plant file is named. rows: comma-separated. quick: two starts only,
-    for a look; every: all 24 combinations of angle and seed. jobs: processes (None: one per core);
-    scheduler: a Dask scheduler instead."""
+    plant_high: plant files for low and high preload instead of the project's own. rows: comma-separated.
+    quick: two starts only, for a look; every: all 24 combinations of angle and seed; shift: degrees by which
+    all start angles are moved. jobs: processes (None: one per core); scheduler: a Dask scheduler instead."""
 
     out: Path
     json_file: Path | None = None
     plant: Path | None = None
     plant_high: Path | None = None
-    reading: str = "motor"
     markdown: Path | None = None
     rows: str | None = None
     quick: bool = False
     every: bool = False
+    shift: float = 0.0
     jobs: int | None = None
     scheduler: str | None = None
 

@@ -15,7 +15,6 @@ from plant.parts import EffectModel, PlantModel
 from plant.units import ARCSEC
 from scenarios.language import compensation as read
 from scenarios.language.document import ScenarioError
-from scenarios.language.firmware import COUNTER_BIAS
 
 HEAD = "format: schmidt-compensation 1\naxis: ra\nfriction: {steps: 1, travel_arcsec: 1}\n"
 
@@ -35,7 +34,6 @@ def per_step(model: PlantModel) -> float:
 def test_both_sides_agree_on_what_they_cannot_share() -> None:
     assert written.FORMAT == read.FORMAT
     assert written.LINES == HARMONICS
-    assert written.BIAS_STEPS == COUNTER_BIAS
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.7, -2.1])

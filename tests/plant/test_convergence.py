@@ -45,7 +45,7 @@ def run(name: str, grid_us: float, manoeuvre: tuple[tuple[float, float, float], 
     return np.concatenate(rows)
 
 
-@pytest.mark.parametrize("name", ["low_preload", "low_preload_motor_units"])
+@pytest.mark.parametrize("name", ["low_preload", "low_preload_bridge"])
 @pytest.mark.parametrize(("manoeuvre", "bound"), [(HELD, 5e-5), (COASTING, 5e-3)], ids=["held", "coasting"])
 def test_grid_is_converged_against_a_ten_times_finer_one(
     name: str, manoeuvre: tuple[tuple[float, float, float], ...], bound: float

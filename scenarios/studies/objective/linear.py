@@ -8,8 +8,8 @@ from plant.compiled import Floats
 from plant.gears import RATIO
 from plant.parts import PlantModel
 
-# states: axis angle and rate, bristle torque; angle and rate of rotor A, its motor's torque; rotor B
-ANGLE, RATE, BRISTLE, ROTOR_A, SPEED_A, TORQUE_A, ROTOR_B, SPEED_B, SIZE = range(9)
+# states: axis angle and rate, bristle torque; angle and rate of rotor A, its motor's torque; rotor B, too
+ANGLE, RATE, BRISTLE, ROTOR_A, SPEED_A, TORQUE_A, ROTOR_B, SPEED_B, TORQUE_B, SIZE = range(10)
 
 
 def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
@@ -17,7 +17,8 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
 
     The duty is in PWM steps, the torque in N m. SI units, rotors and motor as seen at the axis.
 
-    A leads: its EMF brakes. B is turned against its pull and gives a steady torque (plant/kernels/drive.py).
+    A leads: its EMF brakes. So does that of B behind a switching stage, as a bias keeps its current flowing.
+    By the superposition B gives a steady torque (plant/kernels/drive.py).
     """
     part = model.axes.ra
     f, motor, gear = part.friction, part.motor, part.gear
@@ -27,8 +28,10 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
     slope = -excess * x * f.stribeck_exponent.si  # rate times dg/drate, N m
     rotor, load = motor.rotor_inertia.si * RATIO**2, part.inertia.si
     k, c, sigma0 = gear.stiffness.si / 2, gear.damping.si / 2, f.bristle_stiffness.si
-    constant, electric = motor.torque_constant.si * RATIO, motor.inductance.si / motor.loop
-    per_step = constant * model.supply.voltage.si / model.controller.pwm_steps.si / motor.loop
+    drop = motor.diode_drop.si if motor.diode_drop else 0.0
+    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
+    constant, electric = motor.torque_constant.si * RATIO, motor.inductance.si / ohm
+    per_step = constant * (model.supply.voltage.si + drop) / model.controller.pwm_steps.si / ohm
     a, b, push = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1)), np.zeros((SIZE, 1))
     a[ANGLE, RATE] = 1.0
     a[BRISTLE, [RATE, BRISTLE]] = sigma0 * slope / level, -sigma0 * rate / level
@@ -41,7 +44,10 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
         a[RATE] += twist / load
         a[angle, speed] = 1.0
         a[speed] -= twist / rotor
-    a[SPEED_A, TORQUE_A] = 1.0 / rotor
-    a[TORQUE_A, [TORQUE_A, SPEED_A]] = -1.0 / electric, -(constant**2) / motor.loop / electric
+    for speed, torque in ((SPEED_A, TORQUE_A), (SPEED_B, TORQUE_B)):
+        a[speed, torque] = 1.0 / rotor
+        a[torque, torque] = -1.0 / electric
+        if speed == SPEED_A or drop:
+            a[torque, speed] = -(constant**2) / ohm / electric
     b[TORQUE_A, 0] = per_step / electric
     return a, b, push

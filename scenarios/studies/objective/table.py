@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plant.parts import PlantModel
-from scenarios.language.firmware import FIRMWARES
+from scenarios.language.firmware import parameters_of
 from scenarios.studies.objective.bench import MODES, Held, hold
 from scenarios.studies.objective.bound import Bound
 from scenarios.studies.objective.cases import PAPER, Case, starts
@@ -55,7 +55,8 @@ def measure(
     """One row per case and mode; `tell(text)` before each run. options: which starts, seeds, how long."""
     for case in cases:
         model = case.plant(*plants)
-        firmware = [row for row in FIRMWARES[case.firmware].items() if row[0] not in case.without]
+        known = parameters_of(case.firmware, model)
+        firmware = [row for row in known.items() if row[0] not in case.without]
         parameters = [*firmware, *(compensation if case.compensated else ())]
         for mode in MODES:
             held: list[Held] = []

@@ -23,19 +23,45 @@ STEP_S = 0.25e-3
 class Drive:
     """Data sheets of one drive.
 
-    torque_constant: N m/A. resistance: ohm. inductance: H. diode_drop: V, infinite without a diode.
-    rotor: kg m2, of a rotor at the axis. stiffness: N m/rad, of one train. voltage: V, of the supply.
-    split: share of the duty for the lagging motor.
+    torque_constant: N m/A. winding, switch: ohm; the switch is in the loop while it is closed. inductance: H.
+    diode_drop: V of the freewheel diodes; None: the paper's superposition of mean voltages. rotor: kg m2, of
+    a rotor at the axis. stiffness: N m/rad, of one train. voltage: V, of the supply. split: share of the duty
+    for the lagging motor.
     """
 
     torque_constant: float
-    resistance: float
+    winding: float
+    switch: float
     inductance: float
-    diode_drop: float
+    diode_drop: float | None
     rotor: float
     stiffness: float
     voltage: float
     split: float
+
+    def tends(self, duty: Array, emf: Array) -> tuple[Array, Array]:
+        """Return the mean current that a duty leads to, A, and the resistance it flows through, ohm.
+
+        emf: V, negative for a motor that is turned against its pull. It drives current through the diode. No
+        current flows where the result is negative.
+        """
+        if self.diode_drop is None:
+            resistance = np.full_like(duty, self.winding + self.switch)
+            driven = duty * self.voltage - np.maximum(0.0, emf)
+        else:
+            resistance = self.winding + duty * self.switch
+            driven = duty * (self.voltage + self.diode_drop) - self.diode_drop - emf
+        return np.asarray(driven / resistance), np.asarray(resistance)
+
+    def steady(self, torque: Array, emf: Array) -> Array:
+        """Return the leading motor's duty for a torque at a motor's shaft, N m, at a back-EMF, V."""
+        low, high = np.zeros_like(emf), np.ones_like(emf)
+        for _ in range(30):
+            middle = 0.5 * (low + high)
+            lead, lag = self.tends(middle, emf)[0], self.tends(self.split * middle, -emf)[0]
+            less = self.torque_constant * (np.maximum(0.0, lead) - np.maximum(0.0, lag)) < torque
+            low, high = np.where(less, middle, low), np.where(less, high, middle)
+        return high
 
 
 def drive(plant: PlantModel) -> Drive:
@@ -43,23 +69,17 @@ def drive(plant: PlantModel) -> Drive:
     them."""
     axis = plant.axes.ra
     motor = axis.motor
-    drops = [e.parameters["drop"].si for e in axis.effects if e.name == "diode_braking"]
     return Drive(
         torque_constant=motor.torque_constant.si,
-        resistance=motor.loop,
+        winding=motor.resistance.si,
+        switch=motor.loop - motor.resistance.si,
         inductance=motor.inductance.si,
-        diode_drop=drops[0] if drops else float("inf"),
+        diode_drop=motor.diode_drop.si if motor.diode_drop else None,
         rotor=motor.rotor_inertia.si * GEAR_RATIO**2,
         stiffness=axis.gear.stiffness.si / 2.0,
         voltage=plant.supply.voltage.si,
         split=plant.controller.counter_split.si,
     )
-
-
-def opposing(emf: Array, drop: float) -> Array:
-    """Return the voltage against the current, V: the EMF of a motor that turns as it pulls. For one that is
-    turned against its pull: what drives current through the diode (negative)."""
-    return np.asarray(np.where(emf >= 0.0, emf, np.minimum(0.0, emf + drop)), dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +92,12 @@ class Coasting:
     late_s: float
 
 
+def settled(sheet: Drive, current: Array, duty: Array, emf: Array) -> Array:
+    """Return a motor's current a step later, A."""
+    goal, resistance = sheet.tends(duty, emf)
+    return np.maximum(0.0, goal + (current - goal) * np.exp(-resistance * STEP_S / sheet.inductance))
+
+
 def coast(sheet: Drive, friction: FrictionFit, axis: Coasting, setpoints: Array, samples: int) -> Array:
     """Return the counts of 5 ms, shape (runs, samples), that the log has every 10 ms after "effort 0".
 
@@ -80,23 +106,19 @@ def coast(sheet: Drive, friction: FrictionFit, axis: Coasting, setpoints: Array,
     damping, late_s = axis.damping, axis.late_s
     k, n, load = sheet.torque_constant, GEAR_RATIO, axis.inertia - 2.0 * sheet.rotor
     emf = k * n
-    decay = float(np.exp(-sheet.resistance * STEP_S / sheet.inductance))
     w = np.array(setpoints, dtype=np.float64)
     lead_w, lag_w = w.copy(), w.copy()
     # before: both duties in the ratio of the split, together what friction takes
-    braking = np.maximum(0.0, emf * w - sheet.diode_drop) / sheet.resistance
-    held = friction.torque(w) / emf + braking + emf * w / sheet.resistance
-    duty_v = held * sheet.resistance / (1.0 - sheet.split)
-    lead_i, lag_i = (duty_v - emf * w) / sheet.resistance, sheet.split * duty_v / sheet.resistance + braking
+    duty = sheet.steady(friction.torque(w) / n, emf * w)
+    lead_i = np.maximum(0.0, sheet.tends(duty, emf * w)[0])
+    lag_i = np.maximum(0.0, sheet.tends(sheet.split * duty, -emf * w)[0])
     lead_x, lag_x = emf * lead_i / sheet.stiffness, -emf * lag_i / sheet.stiffness
     per_log, per_tick = round(LOG_PERIOD_S / STEP_S), round(CONTROL_PERIOD_S / STEP_S)
     travelled = np.zeros((samples * per_log, w.size))
     for step in range(samples * per_log):
         on = min(1.0, max(0.0, late_s / STEP_S - step))
-        lead_goal = (on * duty_v - opposing(emf * lead_w, sheet.diode_drop)) / sheet.resistance
-        lag_goal = (on * sheet.split * duty_v - opposing(-emf * lag_w, sheet.diode_drop)) / sheet.resistance
-        lead_i = np.maximum(0.0, lead_goal + (lead_i - lead_goal) * decay)
-        lag_i = np.maximum(0.0, lag_goal + (lag_i - lag_goal) * decay)
+        lead_i = settled(sheet, lead_i, on * duty, emf * lead_w)
+        lag_i = settled(sheet, lag_i, on * sheet.split * duty, -emf * lag_w)
         push = np.maximum(0.0, sheet.stiffness * lead_x + damping * (lead_w - w))
         pull = np.maximum(0.0, -sheet.stiffness * lag_x - damping * (lag_w - w))
         before = w

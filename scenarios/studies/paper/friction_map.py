@@ -26,8 +26,10 @@ class MapPoint:
 
 @dataclass(frozen=True)
 class DataSheet:
-    """What the authors knew of the drive: torque constant, N m/A; largest current ripple V/(2 L f), A;
-    counter split."""
+    """What the authors knew of the drive: torque constant, N m/A; counter split.
+
+    ripple: V / (2 L f), A, V from the diode's drop to the supply.
+    """
 
     torque_constant: float
     ripple: float
@@ -37,7 +39,8 @@ class DataSheet:
 def data_sheet(plant: PlantModel) -> DataSheet:
     """Return the data sheet of a plant's RA drive."""
     motor, controller = plant.axes.ra.motor, plant.controller
-    ripple = plant.supply.voltage.si / (2.0 * motor.inductance.si * controller.pwm_frequency.si)
+    swing = plant.supply.voltage.si + (motor.diode_drop.si if motor.diode_drop else 0.0)
+    ripple = swing / (2.0 * motor.inductance.si * controller.pwm_frequency.si)
     return DataSheet(motor.torque_constant.si, ripple, controller.counter_split.si)
 
 

@@ -3,6 +3,7 @@
 import itertools
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from time import monotonic
@@ -14,7 +15,7 @@ from host.logs.files import write_file
 from plant.model import default_files, load
 from plant.parts import PlantModel
 from scenarios.progress import shown
-from scenarios.studies.options import PaperOptions
+from scenarios.studies.options import HIGH, LOW, PaperOptions
 from scenarios.studies.paper.campaign import rows as run_rows
 from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment
@@ -24,24 +25,14 @@ from scenarios.studies.paper.rows import Row
 from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start
 from scenarios.studies.paper.table import markdown, show
 
-DEFAULTS = {"low": "low_preload_bridge", "high": "high_preload_bridge"}
-"""The pair of plant files that is fitted to the rows with freewheel diodes: what it meets and misses is in
-docs/reference/paper.md. The pair as printed is `low_preload`, `high_preload`."""
-
-_PRINTED = Path(__file__).with_name("printed")
-READINGS = {
-    "motor": DEFAULTS,
-    "printed": {preload: str(_PRINTED / f"{preload}_preload_fitted.yaml") for preload in ("low", "high")},
-}
-"""Table 2's Tc and Ts as N mm at the motor, or as printed, N m at the axis (hardware.md 2.3). They are the
-best pair known in each."""
+DEFAULTS = {"low": LOW, "high": HIGH}
 
 
-def pair(low: Path | None, high: Path | None, reading: str = "motor") -> dict[str, str]:
+def pair(low: Path | None, high: Path | None) -> dict[str, str]:
     """Return the two plant files.
 
     One that is not named is the other's twin, "low" and "high" exchanged in its name. Where there is no twin,
-    it is the one of the reading.
+    it is the project's own.
     """
     found = {"low": low, "high": high}
     names = {}
@@ -50,7 +41,7 @@ def pair(low: Path | None, high: Path | None, reading: str = "motor") -> dict[st
         if given is None and partner is not None:
             twin = partner.with_name(partner.name.replace(other, preload))
             given = twin if twin != partner and (twin.exists() or twin.stem in default_files()) else None
-        names[preload] = str(given or READINGS[reading][preload])
+        names[preload] = str(given or DEFAULTS[preload])
     return names
 
 
@@ -91,9 +82,10 @@ def paper(options: PaperOptions) -> int:
     cannot be used.
     """
     console, out = Console(), options.out
-    files = pair(options.plant, options.plant_high, options.reading)
+    files = pair(options.plant, options.plant_high)
     plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
     chosen, starts = select(options.rows), QUICK if options.quick else ALL if options.every else STARTS
+    starts = [replace(start, angle_deg=start.angle_deg + options.shift) for start in starts]
     write_file(out / ".probe", "")  # find out before minutes of work, not after
     (out / ".probe").unlink()
     begin = monotonic()
@@ -116,7 +108,7 @@ def paper(options: PaperOptions) -> int:
             drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
         for path in drawn:
             console.print(f"  {path}")
-    command = "schmidt paper" + ("" if options.reading == "motor" else f" --reading {options.reading}")
+    command = f"schmidt paper --shift {options.shift:g}" if options.shift else "schmidt paper"
     table = markdown(found, names_of(files), command, date.today())
     write_file(out / "experiments.md", table)
     if options.markdown is not None:

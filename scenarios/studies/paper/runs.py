@@ -223,9 +223,12 @@ def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3
     return join(logs)
 
 
-def run_down(bench: Bench, setpoint: float = 7200.0) -> Log:
-    """E8: steady state at a speed (2 deg/s), then the input is set to zero; the log starts at that moment."""
-    bench.closed_loop(setpoint, 8.0)
+def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
+    """E8: steady state at a speed (2 deg/s), then the input is set to zero; the log starts at that moment.
+
+    turns: of the motor, by which that is later.
+    """
+    bench.closed_loop(setpoint, 8.0 + turns * MOTOR_TURN_ARCSEC / abs(setpoint))
     return bench.open_loop(0, 1.5)
 
 

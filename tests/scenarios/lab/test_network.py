@@ -138,7 +138,7 @@ def test_B2_pointing_within_10_arcsec_and_tracking_stays_there(axis: str) -> Non
 @pytest.mark.parametrize("seed", [2, 3])
 def test_B2_pointing_on_the_drive_in_motor_units(seed: int) -> None:
     # High preload is left out: at tracking speed it is in limit cycles, as the paper's was (row E2).
-    assert _pointing("low_preload_motor_units", "ra", seed)[0] < 10.0
+    assert _pointing("low_preload_bridge", "ra", seed)[0] < 10.0
 
 
 def test_P11_focus_by_the_gateway_and_on_the_display() -> None:

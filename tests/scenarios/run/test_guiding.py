@@ -29,7 +29,7 @@ name: guiding
 seed: 7
 start_utc: 2026-02-10T14:00:00Z
 plant:
-  file: low-preload-motor-units
+  file: low-preload-bridge
   effects:
     - {name: encoder_eccentricity, axis: ra, stage: roller, harmonic: 2, parameters: {amplitude: {value: 12, unit: arcsec}}}
 """  # noqa: E501

@@ -33,7 +33,7 @@ HEAD = """\
 name: pointing
 start_utc: 2026-02-10T14:00:00Z
 plant:
-  file: low-preload-motor-units
+  file: low-preload-bridge
   effects: [{name: encoder_eccentricity, stage: axis}]
 """
 RUN = """\

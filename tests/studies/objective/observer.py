@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from plant.deadzone import bias_steps
 from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.model import get, load, with_value
 from plant.parts import PlantModel
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
-from scenarios.language.firmware import COUNTER_BIAS
 from scenarios.studies.objective.bench import SIDEREAL
 from scenarios.studies.objective.cases import starts
 
@@ -57,7 +57,8 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     """Matrices at steady sliding with `rate`, rad/s; effort in PWM steps."""
     part = model.axes.ra
     f, motor, gear = part.friction, part.motor, part.gear
-    ohm = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
+    drop = motor.diode_drop.si if motor.diode_drop else 0.0
+    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
     x = (rate / f.stribeck_rate.si) ** f.stribeck_exponent.si
     excess = (f.stiction.si - f.coulomb.si) * exp(-x)
     level = f.coulomb.si + excess
@@ -65,8 +66,9 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     rotors, load = 2.0 * motor.rotor_inertia.si * RATIO**2, part.inertia.si
     k, c, sigma0 = gear.stiffness.si, gear.damping.si, f.bristle_stiffness.si
     brake = (motor.torque_constant.si * RATIO) ** 2 / ohm
+    brake *= 2.0 if drop else 1.0  # with a bias both currents flow on
     share = 1.0 - model.controller.counter_split.si
-    per_step = model.supply.voltage.si / model.controller.pwm_steps.si / ohm
+    per_step = (model.supply.voltage.si + drop) / model.controller.pwm_steps.si / ohm
     per_step *= motor.torque_constant.si * RATIO * share
     a = np.zeros((LAST, LAST))
     a[ANGLE, _RATE] = a[_ROTOR, _ROTOR_RATE] = 1.0
@@ -137,7 +139,7 @@ def hold(
     reference = 0.0
     ticks = round((seconds + SETTLE_S) / TICK_S)
     errors = np.empty(ticks)
-    steps = model.controller.pwm_steps.si
+    steps, bias = model.controller.pwm_steps.si, bias_steps(model, model.axes.ra.motor)
     split = model.controller.counter_split.si
     for tick in range(ticks):
         t_ns = tick * 5_000_000
@@ -149,7 +151,7 @@ def hold(
         effort = max(-EFFORT_LIMIT, min(EFFORT_LIMIT, effort))
         if whole_steps:
             effort = float(round(effort))
-        lead, lag = ((share * abs(effort) + COUNTER_BIAS) / steps for share in (1.0, split))
+        lead, lag = ((share * abs(effort) + bias) / steps for share in (1.0, split))
         axis.drive(t_ns + delay_ns, *((lead, lag) if effort >= 0 else (lag, lead)))
         x = made.a @ x + made.b * effort
     return errors[round(SETTLE_S / TICK_S) :]

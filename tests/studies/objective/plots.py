@@ -9,7 +9,7 @@ import numpy as np
 
 from plant.model import load, with_effects
 from plant.parts import EffectModel, PlantModel
-from scenarios.language.firmware import FIRMWARES
+from scenarios.language.firmware import parameters_of
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 from scenarios.studies.objective.bench import hold
 from scenarios.studies.objective.cases import EFFECTS, starts
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parents[3] / "docs" / "results" / "one-arcsecond"
 _SECONDS = 60.0
 _START = starts(0.0)[2]
-_FINE = list(FIRMWARES["fine"].items())
 
 
 def _with(model: PlantModel, *names: str) -> PlantModel:
@@ -30,13 +29,14 @@ def _with(model: PlantModel, *names: str) -> PlantModel:
 
 def low() -> Figure:
     """The velocity loop at 15.041 arcsec/s: the paper's firmware and the proposed one, two plants."""
-    declared = load("low_preload_motor_units")
+    declared = load("low_preload_bridge")
+    fine = list(parameters_of("fine", declared).items())
     rows: tuple[tuple[str, PlantModel, list[tuple[int, int]]], ...] = (
         ("declared plant, the paper's firmware", declared, []),
-        ("declared plant, spread duty alone", declared, _FINE[:1]),
-        ("declared plant, spread duty, lock, blend, bias", declared, _FINE),
-        ("cogging and dead band, spread duty alone", _with(declared, *EFFECTS[::2]), _FINE[:1]),
-        ("all four effects, spread duty, lock, blend, bias", _with(declared, *EFFECTS), _FINE),
+        ("declared plant, spread duty alone", declared, fine[:1]),
+        ("declared plant, spread duty, lock, blend, bias", declared, fine),
+        ("cogging and dead band, spread duty alone", _with(declared, *EFFECTS[::2]), fine[:1]),
+        ("all four effects, spread duty, lock, blend, bias", _with(declared, *EFFECTS), fine),
     )
     figure = new_figure(9.0)
     for row, (name, model, parameters) in enumerate(rows, 1):
@@ -55,7 +55,7 @@ def low() -> Figure:
 def high() -> Figure:
     """High preload: the fine firmware's PI, and the observer."""
     model = load("high_preload_motor_units")
-    pi = hold(model, _START, 1, "TRACK", _FINE, _SECONDS)
+    pi = hold(model, _START, 1, "TRACK", list(parameters_of("fine", model).items()), _SECONDS)
     errors = observer.hold(model, observer.design(model), observer.DESIGN_DELAY_S, _SECONDS, _START)
     figure = new_figure(4.2)
     time_s = np.arange(len(errors)) * observer.TICK_S

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
+from plant.deadzone import bias_steps
 from plant.kernels import layout as at
 from plant.model import get, load, with_effects, with_value
 from plant.parts import EffectModel, PlantModel
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
-from scenarios.language.firmware import COUNTER_BIAS
 from scenarios.studies.objective.bench import SIDEREAL
 from scenarios.studies.objective.cases import starts
 from tests.studies.objective import observer
@@ -52,6 +52,7 @@ def hold(
     ticks = round((seconds + observer.SETTLE_S) / TICK_S)
     errors = np.empty(ticks)
     steps, split = plant_model.controller.pwm_steps.si, plant_model.controller.counter_split.si
+    bias = bias_steps(plant_model, plant_model.axes.ra.motor)
     for tick in range(ticks):
         t_ns = tick * 5_000_000
         errors[tick] = float(plant.world[0, at.RATE]) / ARCSEC - SIDEREAL
@@ -60,7 +61,7 @@ def hold(
         x = x + correction * (reading - (reference - rate * age_s) - float(row @ x))
         effort = float(-made.gain @ x - x[observer.LOAD] / made.per_step)
         effort = max(-observer.EFFORT_LIMIT, min(observer.EFFORT_LIMIT, effort))
-        lead, lag = ((share * abs(effort) + COUNTER_BIAS) / steps for share in (1.0, split))
+        lead, lag = ((share * abs(effort) + bias) / steps for share in (1.0, split))
         axis.drive(t_ns + delay_ns, *((lead, lag) if effort >= 0 else (lag, lead)))
         x = made.a @ x + made.b * effort
         reading = (axis.absolute(t_ns + 5_000_000 - age_ns) - first + 0.5) * STEP_RAD

@@ -4,18 +4,20 @@ import numpy as np
 import pytest
 from scipy.linalg import expm, solve_discrete_are, solve_discrete_lyapunov
 
+from plant.deadzone import bias_steps
 from plant.kernels import layout as at
 from plant.model import load, with_effects
 from plant.parts import EffectModel, Number
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
 from plant.wind import wind
-from scenarios.language.firmware import COUNTER_BIAS, FIRMWARES
+from scenarios.language.firmware import parameters_of
 from scenarios.studies.objective import bound as best
 from scenarios.studies.objective.bench import SIDEREAL, hold
 from scenarios.studies.objective.linear import ANGLE, RATE
 
-LOW = load("low_preload_motor_units")
+LOW = load("low_preload_bridge")
+BIAS = bias_steps(LOW, LOW.axes.ra.motor)
 rng = np.random.default_rng(1)
 
 
@@ -49,7 +51,7 @@ def test_no_firmware_leaves_less_and_less_noise_leaves_less(speed_m_s: float) ->
     assert 0 < least.exact < least.rms and least.torque < least.available / 5
     model = with_effects(LOW, "ra", (*LOW.axes.ra.effects, blown))
     for firmware in ("fine", "paper"):
-        assert least.rms < hold(model, 137.0, 4, "RATE", list(FIRMWARES[firmware].items()), 30.0).rms
+        assert least.rms < hold(model, 137.0, 4, "RATE", list(parameters_of(firmware, LOW).items()), 30.0).rms
     same = best.designed(LOW, blown, 0.01148 / 12**0.5, effort_weight=1e-6).rms
     assert same == pytest.approx(least.rms, rel=1e-3)  # torque costs nothing
 
@@ -71,9 +73,9 @@ def test_on_the_plant_the_best_controller_comes_near_its_figure() -> None:
         wanted += SIDEREAL * best.TICK_S * min(1.0, tick * best.TICK_S / 10.0)
         x = x + made.correction * (error - x[ANGLE])
         base = max(-500.0, min(500.0, base - 0.05 * error))
-        lead = max(0.0, min(1500.0, base + 3 * COUNTER_BIAS - float(made.gain[0] @ x)))
-        plant.ra.drive(t_ns, lead / steps, max(0.0, 0.1 * base + 3 * COUNTER_BIAS) / steps)
-        x = made.a @ x + made.b[:, 0] * (lead - base - 3 * COUNTER_BIAS)
+        lead = max(0.0, min(1500.0, base + 3 * BIAS - float(made.gain[0] @ x)))
+        plant.ra.drive(t_ns, lead / steps, max(0.0, 0.1 * base + 3 * BIAS) / steps)
+        x = made.a @ x + made.b[:, 0] * (lead - base - 3 * BIAS)
     left = float(np.std(rates[round(40.0 / best.TICK_S) :]))
     print(f"bound {made.rms:.3f}, on the plant {left:.3f} arcsec/s")
     assert 0.9 * made.rms < left < 1.25 * made.rms

@@ -15,7 +15,7 @@ _STEPS = 3000
 
 def rates(wanted_q16: list[int], *, sequence: bool) -> np.ndarray:  # type: ignore[type-arg]
     """True rate, arcsec/s every 5 ms, of the axis driven with one duty per tick."""
-    plant = Plant(load("low_preload_motor_units"), 1, {"ra": float(1 << 28)})
+    plant = Plant(load("low_preload_bridge"), 1, {"ra": float(1 << 28)})
     lead, lag = Spreader(), Spreader()
     out = []
     for tick, value in enumerate(wanted_q16):

@@ -3,7 +3,7 @@
 A missed row costs 1 and up to as much again: the mean, over its limits and the starts, of how far each is
 off. So the search prefers many rows to one that is nearly met, and every start that is won counts. Rows are
 looked at in order of what they tell per second of computing; a point that is hopeless is left. E14 is
-arithmetic on the resistance.
+arithmetic (statics.py).
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment
+from scenarios.studies.paper.published import TABLE_2
 from scenarios.studies.paper.starts import Benches
+from tests.studies.paper.statics import stall_current
 
 ORDER = ("E1", "E10", "E3", "E12", "E6", "E15", "E5", "E11", "E2", "E13", "E4", "E9", "E8", "E7")
 BY_ID = {row.id: row for row in EXPERIMENTS}
-SUPPLY_V = 24.0
 LEFT = 100.0
 FULL = 3.0
 """Excess, in scales, at which a limit costs as much as it can."""
@@ -68,8 +69,9 @@ def worst(row: Experiment, benches: Sequence[Benches]) -> Term:
 def stall_term(bench: Benches) -> Term:
     """Return E14's term by arithmetic: a run up to break-away would say the same and cost more than all
     rows."""
-    motor = bench.plants["low"].axes.ra.motor
-    stall = SUPPLY_V / (motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si)
+    axis = bench.plants["high"].axes.ra
+    drive = {"torque_constant": axis.motor.torque_constant.si, "resistance": axis.motor.loop}
+    stall = float(stall_current(drive, axis.friction.stiction.si / TABLE_2["high"]["stiction"]))
     off = BY_ID["E14"].limits[0].excess(stall)
     return Term("E14", "stall", stall, off, _share(off))
 

@@ -14,12 +14,10 @@ from tests.studies.paper.space import bounds, models, values
 from tests.studies.paper.statics import shortfalls_of
 from tests.studies.paper.together import Point, Pricer
 
-READINGS = {
-    "printed": (1.0, "{}_preload", "{}_preload_printed"),
-    "motor": (1.0 / 2.774, "{}_preload_motor_units", "{}_preload_motor_units"),
-}
-"""Friction as printed (N m at the axis), or Tc and Ts as N mm at the motor (hardware.md 2.3): N m at the axis
-per unit of the table, the plant files whose declared numbers stay, and those that are written."""
+SCALE = 1.0 / 2.774
+"""N m at the axis per N mm at the motor, as which Tc and Ts of Table 2 are read (hardware.md 2.3)."""
+NAME = "{}_preload_bridge"
+"""Plant files whose declared numbers stay, and which are written."""
 WORSE = 1e6
 UNREACHABLE = 1000.0
 ROOM = 2.0
@@ -35,17 +33,13 @@ class Objective:
 
     def __init__(
         self,
-        reading: str,
-        diode: bool,
         starts: tuple[Start, ...],
         most: int,
         tell: Callable[[str], None],
         leave_out: Sequence[str] = (),
         together: Pricer | None = None,
     ) -> None:
-        self.scale, base, _ = READINGS[reading]
-        self.bases = {preload: load(base.format(preload)) for preload in ("low", "high")}
-        self.diode = diode
+        self.bases = {preload: load(NAME.format(preload)) for preload in ("low", "high")}
         self.starts = starts
         self.leave_out = leave_out
         self.together = together
@@ -60,11 +54,11 @@ class Objective:
 
     def plants(self, x: Array, source: str = "trial") -> dict[str, PlantModel]:
         """Return the two plants at a search vector."""
-        return models(self.bases, values(x), source, self.diode)
+        return models(self.bases, values(x), source)
 
     def shortfall(self, x: Array) -> float:
         """Return by how much statics say that a point cannot be."""
-        return float(shortfalls_of(values(x), self.scale, self.diode))
+        return float(shortfalls_of(values(x), SCALE))
 
     def beyond(self, x: Array) -> float | None:
         """Return the cost of a point that need not be run: outside the bounds it grows with the distance."""

@@ -26,13 +26,11 @@ import numpy as np
 from scenarios.progress import shown
 from scenarios.studies.paper.log import Array
 from scenarios.studies.paper.starts import STARTS
-from tests.studies.paper.objective import READINGS, Enough, Objective
+from tests.studies.paper.objective import NAME, Enough, Objective
 from tests.studies.paper.plantfile import write
 from tests.studies.paper.space import SPACE, bounds, values, vector
 from tests.studies.paper.together import pricer
 
-BRIDGE = "{}_preload_bridge"
-"""Plant files of the reading "motor" with freewheel diodes."""
 SEARCHED = STARTS[::2]
 """Starts of a point: four of the eight that decide."""
 POPULATION = 24
@@ -126,7 +124,6 @@ def report(objective: Objective, seeds: tuple[int, ...], seconds: float) -> dict
     assert objective.best_x is not None
     return {
         "seeds": list(seeds),
-        "diode": objective.diode,
         "starts": [dataclasses.asdict(start) for start in objective.starts],
         "left_out": list(objective.leave_out),
         "tried": objective.tried,
@@ -147,10 +144,6 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="folder for plant files and report")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2], help="one population each")
     parser.add_argument("--points", type=int, default=900, help="how many points are run")
-    parser.add_argument(
-        "--reading", choices=sorted(READINGS), default="motor", help="friction units of Table 2"
-    )
-    parser.add_argument("--no-diode", action="store_true", help="without the freewheel path")
     parser.add_argument("--start", type=Path, help="search.json to go on from")
     parser.add_argument("--step", type=float, default=STEP, help="spread of a short step, logarithmic")
     parser.add_argument(
@@ -170,7 +163,7 @@ def main(arguments: list[str] | None = None) -> int:
     left_out = [name for name in chosen.leave_out.upper().split(",") if name]
     starts = STARTS if chosen.all_starts else SEARCHED
     many = pricer(chosen.jobs, chosen.scheduler) if chosen.jobs or chosen.scheduler else None
-    objective = Objective(chosen.reading, not chosen.no_diode, starts, chosen.points, tell, left_out, many)
+    objective = Objective(starts, chosen.points, tell, left_out, many)
     known = vector(json.loads(chosen.start.read_text(encoding="utf-8"))["values"]) if chosen.start else None
     seeds = tuple(chosen.seeds)
     with suppress(KeyboardInterrupt), shown("fitting", chosen.points) as show:
@@ -183,9 +176,8 @@ def main(arguments: list[str] | None = None) -> int:
     chosen.out.mkdir(parents=True, exist_ok=True)
     (chosen.out / "search.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     source = f"fitted to rows E1 to E15 by tests.studies.paper.search, seeds {seeds}"
-    pattern = BRIDGE if objective.diode and chosen.reading == "motor" else READINGS[chosen.reading][2]
     for preload, plant in objective.plants(objective.best_x, source).items():
-        name = pattern.format(preload)
+        name = NAME.format(preload)
         write(dataclasses.replace(plant, name=name), chosen.out / f"{name}.yaml")
     print(f"cost {objective.best:.3f} after {objective.tried} points; plant files in {chosen.out}")
     return 0

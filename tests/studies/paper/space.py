@@ -1,7 +1,7 @@
 """The numbers the paper leaves open, their bounds, and how a point of that space becomes two plant models."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log
 
 import numpy as np
@@ -90,14 +90,10 @@ def vector(found: Mapping[str, float]) -> Array:
     return np.array([log(found[free.name]) for free in SPACE])
 
 
-FREEWHEEL = EffectModel(
-    "diode_braking", None, 1,
-    {
-        "share": Number(1.0, "1", "hardware.md 2.3: a bridge needs its freewheel diode"),
-        "drop": Number(0.7, "V", "ASSUMPTION: forward voltage of a silicon diode"),
-    },
-)  # fmt: skip
-"""The lagging motor's freewheel path."""
+DIODE_DROP = Number(
+    0.7, "V", "ASSUMPTION: forward voltage of a silicon diode; hardware.md 2.3: a bridge needs one"
+)
+"""Of the freewheel diodes: with it, the power stage is solved period by period."""
 DEC_SHARE = 316.0 / 933.0
 """Declination over RA: ratio of the load torques of Table 1. What is fitted on RA, the paper's axis, is
 carried over."""
@@ -121,14 +117,19 @@ def _rounded(value: float, digits: int = 4) -> float:
     return float(f"{value:.{digits}g}")
 
 
-def models(
-    bases: Mapping[str, PlantModel], found: Mapping[str, float], source: str, diode: bool = False
-) -> dict[str, PlantModel]:
+def _switched(model: PlantModel, axis: str) -> PlantModel:
+    """Return the model with diodes in the power stage of an axis."""
+    part = getattr(model.axes, axis)
+    part = replace(part, motor=replace(part.motor, diode_drop=DIODE_DROP))
+    return replace(model, axes=replace(model.axes, **{axis: part}))
+
+
+def models(bases: Mapping[str, PlantModel], found: Mapping[str, float], source: str) -> dict[str, PlantModel]:
     """Return the low and the high preload plant at a point of the space: one drive, one controller, two
     frictions.
 
     bases: the declared plants by preload; what the space does not name is theirs.
-    source: what the plant files shall say about the numbers. diode: the freewheel path of a real bridge.
+    source: what the plant files shall say about the numbers.
     """
     result = {}
     for preload in ("low", "high"):
@@ -158,8 +159,7 @@ def models(
             }
             for path, value in numbers.items():
                 model = with_value(model, f"axes.{axis}.{path}", value, said)
-            effects = _effects(found, said, share)
-            model = with_effects(model, axis, (*effects, FREEWHEEL) if diode else effects)
+            model = with_effects(_switched(model, axis), axis, _effects(found, said, share))
         model = with_value(model, "controller.kp", _rounded(found["kp"]), source)
         result[preload] = with_value(model, "controller.ki", _rounded(found["ki"]), source)
     return result

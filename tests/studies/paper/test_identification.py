@@ -155,9 +155,10 @@ def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
 
 RIGID = Drive(
     torque_constant=1e-6,
-    resistance=1.0,
+    winding=0.8,
+    switch=0.2,
     inductance=1e-4,
-    diode_drop=float("inf"),
+    diode_drop=None,
     rotor=4.0,
     stiffness=2e7,
     voltage=24.0,

@@ -9,6 +9,8 @@ from scenarios.studies.paper.experiments import EXPERIMENTS
 from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.starts import QUICK, Benches, viscous_only, with_inertia
 from tests.studies.paper.compiled import CompiledBench
+from tests.studies.paper.objective import SCALE
+from tests.studies.paper.statics import stall_current
 
 pytestmark = pytest.mark.slow
 
@@ -109,13 +111,13 @@ def test_E13_no_integral_action_is_a_lasting_error():
     assert "worst" in missed("E13", figures("E13", low=model))
 
 
-def test_E14_the_stall_current_is_the_supply_over_the_loop():
+def test_E14_the_stall_current_is_what_the_statics_say():
     model = PLANTS["high"]
-    motor = model.axes.ra.motor
-    loop = motor.resistance.si + motor.switch_resistance.si + motor.sense_resistance.si
-    assert figures("E14")["stall"] == pytest.approx(24.0 / loop, rel=0.08)
-    four = with_value(model, "axes.ra.motor.resistance", 4.0 - loop + motor.resistance.si)
-    assert figures("E14", high=four)["stall"] == pytest.approx(6.0, rel=0.08)
+    for ohm in (model.axes.ra.motor.resistance.value, 2.6):
+        other = with_value(model, "axes.ra.motor.resistance", ohm)
+        motor = other.axes.ra.motor
+        drive = {"torque_constant": motor.torque_constant.si, "resistance": motor.loop}
+        assert figures("E14", high=other)["stall"] == pytest.approx(stall_current(drive, SCALE), rel=0.08)
 
 
 def test_E15_gains_that_shake_the_high_preload():

@@ -19,6 +19,8 @@ OTHERS = (0.8, 1.2)
 """Factors on the inertia."""
 RUN_DOWN_SPEEDS = (7200.0, 2400.0)
 """arcsec/s: the slew speed of Table 1, and a third of it."""
+PLACES = (0.0, 0.25)
+"""Motor turns: what its second harmonic adds to the torque at one of them it takes off at the other."""
 
 
 @row("E7")
@@ -54,11 +56,12 @@ def inertia(benches: Benches) -> Figures:
     if fit is None:
         return {}
     sheet = drive(plant)
-    setpoints = [way * speed for speed in RUN_DOWN_SPEEDS for way in (1, -1)]
+    runs = [(way * speed, turns) for speed in RUN_DOWN_SPEEDS for way in (1, -1) for turns in PLACES]
+    setpoints = [setpoint for setpoint, _ in runs]
     found: Figures = {}
     for factor in (1.0, *OTHERS):
         model = plant if factor == 1.0 else with_inertia(plant, factor)
-        logs = [noise.log(run_down(benches.of(model), setpoint)) for setpoint in setpoints]
+        logs = [noise.log(run_down(benches.of(model), *each)) for each in runs]
         measured = fit_run_downs(logs, setpoints, fit, sheet).inertia
         found[f"off {factor:g}"] = (measured / (factor * INERTIA) - 1.0) * 100.0
         found[f"J {factor:g}"] = measured
