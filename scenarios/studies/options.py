@@ -11,8 +11,9 @@ LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
 class PaperOptions:
     """json_file: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
     plant_high: plant files for low and high preload instead of the project's own. rows: comma-separated.
-    quick: two starts only, for a look; every: all 24 combinations of angle and seed; shift: degrees by which
-    all start angles are moved. jobs: processes (None: one per core); scheduler: a Dask scheduler instead."""
+    quick: two starts only, for a look; every: all 24 combinations of angle and seed; others: so many
+    starts and seeds that no search has used. jobs: processes (None: one per core); scheduler: a Dask
+    scheduler instead."""
 
     out: Path
     json_file: Path | None = None
@@ -22,7 +23,7 @@ class PaperOptions:
     rows: str | None = None
     quick: bool = False
     every: bool = False
-    shift: float = 0.0
+    others: int = 0
     jobs: int | None = None
     scheduler: str | None = None
 

@@ -3,7 +3,6 @@
 import itertools
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from time import monotonic
@@ -22,7 +21,7 @@ from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment
 from scenarios.studies.paper.figures import draw_all
 from scenarios.studies.paper.record import record
 from scenarios.studies.paper.rows import Row
-from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start
+from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start, others
 from scenarios.studies.paper.table import markdown, show
 
 DEFAULTS = {"low": LOW, "high": HIGH}
@@ -85,7 +84,7 @@ def paper(options: PaperOptions) -> int:
     files = pair(options.plant, options.plant_high)
     plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
     chosen, starts = select(options.rows), QUICK if options.quick else ALL if options.every else STARTS
-    starts = [replace(start, angle_deg=start.angle_deg + options.shift) for start in starts]
+    starts = others(options.others) if options.others else starts
     write_file(out / ".probe", "")  # find out before minutes of work, not after
     (out / ".probe").unlink()
     begin = monotonic()
@@ -108,7 +107,7 @@ def paper(options: PaperOptions) -> int:
             drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
         for path in drawn:
             console.print(f"  {path}")
-    command = f"schmidt paper --shift {options.shift:g}" if options.shift else "schmidt paper"
+    command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
     table = markdown(found, names_of(files), command, date.today())
     write_file(out / "experiments.md", table)
     if options.markdown is not None:

@@ -226,9 +226,11 @@ def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3
 def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
     """E8: steady state at a speed (2 deg/s), then the input is set to zero; the log starts at that moment.
 
-    turns: of the motor, by which that is later.
+    turns: of the motor, by which that is later, in whole periods of the log. So all runs have the command at
+    the same moment within one.
     """
-    bench.closed_loop(setpoint, 8.0 + turns * MOTOR_TURN_ARCSEC / abs(setpoint))
+    later = round(turns * MOTOR_TURN_ARCSEC / abs(setpoint) / LOG_PERIOD_S) * LOG_PERIOD_S
+    bench.closed_loop(setpoint, 8.0 + later)
     return bench.open_loop(0, 1.5)
 
 

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from plant.model import with_value
 from plant.parts import PlantModel
 from scenarios.studies.paper.runs import Bench
@@ -34,8 +36,17 @@ STARTS = tuple(Start(angle, SEEDS[k % len(SEEDS)]) for k, angle in enumerate(ANG
 """What decides a row: eight angles, the seeds in turn."""
 ALL = tuple(Start(angle, seed) for angle in ANGLES_DEG for seed in SEEDS)
 """Every angle with every seed."""
+FRESH, TRAVEL_DEG = 20261126, (85.0, 275.0)
+"""Seed of `others`, which the search must never see; degrees of the absolute encoder."""
 QUICK = STARTS[::4]
 """For a look; decides nothing."""
+
+
+def others(count: int) -> tuple[Start, ...]:
+    """Angles and seeds that no search has used: always the same ones."""
+    random = np.random.default_rng(FRESH)
+    angles, seeds = random.uniform(*TRAVEL_DEG, count), random.integers(10, 100_000, count)
+    return tuple(Start(round(float(angle), 1), int(seed)) for angle, seed in zip(angles, seeds, strict=True))
 
 
 MakeBench = Callable[[PlantModel, int, tuple[float, float] | None, float], Bench]

@@ -22,7 +22,7 @@ class Blocked(RigidAxis):
 @pytest.mark.parametrize("split", [10, 17, 25])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_B2_the_register_waits_until_it_is_a_whole_step_off(split: int, sign: int) -> None:
-    """Up and down again in single steps: it is never a step off, and an effort that trembles never moves it."""
+    """Up and down again in single steps: it is never a step off; an effort that trembles does not move it."""
     counter = CounterTorque(split, 0)
     for effort in [*range(400), *range(400, 100, -1)]:
         counter.follow(sign * effort, 0)
