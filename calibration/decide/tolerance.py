@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.arrays import Array
-from calibration.balances.declared import Friction
+from calibration.balances.friction import Sliding
 from calibration.balances.problem import Estimate, Problem
 from calibration.balances.thresholds import FALLING_ROWS, SLIDING_ROWS
 from calibration.balances.torque import Torque
@@ -20,7 +20,7 @@ from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
 from calibration.names.name import TOLERANCE
-from calibration.statistics.regression import Fit
+from calibration.statistics.regression import Fit, inflation
 from plant.effects import REGISTRY
 
 # share of a mechanical number, standard error beyond noise (opened seeds 20261129 to 20261202: 0.0025 held
@@ -56,18 +56,6 @@ NEEDED = {"viscous", "coulomb", "stiction"}
 CHANGES = {name: n.changed for name, n in NAMES.items() if n.changed is not None}
 
 
-def inflation(x: Array) -> Array:
-    """Variance inflation of every column of x (n, p); infinite for a column of zeros."""
-    size = np.linalg.norm(x, axis=0)
-    z = x / np.where(size > 0, size, 1.0)
-    out = np.full(x.shape[1], np.inf)
-    for k in np.flatnonzero(size > 0):
-        others = np.delete(z, k, axis=1)
-        rest = z[:, k] - others @ np.linalg.lstsq(others, z[:, k], rcond=None)[0]
-        out[k] = 1.0 / max(float(rest @ rest), 1e-12)
-    return out
-
-
 def beyond(one: Estimate, declared: float, factor: float) -> bool:
     """Whether a number differs from the declared one by more than `factor` either way, significantly so."""
     if one.value <= 0 or one.error <= 0:
@@ -96,7 +84,7 @@ def fitted_numbers(torque: Torque, after: Fit, largest: float = LARGEST_CORRECTI
     """The drive's numbers, SI, from a fit of the torque's base; logarithms corrected by `largest` at most."""
     fit = torque.problem.named(after)
     out = {name: fit[name] for name in LINEAR}
-    for name, start in torque.friction.start.items():
+    for name, start in torque.friction.law.numbers.items():
         correction, of = fit[f"log_{name}"], fit["coulomb"] if name in OF_COULOMB else Estimate(1.0, 0.0)
         value = start * float(np.exp(np.clip(correction.value, -largest, largest))) * of.value
         relative = float(np.hypot(correction.error, of.error / max(of.value, 1e-9)))
@@ -156,7 +144,7 @@ def nearest(d: Declared, name: str, value: float) -> float:
     return min(readings, key=lambda k: abs(float(np.log(max(value, 1e-300) / k))))
 
 
-def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: Friction) -> dict[int, float]:
+def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: Sliding) -> dict[int, float]:
     """Coefficients of the torque base (place -> value) that keep the changed numbers within tolerance."""
     fixed: dict[int, float] = {}
     for changed in (CHANGES[n] for n in names if n in CHANGES):
@@ -165,12 +153,12 @@ def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: 
             if name in LINEAR:
                 fixed[p.place(name)] = float(np.clip(beta[p.place(name)], low, high))
             else:
-                start = f.start[name] * (f.coulomb if name in OF_COULOMB else 1.0)
+                start = f.law.numbers[name] * (f.coulomb if name in OF_COULOMB else 1.0)
                 fixed[p.place(f"log_{name}")] = float(np.log(np.clip(start, low, high) / start))
     return fixed
 
 
-def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Friction) -> list[Finding]:
+def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Sliding) -> list[Finding]:
     """Those findings whose declared numbers, held within their tolerance, fit clearly worse.
 
     `x`: columns, the base first. Numbers of an ill-conditioned fit wander far at no cost.

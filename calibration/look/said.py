@@ -14,6 +14,7 @@ from calibration.names import NAMES
 from calibration.names.scene import Scene
 from calibration.names.shaft_compliance import NAME as COMPLIANCE
 from calibration.names.shaft_compliance import WINDS
+from calibration.statistics.regression import inflation
 
 # of a parameter's variance by its neighbours: over five times the error it would have alone. arithmetic
 INFLATION = 30.0
@@ -64,17 +65,17 @@ def moves_with(s: Selection, bounds: list[str]) -> list[str]:
     ]
     at = np.flatnonzero(size > 0)
     z = columns[:, at] / size[at]
-    gram = z.T @ z
-    likeness = np.abs(gram) - np.eye(len(at))
-    for k, v in enumerate(np.diag(np.linalg.pinv(gram, hermitian=True))):
+    likeness = np.abs(z.T @ z) - np.eye(len(at))
+    for k, v in enumerate(inflation(z)):
         if v > INFLATION and at[k] < len(names) and names[at[k]] != SLOW:
             out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
     return out
 
 
 def place_of(view: View, c: Candidate) -> tuple[Array, str]:
-    """What an effect of a rig is drawn over."""
-    at, unit = view.rows, view.angle_unit
+    """What an effect is drawn over."""
+    at = view.rows
+    size, unit = (180 / np.pi, "degrees") if view.angle_unit == "rad" else (1.0, view.angle_unit)
     if c.repeats is not None:
         return (view.x[at] / (view.turn or 1.0) * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
     if c.frequency is not None:
@@ -82,9 +83,9 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
     if c.domain == "temperature" and "temperature" in view.columns:
         return view.columns["temperature"][at], "temperature, degC"
     table = {
-        "axis_angle": (view.x, f"position, {unit}"),
-        "velocity": (view.speed, f"speed, {unit}/s"),
-        "reversal": (view.since, f"travel since reversal, {unit}"),
+        **dict.fromkeys(("axis_angle", "motor_angle"), (size * view.x, f"position, {unit}")),
+        "velocity": (size * view.speed, f"speed, {unit}/s"),
+        "reversal": (size * view.since, f"travel since reversal, {unit}"),
     }
     x, label = table.get(c.domain, (view.clock, "time, s"))
     return x[at], label

@@ -3,14 +3,12 @@
 from calibration.inputs.train import MESH
 from calibration.names.gear_eccentricity import to_plant
 from calibration.names.lines import stage_lines
-from calibration.names.name import FORCE, SENSORS, SPEED, Beside, Name
+from calibration.names.name import FORCE, SENSORS, SPEED, Name
 
 NAME = Name(
     name=MESH,
-    observed={"kinematic": "twist of a train between the columns of two encoders"},
     channels=(FORCE, SENSORS, SPEED),
     columns=lambda s: stage_lines(s, MESH),
     experiment="a second speed, and travel enough to split it from the neighbouring order",
     to_plant=to_plant,
-    beside=Beside(imitated=True),
 )

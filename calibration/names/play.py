@@ -97,7 +97,7 @@ def _sided(s: Scene) -> dict[str, Any]:
 def _of_the_coupling(s: Scene) -> list[Candidate]:
     """A gap in the coupling of an axis' absolute encoder: its reading stands while the axis crosses it."""
     assert s.pair is not None
-    p, rows = s.problem, s.pair.motion.pick
+    p, rows = s.problem, s.pair.motion.rows
     # arcsec, where the axis is by both motors, less the wind-up that the base takes up
     apart = p.y - p.base[:, p.place("compliance")] * s.declared["compliance"]
     moved = s.view.x[rows] / ARCSEC + apart.reshape(2, -1).mean(axis=0)
@@ -123,10 +123,6 @@ def travel_of(c: Candidate) -> float | None:
 
 NAME = Name(
     name="play",
-    observed={
-        "missing_force": "of the response's column, within the gap",
-        "travel": "the gap once more, along the position column",
-    },
     channels=(SENSORS, FORCE),
     columns=columns,
     experiment="a slow reversal under load, or lock the output and step the torque: play is a step, "

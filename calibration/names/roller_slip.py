@@ -52,8 +52,8 @@ def _lost(s: Scene) -> list[Candidate]:
     if roller is None:
         return []
     row_s = s.view.period_s
-    rate, acceleration = rate_of(m.theta, 1, row_s), acceleration_of(m.theta, 1, row_s)
-    beyond = np.abs(m.acceleration[m.pick])
+    rate, acceleration = rate_of(m.x, 1, row_s), acceleration_of(m.x, 1, row_s)
+    beyond = np.abs(m.acceleration[m.rows])
     limits = [x for x in LIMITS if BEYOND[0] < np.mean(beyond > x) < BEYOND[1]]
     forms = {"slip": _share, "creep": _excess}
 
@@ -93,10 +93,6 @@ def _excess(rate: Array, acceleration: Array, limit: float, chatter: float) -> A
 
 NAME = Name(
     name="roller_slip",
-    observed={
-        "step": "of the response's column",
-        "time": "of the step, on the file's clock",
-    },
     channels=(SENSORS, RATES),
     columns=columns,
     experiment="out and back with gentle and hard acceleration",

@@ -202,7 +202,7 @@ def _torques(s: Scene) -> list[Candidate]:
     """Of an axis with two motors: smooth functions of the speed, loops over the travel."""
     assert s.pair is not None
     x, speed = s.view.x[s.view.rows], s.view.speed[s.view.rows]
-    session = s.pair.frame.session[s.view.rows]
+    session = s.pair.motion.frame.session[s.view.rows]
     w = speed / (float(np.quantile(np.abs(speed), 0.95)) or 1.0)
     knots = spline_columns(np.sign(speed) * np.log1p(np.abs(speed) / SLOW_RATE), SPEED_KNOTS)
     loops = np.column_stack([stop_operator(x, session, r) / r for r in LOOPS])
@@ -249,38 +249,6 @@ def clock_jumps(frame: Frame) -> Finding | None:
 
 NAME = Name(
     name=UNKNOWN,
-    observed={
-        "knot_*": "of a spline, in the response's column",
-        "loop*": "height of a loop in the response's column",
-        "travel": "of that loop, along the position column",
-        "square": "of the speed, in the response's column",
-        "cube": "of the speed, in the response's column",
-        "stiffness": "of the response's column over the position's",
-        "scale_*": "of the response's column over the position's",
-        "offset_*": "of the response's column",
-        "amplitude*": "of a line in the column",
-        "phase*": "of that line",
-        "frequency": "of that line, on the log's clock",
-        "rms": "of the column",
-        "size": "of pulses in the column of the effort",
-        "period": "of those pulses, on the log's clock",
-        "following": "share of the other motor's column",
-        "motor": "whose column it is",
-        "jump": "of the log's clock",
-        "bit": "of the position column's word",
-        "step": "of that bit",
-        "gain_*": "of the law that the column of the effort follows",
-        "*_feedforward": "of that law",
-        "*speed_limit": "below which that law has other gains",
-        # of a finding that was taken for a name first
-        "torque": "of a step in the response's column",
-        "start*": "of that step, on the log's clock",
-        "duration*": "of that step",
-        "*gap": "along the position column",
-        "*_force": "of the response's column",
-        "*_travel": "along the position column",
-        "deadband": "of the column of the duty",
-    },
     channels=(FORCE, SENSORS, VOLTS),
     columns=columns,
     experiment="repeat the run: what is fixed to angle, to time or to neither tells where to look",

@@ -8,7 +8,7 @@ import numpy as np
 from calibration.balances.candidate import Candidate, waves
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
-from calibration.names.lines import line, over_place
+from calibration.names.lines import line, of_stage
 from calibration.names.scene import Scene
 from calibration.names.unnamed import HARMONICS
 
@@ -19,7 +19,7 @@ FOLLOWS = 2.0
 def of_volts(s: Scene) -> list[Candidate]:
     """Columns of an electrical balance that have no name in the catalogue."""
     w = s.windings
-    if w is None or w.counter is None:
+    if w is None or w.counter is None or s.pair is None:
         return _brushes(s)
     c, (a, b) = w.counter, np.split(w.rate, 2)
     # a lagging motor whose current follows the leading one's lacks that one's back-EMF, times its share
@@ -27,7 +27,7 @@ def of_volts(s: Scene) -> list[Candidate]:
     column, size = w.constant * w.at(c.share) * c.lagging * leading, ("following", "1")
     following = candidate(UNKNOWN, column, size, domain="current", sign=1, most=FOLLOWS)
     # brushes over the angle of either motor, as a resistance and as a voltage
-    turned = waves(2 * np.pi * c.turns, range(1, HARMONICS + 1))
+    turned = waves(s.view.x[s.view.rows] * s.pair.train.ratio, range(1, HARMONICS + 1))
     more: dict[str, Any] = {"domain": "motor_angle", "kind": "line", "stage": "motor", "harmonic": 1}
     brushes = [
         candidate(UNKNOWN, turned * weight[:, None], ("amplitude", unit), fixed=motor, **more)
@@ -39,15 +39,9 @@ def of_volts(s: Scene) -> list[Candidate]:
 
 def _brushes(s: Scene) -> list[Candidate]:
     """A resistance over the declared motor's angle, harmonic by harmonic: a rig's zero may move."""
-    out = []
-    for stage in s.view.rig.stages:
-        if stage.period is None or not stage.of_motor:
-            continue
-        for h in range(1, HARMONICS + 1):
-            rate, more = h / stage.period, {"domain": "motor_angle", "stage": stage.name, "harmonic": h}
-            blank = line(s, UNKNOWN, rate, ("amplitude", "ohm"), **more)
-            out += over_place(s, blank, rate, s.view.columns["current"])
-    return out
+    motors = [replace(g, harmonics=HARMONICS, listed=()) for g in s.view.rig.stages if g.of_motor]
+    blank = line(s, UNKNOWN, 0.0, ("amplitude", "ohm"), domain="motor_angle")
+    return [c for g in motors for c in of_stage(s, g, blank, s.view.columns["current"])]
 
 
 def followed(f: Finding) -> Finding:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from calibration.balances.coupling import carried_on, driven_side
 from calibration.balances.frame import Frame
 from calibration.balances.motion import motion_of
 from calibration.balances.torque import slid
 from calibration.inputs.rigfile import telescope
+from calibration.look.applied import carried_on, driven_side
 from plant.units import ARCSEC
 
 DT, GAP, NOISE = 0.01, 8.0, 0.0015  # s, arcsec, arcsec
@@ -63,6 +63,6 @@ def test_rows_are_fitted_again_once_the_bristles_hold_nothing_of_the_unseen_path
         columns=columns, scale={}, rig=telescope("ra"),
     )  # fmt: skip
     m = motion_of(frame, 3)
-    assert not m.trusted[197:303].any() and m.trusted[320:900].all() and m.fresh.sum() == 1
+    assert not m.ok[197:303].any() and m.ok[320:900].all() and m.fresh.sum() == 1
     settled = slid(m, unseen, 5e-5)
     assert settled[:199].all() and not settled[200:348].any() and settled[352:].all()

@@ -13,7 +13,6 @@ from calibration.balances.problem import Problem
 from calibration.balances.recursions import lowpass
 from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
 from calibration.decide.heldout import Model
-from calibration.decide.merge import merge
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import FrictionLaw
 from calibration.inputs.rigfile import telescope
@@ -26,7 +25,6 @@ from calibration.names.pair import Pair
 from calibration.names.scene import MOTOR, RATES
 from calibration.names.structural_mode import second_mass
 from calibration.statistics.regression import gls
-from plant.gears import ORDERS as STAGES
 from plant.units import ARCSEC
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
@@ -86,7 +84,7 @@ def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristle
     out = np.concatenate([np.linspace(0, 0.01, 3000), np.linspace(0.01, 0.0, 3000)])
     m = moved(out)
     answer = m.at(sliding(path_of(m)).answer(np.ones(len(out))))
-    turn = np.argmin(np.abs(m.pick - 3000))
+    turn = np.argmin(np.abs(m.rows - 3000))
     assert answer[turn - 50] == pytest.approx(1.0, abs=0.02)
     assert answer[turn + 1] > 0.3  # still the old side
     assert answer[turn + 200] == pytest.approx(-1.0, abs=0.02)
@@ -101,15 +99,15 @@ def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width:
     true = np.cumsum(rate) * DT
     frame = logged(true + amplitude * ARCSEC * np.sin(LINES * true + 0.4))
     m, axis = motion_of(frame, width), moved(true, width)
-    row = m.pick
+    row = m.rows
 
     def base(of: Motion) -> np.ndarray:
         return np.column_stack([of.acceleration[row], np.gradient(of.acceleration, DT)[row]]) / ARCSEC
 
     lags = {"velocity_delay": -2.5e-3, "window_curvature": 8e-5}  # s, s2
-    counted = axis.rate[row] / ARCSEC + base(axis) @ np.array(list(lags.values()))
-    run, valid = np.zeros(len(row), dtype=np.int64), m.trusted[row]
-    y = counted - m.rate[row] / ARCSEC
+    counted = axis.speed[row] / ARCSEC + base(axis) @ np.array(list(lags.values()))
+    run, valid = np.zeros(len(row), dtype=np.int64), m.ok[row]
+    y = counted - m.speed[row] / ARCSEC
     problem = Problem(
         channel="S",
         unit="arcsec/s",
@@ -121,10 +119,10 @@ def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width:
         session=run,
         valid=valid,
         held=~valid,
-        period_s=m.period_s,
+        period_s=m.cell_s,
         ar_order=0,
     )
-    scene = scene_of_balance(Pair(frame=frame, motion=m), problem, y, lags)
+    scene = scene_of_balance(Pair(motion=m), problem, y, lags)
     (one,) = NAMES["encoder_subdivision"].columns(scene)
     beta = gls(y, np.hstack([problem.base, one.columns]), valid, 0).beta
     assert np.hypot(*beta[2:4]) == pytest.approx(amplitude, rel=0.03)
@@ -268,32 +266,6 @@ def test_heating_is_told_of_the_cold_resistance() -> None:
     f = NAMES["winding_heating"].retold(found, {"resistance": 1.1, "torque_constant": 1.0})
     told = f.parameters["thermal_resistance"]
     assert (told.value, told.low) == (pytest.approx(2.42), pytest.approx(2.178))
-
-
-def line(channel: str, name: str, **more: object) -> Finding:
-    a = {"amplitude": Parameter(0.01, "N m at the motor", 0.009, 0.011)}
-    place = {"stage": "motor", "harmonic": 2, "order": 2 * STAGES["motor"]}
-    return Finding(name, channel, "motor_angle", parameters=a, share=0.5, **place, **more)  # type: ignore[arg-type]
-
-
-def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:
-    torque = line("T", "motor_cogging", equivalent=["gear_eccentricity"], evidence=100.0)
-    alone = merge([torque], TRAIN)
-    assert [f.name for f in alone] == ["motor_cogging"]
-    seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)], TRAIN)
-    assert [f.name for f in seen] == ["gear_eccentricity"]
-    assert seen[0].parameters["amplitude"].value == pytest.approx(0.01 * STAGES["motor"])
-
-
-def test_ripple_at_the_order_of_a_mesh_that_the_encoders_see_is_the_mesh_s() -> None:
-    ripple, mesh = line("T", "torque_ripple"), line("T", "gear_mesh")
-    assert {f.name for f in merge([ripple, mesh], TRAIN)} == {"torque_ripple", "gear_mesh"}
-    assert {f.name for f in merge([ripple, mesh, line("K", "gear_mesh")], TRAIN)} == {"gear_mesh"}
-    other = replace(ripple, order=3 * STAGES["motor"], harmonic=3)
-    assert {f.name for f in merge([other, mesh, line("K", "gear_mesh")], TRAIN)} == {
-        "torque_ripple",
-        "gear_mesh",
-    }
 
 
 def test_what_an_axis_shows_between_its_encoders_is_seen_in_their_rates() -> None:
