@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.arrays import Array, Mask
-from calibration.balances.friction import path_of
+from calibration.balances.friction import Sliding, path_of, slid_by
 from calibration.balances.motion import Motion
 from calibration.inputs.declaration import FrictionLaw
 from calibration.statistics.regression import solve
@@ -39,23 +39,8 @@ APART = 0.03
 OUTLIER = 8.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Friction:
-    """The law and its sizes: coulomb in N m, viscous in N m s/rad."""
-
-    law: FrictionLaw
-    coulomb: float
-    viscous: float
-
-    @property
-    def start(self) -> dict[str, float]:
-        """Numbers whose logarithms the base corrects; stiction and sigma_0 over Coulomb's torque."""
-        return dict(zip(("stiction", "stribeck_speed", "sigma_0"), np.exp(_logs(self.law)), strict=True))
-
-
 def _logs(law: FrictionLaw) -> Array:
-    assert law.bristle_travel is not None
-    return np.log([law.stiction_ratio, law.stribeck_speed, 1.0 / law.bristle_travel])
+    return np.log(list(law.numbers.values()))
 
 
 def _law(logs: Array, exponent: float) -> FrictionLaw:
@@ -82,7 +67,7 @@ class _Fit:
     def columns(self, bristle: Array) -> Array:
         """Acceleration, rate, bristle and lines (n_analysis, 3 + k)."""
         m = self.motion
-        return np.column_stack([m.acceleration[m.pick], m.rate[m.pick], m.at(bristle), self.lines])
+        return np.column_stack([m.acceleration[m.rows], m.speed[m.rows], m.at(bristle), self.lines])
 
     def left(self, logs: Array) -> Array:
         """Residual on the rows."""
@@ -94,7 +79,7 @@ class _Fit:
         e = np.abs(self.left(logs))
         return float(np.mean(np.minimum(e, OUTLIER * np.median(e))))
 
-    def linearised(self, logs: Array) -> tuple[Friction, Array]:
+    def linearised(self, logs: Array) -> tuple[Sliding, Array]:
         """Friction; columns, behind the bristle's its derivatives to the logs and sigma_1's, lines last."""
         m, shape = self.motion, self.bristle(logs)
         x = self.columns(shape)
@@ -103,9 +88,9 @@ class _Fit:
             m.at((self.bristle(logs + h) - self.bristle(logs - h)) / (2 * APART)) * coulomb
             for h in APART * np.eye(len(logs))
         ]
-        friction = Friction(law=_law(logs, self.exponent), coulomb=coulomb, viscous=viscous)
+        friction = slid_by(m, _law(logs, self.exponent), coulomb, viscous)
         slip = np.zeros(len(shape))  # rad/s
-        slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * path_of(m).period_s) / friction.start["sigma_0"]
+        slip[1:-1] = (shape[2:] - shape[:-2]) / (2 * m.period_s) / friction.law.numbers["sigma_0"]
         slip[m.starts] = 0.0
         return friction, np.column_stack([x[:, :3], *derivative, m.at(slip), self.lines])
 
@@ -148,7 +133,7 @@ class _Fit:
 
 def fit_friction(
     m: Motion, torque: Array, rows: Mask, declared: FrictionLaw, lines: Array
-) -> tuple[Friction, Array]:
+) -> tuple[Sliding, Array]:
     """Fit the declared model to `torque` (n_analysis,) on `rows`, from the `declared` law. `lines`
     (n_analysis, k) are periodic torques that are declared too: left out, they would bend the friction.
 

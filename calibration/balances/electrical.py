@@ -31,7 +31,7 @@ def electrical_problem(
     if softness is None:
         softness = declared.torque_constant * frame.scale["gear_ratio"] / declared.stiffness
     effort, known = frame.filled("effort")
-    bad = frame.transients() | ~known | ~m.trusted | (m.rate == 0)
+    bad = frame.transients() | ~known | ~m.ok | (m.speed == 0)
     spins, engaged = zip(*(_spin(frame, m, key, softness) for key in "ab"), strict=True)
     w = _windings(frame, m, effort, np.concatenate(spins))
     assert w.counter is not None
@@ -72,12 +72,12 @@ def _windings(frame: Frame, m: Motion, effort: Array, spin: Array) -> Windings:
     """Both motors' columns; `spin` (2 n_analysis,) rad/s the way each pulls."""
     logged = frame.get("supply") is not None
     supply = frame.filled("supply")[0] if logged else np.full(len(effort), frame.scale["supply_V"])
-    turns = m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi)
+    turns = m.x[m.rows] * frame.scale["gear_ratio"] / (2 * np.pi)
     return Windings(
         at=lambda full: np.concatenate([m.at(x) for x in np.split(full, 2)]),
         current=np.concatenate([frame.filled(f"current_{k}")[0] for k in "ab"]),
         rate=np.maximum(spin, 0.0),
-        clock=np.tile(frame.one_clock[m.pick], 2),
+        clock=np.tile(frame.one_clock[m.rows], 2),
         duty=duties(frame, effort),
         supply=np.tile(supply, 2),
         counter=Counter(
@@ -97,19 +97,19 @@ def _spin(frame: Frame, m: Motion, key: str, softness: float) -> tuple[Array, Ma
     """
     ratio, side = frame.scale["gear_ratio"], 1.0 if key == "a" else -1.0
     current, _ = frame.filled(f"current_{key}")
-    spin = side * m.rate[m.pick] * ratio + m.at(np.gradient(current, frame.period_s)) * softness * ratio
+    spin = side * m.speed[m.rows] * ratio + m.at(np.gradient(current, frame.period_s)) * softness * ratio
     if frame.get(f"motor_{key}") is None:
         return spin, np.ones(len(spin), dtype=bool)
     count = 2 * np.pi / frame.scale["tach_counts_per_turn"] / frame.period_s
     own, known = frame.filled(f"motor_{key}")
-    off = known[m.pick] & (np.abs(m.at(own) - side * spin) > APART * count)
+    off = known[m.rows] & (np.abs(m.at(own) - side * spin) > APART * count)
     return spin, ~binary_dilation(off)
 
 
 def _conducts(frame: Frame, m: Motion, key: str, volts: Array, declared: Declared) -> Mask:
     """Rows (n,) whose current is measured: known, not cut off at zero, and not at the converter's end."""
     current, known = frame.filled(f"current_{key}")
-    pull = np.maximum(m.rate if key == "a" else -m.rate, 0.0) * frame.scale["gear_ratio"]
+    pull = np.maximum(m.speed if key == "a" else -m.speed, 0.0) * frame.scale["gear_ratio"]
     expected = (volts - declared.torque_constant * pull) / declared.resistance
     flows = (volts > 0) & (expected >= CLIPPED * frame.scale["adc_A_per_count"])
     return np.asarray(known & flows & ~frame.saturated(current))

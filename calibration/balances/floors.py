@@ -151,7 +151,7 @@ def floors_of_pair(
     """Per channel, rms that noise and quanta leave of an axis with two motors, where it has the columns."""
     frame, n, out = m.frame, column_noise(m.frame), {}
     second = np.zeros(2 * m.width + 1)  # over the rows of one means of the position, per s2
-    second[[0, m.width, -1]] = np.array([1.0, -2.0, 1.0]) / m.period_s**2
+    second[[0, m.width, -1]] = np.array([1.0, -2.0, 1.0]) / m.cell_s**2
     currents = [n[k] for k in ("current_a", "current_b") if k in n]
     averaged, squares = m.filter.passes, [s**2 for s in currents]
     if squares:
@@ -168,7 +168,7 @@ def floors_of_pair(
     # the tachometers' rounding, averaged where they count quickly enough, the absolute encoder and what the
     # currents' noise makes of the trains' wind-up
     turn = frame.scale["tach_counts_per_turn"] * frame.scale["gear_ratio"]
-    rate = np.abs(m.rate[m.pick][(held & m.trusted)[m.pick]])
+    rate = np.abs(m.speed[m.rows][(held & m.ok)[m.rows]])
     quick = rate / (2 * np.pi) * turn * frame.period_s > OWN_COUNT
     share = float(np.mean(np.where(quick, averaged, 1.0))) if len(quick) else 1.0
     wind = max(currents, default=0.0) * drive.per_ampere / drive.stiffness

@@ -123,9 +123,16 @@ class Sliding:
         return (more - less) * (self.coulomb / (2 * small))
 
 
+def slid_by(m: Motion, law: FrictionLaw, coulomb: float, viscous: float) -> Sliding:
+    """Of an axis with two motors: coulomb in N m, viscous in N m s/rad."""
+    step = np.gradient(m.x)
+    speed, side = step / m.period_s, np.sign(step)
+    return Sliding(law=law, path=path_of(m), side=side, speed=speed, coulomb=coulomb, viscous=viscous)
+
+
 def path_of(m: Motion) -> Path:
     """Of an axis' absolute encoder."""
-    return Path(position=m.theta, fresh=m.starts, period_s=m.period_s / m.width)
+    return Path(position=m.x, fresh=m.starts, period_s=m.period_s)
 
 
 def sliding_of(view: View, coulomb: float = 1.0, viscous: float = 0.0) -> Sliding:

@@ -50,7 +50,7 @@ def kinematic_problem(
     """
     if frame.get("motor_a") is None or frame.get("motor_b") is None:
         return None
-    pick, ratio = m.pick, frame.scale["gear_ratio"]
+    pick, ratio = m.rows, frame.scale["gear_ratio"]
     near = ~m.clear(frame.transients())
     ys, torques, oks = [], [], []
     apart = np.zeros(len(pick), dtype=bool)
@@ -58,16 +58,16 @@ def kinematic_problem(
     for key, sign in (("a", 1.0), ("b", -1.0)):
         spin, trusted = frame.filled(f"motor_{key}")
         current, _ = frame.filled(f"current_{key}")
-        angle = np.cumsum(spin) * frame.period_s / ratio - m.theta
+        angle = np.cumsum(spin) * frame.period_s / ratio - m.x
         y = m.at(angle) / ARCSEC
         torque = sign * per_ampere * m.at(current)
         full = ~m.clear(frame.saturated(current))
-        y, off = _off_face(y, torque, segment, m.trusted[pick] & ~near & ~full)
+        y, off = _off_face(y, torque, segment, m.ok[pick] & ~near & ~full)
         apart |= off & ~full
         ys.append(y)
         torques.append(torque)
         still = standing(spin, frame.run, round(STILL_S / frame.period_s))
-        oks.append((m.trusted & trusted & ~still)[pick] & ~near & ~full)
+        oks.append((m.ok & trusted & ~still)[pick] & ~near & ~full)
     engaged = ~binary_dilation(apart, iterations=NEAR)
     valid = np.concatenate(oks) & np.tile(engaged, 2)
     label = np.concatenate([segment, segment + segment[-1] + 1])
@@ -81,7 +81,7 @@ def kinematic_problem(
         [
             ("compliance", "rad/(N m)", np.concatenate(torques) / ARCSEC),
             ("rotor_lag", "arcsec s2/rad", np.tile(m.acceleration[pick], 2)),
-            ("tachometer_delay", "s", np.tile(m.rate[pick], 2) / ARCSEC),
+            ("tachometer_delay", "s", np.tile(m.speed[pick], 2) / ARCSEC),
             *each,
             ("offset", "arcsec", offsets),
         ],
@@ -141,9 +141,9 @@ def roller_problem(frame: Frame, m: Motion, held: Mask) -> Problem | None:
     if frame.get("velocity") is None:
         return None
     velocity, trusted = frame.filled("velocity")
-    pick, jerk = m.pick, np.gradient(m.acceleration, frame.period_s)
+    pick, jerk = m.rows, np.gradient(m.acceleration, frame.period_s)
     delay, curvature = m.acceleration[pick] / ARCSEC, jerk[pick] / ARCSEC
     terms = [("velocity_delay", "s", delay), ("window_curvature", "s2", curvature)]
-    y, valid = (m.at(velocity) - m.rate[pick]) / ARCSEC, m.clear(frame.transients())
-    valid &= (m.trusted & trusted)[pick]
+    y, valid = (m.at(velocity) - m.speed[pick]) / ARCSEC, m.clear(frame.transients())
+    valid &= (m.ok & trusted)[pick]
     return m.problem(held, terms, channel="S", unit="arcsec/s", y=y, valid=valid)

@@ -5,7 +5,7 @@ once more smoothed, is h * theta'. So columns smoothed by h balance without bias
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,51 +13,56 @@ from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter1d
 
 from calibration.arrays import Array, Mask
+from calibration.balances.context import direction_of, since_reversal
 from calibration.balances.filters import Filter, boxcar, since
 from calibration.balances.frame import Frame
 from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.thresholds import UNTOUCHED
+from calibration.balances.view import View
+from calibration.inputs.declaration import Response, Rig, Stage
+from calibration.inputs.thresholds import HARMONICS
+from calibration.inputs.train import SHAFT, Train
 
 # rows after a start or a gap that are not analysed. ASSUMPTION
 START_ROWS = 10
+# rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range. ASSUMPTION
+DIRECTION_TRAVEL = 2e-6
 
 
 @dataclass(kw_only=True)
-class Motion:
-    """Full-rate position, and h-smoothed rate and acceleration; `pick` are the rows of the analysis grid."""
+class Motion(View):
+    """An axis by its absolute encoder, in rad, gaps filled; `rows` are those of the analysis grid.
+
+    `speed` and `acceleration` are behind h, which is the `filter`.
+    """
 
     frame: Frame
-    width: int
-    theta: Array  # rad, gaps filled
-    trusted: Mask
-    rate: Array  # rad/s
     acceleration: Array  # rad/s2
-    pick: NDArray[np.int64]
     fresh: Mask  # first row of a run or after a long gap
     starts: Mask  # first row of a run
-    period_s: float
 
     @property
-    def filter(self) -> Filter:
-        """h; about a row wide."""
-        return Filter(1.0, self.width)
+    def width(self) -> int:
+        """D."""
+        return self.filter.boxcar
+
+    @property
+    def cell_s(self) -> float:
+        """Between two rows of the analysis grid."""
+        return self.width * self.period_s
 
     def clear(self, *marked: Mask) -> Mask:
         """Rows of the analysis grid (n_analysis,) whose filter holds no `marked` row (n,)."""
         return self.at(np.logical_or.reduce(marked).astype(float)) < UNTOUCHED
 
-    def at(self, x: Array) -> Array:
-        """h * x on the analysis grid; `x` is (n,) or (n, k)."""
-        return np.asarray(self.filter(x, self.frame.run)[self.pick])
-
     def problem(self, held: Mask, terms: Sequence[Term], **more: Any) -> Problem:
         """`terms` against y on the analysis grid, motor A first; `held` (n,); `more`: `Problem`'s fields."""
-        motors = len(more["y"]) // len(self.pick)
+        motors = len(more["y"]) // len(self.rows)
         f = self.frame
         full = {"t": f.t, "run": f.run, "session": f.session, "held": held}
-        rows = {k: np.tile(x[self.pick], motors) for k, x in full.items()}
+        rows = {k: np.tile(x[self.rows], motors) for k, x in full.items()}
         base = np.column_stack([x for _, _, x in terms])
-        given = {"ar_order": 4, "block_s": 3.0, "period_s": self.period_s, **rows, **more}
+        given = {"ar_order": 4, "block_s": 3.0, "period_s": self.cell_s, **rows, **more}
         return Problem(base=base, base_labels=labels_of(terms), **given)
 
 
@@ -74,22 +79,45 @@ def motion_of(frame: Frame, width: int) -> Motion:
     usable = minimum_filter1d(trusted, 2 * d + 1) & one_run
     usable[:d] = usable[len(usable) - d :] = False
     usable &= since(fresh) >= START_ROWS  # the bristles and the first step of the effort
+    turns = direction_of(theta, frame.run, DIRECTION_TRAVEL)
     return Motion(
+        rig=_in_radians(frame.rig, frame.train),
+        response=Response("current", "N m"),
+        period_s=dt,
+        filter=Filter(1.0, d),
+        t=frame.t,
+        clock=frame.one_clock,
+        file=frame.run,
+        segment=frame.run,
+        run=frame.run,
+        columns={"position": theta},
+        ok=usable,
+        rows=np.arange(d // 2, len(theta), d),
+        dynamic=True,
+        turn=2 * np.pi,
+        speed=rate_of(theta, d, dt),
+        direction=np.sign(np.gradient(theta)),
+        since=since_reversal(theta, turns, frame.run),
         frame=frame,
-        width=d,
-        theta=theta,
-        trusted=usable,
-        rate=rate_of(theta, d, dt),
         acceleration=acceleration_of(theta, d, dt),
-        pick=np.arange(d // 2, len(theta), d),
         fresh=fresh,
         starts=starts,
-        period_s=d * dt,
     )
 
 
+def _in_radians(rig: Rig, train: Train) -> Rig:
+    """The rig with the stages whose torque the axis feels, periods in rad; its position is absolute."""
+    shafts = dict.fromkeys(train.shafts, SHAFT)
+    stages = tuple(
+        Stage(name, 2 * np.pi / order, None, HARMONICS, shafts.get(name, train.kinds[name]))
+        for name, order in train.orders.items()
+        if train.kinds[name] not in ("axis", "sensor")  # a sensor may be on a shaft of its own
+    )
+    return replace(rig, stages=stages, runs={"origin": "shared"})
+
+
 def rate_of(x: Array, width: int, period_s: float) -> Array:
-    """h * x' at full rate, as `Motion.rate` is of the position; `period_s` between rows."""
+    """h * x' at full rate, as `Motion.speed` is of the position; `period_s` between rows."""
     half = width // 2
     if width == 1:
         return np.asarray((_shift(x, -1) - _shift(x, 1)) / (2 * period_s))

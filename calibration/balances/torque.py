@@ -7,9 +7,9 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.balances.candidate import waves
-from calibration.balances.declared import Friction, fit_friction
-from calibration.balances.frame import Frame
-from calibration.balances.motion import Motion, acceleration_of, motion_of
+from calibration.balances.declared import fit_friction
+from calibration.balances.friction import Sliding
+from calibration.balances.motion import Motion, acceleration_of
 from calibration.balances.problem import Problem, Term
 from calibration.inputs.declaredplant import Declared
 
@@ -53,19 +53,19 @@ class Torque:
     """The torque problem with what it was made of."""
 
     problem: Problem
-    friction: Friction
+    friction: Sliding
     drive: Transmission
 
 
 def slid(m: Motion, unseen: Array, travel: float) -> Mask:
     """Rows (n,) that lie `travel` rad of path behind the last unseen one: the bristles hold nothing of it."""
-    path = np.cumsum(np.abs(np.diff(m.theta, prepend=m.theta[0])))
+    path = np.cumsum(np.abs(np.diff(m.x, prepend=m.x[0])))
     return np.asarray(path - np.maximum.accumulate(np.where(unseen > 0, path, -np.inf)) > travel)
 
 
 def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], unit: str = "N m") -> list[Term]:
     """cos and sin (n_analysis, 2) of every declared periodic torque, dimmed by the two boxcars."""
-    turns, per_row = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / (2 * np.pi) * m.frame.period_s
+    turns, per_row = m.x[m.rows] / (2 * np.pi), m.speed[m.rows] / (2 * np.pi) * m.frame.period_s
     out: list[Term] = []
     for _, stage, harmonic in lines:
         order = m.frame.train.orders[stage] * harmonic
@@ -75,23 +75,18 @@ def declared_lines(m: Motion, lines: Sequence[tuple[str, str, int]], unit: str =
 
 
 def torque_problem(
-    frame: Frame,
-    drive: Transmission,
-    held: Mask,
-    declared: Declared,
-    beside: Array | None = None,
+    m: Motion, drive: Transmission, held: Mask, declared: Declared, beside: Array | None = None
 ) -> Torque | None:
     """The T channel; None without currents. `beside` (n_analysis, k): torques fitted beside friction."""
+    frame, pick = m.frame, m.rows
     if frame.get("current_a") is None and frame.get("current_b") is None:
         return None
     (fa, ta), (fb, tb) = frame.filled("current_a"), frame.filled("current_b")
-    m = motion_of(frame, WIDTH)
-    pick = m.pick
     left_out = [frame.transients(), frame.saturated(fa), frame.saturated(fb)]
     unseen = frame.get("unseen")
     if unseen is not None:
         left_out.append(~slid(m, unseen, SLID * declared.stiction / declared.bristle_stiffness))
-    rows = (m.trusted & ta & tb)[pick] & m.clear(*left_out)
+    rows = (m.ok & ta & tb)[pick] & m.clear(*left_out)
     full = drive.per_ampere * (drive.left["a"] * fa - drive.left["b"] * fb)
     y = m.at(full) - drive.softness_s2 * acceleration_of(full, WIDTH, frame.period_s)[pick]
     lines = declared_lines(m, declared.lines)

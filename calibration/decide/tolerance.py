@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.arrays import Array
-from calibration.balances.declared import Friction
+from calibration.balances.friction import Sliding
 from calibration.balances.problem import Estimate, Problem
 from calibration.balances.thresholds import FALLING_ROWS, SLIDING_ROWS
 from calibration.balances.torque import Torque
@@ -96,7 +96,7 @@ def fitted_numbers(torque: Torque, after: Fit, largest: float = LARGEST_CORRECTI
     """The drive's numbers, SI, from a fit of the torque's base; logarithms corrected by `largest` at most."""
     fit = torque.problem.named(after)
     out = {name: fit[name] for name in LINEAR}
-    for name, start in torque.friction.start.items():
+    for name, start in torque.friction.law.numbers.items():
         correction, of = fit[f"log_{name}"], fit["coulomb"] if name in OF_COULOMB else Estimate(1.0, 0.0)
         value = start * float(np.exp(np.clip(correction.value, -largest, largest))) * of.value
         relative = float(np.hypot(correction.error, of.error / max(of.value, 1e-9)))
@@ -156,7 +156,7 @@ def nearest(d: Declared, name: str, value: float) -> float:
     return min(readings, key=lambda k: abs(float(np.log(max(value, 1e-300) / k))))
 
 
-def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: Friction) -> dict[int, float]:
+def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: Sliding) -> dict[int, float]:
     """Coefficients of the torque base (place -> value) that keep the changed numbers within tolerance."""
     fixed: dict[int, float] = {}
     for changed in (CHANGES[n] for n in names if n in CHANGES):
@@ -165,12 +165,12 @@ def held_numbers(names: Iterable[str], p: Problem, beta: Array, d: Declared, f: 
             if name in LINEAR:
                 fixed[p.place(name)] = float(np.clip(beta[p.place(name)], low, high))
             else:
-                start = f.start[name] * (f.coulomb if name in OF_COULOMB else 1.0)
+                start = f.law.numbers[name] * (f.coulomb if name in OF_COULOMB else 1.0)
                 fixed[p.place(f"log_{name}")] = float(np.log(np.clip(start, low, high) / start))
     return fixed
 
 
-def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Friction) -> list[Finding]:
+def telling(found: list[Finding], p: Problem, x: Array, d: Declared, f: Sliding) -> list[Finding]:
     """Those findings whose declared numbers, held within their tolerance, fit clearly worse.
 
     `x`: columns, the base first. Numbers of an ill-conditioned fit wander far at no cost.

@@ -153,6 +153,13 @@ class FrictionLaw:
     stribeck_exponent: float = 2.0
     bristle_travel: float | None = None  # Coulomb friction over the bristles' stiffness
 
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Of a law with bristles by their names in a report; stiction and sigma_0 over Coulomb's torque."""
+        assert self.bristle_travel is not None
+        numbers = self.stiction_ratio, self.stribeck_speed, 1.0 / self.bristle_travel
+        return dict(zip(("stiction", "stribeck_speed", "sigma_0"), numbers, strict=True))
+
 
 @dataclass(frozen=True)
 class Rig:

@@ -88,7 +88,7 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
 def _balance(result: AxisResult, key: str, s: Selection, names: set[str]) -> Balance:
     """What is said of one channel; its controls are tried where an effect that keeps its name was chosen."""
     torque = key == "T" and result.torque is not None
-    theta = result.motion.theta[result.motion.pick] / (2 * np.pi)
+    theta = result.motion.x[result.motion.rows] / (2 * np.pi)
     numbers: dict[str, Parameter] = {}
     if key == "E":
         numbers = calibrated(s, ("electrical_lag",), ELECTRICAL_ERROR)
@@ -113,15 +113,15 @@ def _balance(result: AxisResult, key: str, s: Selection, names: set[str]) -> Bal
 def _place(result: AxisResult, key: str, c: Candidate) -> tuple[Array, str]:
     """What an effect of the axis is drawn over; of what the grid of the analysis has not, the time."""
     p, m = result.selections[key].problem, result.motion
-    if len(p.y) % len(m.pick) == 0 and key != "U":
+    if len(p.y) % len(m.rows) == 0 and key != "U":
         long = partial(np.resize, new_shape=len(p.y))
         if c.repeats:
-            turns = long(m.theta[m.pick]) / (2 * np.pi)
+            turns = long(m.x[m.rows]) / (2 * np.pi)
             return (turns * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
         if c.domain == "velocity":
-            return long(m.rate[m.pick]) / ARCSEC, "rate, arcsec/s"
+            return long(m.speed[m.rows]) / ARCSEC, "rate, arcsec/s"
         if c.domain in ("axis_angle", "motor_angle"):
-            return np.degrees(long(m.theta[m.pick])), "axis angle, degrees"
+            return np.degrees(long(m.x[m.rows])), "axis angle, degrees"
     if key == "T" and result.scene is not None:
         v = result.scene.view
         if c.domain == "reversal":
@@ -136,14 +136,14 @@ def _place(result: AxisResult, key: str, c: Candidate) -> tuple[Array, str]:
 def _with_missing(result: AxisResult, b: Balance) -> Balance:
     """With the domain that a channel's residual above its floor lives in."""
     m, rows = result.motion, len(b.selection.problem.y)
-    turn, rate = m.theta[m.pick] / (2 * np.pi), m.rate[m.pick] / ARCSEC
+    turn, rate = m.x[m.rows] / (2 * np.pi), m.speed[m.rows] / ARCSEC
     places = [
         Place("axis angle", "axis_angle", turn),
         Place("speed and direction", "velocity", np.sign(rate) * np.log1p(np.abs(rate))),
-        Place("time", "time", result.frame.t[m.pick]),
+        Place("time", "time", result.frame.t[m.rows]),
         Place("motor angle", "motor_angle", (turn * result.frame.train.ratio) % 1.0),
     ]
-    times, rest = divmod(rows, len(m.pick))
+    times, rest = divmod(rows, len(m.rows))
     long = [] if rest else [one._replace(x=np.resize(one.x, rows)) for one in places]
     return replace(b, missing=missing_over(b, long, times))
 

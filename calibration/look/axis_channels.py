@@ -93,7 +93,7 @@ def _look(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
     result.floors = floors_of_pair(m, drive, result.held, inertia, resistance)
     result.findings += delay_findings(result.selections, numbers)
     if "E" in result.selections and not result.findings:  # any effect shakes the volts, too
-        turns = np.tile(m.theta[m.pick] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
+        turns = np.tile(m.x[m.rows] * frame.scale["gear_ratio"] / (2 * np.pi), 2)
         left_over = result.selections["E"]
         strange = unexplained_volts(left_over.after.residual, left_over.problem, turns)
         result.findings += [strange] if strange is not None else []
@@ -120,7 +120,7 @@ def encoder_channels(result: AxisResult, per_ampere: float) -> None:
     frame, m, numbers = result.frame, result.motion, result.declared
     k = result.kinematic = kinematic_problem(frame, m, result.held, per_ampere, numbers.lines)
     if k is not None:
-        pair = Pair(frame=frame, motion=m, motor=np.repeat([0.0, 1.0], len(m.pick)))
+        pair = Pair(motion=m, motor=np.repeat([0.0, 1.0], len(m.rows)))
         s = result.selections["K"] = select(k.problem, _candidates(pair, k.problem), result.rng)
         result.collect(s)
         fitted, stiffness = train_stiffness(s, result.scale_error)
@@ -128,7 +128,7 @@ def encoder_channels(result: AxisResult, per_ampere: float) -> None:
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, result.held)
     if roller is not None:
-        s = select(roller, _candidates(Pair(frame=frame, motion=m), roller), result.rng)
+        s = select(roller, _candidates(Pair(motion=m), roller), result.rng)
         result.selections["S"] = s
         result.collect(s)
 
@@ -138,7 +138,7 @@ def full_rate(result: AxisResult) -> None:
     frame = result.frame
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
-    pair = Pair(frame=frame, motion=full)
+    pair = Pair(motion=full)
     if problem is not None and (candidates := _candidates(pair, problem)):
         s = select(problem, candidates, result.rng, margin=FINE_MARGIN)
         if s.chosen:

@@ -28,8 +28,8 @@ def lacks(result: AxisResult, balances: Sequence[Balance]) -> list[str]:
     if "T" not in found:
         out.append(COLUMNS["T"])
     if out:
-        rate = result.motion.rate[result.motion.pick]
-        out += motion_lacks(rate[result.motion.trusted[result.motion.pick]])
+        rate = result.motion.speed[result.motion.rows]
+        out += motion_lacks(rate[result.motion.ok[result.motion.rows]])
     unsettled = unsettled_reading(result.calibrated.get("stiffness"), result.declared)
     return [*out, unsettled] if unsettled else out
 
@@ -55,7 +55,7 @@ def _one_way(rate: Array) -> bool:
 def not_identifiable(result: AxisResult) -> list[str]:
     """Parameters this motion cannot tell, by its coverage and the conditioning, not by the fit."""
     m, e, vs = result.motion, result.electrical, result.declared.stribeck_rate
-    rate = m.rate[m.pick]
+    rate = m.speed[m.rows]
     size, (low, high) = np.abs(rate), (part * vs for part in limits.FALLING)
     slow, quick = np.mean((size > low) & (size < high)), np.mean(size > limits.SLIDING * vs)
     turning = result.scene.view.since if result.scene is not None else np.zeros(1)
@@ -64,7 +64,7 @@ def not_identifiable(result: AxisResult) -> list[str]:
         "stribeck_speed": dip,
         "viscous": _one_speed(rate),
         "friction_asymmetry (one direction only)": _one_way(rate),
-        "inertia": np.quantile(np.abs(m.acceleration[m.pick]), 0.99) < limits.LEAST_ACCELERATION,
+        "inertia": np.quantile(np.abs(m.acceleration[m.rows]), 0.99) < limits.LEAST_ACCELERATION,
         "sigma_0": np.mean(np.abs(turning) < limits.TURNING) < limits.TURNING_ROWS,
         "sigma_1": True,
         "torque_constant": e is None or e.constant_error > limits.OPEN_CONSTANT * abs(e.windings.constant),

@@ -41,15 +41,15 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
     Friction is fitted before anything is known of an effect, which bends it. When something is found it is
     fitted again with that beside it, and the second look stands if it leaves less.
     """
-    frame, m = result.frame, result.motion
-    torque = torque_problem(frame, drive, result.held, result.declared)
+    m = result.motion
+    torque = torque_problem(m, drive, result.held, result.declared)
     result.torque = torque
     if torque is None:
         return
     s, whole, moving = _pass(result, torque)
     if s.chosen:
         beside = np.hstack([c.columns for c in s.candidates])
-        again = torque_problem(frame, drive, result.held, result.declared, beside)
+        again = torque_problem(m, drive, result.held, result.declared, beside)
         assert again is not None
         second = _pass(result, again)
         if second[0].fitted_square < s.fitted_square:
@@ -66,11 +66,11 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
     # long rests say where the bristles were left, not what they are; and an exponent below 1 has a cusp at
     # rest, which needs slower speeds than the encoder resolves
     if result.declared.stribeck_exponent >= 1.0:
-        moving = np.asarray(binary_dilation(moving, iterations=round(REST_S / m.period_s)))
+        moving = np.asarray(binary_dilation(moving, iterations=round(REST_S / m.cell_s)))
     everything = replace(p, valid=whole & moving)
     x = everything.design(s.candidates)
     all_rows = everything.fit(x)
-    seen = seen_speeds(m.rate[m.pick][everything.train], result.declared)
+    seen = seen_speeds(m.speed[m.rows][everything.train], result.declared)
     used = x[everything.train]
     numbers, calibrated = calibrated_numbers(torque, all_rows, used, result.scale_error)
     known = set(numbers) >= NEEDED and numbers["coulomb"].value > 0
@@ -96,7 +96,7 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
     if result.electrical is not None:  # volts have shown it, or have not
         candidates = [c for c in candidates if c.name != OFFSET.name]
     whole = p.valid.copy()
-    moving = whole & (np.abs(m.rate[m.pick]) > CREEP)
+    moving = whole & (np.abs(m.speed[m.rows]) > CREEP)
     if (moving & p.train).sum() > LEAST_MOVING and (moving & p.test).sum() > FEWEST_MOVING:
         p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
     else:

@@ -81,7 +81,7 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
         return constant * frame.scale["gear_ratio"], weakened([], clock)
     p, w = b.problem, b.windings
     declared = {"resistance": w.resistance, "torque_constant": w.constant}
-    pair = Pair(frame=frame, motion=m, motor=np.repeat([0.0, 1.0], len(m.pick)))
+    pair = Pair(motion=m, motor=np.repeat([0.0, 1.0], len(m.rows)))
     scene = scene_of_balance(pair, p, p.fit().residual, declared)
     scene.windings = w
     s = result.selections["E"] = select(p, offered(scene), result.rng, around=True)

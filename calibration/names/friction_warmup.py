@@ -21,7 +21,7 @@ def columns(s: Scene) -> list[Candidate]:
     """
     known = s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0
     # all files of a rig are one session
-    session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.frame.session
+    session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.motion.frame.session
     clocks = [("time_constant", since_first(s.view.clock, session))]
     clocks += [("time_constant_in_run", x) for start, x in s.clocks.items() if start != "start"]
     out = [

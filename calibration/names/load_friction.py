@@ -11,7 +11,7 @@ def columns(s: Scene) -> list[Candidate]:
     """The load against the motion: from the motion, not from the response, whose noise it would share."""
     if s.pair is not None:  # through both trains, which pull against each other
         both, m = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging), s.pair.motion
-        load = np.interp(np.arange(len(m.theta)), m.pick, both)
+        load = np.interp(np.arange(len(m.x)), m.rows, both)
     elif lacks(s) or not s.both:
         return []
     else:  # what accelerations and gravity need

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from calibration.arrays import Array
-from calibration.balances.frame import Frame
 from calibration.balances.friction import Sliding
 from calibration.balances.motion import Motion
 from calibration.inputs.train import Train
@@ -13,7 +12,7 @@ from calibration.inputs.train import Train
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """The log on one grid, what moved, and of stacked rows the motor (n_fitted,), 0 for A and 1 for B.
+    """What moved, and of stacked rows the motor (n_fitted,), 0 for A and 1 for B.
 
     In the balance of torques also the friction along the motion, and either motor, A first. Torques are
     signed, in N m at the axis, and angles in turns, on the fitted rows. `lagging` is the torque of the one
@@ -21,7 +20,6 @@ class Pair:
     itself. `softness_s2`: a rotor's inertia over its train's stiffness.
     """
 
-    frame: Frame
     motion: Motion
     motor: Array | None = None
     sliding: Sliding | None = None
@@ -34,4 +32,4 @@ class Pair:
     @property
     def train(self) -> Train:
         """The declared gear train."""
-        return self.frame.train
+        return self.motion.frame.train

@@ -97,7 +97,7 @@ def _sided(s: Scene) -> dict[str, Any]:
 def _of_the_coupling(s: Scene) -> list[Candidate]:
     """A gap in the coupling of an axis' absolute encoder: its reading stands while the axis crosses it."""
     assert s.pair is not None
-    p, rows = s.problem, s.pair.motion.pick
+    p, rows = s.problem, s.pair.motion.rows
     # arcsec, where the axis is by both motors, less the wind-up that the base takes up
     apart = p.y - p.base[:, p.place("compliance")] * s.declared["compliance"]
     moved = s.view.x[rows] / ARCSEC + apart.reshape(2, -1).mean(axis=0)

@@ -52,8 +52,8 @@ def _lost(s: Scene) -> list[Candidate]:
     if roller is None:
         return []
     row_s = s.view.period_s
-    rate, acceleration = rate_of(m.theta, 1, row_s), acceleration_of(m.theta, 1, row_s)
-    beyond = np.abs(m.acceleration[m.pick])
+    rate, acceleration = rate_of(m.x, 1, row_s), acceleration_of(m.x, 1, row_s)
+    beyond = np.abs(m.acceleration[m.rows])
     limits = [x for x in LIMITS if BEYOND[0] < np.mean(beyond > x) < BEYOND[1]]
     forms = {"slip": _share, "creep": _excess}
 

@@ -108,7 +108,7 @@ class Scene:
         # error of that encoder, too
         late = self.declared["velocity_delay"] * bent
         late += self.declared["window_curvature"] * np.gradient(bent, step_s, axis=0)
-        return np.asarray((rate_of(full, m.width, step_s) + late)[m.pick])
+        return np.asarray((rate_of(full, m.width, step_s) + late)[m.rows])
 
     @cached_property
     def sliding(self) -> Sliding:

@@ -42,8 +42,8 @@ def columns(s: Scene) -> list[Candidate]:
     v = s.view
     if s.pair is not None:
         m = s.pair.motion  # where it is not sound (a gap, the seam between two runs) nothing excites a mode
-        a, lowest = np.where(m.trusted, m.acceleration, 0.0), 0.3
-        modes = [(f, z) for f in AXIS_HZ if f < SEEN / m.period_s for z in AXIS_DAMPINGS]
+        a, lowest = np.where(m.ok, m.acceleration, 0.0), 0.3
+        modes = [(f, z) for f in AXIS_HZ if f < SEEN / m.cell_s for z in AXIS_DAMPINGS]
     elif lacks(s):
         return []
     else:

@@ -202,7 +202,7 @@ def _torques(s: Scene) -> list[Candidate]:
     """Of an axis with two motors: smooth functions of the speed, loops over the travel."""
     assert s.pair is not None
     x, speed = s.view.x[s.view.rows], s.view.speed[s.view.rows]
-    session = s.pair.frame.session[s.view.rows]
+    session = s.pair.motion.frame.session[s.view.rows]
     w = speed / (float(np.quantile(np.abs(speed), 0.95)) or 1.0)
     knots = spline_columns(np.sign(speed) * np.log1p(np.abs(speed) / SLOW_RATE), SPEED_KNOTS)
     loops = np.column_stack([stop_operator(x, session, r) / r for r in LOOPS])

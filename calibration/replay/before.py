@@ -29,7 +29,7 @@ def before_numbers(
         numbers = fitted_numbers(result.torque, t.before, LARGEST_STEP)
         found |= {name: one.value for name, one in numbers.items()}
         # its correction moves too far
-        found["sigma_0"] = found["coulomb"] * result.torque.friction.start["sigma_0"]
+        found["sigma_0"] = found["coulomb"] * result.torque.friction.law.numbers["sigma_0"]
     if e is not None and e.chosen:
         loop = e.problem.named(e.before)
         found |= {name: loop[name].value for name in ("resistance", "torque_constant")}

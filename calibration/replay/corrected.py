@@ -73,7 +73,7 @@ def facts_of(result: AxisResult, calibrated: dict[str, Parameter], model: PlantM
     """What the plant file's terms need beside the findings."""
     axis = result.frame.runs[0].header["axis"]
     part = getattr(model.axes, axis)
-    theta = result.motion.theta[result.motion.pick]
+    theta = result.motion.x[result.motion.rows]
     loop = calibrated.get("resistance")
     resistance = loop.value if loop is not None else part.motor.loop
     return Facts(
@@ -81,7 +81,7 @@ def facts_of(result: AxisResult, calibrated: dict[str, Parameter], model: PlantM
         axis,
         middle=float(theta.mean()),
         span=float(np.ptp(theta)),
-        duration_s=float(np.ptp(result.frame.t[result.motion.pick])) or 1.0,
+        duration_s=float(np.ptp(result.frame.t[result.motion.rows])) or 1.0,
         half_play=0.5 * part.gear.backlash.si * RATIO,
         resistance=resistance,
         winding=max(resistance - part.motor.loop + part.motor.resistance.si, 0.1),

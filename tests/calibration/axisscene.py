@@ -28,5 +28,5 @@ def stacked(problem: Problem, position: Array, declared: dict[str, float]) -> Sc
         scale={},
         rig=telescope("ra"),
     )
-    pair = Pair(frame=frame, motion=motion_of(frame, 1), motor=np.repeat([0.0, 1.0], n))
+    pair = Pair(motion=motion_of(frame, 1), motor=np.repeat([0.0, 1.0], n))
     return scene_of_balance(pair, problem, np.zeros(2 * n), declared)

@@ -1,17 +1,11 @@
 """A line within the cell of a stage's order: the stage's own, or a bearing's next to it."""
 
-from types import SimpleNamespace
-from typing import Any, cast
-
 import numpy as np
 import pytest
 
 from calibration.balances.problem import Problem
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
-from calibration.inputs.rigfile import telescope
-from calibration.inputs.train import train_of
-from calibration.look.scene import view_of_pair
 from calibration.names import NAMES
 from calibration.names.pair import Pair
 from calibration.names.scene import Scene
@@ -28,13 +22,13 @@ def said(order: float) -> Selection:
     rng = np.random.default_rng(5)
     t = DT * np.arange(ROWS)
     turns = TRAVEL / 2 * (1 - np.cos(2 * np.pi * t / 60.0))  # there and back, three times
-    m, train = moved(2 * np.pi * turns), train_of(telescope("ra"))
+    m = moved(2 * np.pi * turns)
     run, session = np.repeat(np.arange(4), ROWS // 4), np.zeros(ROWS, dtype=np.int64)
     made = m.at(AMPLITUDE * np.cos(2 * np.pi * order * turns + 0.7))
-    y = made + NOISE * rng.standard_normal(len(m.pick))
-    base = np.column_stack([np.ones(len(y)), m.rate[m.pick]])
+    y = made + NOISE * rng.standard_normal(len(m.rows))
+    base = np.column_stack([np.ones(len(y)), m.speed[m.rows]])
     labels = [("offset", "N m"), ("viscous", "N m s/rad")]
-    at = run[m.pick]
+    at = run[m.rows]
     valid = np.ones(len(y), dtype=bool)
     problem = Problem(
         channel="T",
@@ -42,18 +36,14 @@ def said(order: float) -> Selection:
         y=y,
         base=base,
         base_labels=labels,
-        t=t[m.pick],
+        t=t[m.rows],
         run=at,
-        session=session[m.pick],
+        session=session[m.rows],
         valid=valid,
         held=at == 3,
-        period_s=m.period_s,
+        period_s=m.cell_s,
     )
-    log = SimpleNamespace(rig=telescope("ra"), train=train, t=t, one_clock=t, run=session, period_s=DT)
-    frame = cast(Any, log)
-    pair = cast(Pair, SimpleNamespace(motion=m, train=train))
-    view = view_of_pair(frame, m)
-    scene = Scene(view, problem, {}, y, np.zeros((len(y), 0)), pair=pair)
+    scene = Scene(m, problem, {}, y, np.zeros((len(y), 0)), pair=Pair(motion=m))
     lines = [c for name in ("gear_eccentricity", "gear_mesh") for c in NAMES[name].columns(scene)]
     return select(problem, lines, rng)
 

@@ -15,7 +15,6 @@ from calibration.decide.select import select
 from calibration.finding import Curve, Finding, Parameter
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.declaredplant import declared_model, declared_numbers
-from calibration.look.scene import view_of_pair
 from calibration.names import NAMES as FOUND
 from calibration.names.inplant import Facts, as_found
 from calibration.names.position_friction import nearest_place
@@ -255,10 +254,9 @@ def test_a_smooth_torque_over_the_angle_comes_back_as_an_unknown_within_its_unce
     drive = Transmission(
         per_ampere=0.39 * RATIO, left={"a": whole, "b": whole}, softness_s2=0.0, stiffness=3e6
     )
-    t = torque_problem(frame, drive, frame.run == 3, declared_numbers(runs, None))
+    view = motion_of(frame, WIDTH)
+    t = torque_problem(view, drive, frame.run == 3, declared_numbers(runs, None))
     assert t is not None
-    motion = motion_of(frame, WIDTH)
-    view = view_of_pair(frame, motion)
     columns = spline_columns(view.x[view.rows], 16)
     labels = tuple((f"knot_{k}", "N m") for k in range(columns.shape[1]))
     s = select(t.problem, [Candidate("unknown", "axis_angle", columns, labels)], np.random.default_rng(0))

@@ -63,6 +63,6 @@ def test_rows_are_fitted_again_once_the_bristles_hold_nothing_of_the_unseen_path
         columns=columns, scale={}, rig=telescope("ra"),
     )  # fmt: skip
     m = motion_of(frame, 3)
-    assert not m.trusted[197:303].any() and m.trusted[320:900].all() and m.fresh.sum() == 1
+    assert not m.ok[197:303].any() and m.ok[320:900].all() and m.fresh.sum() == 1
     settled = slid(m, unseen, 5e-5)
     assert settled[:199].all() and not settled[200:348].any() and settled[352:].all()

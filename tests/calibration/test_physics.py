@@ -86,7 +86,7 @@ def test_after_a_reversal_the_old_level_is_still_held_and_fades_over_the_bristle
     out = np.concatenate([np.linspace(0, 0.01, 3000), np.linspace(0.01, 0.0, 3000)])
     m = moved(out)
     answer = m.at(sliding(path_of(m)).answer(np.ones(len(out))))
-    turn = np.argmin(np.abs(m.pick - 3000))
+    turn = np.argmin(np.abs(m.rows - 3000))
     assert answer[turn - 50] == pytest.approx(1.0, abs=0.02)
     assert answer[turn + 1] > 0.3  # still the old side
     assert answer[turn + 200] == pytest.approx(-1.0, abs=0.02)
@@ -101,15 +101,15 @@ def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width:
     true = np.cumsum(rate) * DT
     frame = logged(true + amplitude * ARCSEC * np.sin(LINES * true + 0.4))
     m, axis = motion_of(frame, width), moved(true, width)
-    row = m.pick
+    row = m.rows
 
     def base(of: Motion) -> np.ndarray:
         return np.column_stack([of.acceleration[row], np.gradient(of.acceleration, DT)[row]]) / ARCSEC
 
     lags = {"velocity_delay": -2.5e-3, "window_curvature": 8e-5}  # s, s2
-    counted = axis.rate[row] / ARCSEC + base(axis) @ np.array(list(lags.values()))
-    run, valid = np.zeros(len(row), dtype=np.int64), m.trusted[row]
-    y = counted - m.rate[row] / ARCSEC
+    counted = axis.speed[row] / ARCSEC + base(axis) @ np.array(list(lags.values()))
+    run, valid = np.zeros(len(row), dtype=np.int64), m.ok[row]
+    y = counted - m.speed[row] / ARCSEC
     problem = Problem(
         channel="S",
         unit="arcsec/s",
@@ -121,10 +121,10 @@ def test_an_interpolation_error_keeps_its_size_though_the_lags_see_it_too(width:
         session=run,
         valid=valid,
         held=~valid,
-        period_s=m.period_s,
+        period_s=m.cell_s,
         ar_order=0,
     )
-    scene = scene_of_balance(Pair(frame=frame, motion=m), problem, y, lags)
+    scene = scene_of_balance(Pair(motion=m), problem, y, lags)
     (one,) = NAMES["encoder_subdivision"].columns(scene)
     beta = gls(y, np.hstack([problem.base, one.columns]), valid, 0).beta
     assert np.hypot(*beta[2:4]) == pytest.approx(amplitude, rel=0.03)

@@ -59,13 +59,13 @@ def logged(position: np.ndarray) -> Frame:
 
 def test_terms_of_two_motors_stand_one_after_the_other_on_the_motions_grid() -> None:
     m = motion_of(logged(np.linspace(0.0, 1.0, 3000)), 3)
-    rows = len(m.pick)
+    rows = len(m.rows)
     both, held = np.ones(2 * rows), np.arange(3000) > 2000
     terms = [("scale", "V", both), ("offset", "V", np.zeros((2 * rows, 2)))]
     p = m.problem(held, terms, channel="E", unit="V", y=both, valid=both > 0)
     assert p.base_labels == [("scale", "V"), ("offset", "V"), ("offset", "V")]
-    assert p.t.tolist() == [*m.frame.t[m.pick], *m.frame.t[m.pick]]
-    assert p.held.sum() == 2 * held[m.pick].sum() and p.period_s == pytest.approx(3 * PERIOD_S)
+    assert p.t.tolist() == [*m.frame.t[m.rows], *m.frame.t[m.rows]]
+    assert p.held.sum() == 2 * held[m.rows].sum() and p.period_s == pytest.approx(3 * PERIOD_S)
     p.add(("slope", "V/s", p.t))
     assert p.base.shape == (2 * rows, 4) and p.place("slope") == 3
     numbers, residual = p.plain_fit(p.train)
@@ -87,6 +87,6 @@ def test_rows_beside_a_marked_one_are_not_clear() -> None:
     m = motion_of(logged(np.linspace(0.0, 1.0, 300)), 3)
     marked, none = np.zeros(300, dtype=bool), np.zeros(300, dtype=bool)
     marked[100] = True
-    assert m.pick[~m.clear(marked, none)].tolist() == [100]
+    assert m.rows[~m.clear(marked, none)].tolist() == [100]
     marked[101] = True
-    assert m.pick[~m.clear(marked)].tolist() == [100, 103]
+    assert m.rows[~m.clear(marked)].tolist() == [100, 103]

@@ -1,16 +1,13 @@
 """Columns of lines: of a stage in an axis' encoders, of an order that moves."""
 
-from types import SimpleNamespace
-from typing import Any, cast
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from calibration.balances.problem import Problem
 from calibration.inputs.declaration import Response
-from calibration.inputs.rigfile import telescope
-from calibration.inputs.train import SHAFT, train_of
-from calibration.look.scene import view_of_pair
+from calibration.inputs.train import SHAFT
 from calibration.names.lines import cell, movable, stage_lines
 from calibration.names.pair import Pair
 from calibration.names.scene import Scene
@@ -25,9 +22,9 @@ def scene(channel: str) -> Scene:
     """Of an axis that goes there and back; K: motor A's rows before motor B's."""
     t = DT * np.arange(ROWS)
     turns = TRAVEL / 2 * (1 - np.cos(2 * np.pi * t / 60.0))
-    m, train = moved(2 * np.pi * turns), train_of(telescope("ra"))
+    m = moved(2 * np.pi * turns)
     stacked = 2 if channel == "K" else 1
-    at = np.tile(m.pick, stacked)
+    at = np.tile(m.rows, stacked)
     one = np.zeros(len(at))
     problem = Problem(
         channel=channel,
@@ -40,17 +37,12 @@ def scene(channel: str) -> Scene:
         session=one.astype(np.int64),
         valid=one == 0,
         held=one > 0,
-        period_s=m.period_s,
+        period_s=m.cell_s,
     )
-    run = np.zeros(ROWS, dtype=int)
-    log = SimpleNamespace(rig=telescope("ra"), train=train, t=t, one_clock=t, run=run, period_s=DT)
-    frame = cast(Any, log)
-    view = view_of_pair(frame, m)
-    view.rows = at
-    if channel == "K":
-        view.response = Response("motor", "arcsec")
-    motor = np.repeat([0.0, 1.0], len(m.pick)) if channel == "K" else None
-    pair = cast(Pair, SimpleNamespace(motion=m, train=train, motor=motor))
+    response = Response("motor", "arcsec") if channel == "K" else m.response
+    view = replace(m, rows=at, response=response)
+    motor = np.repeat([0.0, 1.0], len(m.rows)) if channel == "K" else None
+    pair = Pair(motion=m, motor=motor)
     return Scene(view, problem, {}, one, np.zeros((len(one), 0)), pair=pair)
 
 
