@@ -176,9 +176,8 @@ def of_one_place(findings: list[Finding], left: Left | None) -> list[Finding]:
         if f.name not in NAMES or not NAMES[f.name].a_guess or not (smooth or own):
             out.append(f)
             continue
-        kept = {k: p for k, p in f.parameters.items() if NAMES[UNKNOWN].knows(k)}
         alike = [f.name, *(x for x in f.equivalent if x != UNKNOWN)]
-        one = replace(f, name=UNKNOWN, harmonic=None, order=None, equivalent=alike, parameters=kept)
+        one = replace(f, name=UNKNOWN, harmonic=None, order=None, equivalent=alike)
         if not any(x.name == UNKNOWN and x.stage == f.stage and x.equivalent == alike for x in out):
             out.append(one.noted("the place has more of it than this form"))
     return out

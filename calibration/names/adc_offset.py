@@ -35,11 +35,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="adc_offset",
-    observed={
-        "offset_torque": "N m that the difference of the columns of both currents is worth",
-        "offset_a": "of the column of motor A's current",
-        "offset_b": "of the column of motor B's current",
-    },
     channels=(FORCE, VOLTS),
     columns=columns,
     experiment="read the current with the bridge switched off",

@@ -59,7 +59,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="cable_wrap",
-    observed={"neutral_torque": "at the mean of the position column"},
     columns=columns,
     to_plant=to_plant,
     experiment="a full turn both ways: a cable pulls back more the further it is wound, a weight comes "

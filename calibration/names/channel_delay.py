@@ -63,7 +63,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="channel_delay",
-    observed={"ratio": "of the response's column over the position's"},
     channels=(FORCE, SENSORS),
     columns=columns,
     experiment="one quick step, and compare the columns row by row",

@@ -6,6 +6,5 @@ NAME = Name(
     name="coulomb_change",
     columns=lambda s: beside_stated(s, "coulomb", s.view.direction, s.unit),
     experiment="slow motion in both directions",
-    observed={"coulomb_change": "from the rig file's constant"},
     changed=Changed(numbers={"coulomb": "factor"}, written="friction.coulomb", seen="sliding"),
 )

@@ -66,7 +66,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="friction_warmup",
-    observed={"of_coulomb": "1 where the response's column shows it in what knows no speed"},
     columns=columns,
     relative={"depth": ("coulomb", 1)},
     to_plant=to_plant,

@@ -43,7 +43,6 @@ def twist(made: Made, facts: Facts, stage: str, harmonic: int, arcsec: float, ph
 
 NAME = Name(
     name=SHAFT,
-    observed={"order": "along the position column, where no gear table is given"},
     channels=(FORCE, SENSORS, SPEED),
     columns=lambda s: stage_lines(s, SHAFT, default=s.force),  # of every stage without another kind
     experiment="a second speed: a gear keeps its angle, a resonance its frequency, more travel splits "

@@ -7,7 +7,6 @@ from calibration.names.name import FORCE, SENSORS, SPEED, Beside, Name
 
 NAME = Name(
     name=MESH,
-    observed={"kinematic": "twist of a train between the columns of two encoders"},
     channels=(FORCE, SENSORS, SPEED),
     columns=lambda s: stage_lines(s, MESH),
     experiment="a second speed, and travel enough to split it from the neighbouring order",

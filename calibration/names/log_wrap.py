@@ -147,10 +147,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 NAME = Name(
     to_plant=to_plant,
     name="log_wrap",
-    observed={
-        "count": "rows of the column",
-        "length": "of the column's counter",
-    },
     experiment="read the counter at its full length",
     repairs=("wrap", "signed", "saturation"),
     beside=Beside(consequences={"S": (*OF_SENSORS, *OF_FORCES, *OF_SHAPES)}),

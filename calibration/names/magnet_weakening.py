@@ -54,10 +54,6 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 NAME = Name(
     name="magnet_weakening",
-    observed={
-        "start": "on the log's clock",
-        "duration": "on the log's clock",
-    },
     channels=(FORCE, VOLTS),
     columns=columns,
     experiment="turn the motor by hand or by another one at a known speed and read the volts of its "

@@ -2,16 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from fnmatch import fnmatch
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.frame import Frame
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate, grid, tried
-from calibration.names.inplant import IN_RUN, Facts, Made, as_found, value
+from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene
-from plant.effects import REGISTRY
 
 __all__ = ["FORCE", "FULL_RATES", "MOTOR", "OF_CLOCKS", "RATES", "SENSORS", "SPEED", "VOLTS", "Array"]
 __all__ += ["Beside", "Candidate", "Changed", "Facts", "Finding", "Made", "Name", "Scene", "as_found"]
@@ -100,11 +98,9 @@ class Name:
     searched: its lines are looked for in what is left by what was found, and again under that. scaled: they
     are no plain sine of an order of their own over the position. waves_of_friction: they are friction's over
     the place. a_guess: of a function of the place it is the simplest form. random: its course is another one
-    in every run. worth: share of the final held-out mean square that leaving it out must add. observed:
-    parameters that no plant file has, and what each is. It is a property of the log, of one of its columns,
-    or of a drive that a rig file describes. `*` stands for any end. loop: parameters that are the width of a
-    loop after every reversal. changed: the declared numbers that it is a change of,
-    where it is no more. beside: how it stands to others.
+    in every run. worth: share of the final held-out mean square that leaving it out must add. loop:
+    parameters that are the width of a loop after every reversal. changed: the declared numbers that it is a
+    change of, where it is no more. beside: how it stands to others.
     """
 
     name: str
@@ -126,22 +122,9 @@ class Name:
     a_guess: bool = False
     random: bool = False
     worth: float = WORTH
-    observed: Mapping[str, str] = field(default_factory=dict)
     loop: tuple[str, ...] = ()
     changed: Changed | None = None
     beside: Beside = field(default_factory=Beside)
-
-    def knows(self, parameter: str) -> bool:
-        """Whether a report may print it: the plant's effect has it, or `observed` says what it is.
-
-        It may too where the name changes a number of the plant file. A harmonic ends in its number. A time
-        from the start of every run ends in IN_RUN.
-        """
-        known = parameter.removesuffix(IN_RUN)
-        plain = known.rstrip("0123456789").removesuffix("_")
-        plants = {p.name for p in REGISTRY[self.name].parameters}
-        written = set(self.changed.numbers.values()) if self.changed is not None else set()
-        return plain in plants | written or any(fnmatch(known, pattern) for pattern in self.observed)
 
     def retold(self, f: Finding, quotients: Mapping[str, float]) -> Finding:
         """`f` of the coefficients as they are now; `quotients` (before over now) by their names."""

@@ -123,10 +123,6 @@ def travel_of(c: Candidate) -> float | None:
 
 NAME = Name(
     name="play",
-    observed={
-        "missing_force": "of the response's column, within the gap",
-        "travel": "the gap once more, along the position column",
-    },
     channels=(SENSORS, FORCE),
     columns=columns,
     experiment="a slow reversal under load, or lock the output and step the torque: play is a step, "

@@ -79,7 +79,6 @@ def nearest_place(order: float) -> tuple[str, int]:
 
 NAME = Name(
     name="position_friction",
-    observed={"order": "along the position column"},
     scaled=True,
     columns=columns,
     to_plant=to_plant,

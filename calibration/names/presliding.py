@@ -53,12 +53,6 @@ def columns(s: Scene) -> list[Candidate]:
 
 NAME = Name(
     name="presliding",
-    observed={
-        "loop_force": "height of the loop in the response's column",
-        "second_loop_force": "likewise of its second element",
-        "breakaway_travel": "along the position column, until an element slides",
-        "bristle_travel": "of a rig file's friction_law",
-    },
     columns=columns,
     experiment="a sine smaller than break-away",
     lacks=both_ways,

@@ -93,10 +93,6 @@ def _excess(rate: Array, acceleration: Array, limit: float, chatter: float) -> A
 
 NAME = Name(
     name="roller_slip",
-    observed={
-        "step": "of the response's column",
-        "time": "of the step, on the file's clock",
-    },
     channels=(SENSORS, RATES),
     columns=columns,
     experiment="out and back with gentle and hard acceleration",

@@ -81,7 +81,6 @@ def _goes_on(p: Array, at: int, rows: int) -> bool:
 
 NAME = Name(
     name="sample_loss",
-    observed={"count": "rows of the log, or of the column"},
     experiment="record at half the rate, or over a shorter cable: a transport loses fewer rows then",
     stamps=stamps,
     repairs=("spike", "repeat", "lost"),

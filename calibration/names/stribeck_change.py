@@ -43,10 +43,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="stribeck_change",
-    observed={
-        "stribeck_force": "stiction less Coulomb's friction, in the response's column",
-        "stribeck_speed": "of a rig file's friction_law",
-    },
     columns=columns,
     experiment="slow ramps on both sides of the Stribeck speed",
     lacks=lacks,

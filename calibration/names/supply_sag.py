@@ -43,7 +43,6 @@ def lacks(s: Scene) -> str:
 
 NAME = Name(
     name="supply_sag",
-    observed={"share": "part of the supply column's deviation that the effort follows"},
     channels=(FORCE, VOLTS),
     columns=columns,
     experiment="record the supply voltage and divide by it, or feed the drive from a steady supply",

@@ -5,16 +5,13 @@ from typing import Any
 import pytest
 
 from calibration import command
-from calibration.names import NAMES
+from tests.calibration.reported import knows
 
 
 def strange(report: dict[str, Any]) -> list[str]:
-    """Parameters that neither the plant's effect nor the name's own file knows."""
+    """Parameters that neither the plant's effect nor the page on reports knows."""
     return [
-        f"{e['name']}: {p}"
-        for e in report["effects"]
-        for p in e["parameters"]
-        if not NAMES[e["name"]].knows(p)
+        f"{e['name']}: {p}" for e in report["effects"] for p in e["parameters"] if not knows(e["name"], p)
     ]
 
 

@@ -1,4 +1,4 @@
-"""Every parameter of a report is the plant's, or its name's file says which property of a log it is."""
+"""Every parameter of a report is the plant's, or the page on reports says which property of a log it is."""
 
 import ast
 import importlib
@@ -9,8 +9,8 @@ import pytest
 
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
-from calibration.names.name import Name
 from plant.effects import REGISTRY
+from tests.calibration.reported import knows, listed
 
 ROOM = Path(__file__).parents[3] / "calibration"
 MAKERS = {"candidate", "grid", "steps", "tried", "_over", "line"}
@@ -61,9 +61,9 @@ def printed(path: Path) -> Iterator[str]:
                 yield from words(key, module) if name in SIZES and key is not None else ()
 
 
-def known(n: Name, parameter: str) -> bool:
+def known(name: str, parameter: str) -> bool:
     """Whether a report of this name may print it, or no report prints it."""
-    return n.knows(parameter) or parameter in n.nuisances
+    return knows(name, parameter) or parameter in NAMES[name].nuisances
 
 
 def test_every_parameter_in_the_text_is_known() -> None:
@@ -73,13 +73,13 @@ def test_every_parameter_in_the_text_is_known() -> None:
         mine = MADE.get(at, (path.stem,) if at.startswith("names/") and path.stem in NAMES else ())
         for parameter in printed(path) if mine else ():
             count += 1
-            if not any(known(NAMES[name], parameter) for name in mine):
+            if not any(known(name, parameter) for name in mine):
                 strange.append(f"{at}: {parameter}")
     assert not strange, strange
     assert count > 70  # else the text is written otherwise, and nothing was asked
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_is_observed_is_not_the_plants(name: str) -> None:
+def test_what_the_page_lists_is_not_the_plants(name: str) -> None:
     own = {p.name for p in REGISTRY[name].parameters}
-    assert not own & set(NAMES[name].observed)
+    assert not own & listed()[name]
