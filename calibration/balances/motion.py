@@ -19,7 +19,7 @@ from calibration.balances.frame import Frame
 from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.thresholds import UNTOUCHED
 from calibration.balances.view import View
-from calibration.inputs.declaration import Response, Rig, Stage
+from calibration.inputs.declaration import Column, Response, Rig, Stage
 from calibration.inputs.thresholds import HARMONICS
 from calibration.inputs.train import SHAFT, Train
 
@@ -113,7 +113,8 @@ def _in_radians(rig: Rig, train: Train) -> Rig:
         for name, order in train.orders.items()
         if train.kinds[name] not in ("axis", "sensor")  # a sensor may be on a shaft of its own
     )
-    return replace(rig, stages=stages, runs={"origin": "shared"})
+    columns = rig.columns | {"position": Column("rad")}
+    return replace(rig, columns=columns, stages=stages, runs={"origin": "shared"})
 
 
 def rate_of(x: Array, width: int, period_s: float) -> Array:

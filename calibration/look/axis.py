@@ -6,8 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from calibration.arrays import Array
-from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import LEAST_TRAVEL
 from calibration.decide.controls import controls, tooth_more_or_less
 from calibration.decide.heldout import declared_residual
@@ -32,6 +30,7 @@ from calibration.look.looked import (
     missing_over,
     unnamed_where_missing,
 )
+from calibration.look.said import place_of
 from calibration.names.name import TOLERANCE
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC
@@ -87,7 +86,6 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
 
 def _balance(result: AxisResult, key: str, s: Selection, names: set[str]) -> Balance:
     """What is said of one channel; its controls are tried where an effect that keeps its name was chosen."""
-    torque = key == "T" and result.torque is not None
     theta = result.motion.x[result.motion.rows] / (2 * np.pi)
     numbers: dict[str, Parameter] = {}
     if key == "E":
@@ -103,34 +101,13 @@ def _balance(result: AxisResult, key: str, s: Selection, names: set[str]) -> Bal
         floor=result.floors.get(key),
         numbers=numbers,
         controls=controls(s, tooth_more_or_less(turns, float(np.ptp(theta)))) if tried else (),
-        over=lambda c: _place(result, key, c),
+        over=partial(place_of, result.views[key])
+        if key in result.views
+        else lambda _: (s.problem.t, "time, s"),
         spectrum=Spectrum(turns=theta, stages=result.frame.train.orders, label="cycles per axis turn")
-        if torque
+        if key == "T"
         else None,
     )
-
-
-def _place(result: AxisResult, key: str, c: Candidate) -> tuple[Array, str]:
-    """What an effect of the axis is drawn over; of what the grid of the analysis has not, the time."""
-    p, m = result.selections[key].problem, result.motion
-    if len(p.y) % len(m.rows) == 0 and key != "U":
-        long = partial(np.resize, new_shape=len(p.y))
-        if c.repeats:
-            turns = long(m.x[m.rows]) / (2 * np.pi)
-            return (turns * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
-        if c.domain == "velocity":
-            return long(m.speed[m.rows]) / ARCSEC, "rate, arcsec/s"
-        if c.domain in ("axis_angle", "motor_angle"):
-            return np.degrees(long(m.x[m.rows])), "axis angle, degrees"
-    if key == "T" and result.scene is not None:
-        v = result.scene.view
-        if c.domain == "reversal":
-            return v.since[v.rows], f"travel since reversal, {result.scene.angle_unit}"
-        if c.domain == "temperature":
-            return v.columns["temperature"][v.rows], "temperature, degC"
-        if c.domain == "current":
-            return p.y, f"load, {p.unit}"
-    return p.t, "time, s"
 
 
 def _with_missing(result: AxisResult, b: Balance) -> Balance:

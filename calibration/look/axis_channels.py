@@ -121,14 +121,14 @@ def encoder_channels(result: AxisResult, per_ampere: float) -> None:
     k = result.kinematic = kinematic_problem(frame, m, result.held, per_ampere, numbers.lines)
     if k is not None:
         pair = Pair(motion=m, motor=np.repeat([0.0, 1.0], len(m.rows)))
-        s = result.selections["K"] = select(k.problem, _candidates(pair, k.problem), result.rng)
+        s = result.selections["K"] = select(k.problem, _candidates(result, "K", pair, k.problem), result.rng)
         result.collect(s)
         fitted, stiffness = train_stiffness(s, result.scale_error)
         result.findings += changes(fitted, stiffness, numbers, {"moved"})
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, result.held)
     if roller is not None:
-        s = select(roller, _candidates(Pair(motion=m), roller), result.rng)
+        s = select(roller, _candidates(result, "S", Pair(motion=m), roller), result.rng)
         result.selections["S"] = s
         result.collect(s)
 
@@ -139,7 +139,7 @@ def full_rate(result: AxisResult) -> None:
     full = motion_of(frame, 1)
     problem = roller_problem(frame, full, result.held)
     pair = Pair(motion=full)
-    if problem is not None and (candidates := _candidates(pair, problem)):
+    if problem is not None and (candidates := _candidates(result, "S1", pair, problem)):
         s = select(problem, candidates, result.rng, margin=FINE_MARGIN)
         if s.chosen:
             result.selections["S1"] = s
@@ -149,6 +149,8 @@ def full_rate(result: AxisResult) -> None:
         result.findings.append(line)
 
 
-def _candidates(pair: Pair, p: Problem) -> list[Candidate]:
+def _candidates(result: AxisResult, key: str, pair: Pair, p: Problem) -> list[Candidate]:
     fit = p.fit()
-    return offered(scene_of_balance(pair, p, fit.residual, p.by_name(fit.beta)))
+    scene = scene_of_balance(pair, p, fit.residual, p.by_name(fit.beta))
+    result.views[key] = scene.view
+    return offered(scene)

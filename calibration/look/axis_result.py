@@ -9,6 +9,7 @@ from calibration.balances.frame import Frame
 from calibration.balances.kinematic import Kinematic
 from calibration.balances.motion import Motion
 from calibration.balances.torque import Torque
+from calibration.balances.view import View
 from calibration.balances.volts import Volts
 from calibration.decide.parameters import finding_of
 from calibration.decide.selection import Selection
@@ -16,7 +17,6 @@ from calibration.decide.verdict import ROWS
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
-from calibration.names.scene import Scene
 
 #: row of the report's error table, by channel
 SENSORS = {**ROWS, "U": "command"}
@@ -33,7 +33,7 @@ class AxisResult:
     electrical: Volts | None = None
     kinematic: Kinematic | None = None
     torque: Torque | None = None
-    scene: Scene | None = None  # the names', of the torque
+    views: dict[str, View] = field(default_factory=dict)  # per channel, what the names were looked for in
     selections: dict[str, Selection] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     held_out: list[str] = field(default_factory=list)

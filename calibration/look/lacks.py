@@ -58,14 +58,13 @@ def not_identifiable(result: AxisResult) -> list[str]:
     rate = m.speed[m.rows]
     size, (low, high) = np.abs(rate), (part * vs for part in limits.FALLING)
     slow, quick = np.mean((size > low) & (size < high)), np.mean(size > limits.SLIDING * vs)
-    turning = result.scene.view.since if result.scene is not None else np.zeros(1)
     unsure = {
         "stiction": (dip := slow < limits.FALLING_ROWS or quick < limits.SLIDING_ROWS),
         "stribeck_speed": dip,
         "viscous": _one_speed(rate),
         "friction_asymmetry (one direction only)": _one_way(rate),
         "inertia": np.quantile(np.abs(m.acceleration[m.rows]), 0.99) < limits.LEAST_ACCELERATION,
-        "sigma_0": np.mean(np.abs(turning) < limits.TURNING) < limits.TURNING_ROWS,
+        "sigma_0": np.mean(np.abs(m.since) < limits.TURNING) < limits.TURNING_ROWS,
         "sigma_1": True,
         "torque_constant": e is None or e.constant_error > limits.OPEN_CONSTANT * abs(e.windings.constant),
         "resistance": e is None,

@@ -73,8 +73,9 @@ def moves_with(s: Selection, bounds: list[str]) -> list[str]:
 
 
 def place_of(view: View, c: Candidate) -> tuple[Array, str]:
-    """What an effect of a rig is drawn over."""
-    at, unit = view.rows, view.angle_unit
+    """What an effect is drawn over."""
+    at = view.rows
+    size, unit = (180 / np.pi, "degrees") if view.angle_unit == "rad" else (1.0, view.angle_unit)
     if c.repeats is not None:
         return (view.x[at] / (view.turn or 1.0) * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
     if c.frequency is not None:
@@ -82,9 +83,9 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
     if c.domain == "temperature" and "temperature" in view.columns:
         return view.columns["temperature"][at], "temperature, degC"
     table = {
-        "axis_angle": (view.x, f"position, {unit}"),
-        "velocity": (view.speed, f"speed, {unit}/s"),
-        "reversal": (view.since, f"travel since reversal, {unit}"),
+        **dict.fromkeys(("axis_angle", "motor_angle"), (size * view.x, f"position, {unit}")),
+        "velocity": (size * view.speed, f"speed, {unit}/s"),
+        "reversal": (size * view.since, f"travel since reversal, {unit}"),
     }
     x, label = table.get(c.domain, (view.clock, "time, s"))
     return x[at], label

@@ -89,7 +89,8 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
     m, p = result.motion, torque.problem
     if result.kinematic is not None:
         p.valid &= result.kinematic.engaged
-    scene = result.scene = scene_of_pair(result, torque, p.fit().residual)
+    scene = scene_of_pair(result, torque, p.fit().residual)
+    result.views["T"] = scene.view
     if any(f.name == OFFSET.name for f in result.findings):
         p.add(("offset_torque", "N m", np.ones(len(p.y))))
     candidates = [c for c in offered(scene) if not _of_a_gear(c, result.findings)]

@@ -83,7 +83,7 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
     declared = {"resistance": w.resistance, "torque_constant": w.constant}
     pair = Pair(motion=m, motor=np.repeat([0.0, 1.0], len(m.rows)))
     scene = scene_of_balance(pair, p, p.fit().residual, declared)
-    scene.windings = w
+    scene.windings, result.views["E"] = w, scene.view
     s = result.selections["E"] = select(p, offered(scene), result.rng, around=True)
     mean_currents(frame, p, s.after)
     fit = p.named(s.after)

@@ -68,7 +68,7 @@ class Scene:
     @property
     def angle_unit(self) -> str:
         """Of the position."""
-        return self.view.angle_unit if self.pair is None else "rad"
+        return self.view.angle_unit
 
     @property
     def turn(self) -> float:

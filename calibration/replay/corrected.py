@@ -56,9 +56,9 @@ def correct_and_replay(found: Looked, options: Options) -> Replay:
 def with_curves(found: Looked) -> Looked:
     """With its curve for every `unknown` of an axis' torque that is a function of its domain."""
     result = found.axis if found.header is not None else None
-    if result is None or result.scene is None or "T" not in result.selections:
+    if result is None or "T" not in result.selections:
         return found
-    t, view = result.selections["T"], result.scene.view
+    t, view = result.selections["T"], result.views["T"]
     places = {(c.candidate.name, c.candidate.domain): k for k, c in reversed(list(enumerate(t.chosen)))}
 
     def drawn(f: Finding) -> Finding:
