@@ -77,8 +77,6 @@ LAG_PART = 0.66
 
 # slower is the motion's own. ASSUMPTION
 SLOWEST_LINE_HZ = 0.1
-# share of the sampling rate: next to a half a line is the folding's. ASSUMPTION
-QUICKEST_LINE = 0.49
 # count of spikes, before they are pulses. ASSUMPTION
 FEWEST_SPIKES = 12
 # count of gaps between them likewise. ASSUMPTION

@@ -20,7 +20,7 @@ from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
 from calibration.names.name import TOLERANCE
-from calibration.statistics.regression import Fit
+from calibration.statistics.regression import Fit, inflation
 from plant.effects import REGISTRY
 
 # share of a mechanical number, standard error beyond noise (opened seeds 20261129 to 20261202: 0.0025 held
@@ -54,18 +54,6 @@ UNITS = {**LINEAR, **CURVED, "stiffness": "N m/rad"}
 #: without which no friction is known
 NEEDED = {"viscous", "coulomb", "stiction"}
 CHANGES = {name: n.changed for name, n in NAMES.items() if n.changed is not None}
-
-
-def inflation(x: Array) -> Array:
-    """Variance inflation of every column of x (n, p); infinite for a column of zeros."""
-    size = np.linalg.norm(x, axis=0)
-    z = x / np.where(size > 0, size, 1.0)
-    out = np.full(x.shape[1], np.inf)
-    for k in np.flatnonzero(size > 0):
-        others = np.delete(z, k, axis=1)
-        rest = z[:, k] - others @ np.linalg.lstsq(others, z[:, k], rcond=None)[0]
-        out[k] = 1.0 / max(float(rest @ rest), 1e-12)
-    return out
 
 
 def beyond(one: Estimate, declared: float, factor: float) -> bool:

@@ -11,7 +11,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.effortchange import incremental_law, pulses
 from calibration.balances.law import Command, Law, command_of, declared_terms
 from calibration.balances.problem import Problem
-from calibration.balances.thresholds import QUICKEST_LINE, SLOWEST_LINE_HZ
+from calibration.balances.thresholds import SLOWEST_LINE_HZ
 from calibration.balances.view import View
 from calibration.decide.parameters import findings_of, interval
 from calibration.decide.select import select
@@ -23,8 +23,8 @@ from calibration.names.candidates import tried
 from calibration.names.command_disturbance import NAME as DISTURBANCE
 from calibration.names.command_disturbance import lines
 from calibration.names.lines import ON_CLOCK
-from calibration.names.scene import Scene
-from calibration.statistics.orders import power_of_two
+from calibration.names.scene import Scene, since_first
+from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve
 
 # of a declared gain: less is calibration, as for the axis' declared numbers. ASSUMPTION
@@ -45,8 +45,8 @@ LEAST_LAW = 1.2
 # steps of the effort: a line on the command below the effort's own step is a beat of quantised columns.
 # ASSUMPTION
 LEAST_COMMAND = 0.8
-# cells of the spectrum on either side of a line, that are then left out. ASSUMPTION
-CELLS = 8
+# of a line's resolution cell (1 / span), for its refinement. ASSUMPTION
+STEP_CELLS = 0.5
 
 
 def look_at_law(view: View, balance: Problem) -> Balance | None:
@@ -129,29 +129,20 @@ def changed_below(law: Law) -> list[Candidate]:
 
 def _lines_of_steps(p: Problem) -> list[Candidate]:
     """Row-to-row changes of the strongest sines; every run has a phase, its start is known to a second."""
-    rows, dt = p.train, p.period_s
-    e = p.fit().residual
-    size = power_of_two(int(np.bincount(p.run - p.run.min()).max()))
-    hertz = np.fft.rfftfreq(size, dt)
-    score = np.zeros(len(hertz))
-    for k in np.unique(p.run[rows]):
-        power = np.abs(np.fft.rfft(np.where(rows, e, 0.0)[p.run == k], size)) ** 2
-        score += power / max(float(np.median(power)), 1e-12)
-    score[(hertz < SLOWEST_LINE_HZ) | (hertz > QUICKEST_LINE / dt)] = 0
+    rows, dt, since = p.train, p.period_s, since_first(p.t, p.run)
+    want = Wanted(span=float(since.max()), least=SLOWEST_LINE_HZ, most=ON_CLOCK)
 
     def shape(f: Array) -> Array:
         x, y = (2 * np.pi * float(f[0]) * t for t in (p.t, p.t - dt))
         pair = np.column_stack([np.cos(x) - np.cos(y), np.sin(x) - np.sin(y)])
         return np.hstack([np.where((p.run == k)[:, None], pair, 0.0) for k in np.unique(p.run)])
 
-    form: dict[str, Any] = {"steps": (1.0 / (size * dt),), "searched": 0, "domain": "time"}
-    out, form = [], {**form, "kind": "line", "per_run": True}
-    for _ in range(ON_CLOCK):
-        k = int(np.argmax(score))
-        score[max(k - CELLS, 0) : k + CELLS + 1] = 0
-        f, unit = float(hertz[k]), ("amplitude", p.unit)
-        out.append(tried(DISTURBANCE.name, shape, unit, at={"frequency": (f, "Hz")}, frequency=f, **form))
-    return out
+    form: dict[str, Any] = {"steps": (STEP_CELLS / want.span,), "searched": 0, "domain": "time"}
+    form |= {"kind": "line", "per_run": True}
+    found, size = standing_out(p.fit().residual[rows], since[rows], p.run[rows], want), ("amplitude", p.unit)
+    return [
+        tried(DISTURBANCE.name, shape, size, at={"frequency": (f, "Hz")}, frequency=f, **form) for f in found
+    ]
 
 
 def _forward(view: View, c: Command) -> Candidate:

@@ -14,6 +14,7 @@ from calibration.names import NAMES
 from calibration.names.scene import Scene
 from calibration.names.shaft_compliance import NAME as COMPLIANCE
 from calibration.names.shaft_compliance import WINDS
+from calibration.statistics.regression import inflation
 
 # of a parameter's variance by its neighbours: over five times the error it would have alone. arithmetic
 INFLATION = 30.0
@@ -64,9 +65,8 @@ def moves_with(s: Selection, bounds: list[str]) -> list[str]:
     ]
     at = np.flatnonzero(size > 0)
     z = columns[:, at] / size[at]
-    gram = z.T @ z
-    likeness = np.abs(gram) - np.eye(len(at))
-    for k, v in enumerate(np.diag(np.linalg.pinv(gram, hermitian=True))):
+    likeness = np.abs(z.T @ z) - np.eye(len(at))
+    for k, v in enumerate(inflation(z)):
         if v > INFLATION and at[k] < len(names) and names[at[k]] != SLOW:
             out.append(f"{names[at[k]]} (moves with {names[at[int(np.argmax(likeness[k]))]]})")
     return out

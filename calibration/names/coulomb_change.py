@@ -6,5 +6,5 @@ NAME = Name(
     name="coulomb_change",
     columns=lambda s: beside_stated(s, "coulomb", s.view.direction, s.unit),
     experiment="slow motion in both directions",
-    changed=Changed(numbers={"coulomb": "factor"}, written="friction.coulomb", seen="sliding"),
+    changed=Changed(numbers={"coulomb": "factor"}, seen="sliding"),
 )

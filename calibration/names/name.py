@@ -43,12 +43,11 @@ class Changed:
 
     numbers: number of the drive (an attribute of `Declared`) -> parameter of the finding, the first one being
     its evidence. A parameter of the effect is the quotient with the declared number, another one the number.
-    written: where the plant file holds them. factor: either way, within which a number is as declared. seen:
-    what the speeds must show (`decide.tolerance.seen_speeds`). precise: largest relative standard error.
+    factor: either way, within which a number is as declared. seen: what the speeds must show
+    (`decide.tolerance.seen_speeds`). precise: largest relative standard error.
     """
 
     numbers: Mapping[str, str]
-    written: str
     factor: float = TOLERANCE
     seen: str = "moved"
     precise: Mapping[str, float] = field(default_factory=dict)

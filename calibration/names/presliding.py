@@ -56,11 +56,6 @@ NAME = Name(
     columns=columns,
     experiment="a sine smaller than break-away",
     lacks=both_ways,
-    changed=Changed(
-        numbers={"sigma_0": "stiffness_factor"},
-        written="friction.bristle_stiffness",
-        factor=UNPUBLISHED,
-        precise=PRECISE,
-    ),
+    changed=Changed(numbers={"sigma_0": "stiffness_factor"}, factor=UNPUBLISHED, precise=PRECISE),
     loop=("breakaway_travel", "bristle_travel"),
 )

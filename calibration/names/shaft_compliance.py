@@ -24,7 +24,5 @@ NAME = Name(
     lacks=lambda s: (
         "" if {*WINDS} & {*s.view.columns} else "a column of the effort, the current or the force"
     ),
-    changed=Changed(
-        numbers={"stiffness": "stiffness"}, written="gear.stiffness", precise={"stiffness": PRECISE}
-    ),
+    changed=Changed(numbers={"stiffness": "stiffness"}, precise={"stiffness": PRECISE}),
 )

@@ -48,7 +48,6 @@ NAME = Name(
     lacks=lacks,
     changed=Changed(
         numbers={"stiction": "stiction_factor", "stribeck_speed": "velocity_factor"},
-        written="friction.stiction and friction.stribeck_rate",
         seen="dip",
         precise=PRECISE,
     ),

@@ -6,5 +6,5 @@ NAME = Name(
     name="viscous_change",
     columns=lambda s: beside_stated(s, "viscous", s.view.speed, f"{s.unit} s/{s.angle_unit}"),
     experiment="two speeds that differ by a factor of ten",
-    changed=Changed(numbers={"viscous": "factor"}, written="friction.viscous", seen="spread"),
+    changed=Changed(numbers={"viscous": "factor"}, seen="spread"),
 )

@@ -86,7 +86,8 @@ def convert(f: Finding, facts: Facts) -> Made:
     name = NAMES[f.name]
     if name.changed is None:
         return name.to_plant(f, facts)
-    return Made(remarks=[f"{f.name}: in the plant as axes.{facts.axis}.{name.changed.written}"])
+    written = " and ".join(PATHS[number] for number in name.changed.numbers)
+    return Made(remarks=[f"{f.name}: in the plant as axes.{facts.axis}.{written}"])
 
 
 def correct(

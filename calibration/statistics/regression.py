@@ -58,6 +58,12 @@ def leverage(x: Array, at: Array) -> Array:
     return np.asarray(np.einsum("ij,ij->i", at / scale @ _inverse(z.T @ z), at / scale))
 
 
+def inflation(x: Array) -> Array:
+    """(p,): variance of every coefficient of columns x (n, p) by the others; huge for twins and for zeros."""
+    z, _ = _scaled(x)
+    return np.asarray(np.diag(np.linalg.inv(z.T @ z + SINGULAR * np.eye(x.shape[1]))))
+
+
 def _scaled(x: Array) -> tuple[Array, Array]:
     """Columns of norm 1, and what they were divided by: 1 for a column of zeros."""
     scale = np.sqrt(np.einsum("ij,ij->j", x, x))

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.decide.tolerance import INFLATION, inflation
+from calibration.decide.tolerance import INFLATION
 from calibration.errors import CalibrationInputError
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.tables import read_table
+from calibration.statistics.regression import inflation
 from tests.calibration.logs import tiny_log, write_logs
 from tests.calibration.test_readers import RIG
 
