@@ -4,10 +4,12 @@ whole analysis is made once more on the corrected logs."""
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.arrays import Array
-from calibration.balances.coupling import carried_on, driven_side
+from calibration.balances.context import direction_of
 from calibration.balances.frame import fill
+from calibration.balances.kinematic import APART_ARCSEC
 from calibration.balances.noise import column_noise
 from calibration.balances.thresholds import FEWEST_FOR_A_CUBIC
 from calibration.decide.delays import SOUND, TERM
@@ -36,6 +38,11 @@ RISES = 1.05
 MUCH = 0.5
 # times its error, that another channel's may then rise to (ASSUMPTION)
 AT_MOST = 1.15
+
+# of the reading's noise per row, rms: two rows differ by so much once in 1e8, so it has moved. arithmetic
+MOVED = 8.0
+# within which it must move so far on either side of a row: one row of the analysis grid. ASSUMPTION
+WAIT_ROWS = 3
 
 
 def corrected_runs(result: AxisResult, f: Finding) -> list[Run]:
@@ -79,6 +86,38 @@ def _without_gap(result: AxisResult, gap: float) -> list[Run]:
         unseen = np.isnan(side[rows]).astype(float)
         position = run.columns["position"] + (axis - reading)[rows]
         out.append(replace(run, columns={**run.columns, "position": position, "unseen": unseen}))
+    return out
+
+
+def driven_side(reading: Array, run: NDArray[np.int64], noise: float) -> Array:
+    """1 where the coupling drives `reading` (n,) forwards, -1 backwards, NaN where it may be in its gap.
+
+    A reading behind a gap moves only while a flank drives it, so its last direction says which one. This
+    holds even where motors leave their teeth in open loop. `noise` is the reading's own per row, in its unit.
+    """
+    least = MOVED * noise
+    side = direction_of(reading, run, least)
+    step = np.abs(reading[WAIT_ROWS:] - reading[:-WAIT_ROWS])
+    moved = (step > least) & (side[WAIT_ROWS:] == side[:-WAIT_ROWS]) & (run[WAIT_ROWS:] == run[:-WAIT_ROWS])
+    before = np.concatenate([np.zeros(WAIT_ROWS, dtype=bool), moved])
+    after = np.concatenate([moved, np.zeros(WAIT_ROWS, dtype=bool)])
+    return np.where(before & after, side, np.nan)
+
+
+def carried_on(seen: Array, place: Array, run: NDArray[np.int64]) -> Array:
+    """`seen` (n,) rad, gaps filled along `place` from both ends; straight where a motor left its teeth."""
+    out = seen.copy()
+    for k in np.unique(run):
+        rows = np.flatnonzero(run == k)
+        known = rows[np.isfinite(seen[rows])]
+        if len(known) == 0:
+            out[rows] = place[rows]
+            continue
+        off = seen[known] - place[known]
+        out[rows] = place[rows] + np.interp(rows, known, off)
+        left = np.abs(np.diff(off)) > APART_ARCSEC * ARCSEC
+        for a, b in zip(known[:-1][left], known[1:][left], strict=True):
+            out[a : b + 1] = np.linspace(seen[a], seen[b], b - a + 1)
     return out
 
 

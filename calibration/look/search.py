@@ -14,7 +14,7 @@ from calibration.decide.selection import Selection
 from calibration.decide.thresholds import NOISE_SHARE
 from calibration.decide.twins import one_line
 from calibration.names import NAMES
-from calibration.names.freelines import free_lines
+from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible
 

@@ -8,7 +8,7 @@ import numpy as np
 from calibration.balances.candidate import Candidate, waves
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.candidates import candidate
-from calibration.names.lines import line, over_place
+from calibration.names.lines import line, of_stage
 from calibration.names.scene import Scene
 from calibration.names.unnamed import HARMONICS
 
@@ -39,15 +39,9 @@ def of_volts(s: Scene) -> list[Candidate]:
 
 def _brushes(s: Scene) -> list[Candidate]:
     """A resistance over the declared motor's angle, harmonic by harmonic: a rig's zero may move."""
-    out = []
-    for stage in s.view.rig.stages:
-        if stage.period is None or not stage.of_motor:
-            continue
-        for h in range(1, HARMONICS + 1):
-            rate, more = h / stage.period, {"domain": "motor_angle", "stage": stage.name, "harmonic": h}
-            blank = line(s, UNKNOWN, rate, ("amplitude", "ohm"), **more)
-            out += over_place(s, blank, rate, s.view.columns["current"])
-    return out
+    motors = [replace(g, harmonics=HARMONICS, listed=()) for g in s.view.rig.stages if g.of_motor]
+    blank = line(s, UNKNOWN, 0.0, ("amplitude", "ohm"), domain="motor_angle")
+    return [c for g in motors for c in of_stage(s, g, blank, s.view.columns["current"])]
 
 
 def followed(f: Finding) -> Finding:

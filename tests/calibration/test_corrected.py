@@ -19,7 +19,7 @@ from calibration.names import NAMES as FOUND
 from calibration.names.inplant import Facts, as_found
 from calibration.names.position_friction import nearest_place
 from calibration.names.unknown import spline_columns
-from calibration.replay.curves import curve_of
+from calibration.replay.corrected import curve_of
 from calibration.replay.plantfile import convert, correct
 from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE, CURRENT, MEMORY, MOTOR, MOTOR_ANGLE

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from calibration.balances.coupling import carried_on, driven_side
 from calibration.balances.frame import Frame
 from calibration.balances.motion import motion_of
 from calibration.balances.torque import slid
 from calibration.inputs.rigfile import telescope
+from calibration.look.applied import carried_on, driven_side
 from plant.units import ARCSEC
 
 DT, GAP, NOISE = 0.01, 8.0, 0.0015  # s, arcsec, arcsec

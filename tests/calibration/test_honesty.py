@@ -13,8 +13,8 @@ from calibration.decide.withdraw import against_nature, failed_controls, withdra
 from calibration.finding import Finding, Parameter
 from calibration.look.lacks import motion_lacks
 from calibration.look.looked import Balance
+from calibration.names.bearing_pass import between
 from calibration.names.command_disturbance import _phase
-from calibration.names.freelines import between
 from calibration.names.play import lag_in_gap
 from calibration.statistics.tails import middle
 
