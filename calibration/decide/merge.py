@@ -2,12 +2,9 @@
 
 from dataclasses import replace
 
-from calibration.decide.thresholds import SAME_ORDER_SHARE
 from calibration.finding import UNKNOWN, Finding
-from calibration.inputs.train import Train
 from calibration.names import NAMES
 from calibration.names.name import Beside
-from plant.effects import REGISTRY
 
 # share of the held-out mean square, that the torque's effects explain: what is left is no wind. ASSUMPTION
 EXPLAINED = 0.4
@@ -19,11 +16,9 @@ SUPERFLUOUS = 0.25
 WEAK = 25.0
 
 
-def merge(findings: list[Finding], train: Train | None = None) -> list[Finding]:
-    """Findings of all channels as a list of effects, strongest first; `train` of an axis with two motors."""
-    out = _resolve_gain(findings)
-    out = _resolve_motor(out, train) if train is not None else out
-    out = _without_remainders(_without_traces(_same_key([f for f in out if not _imitates(f, out)])))
+def merge(findings: list[Finding]) -> list[Finding]:
+    """Findings of all channels as a list of effects, strongest first."""
+    out = _without_remainders(_without_traces(_same_key(_resolve_gain(findings))))
     return sorted(out, key=lambda f: -(f.share + min(f.evidence, 1000.0) / 1e5))
 
 
@@ -50,34 +45,6 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
             f = replace(f, equivalent=list(dict.fromkeys([*f.equivalent, *others])))
         out.append(f)
     return out
-
-
-def _resolve_motor(findings: list[Finding], train: Train) -> list[Finding]:
-    """A torque line of the motor that the encoders see too is a twist of its gear: cogging twists nothing."""
-    twists = {(f.name, f.harmonic) for f in findings if f.channel == "K" and f.stage == train.motor}
-    out = []
-    for f in findings:
-        name = _beside(f).twisted
-        of_motor = f.channel == "T" and f.stage == train.motor and (name, f.harmonic) in twists
-        if of_motor and name in f.equivalent:
-            p = f.parameters["amplitude"]  # cogging is told at the motor, a gear's torque at the axis
-            told = replace(p.times(train.ratio), unit="N m")
-            f = replace(f, name=name, equivalent=[], parameters={"amplitude": told})
-        out.append(f)
-    return out
-
-
-def _imitates(f: Finding, findings: list[Finding]) -> bool:
-    """Two teeth of mesh 1 pass in an even harmonic of the motor. Where encoders and torque show that mesh,
-    cogging or ripple of its order is what its shape leaves: they twist nothing."""
-    if f.channel != "T" or REGISTRY[f.name].domain != "motor_angle":
-        return False
-    uneven = [k for k in findings if k.channel == "K" and _beside(k).imitated and _same_order(k, f)]
-    return any(t.channel == "T" and t.name == k.name and _same_order(k, t) for k in uneven for t in findings)
-
-
-def _same_order(one: Finding, other: Finding) -> bool:
-    return bool(one.order and other.order and abs(one.order - other.order) < SAME_ORDER_SHARE * one.order)
 
 
 def _same_key(findings: list[Finding]) -> list[Finding]:

@@ -56,7 +56,7 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
     if reason:
         return Looked.nothing(title, reason, NEED, header)
     result = analyse(runs, rig, options)
-    named = merge(result.findings, result.frame.train)
+    named = merge(result.findings)
     balances = [_balance(result, key, s, {f.name for f in named}) for key, s in result.selections.items()]
     tried = [row for b in balances for row in b.controls]
     effects, withdrawn = withdraw(named, failed_controls(tried), against_nature(result.selections))

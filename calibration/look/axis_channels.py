@@ -46,7 +46,7 @@ def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
     wraps = [w for r in runs for w in (repair_stuck_bit(r), repair_wraps(r)) if w is not None]
     result = _look(runs, rig, options)
     result.findings = [*wraps[:1], *result.findings]
-    named = merge(result.findings, result.frame.train)
+    named = merge(result.findings)
     fault = next((f for f in named if f.name in applied.UNDONE), None)
     if fault is None:
         return result

@@ -3,7 +3,7 @@
 from calibration.inputs.train import MESH
 from calibration.names.gear_eccentricity import to_plant
 from calibration.names.lines import stage_lines
-from calibration.names.name import FORCE, SENSORS, SPEED, Beside, Name
+from calibration.names.name import FORCE, SENSORS, SPEED, Name
 
 NAME = Name(
     name=MESH,
@@ -11,5 +11,4 @@ NAME = Name(
     columns=lambda s: stage_lines(s, MESH),
     experiment="a second speed, and travel enough to split it from the neighbouring order",
     to_plant=to_plant,
-    beside=Beside(imitated=True),
 )

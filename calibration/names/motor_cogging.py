@@ -4,9 +4,8 @@ from math import pi
 
 import numpy as np
 
-from calibration.inputs.train import SHAFT
 from calibration.names.lines import motor_lines, over_motor, stage_lines
-from calibration.names.name import FORCE, SPEED, Beside, Candidate, Name, Scene
+from calibration.names.name import FORCE, SPEED, Candidate, Name, Scene
 from calibration.names.torque_ripple import NAME as RIPPLE
 
 
@@ -30,5 +29,4 @@ NAME = Name(
     # the motors give A cos(x + phase) more; the plant has the sine that the axis gets
     to_plant=lambda f, facts: over_motor(f, facts, "amplitude", -pi / 2),
     experiment="hold the speed and vary the torque: ripple grows, cogging stays",
-    beside=Beside(twisted=SHAFT),
 )

@@ -61,9 +61,7 @@ class Beside:
     others' channel, names that are its traces whatever their size. single: a drive has one, whatever its
     place. leftover: it has no columns and is never more than what is left. settled_by: names of the
     electrical channel that settle it, as it does itself there; without them they are equivalent to it in
-    the torque. of_constant: its size is a share of the torque constant. twisted: what it is where the
-    encoders show its order, too. imitated: torques of the motors at its order are only the rest of its
-    shape where torque and encoders show it. plausible: a finding that is one.
+    the torque. of_constant: its size is a share of the torque constant. plausible: a finding that is one.
     """
 
     consequences: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -72,8 +70,6 @@ class Beside:
     leftover: bool = False
     settled_by: tuple[str, ...] = ()
     of_constant: bool = False
-    twisted: str = ""
-    imitated: bool = False
     plausible: Callable[[Finding], bool] = lambda _: True
 
 

@@ -13,7 +13,6 @@ from calibration.balances.problem import Problem
 from calibration.balances.recursions import lowpass
 from calibration.decide.broadband import BURSTS, kurtosis, unexplained_volts
 from calibration.decide.heldout import Model
-from calibration.decide.merge import merge
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import FrictionLaw
 from calibration.inputs.rigfile import telescope
@@ -26,7 +25,6 @@ from calibration.names.pair import Pair
 from calibration.names.scene import MOTOR, RATES
 from calibration.names.structural_mode import second_mass
 from calibration.statistics.regression import gls
-from plant.gears import ORDERS as STAGES
 from plant.units import ARCSEC
 
 LINES = 32768  # signal periods per turn of the absolute encoder, hardware.md 1.3
@@ -268,32 +266,6 @@ def test_heating_is_told_of_the_cold_resistance() -> None:
     f = NAMES["winding_heating"].retold(found, {"resistance": 1.1, "torque_constant": 1.0})
     told = f.parameters["thermal_resistance"]
     assert (told.value, told.low) == (pytest.approx(2.42), pytest.approx(2.178))
-
-
-def line(channel: str, name: str, **more: object) -> Finding:
-    a = {"amplitude": Parameter(0.01, "N m at the motor", 0.009, 0.011)}
-    place = {"stage": "motor", "harmonic": 2, "order": 2 * STAGES["motor"]}
-    return Finding(name, channel, "motor_angle", parameters=a, share=0.5, **place, **more)  # type: ignore[arg-type]
-
-
-def test_a_motor_line_that_the_encoders_see_is_its_gear_s() -> None:
-    torque = line("T", "motor_cogging", equivalent=["gear_eccentricity"], evidence=100.0)
-    alone = merge([torque], TRAIN)
-    assert [f.name for f in alone] == ["motor_cogging"]
-    seen = merge([torque, line("K", "gear_eccentricity", evidence=100.0)], TRAIN)
-    assert [f.name for f in seen] == ["gear_eccentricity"]
-    assert seen[0].parameters["amplitude"].value == pytest.approx(0.01 * STAGES["motor"])
-
-
-def test_ripple_at_the_order_of_a_mesh_that_the_encoders_see_is_the_mesh_s() -> None:
-    ripple, mesh = line("T", "torque_ripple"), line("T", "gear_mesh")
-    assert {f.name for f in merge([ripple, mesh], TRAIN)} == {"torque_ripple", "gear_mesh"}
-    assert {f.name for f in merge([ripple, mesh, line("K", "gear_mesh")], TRAIN)} == {"gear_mesh"}
-    other = replace(ripple, order=3 * STAGES["motor"], harmonic=3)
-    assert {f.name for f in merge([other, mesh, line("K", "gear_mesh")], TRAIN)} == {
-        "torque_ripple",
-        "gear_mesh",
-    }
 
 
 def test_what_an_axis_shows_between_its_encoders_is_seen_in_their_rates() -> None:
