@@ -72,7 +72,6 @@ def _windings(frame: Frame, m: Motion, effort: Array, spin: Array) -> Windings:
     """Both motors' columns; `spin` (2 n_analysis,) rad/s the way each pulls."""
     logged = frame.get("supply") is not None
     supply = frame.filled("supply")[0] if logged else np.full(len(effort), frame.scale["supply_V"])
-    turns = m.x[m.rows] * frame.scale["gear_ratio"] / (2 * np.pi)
     return Windings(
         at=lambda full: np.concatenate([m.at(x) for x in np.split(full, 2)]),
         current=np.concatenate([frame.filled(f"current_{k}")[0] for k in "ab"]),
@@ -84,7 +83,6 @@ def _windings(frame: Frame, m: Motion, effort: Array, spin: Array) -> Windings:
             share=shares(frame, effort),
             lagging=np.concatenate([side * m.at(effort) < 0 for side in (1.0, -1.0)]).astype(float),
             dragged=np.maximum(-spin, 0.0),
-            turns=np.tile(turns, 2),
         ),
     )
 

@@ -24,13 +24,12 @@ class Counter:
     """What two motors add, motor A's rows before motor B's.
 
     At full rate (2 n,): `share` of the effort that is a duty, 1 where it leads. Fitted (2 n_analysis,):
-    `lagging` 1 with the counter torque, `dragged` rad/s against its pull, the motor's `turns`.
+    `lagging` 1 with the counter torque, `dragged` rad/s against its pull.
     """
 
     share: Array
     lagging: Array
     dragged: Array
-    turns: Array
 
 
 @dataclass(frozen=True, kw_only=True)

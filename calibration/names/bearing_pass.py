@@ -85,8 +85,6 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
     if f.name != NAME.name or not f.order:
         return f
     f = replace(f, note=f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}")
-    if s.pair is not None:
-        return f
     stage, harmonic = _harmonic_of(f, s)
     quickest = max((s.turn / g.period for g in s.view.rig.stages if g.period), default=0.0)
     if stage is None and has_train(s) and (f.order or 0.0) <= MOST_ROLLERS * quickest:

@@ -19,7 +19,7 @@ FOLLOWS = 2.0
 def of_volts(s: Scene) -> list[Candidate]:
     """Columns of an electrical balance that have no name in the catalogue."""
     w = s.windings
-    if w is None or w.counter is None:
+    if w is None or w.counter is None or s.pair is None:
         return _brushes(s)
     c, (a, b) = w.counter, np.split(w.rate, 2)
     # a lagging motor whose current follows the leading one's lacks that one's back-EMF, times its share
@@ -27,7 +27,7 @@ def of_volts(s: Scene) -> list[Candidate]:
     column, size = w.constant * w.at(c.share) * c.lagging * leading, ("following", "1")
     following = candidate(UNKNOWN, column, size, domain="current", sign=1, most=FOLLOWS)
     # brushes over the angle of either motor, as a resistance and as a voltage
-    turned = waves(2 * np.pi * c.turns, range(1, HARMONICS + 1))
+    turned = waves(s.view.x[s.view.rows] * s.pair.train.ratio, range(1, HARMONICS + 1))
     more: dict[str, Any] = {"domain": "motor_angle", "kind": "line", "stage": "motor", "harmonic": 1}
     brushes = [
         candidate(UNKNOWN, turned * weight[:, None], ("amplitude", unit), fixed=motor, **more)

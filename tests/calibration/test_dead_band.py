@@ -46,7 +46,7 @@ def electrical(lost: float, offset: float, share: float) -> Selection:
         duty=duty, supply=np.full(2 * ROWS, V), resistance=R, constant=K,
         counter=Counter(
             share=np.where(lagging > 0, share, 1.0), lagging=lagging,
-            dragged=np.zeros(2 * ROWS), turns=np.tile(np.cumsum(spin[:ROWS]) * PERIOD_S / (2 * np.pi), 2),
+            dragged=np.zeros(2 * ROWS),
         ),
     )  # fmt: skip
     return select(problem, offered(scene), rng)

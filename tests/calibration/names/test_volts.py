@@ -30,7 +30,7 @@ def scene(motors: int, measured: bool = False) -> Scene:
         held=np.tile(T, 2)[rows] > 15.0, period_s=PERIOD_S,
     )  # fmt: skip
     found = stacked(problem, np.cumsum(SPIN) * 1e-5, {"resistance": R, "torque_constant": K})
-    counter = Counter(share=share, lagging=(share < 1) * 1.0, dragged=0 * spin, turns=np.cumsum(spin))
+    counter = Counter(share=share, lagging=(share < 1) * 1.0, dragged=0 * spin)
     if motors == 1:
         found.pair = None
     none = np.zeros(0)
