@@ -37,13 +37,17 @@ MOST = {True: 1, False: 2}
 @dataclass(frozen=True)
 class Left:
     """Remainder of a balance: `times` the floor, `part` of what was above it before. The domain it is a
-    function of (None: of none that was tried) is in words, with the share of its mean square there."""
+    function of (None: of none that was tried) is in words, with the share of its mean square there.
+
+    effect: so large that it is an effect without a name, or a reason not to say "nothing".
+    """
 
     times: float
     part: float
     domain: str | None = None
     where: str = "in no domain that was tried"
     share: float = 0.0
+    effect: bool = True
 
 
 class Place(NamedTuple):
@@ -116,7 +120,7 @@ def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[s
     most, place, how = _most(shapes, places, lambda z, x: domain_share(z, x, train, test))
     if most < limits.SHOWN:
         return None, 0.0, "in none of " + ", ".join(x.words for x in places)
-    return place.domain, most, f"over {place.words}{how} ({100 * most:.0f} % of its mean square)"
+    return place.domain, most, f"over {place.words}{how}"
 
 
 def _size(e: Array, rows: Mask) -> Array:

@@ -20,7 +20,7 @@ from calibration.decide.withdraw import as_told, of_calibrated, unnamed
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
 from calibration.look.gap import crossed_first, where_known
-from calibration.look.looked import Balance, Options, Spectrum, calibrated, missing_of
+from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, one_filter, sharpest, turned
@@ -138,7 +138,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str], tell: T
         findings=[*([delay] if delay is not None else []), *unnamed(findings, tried)],
         numbers=calibrated(s),
         controls=tried,
-        missing=missing_of(left_over(together, scene, floor), problem.channel, channel),
+        missing=left_over(together, scene, floor),
         not_identifiable=[*moves_with(s, bounds), *bounds],
         needs=[*filter(None, [when.close]), *needs],
         notes=[*notes, *lacking_names(scene, scene.channel)],

@@ -14,7 +14,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.slowoffset import SLOW
 from calibration.decide.accept import SHORT, least_share
 from calibration.decide.parameters import interval
-from calibration.decide.residual import Left, Place, lives_in
+from calibration.decide.residual import Left, Place, lives_in, part_left
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import STILL_MISSING, Earned
 from calibration.decide.withdraw import Refused
@@ -41,26 +41,6 @@ class Options:
     plant: Path | None = None
     replay: bool = True
     tell: Callable[[str], None] = lambda _: None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Missing:
-    """Residual of `row` that is `times` its floor: the domain it lives in, where one shows it, and in words.
-
-    effect: so large that it is an effect without a name, or a reason not to say "nothing".
-    """
-
-    channel: str
-    row: str
-    times: float
-    where: str
-    domain: str | None = None
-    effect: bool = True
-
-    @property
-    def text(self) -> str:
-        """As the report says it."""
-        return f"something is still missing in {self.row}: {self.times:.1f} floors are left, {self.where}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +74,7 @@ class Balance:
     findings: Sequence[Finding] = ()
     numbers: Mapping[str, Parameter] = field(default_factory=dict)
     controls: Sequence[dict[str, Any]] = ()
-    missing: Missing | None = None
+    missing: Left | None = None
     not_identifiable: Sequence[str] = ()
     needs: Sequence[str] = ()
     notes: Sequence[str] = ()
@@ -124,6 +104,14 @@ class Balance:
         """Floors that are left on held-out rows; 0 where they or the floor are not known."""
         floor = self.error["floor"]
         return float(self.selection.held.after / floor) if self.held_out and floor else 0.0
+
+    @property
+    def still(self) -> str:
+        """What is missing, as the report says it; empty where nothing is."""
+        if (m := self.missing) is None:
+            return ""
+        of_it = f" ({100 * m.share:.0f} % of its mean square)" if m.share else ""
+        return f"something is still missing in {self.row}: {m.times:.1f} floors are left, {m.where}{of_it}"
 
     @property
     def short(self) -> list[str]:
@@ -180,42 +168,28 @@ class Looked:
     @property
     def said(self) -> list[str]:
         """What no reader of the verdict should miss."""
-        missing = [b.missing.text for b in self.balances if b.missing is not None]
+        missing = [b.still for b in self.balances if b.missing is not None]
         return [*self.remarks, *(x for b in self.balances for x in b.remarks), *missing]
 
 
-def missing_over(b: Balance, places: Sequence[Place], stacked: int = 1) -> Missing | None:
+def missing_over(b: Balance, places: Sequence[Place], stacked: int = 1) -> Left | None:
     """A residual beyond STILL_MISSING floors, over one of `places`, of `stacked` things on end."""
-    if b.times <= STILL_MISSING:
+    if b.times <= STILL_MISSING or b.floor is None:
         return None
     nowhere = (None, 0.0, "not looked for")
     domain, share, where = lives_in(b.selection, places, stacked) if places else nowhere
-    return Missing(
-        channel=b.key,
-        row=b.row or "",
-        times=b.times,
-        where=where,
-        domain=domain,
-        effect=b.times > EFFECT or share > MOST,
-    )
-
-
-def missing_of(left: Left | None, key: str, row: str) -> Missing | None:
-    """What is left of a rig's balance; where it has a domain it is named already."""
-    if left is None:
-        return None
-    where = f"{left.where} ({100 * left.share:.0f} % of it)" if left.domain else left.where
-    return Missing(channel=key, row=row, times=left.times, where=where)
+    part = part_left(b.error["before"], b.selection.held.after, b.floor)
+    return Left(b.times, part, domain, where, share, effect=b.times > EFFECT or share > MOST)
 
 
 def unnamed_where_missing(
     effects: list[Finding], needs: Sequence[str], balances: Sequence[Balance]
 ) -> tuple[list[Finding], list[str]]:
     """What stays far above the floor without any name is `unknown` where it has a domain, else a need."""
-    large = [b.missing for b in balances if b.missing is not None and b.missing.effect]
+    large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects and not needs:
-        effects = [Finding(UNKNOWN, m.channel, m.domain, note=m.text) for m in large if m.domain]
-    more = [f"{m.text}: a column of what may drive it, or one quantity changed at a time" for m in large]
+        effects = [Finding(UNKNOWN, b.key, m.domain, note=b.still) for b, m in large if m.domain]
+    more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))
 
 

@@ -20,7 +20,7 @@ from calibration.decide.rules import leave_out, signed, worth_little
 from calibration.decide.select import select
 from calibration.inputs.declaration import Response
 from calibration.look.axis_result import AxisResult
-from calibration.look.looked import Balance, calibrated, missing_of
+from calibration.look.looked import Balance, calibrated
 from calibration.look.said import lacking_names
 from calibration.look.scene import scene_of_balance
 from calibration.names import NAMES, offered
@@ -64,7 +64,7 @@ def look_at_volts(view: View, balance: Problem) -> Balance | None:
         floor=b.floor,
         findings=settle(found + more, left_over(s, scene, sure), "E"),
         numbers=calibrated(s),
-        missing=missing_of(left_over(together, scene, sure), "E", "voltage"),
+        missing=left_over(together, scene, sure),
         notes=[f"floor of the volts: {b.floor_from}", *signs, *lacking_names(scene, VOLTS)],
     )
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from calibration.decide.accept import SHORT
-from calibration.decide.residual import Place
+from calibration.decide.residual import Left, Place
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
 from calibration.finding import Finding, Parameter
-from calibration.look.looked import Balance, Looked, Missing, calibrated, missing_over, unnamed_where_missing
+from calibration.look.looked import Balance, Looked, calibrated, missing_over, unnamed_where_missing
 from tests.calibration.decide import made
 
 ROWS = 4000
@@ -47,13 +47,13 @@ def test_what_is_above_its_floor_lives_where_one_domain_shows_it(
     assert missing_over(balance(turning, floor=None), places) is None
     found = missing_over(balance(turning), places)
     assert found is not None and found.effect and found.domain == "axis_angle"
-    assert found.times > 5.0 and "over the turn of a wheel" in found.text
+    assert found.times > 5.0 and found.where == "over the turn of a wheel"
     nowhere = missing_over(balance(turning), [])
     assert nowhere is not None and nowhere.domain is None and nowhere.where == "not looked for"
 
 
-def missing(times: float, domain: str | None, effect: bool = True) -> Missing:
-    return Missing(channel="T", row="torque", times=times, where="somewhere", domain=domain, effect=effect)
+def missing(times: float, domain: str | None, effect: bool = True) -> Left:
+    return Left(times, 0.5, domain, "somewhere", effect=effect)
 
 
 def test_a_large_residual_without_a_name_is_unknown_or_a_need(quiet: Selection) -> None:
@@ -78,7 +78,9 @@ def test_a_drive_says_what_its_balances_say(quiet: Selection) -> None:
     )
     found = Looked(title="a drive", balances=[one, two], remarks=["a leap"], not_identifiable=["sigma_1"])
     assert list(found.calibrated) == ["coulomb"] and found.unsure == ["sigma_1"]
-    assert found.said[:2] == ["a leap", "the offset wanders"] and "still missing in torque" in found.said[2]
+    assert (
+        found.said[:2] == ["a leap", "the offset wanders"] and "still missing in electrical" in found.said[2]
+    )
 
 
 def test_at_its_floor_a_balance_asks_for_no_longer_log(quiet: Selection) -> None:
