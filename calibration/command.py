@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from threadpoolctl import threadpool_limits
 
 from calibration.errors import CalibrationInputError
@@ -47,20 +46,9 @@ def calibrate(
     """
     if not logs:
         raise CalibrationInputError("calibrate", "give at least one log")
+    tell = on_step or (lambda _: None)
     # the matrices are tall and narrow: more threads than one make the work three times as long
-    with (
-        threadpool_limits(1),
-        Progress(
-            SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True
-        ) as bar,
-    ):
-        task = bar.add_task("reading")
-
-        def tell(text: str) -> None:
-            bar.update(task, description=text)
-            if on_step is not None:
-                on_step(text)
-
+    with threadpool_limits(1):
         drive = read_drive(logs, load_rig(rig) if rig is not None else None)
         if plant is not None and (drive.rig is None or drive.rig.format != "axis-log"):
             raise CalibrationInputError("--plant", "is for axis logs: no other drive has a plant file")

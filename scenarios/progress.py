@@ -55,15 +55,12 @@ def shown(what: str, total: float, begun: float = 0.0, stream: TextIO | None = N
         return spoken(None if first is None else left(done, total, first[0], now - first[1]))
 
     if out.isatty() and find_spec("rich"):  # an isolated build has none
-        from rich import get_console
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
         text_of = TextColumn("{task.description}"), TextColumn("{task.fields[left]}")
         columns = (text_of[0], BarColumn(), TaskProgressColumn(), text_of[1])
-        # the console of all who take rich's own: their bars stand below this one
-        console = get_console() if out is sys.stdout else Console(file=out)
-        with Progress(*columns, console=console, transient=True) as bar:
+        with Progress(*columns, console=Console(file=out), transient=True) as bar:
             task = bar.add_task(what, total=total, completed=int(begun), left="")
             said = ""
 
@@ -97,7 +94,7 @@ def paced(before_s: float, usual_s: float, wall_before_s: float, wall_s: float) 
 
 
 @contextmanager
-def stages(what: str, usual_s: Mapping[str, float], stream: TextIO | None = None) -> Iterator[Stage]:
+def stages(what: str, usual_s: Mapping[str, float]) -> Iterator[Stage]:
     """Show what is left of stages that say nothing on their way; how long each usually takes is known.
 
     The pace of the machine at hand is measured. A thread shows, as the stages block. A stage that has begun
@@ -114,7 +111,7 @@ def stages(what: str, usual_s: Mapping[str, float], stream: TextIO | None = None
         if names.index(name) > names.index(now[0]):
             now = (name, time.monotonic())
 
-    with shown(what, sum(usual_s.values()), stream=stream) as show:
+    with shown(what, sum(usual_s.values())) as show:
 
         def tick() -> None:
             while not over.wait(_TICK_S):

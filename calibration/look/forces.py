@@ -25,8 +25,6 @@ from calibration.look.said import close, filtered, lacking_names, moves_with, pl
 from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, one_filter, sharpest, turned
 
-Tell = Callable[[str], None]
-
 # of what an offset takes that is fitted anew in every file, by effects that stand in its place. ASSUMPTION
 AS_MUCH = 0.9
 
@@ -42,11 +40,11 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
         bare = Selection.of(problem)
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
     notes = turned(view, problem)
-    when, remarks = _found(view, made, options.tell)
-    return _told(view, when, notes, remarks, options.tell)
+    when, remarks = _found(view, made)
+    return _told(view, when, notes, remarks)
 
 
-def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
+def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
     """The selection with the effort where it belongs, and remarks on an offset that wanders.
 
     An effect that begins at some time looks like a walk before it has a name: the offset is tried at rest.
@@ -57,13 +55,12 @@ def _found(view: View, made: Make, tell: Tell) -> tuple[Timed, list[str]]:
         floor, _ = floor_of(view, p)
         p.floor = floor or 0.0
         p.resolved = resolved_rows(view, p)
-        return find(view, p, tell)
+        return find(view, p)
 
     def attempt() -> Timed:
         whole = made(0.0)
         if response.channel not in ("effort", "current", "force") or not view.dynamic:
             return Timed(whole, crossed_first(search(whole), view, search))
-        tell(f"{response.channel}: delay")
         return timed(view, made, whole, response.channel, search)
 
     if view.dynamic:
@@ -109,7 +106,7 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
     return first
 
 
-def _told(view: View, when: Timed, notes: list[str], remarks: list[str], tell: Tell) -> Balance:
+def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Balance:
     """The parts of the answer: floor, names that stay, what no name explains, controls."""
     channel, unit = view.response.channel, view.angle_unit
     (s, scene, bounds), delay = when.found, when.delay
@@ -121,7 +118,6 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str], tell: T
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
-    tell(f"{channel}: what no name explains")
     s, together, beyond = beyond_names(s, scene)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond

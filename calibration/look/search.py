@@ -1,7 +1,5 @@
 """The search of a balance: names round by round, lines under what was found, signs of the base."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from calibration.arrays import Array
@@ -24,12 +22,12 @@ MOST = 14
 ROUNDS = 3
 
 
-def find(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[Selection, Scene, list[str]]:
+def find(view: View, problem: Problem) -> tuple[Selection, Scene, list[str]]:
     """What is selected, in what scene, and the declared terms left out because they came out negative."""
-    s, scene = _search(view, problem, tell)
+    s, scene = _search(view, problem)
     bounds = _bound(s)
     if bounds:
-        s, scene = _search(view, problem, tell)
+        s, scene = _search(view, problem)
     return s, scene, bounds
 
 
@@ -61,7 +59,7 @@ def lines_over_place(scene: Scene) -> np.ndarray:
     return np.hstack([np.zeros((len(scene.problem.y), 0)), *[c.columns for c in free_lines(scene)]])
 
 
-def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[Selection, Scene]:
+def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
     """Select; look again for lines under what was found; select again from all."""
     rng = np.random.default_rng(0)
     scene = scene_of(view, problem)
@@ -72,7 +70,6 @@ def _search(view: View, problem: Problem, tell: Callable[[str], None]) -> tuple[
     s: Selection | None = None
     extra: list[Array] = []
     for k in range(ROUNDS):
-        tell(f"{view.response.channel}: names, round {k + 1}")
         scene.residual = problem.y - scene.fitted(*extra, scene.wander)[1]
         lines = (c for name in searched for c in NAMES[name].columns(scene))
         fresh = [c for c in lines if not _known(c, found, scene)]

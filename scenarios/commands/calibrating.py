@@ -51,8 +51,7 @@ def calibrate(
 
     size = megabytes(logs)
     usual_s = {name: begin_s + per_mb_s * size for name, (begin_s, per_mb_s) in USUAL.items()}
-    # on a terminal the command's own line, which names its steps, stands below
-    with stages("calibrating", usual_s, sys.stdout if sys.stdout.isatty() else None) as enter:
+    with stages("calibrating", usual_s) as enter:
         status = command(
             list(logs),
             rig,
