@@ -123,7 +123,7 @@ def finding_of(s: Selection, k: int) -> Finding:
         stage=c.stage,
         harmonic=c.harmonic,
         order=c.fixed["order"][0] if "order" in c.fixed else c.order,
-        frequency=c.frequency,
+        frequency=c.fixed["frequency"][0] if "frequency" in c.fixed else c.frequency,
         equivalent=[*(e.candidate.name for e in tied[:1]), *dict.fromkeys(n for n in others if n != c.name)],
         parameters=parameters_of(s, k),
         evidence=x.evidence,
@@ -141,8 +141,6 @@ def _told(x: Contender) -> str:
 def findings_of(s: Selection, k: int) -> list[Finding]:
     """The chosen effect as findings: one, or each harmonic of a stage that was taken as one candidate."""
     c, whole = s.candidates[k], finding_of(s, k)
-    if "frequency" in whole.parameters:  # as refined
-        whole = replace(whole, frequency=whole.parameters["frequency"].value)
     sections = pairs_by_section(c.columns) if c.kind == "line" else [[]]
     pairs = min(len(section) for section in sections)
     if c.name == UNKNOWN:  # of its order is the first harmonic alone
