@@ -13,7 +13,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from plant.deadzone import bias_steps
+from plant.deadzone import bias_steps, dead_zone, step_amperes, step_torque
 from plant.effects import REGISTRY
 from plant.effects import signals as sig
 from plant.effects.signals import Hook
@@ -56,10 +56,7 @@ def drive_of(model: PlantModel, axis: AxisModel) -> Drive:
     f, motor, controller = axis.friction, axis.motor, model.controller
     share = exp(-((RATE / f.stribeck_rate.si) ** f.stribeck_exponent.si))
     level = f.coulomb.si + (f.stiction.si - f.coulomb.si) * share
-    drop = motor.diode_drop.si if motor.diode_drop else 0.0
-    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
-    amperes = (model.supply.voltage.si + drop) / ohm / controller.pwm_steps.si  # per step of duty, EMF apart
-    newton = amperes * motor.torque_constant.si * RATIO
+    amperes, newton = step_amperes(model, motor), step_torque(model, motor)  # EMF apart
     split = controller.counter_split.si
     per_step = newton * (1.0 - split)
     friction = level + f.viscous.si * RATE
@@ -67,7 +64,7 @@ def drive_of(model: PlantModel, axis: AxisModel) -> Drive:
     dead = controller.pwm_steps.si * sum(
         values(each)["deadband"] for each in axis.effects if each.enabled and each.name == "pwm_deadband"
     )
-    dead += controller.pwm_steps.si * drop / (model.supply.voltage.si + drop)
+    dead += dead_zone(model, motor) * controller.pwm_steps.si
     bias = bias_steps(model, motor)
     duties = [max(0.0, duty + bias - dead) for duty in (effort, split * effort)]
     half, each = 0.5 * axis.gear.backlash.si, 0.5 * axis.gear.stiffness.si

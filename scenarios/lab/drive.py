@@ -5,6 +5,7 @@ from math import pi
 from boards.axis import AxisConfig
 from boards.axis.config import TICK_NS
 from bus.protocol.scales import COUNTS_PER_TURN
+from plant.deadzone import step_torque
 from plant.gears import RATIO
 from plant.parts import AxisModel, PlantModel
 from plant.plant import Plant
@@ -12,14 +13,14 @@ from plant.plant import Plant
 _FRAME_BITS = 120
 """Bits of a full frame with some stuffing, for the age of measurements (111 to 135, hardware.md 3.3)."""
 POINTING_BANDWIDTH = 22.0
-"""rad/s, of the velocity loop inside the position loop. ASSUMPTION: a sixth of the mode of the rotors against
-the axis (about 130 rad/s, 5 % damped). Otherwise 10 ms of delay would drive that mode."""
+"""rad/s, of the velocity loop inside the position loop, at least. ASSUMPTION: a sixth of the mode of the
+rotors against the axis (about 130 rad/s, 5 % damped). Otherwise 10 ms of delay would drive that mode."""
 _POINTING_KI = 0.08
 """Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
-_CREEP_KI = 0.15
-"""Ki/Kp while it creeps: 30 rad/s. ASSUMPTION."""
+_CREEP_KI = 0.1
+"""Ki/Kp while it creeps: 20 rad/s. ASSUMPTION: more of it hunts between two PWM steps."""
 _GUST_BANDWIDTH = 33.0
-"""rad/s, while it creeps in wind. ASSUMPTION: a quarter of that mode."""
+"""rad/s, while it creeps in wind, at least. ASSUMPTION: a quarter of that mode."""
 _GUST_KI = 0.05
 """Ki/Kp then: 10 rad/s. ASSUMPTION: with less of it the axis swings less between 1 and 8 Hz, where wind is. A
 slow torque then leaves twice as much, so these gains are for wind alone."""
@@ -30,12 +31,17 @@ def _inertia(axis: AxisModel) -> float:
     return axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2
 
 
+def _bandwidth(axis: AxisModel) -> float:
+    """rad/s, of that loop: where the trains damp well it may be as fast as the rotors' swing dies away."""
+    rotor = axis.motor.rotor_inertia.si * RATIO**2
+    return max(POINTING_BANDWIDTH, 0.5 * axis.gear.damping.si / (2.0 * rotor))
+
+
 def _unit_gain(model: PlantModel, axis: AxisModel) -> float:
-    """PWM steps that accelerate the axis by 1 count/5 ms in a second."""
-    motor, controller = axis.motor, model.controller
-    ohm = motor.loop
-    volts = model.supply.voltage.si * (1.0 - controller.counter_split.si) / controller.pwm_steps.si
-    torque_per_step = volts / ohm * motor.torque_constant.si * RATIO
+    """PWM steps that accelerate the axis by 1 count/5 ms in a second. Behind a power stage the lagging motor
+    hardly conducts where the axis is slow."""
+    lagging = 0.0 if axis.motor.diode_drop else model.controller.counter_split.si
+    torque_per_step = step_torque(model, axis.motor) * (1.0 - lagging)
     counts_per_rad_s = COUNTS_PER_TURN / (2 * pi) * TICK_NS * 1e-9
     return _inertia(axis) / (torque_per_step * counts_per_rad_s)
 
@@ -49,8 +55,8 @@ def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) 
     controller = model.controller
     part: AxisModel = getattr(model.axes, axis)
     scale = _unit_gain(model, part) / _unit_gain(model, model.axes.ra)
-    pointing = POINTING_BANDWIDTH * _unit_gain(model, part)
-    gust = _GUST_BANDWIDTH * _unit_gain(model, part)
+    pointing = _bandwidth(part) * _unit_gain(model, part)
+    gust = max(_GUST_BANDWIDTH, _bandwidth(part)) * _unit_gain(model, part)
     return AxisConfig(
         kp=controller.kp.si * scale,
         ki=controller.ki.si * scale,

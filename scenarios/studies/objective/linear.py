@@ -5,6 +5,7 @@ from math import exp
 import numpy as np
 
 from plant.compiled import Floats
+from plant.deadzone import ohms, step_torque
 from plant.gears import RATIO
 from plant.parts import PlantModel
 
@@ -28,10 +29,9 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
     slope = -excess * x * f.stribeck_exponent.si  # rate times dg/drate, N m
     rotor, load = motor.rotor_inertia.si * RATIO**2, part.inertia.si
     k, c, sigma0 = gear.stiffness.si / 2, gear.damping.si / 2, f.bristle_stiffness.si
-    drop = motor.diode_drop.si if motor.diode_drop else 0.0
-    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
+    ohm = ohms(motor)
     constant, electric = motor.torque_constant.si * RATIO, motor.inductance.si / ohm
-    per_step = constant * (model.supply.voltage.si + drop) / model.controller.pwm_steps.si / ohm
+    per_step = step_torque(model, motor)
     a, b, push = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1)), np.zeros((SIZE, 1))
     a[ANGLE, RATE] = 1.0
     a[BRISTLE, [RATE, BRISTLE]] = sigma0 * slope / level, -sigma0 * rate / level
@@ -47,7 +47,7 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
     for speed, torque in ((SPEED_A, TORQUE_A), (SPEED_B, TORQUE_B)):
         a[speed, torque] = 1.0 / rotor
         a[torque, torque] = -1.0 / electric
-        if speed == SPEED_A or drop:
+        if speed == SPEED_A or motor.diode_drop:
             a[torque, speed] = -(constant**2) / ohm / electric
     b[TORQUE_A, 0] = per_step / electric
     return a, b, push

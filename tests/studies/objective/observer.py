@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_discrete_are
 
-from plant.deadzone import bias_steps
+from plant.deadzone import bias_steps, ohms, step_torque
 from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.model import get, load, with_value
@@ -57,8 +57,7 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     """Matrices at steady sliding with `rate`, rad/s; effort in PWM steps."""
     part = model.axes.ra
     f, motor, gear = part.friction, part.motor, part.gear
-    drop = motor.diode_drop.si if motor.diode_drop else 0.0
-    ohm = motor.resistance.si if drop else motor.loop  # the current freewheels nearly all the time
+    ohm = ohms(motor)
     x = (rate / f.stribeck_rate.si) ** f.stribeck_exponent.si
     excess = (f.stiction.si - f.coulomb.si) * exp(-x)
     level = f.coulomb.si + excess
@@ -66,10 +65,8 @@ def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, float]:
     rotors, load = 2.0 * motor.rotor_inertia.si * RATIO**2, part.inertia.si
     k, c, sigma0 = gear.stiffness.si, gear.damping.si, f.bristle_stiffness.si
     brake = (motor.torque_constant.si * RATIO) ** 2 / ohm
-    brake *= 2.0 if drop else 1.0  # with a bias both currents flow on
-    share = 1.0 - model.controller.counter_split.si
-    per_step = (model.supply.voltage.si + drop) / model.controller.pwm_steps.si / ohm
-    per_step *= motor.torque_constant.si * RATIO * share
+    brake *= 2.0 if motor.diode_drop else 1.0  # with a bias both currents flow on
+    per_step = step_torque(model, motor) * (1.0 - model.controller.counter_split.si)
     a = np.zeros((LAST, LAST))
     a[ANGLE, _RATE] = a[_ROTOR, _ROTOR_RATE] = 1.0
     a[_RATE, [ANGLE, _RATE, _BRISTLE, _ROTOR, _ROTOR_RATE, LOAD]] = (
