@@ -1,7 +1,6 @@
 """Parameters of a request: GET takes their names in any case, PUT exactly; unreadable is HTTP 400."""
 
 import math
-from collections.abc import Mapping
 from urllib.parse import parse_qsl
 
 from host.alpaca.errors import Malformed
@@ -18,7 +17,10 @@ class Parameters:
         except ValueError as error:
             raise Malformed(f"parameters cannot be read: {error}") from None
         self._exact = exact
-        self._values: Mapping[str, str] = {self._key(name): value for name, value in pairs}
+        self._values: dict[str, str] = {}
+        for name, value in pairs:
+            if self._values.setdefault(self._key(name), value) != value:
+                raise Malformed(f"parameter {name[:40]} has two values")
 
     def _key(self, name: str) -> str:
         return name if self._exact else name.lower()
@@ -37,7 +39,7 @@ class Parameters:
             value = float(text)
         except ValueError:
             raise Malformed(f"{name} {text[:40]!r} is no number") from None
-        if not math.isfinite(value) or "_" in text:
+        if not math.isfinite(value) or "_" in text or not text.isascii():
             raise Malformed(f"{name} {text[:40]!r} is no number")
         return value
 
@@ -48,7 +50,7 @@ class Parameters:
             value = int(text)
         except ValueError:
             raise Malformed(f"{name} {text[:40]!r} is no whole number") from None
-        if not -(1 << 31) <= value < 1 << 31 or "_" in text:
+        if not -(1 << 31) <= value < 1 << 31 or "_" in text or not text.isascii():
             raise Malformed(f"{name} {text[:40]!r} is no whole number of 32 bits")
         return value
 

@@ -2,18 +2,18 @@
 
 import math
 from collections.abc import Callable, Generator
-from functools import cache
 from typing import Final
 
 from bus.protocol import Device
-from bus.protocol.nodes import DOME, KINDS, POWER, WEATHER, FrameCodec, Kind, arguments_of, messages_of
+from bus.protocol.nodes import DOME, POWER, WEATHER, Kind
 from host.client import TICK_NS, Client
+from host.procedures.dome import BOARD as DOME_BOARD
+from host.procedures.dome import centidegrees, codecs, opcode, reading
 from host.sky.observed import Observed
 from host.telescope.jobs import Activity, Job, Side
 from host.telescope.refused import Reason, Refused
 from host.telescope.state import MISSED
 
-DOME_BOARD = DOME.device("DOME")
 _FOLLOW_NS: Final = 1_000_000_000
 _FOLLOW_DEG: Final = 2.0
 """A slit this far from the beam is moved: the board stops within 0.5°. ASSUMPTION: the slit is wider."""
@@ -39,19 +39,17 @@ class House:
 
     def reading(self, board: str) -> dict[str, float] | None:
         """Signals of a declared board's last measurement frame in their units; None: none has come."""
-        codec = _codecs().get(board)
-        data = None if codec is None else self._client.link.measurements.get(codec.identifier & 0x7F)
-        return None if codec is None or data is None else codec.unpack(data)
+        return reading(self._client, board)
 
     def heard_s(self, board: str) -> float:
         """When its last measurement came; before all times when none has."""
-        codec = _codecs().get(board)
+        codec = codecs().get(board)
         heard_ns = None if codec is None else self._client.link.measured_ns.get(codec.identifier & 0x7F)
         return -math.inf if heard_ns is None else heard_ns * 1e-9
 
     def stale(self, board: str) -> bool:
         """Whether its measurement is older than it may be."""
-        oldest_ns = MISSED * _codecs()[board].period_ns + TICK_NS
+        oldest_ns = MISSED * codecs()[board].period_ns + TICK_NS
         return self._client.now_ns * 1e-9 - self.heard_s(board) > oldest_ns * 1e-9
 
     def fresh(self, board: str) -> dict[str, float] | None:
@@ -104,7 +102,7 @@ class House:
             self._turn(wanted)
 
     def _turn(self, azimuth_deg: float) -> Job[None]:
-        return self._tell(DOME, DOME_BOARD, "DOME_GOTO", round(azimuth_deg * 100) % 36000)
+        return self._tell(DOME, DOME_BOARD, "DOME_GOTO", centidegrees(azimuth_deg))
 
     def shutter(self, opened: bool) -> Job[None]:
         """Open or close; the board refuses to open in bad weather."""
@@ -124,23 +122,14 @@ class House:
             raise Refused(Reason.VALUE, f"{board} has no relay {channel}")
         return self._tell(POWER, POWER.device(board), "RELAY", channel, int(on))
 
-    def _tell(self, kind: Kind, device: Device, opcode: str, *arguments: int) -> Job[None]:
+    def _tell(self, kind: Kind, device: Device, name: str, *arguments: int) -> Job[None]:
         self._there(device)
-        number = next(each for each in arguments_of(kind) if each.name == opcode)
 
         def procedure() -> Generator[None, None, None]:
-            yield from self._client.ask(device, number, *arguments)
+            yield from self._client.ask(device, opcode(kind, name), *arguments)
 
-        return self._side.start(Job(f"{device.name} {opcode}", procedure(), Activity.IDLE))
+        return self._side.start(Job(f"{device.name} {name}", procedure(), Activity.IDLE))
 
     def _there(self, device: Device = DOME_BOARD) -> None:
         if device not in self._client.link.measurements:
             raise Refused(Reason.SILENT, f"{device.name} is not on this network, or silent")
-
-
-@cache
-def _codecs() -> dict[str, FrameCodec]:
-    """By board name."""
-    found = [FrameCodec(m) for kind in KINDS for m in messages_of(kind) if 0x200 <= m.frame_id < 0x280]
-    names = {int(device): device.name for kind in KINDS for device in kind.devices()}
-    return {names[codec.identifier & 0x7F]: codec for codec in found}

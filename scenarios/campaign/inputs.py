@@ -1,6 +1,7 @@
 """What a campaign varies: an input turns a share within 0..1 into a value and puts it into a scenario."""
 
 import copy
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -157,7 +158,8 @@ def _fault(_given: Any, where: str, base: Document) -> Put:
 
 def _field(path: Any, where: str, base: Document) -> Put:
     """Any field of the scenario, by its path (steps.1.goto.target)."""
-    words = [int(word) if word.isdigit() else word for word in str(path).split(".")]
+    parts = str(path).split(".")
+    words = [int(part) if re.fullmatch("[0-9]{1,6}", part) else part for part in parts]
 
     def put(document: Document, value: Any) -> None:
         place: Any = document

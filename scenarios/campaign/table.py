@@ -63,10 +63,19 @@ def rows(path: Path) -> Iterator[Row]:
                 found = json.loads(line)
             except ValueError:
                 continue
-            if isinstance(found, dict) and all(
-                isinstance(found.get(name), kind) for name, kind in _FIELDS.items()
+            if (
+                isinstance(found, dict)
+                and all(isinstance(found.get(name), kind) for name, kind in _FIELDS.items())
+                and all(map(_scalar, found.values()))
             ):
                 yield found
+
+
+def _scalar(value: Any) -> bool:
+    """What a column can hold."""
+    if isinstance(value, int):
+        return abs(value) < 1 << 63
+    return value is None or isinstance(value, float | str)
 
 
 def write(folder: Path) -> Path:

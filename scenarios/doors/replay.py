@@ -1,6 +1,8 @@
 """`schmidt replay DIR [--from SNAPSHOT]`: a recorded session again, to the same digest."""
 
 import json
+import re
+import struct
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -64,8 +66,8 @@ def replay_rest(folder: Path, snapshot: Path) -> tuple[str, str | None]:
 
 
 def _nodes(served: LiveNetwork, facts: dict[str, Any]) -> None:
-    for kind in facts["kinds"]:
-        if kind.startswith("can"):
+    for kind in dict.fromkeys(facts["kinds"]):
+        if re.fullmatch(r"can\d{1,2}", kind):
             served.node(int(kind.removeprefix("can")))
 
 
@@ -75,10 +77,12 @@ def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int 
     end_ns = int(facts.get("end_ns", begun_ns))  # none: never closed, and nobody knows what is left
     with shown("replaying", end_ns, begun=begun_ns) as show:
         for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
+            if t_ns < served.now_ns:
+                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the entry before it")
             _go(served, t_ns, end_ns, show)
             try:
                 served.entry.enter(kind, data)
-            except (KeyError, ValueError) as error:
+            except (KeyError, ValueError, struct.error) as error:
                 raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
         _go(served, max(t_ns, end_ns), end_ns, show)
 
@@ -94,8 +98,14 @@ def _facts(folder: Path) -> dict[str, Any]:
     try:
         facts: dict[str, Any] = json.loads(read_text(folder / SESSION))
         wanted = {"scenario": bool, "seed": int, "kinds": list}
-        if not all(isinstance(facts[key], kind) for key, kind in wanted.items()):
-            raise ValueError("fields are missing")
+        other = {"end_ns": 0, "snapshots": {}, "network": ""}
+        if not (
+            all(isinstance(facts[key], kind) for key, kind in wanted.items())
+            and all(isinstance(facts.get(key) or none, type(none)) for key, none in other.items())
+            and all(isinstance(each, str) for each in facts["kinds"])
+            and all({"t_ns", "entries"} <= set(each) for each in facts.get("snapshots", {}).values())
+        ):
+            raise ValueError("fields are missing, or of another type")
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ReplayError(f"{folder}: no recorded session ({SESSION}): {error}") from None
     return facts

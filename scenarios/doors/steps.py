@@ -18,7 +18,7 @@ from bus.can import Frame
 from bus.can.candump import line, parsed
 from bus.can.frame import check
 from host.client import TICK_NS
-from scenarios.doors.clients import Client
+from scenarios.doors.clients import LIMIT, Client
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.language.units import parse
 
@@ -72,6 +72,8 @@ class Steps:
         """A line; its answer, None: later. Raises ValueError with one line."""
         match words:
             case ["join", number, *name] if number.isdecimal() and len(name) <= 1:
+                if not 1 <= int(number) <= LIMIT:  # nobody would ever be answered
+                    raise StepError(f"join N: 1 to {LIMIT} clients")
                 self._member(client, *name).wanted = int(number)
                 return None
             case ["listen"]:

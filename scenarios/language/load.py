@@ -74,6 +74,8 @@ def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
         rule = schema()["$defs"][str(rule["$ref"]).rsplit("/", 1)[1]]
     if "x-quantity" in rule:
         return parse(value, rule["x-quantity"])
+    if rule.get("type") == "integer" and isinstance(value, float):
+        return int(value)  # 5.0 is a whole number to a schema
     if isinstance(value, Mapping):
         properties: Mapping[str, Any] = _part(rule, "properties")
         others = rule.get("additionalProperties") or {}

@@ -9,7 +9,7 @@ from typing import Any
 from bus.protocol import Device, Opcode
 from host.client import Client, ClientError, Procedure
 from host.logs.ascii import AsciiLogs
-from host.procedures import focus, manual, power
+from host.procedures import dome, focus, manual, power
 from host.procedures.autoguide import Guided, Guiding, autoguide
 from host.procedures.pointing import CLASSES, Pointing
 from host.procedures.pointing_run import Eye, Visit, directions, visit
@@ -210,6 +210,11 @@ class Programme:
                 goal, procedure = _focus(client, given)
                 self._note(index, focus_goal=goal)
                 return procedure
+            case "dome":
+                _device(client, "DOME")
+                if "azimuth" in given:
+                    return dome.turn(client, given["azimuth"] / 3600)
+                return dome.shutter(client, given["shutter"] == "open")
             case "park":
                 return self.pointing.park()
             case "wait":
@@ -256,7 +261,10 @@ def guiding_of(given: Mapping[str, Any]) -> Guiding:
 
 
 def _device(client: Client, name: str) -> Device:
-    return next(device for device in client.devices if device.name == name)
+    for device in client.devices:
+        if device.name == name:
+            return device
+    raise ClientError(f"{name} is not on this network")
 
 
 def _focus(client: Client, given: dict[str, float | str | bool]) -> tuple[float | None, Procedure]:

@@ -1,5 +1,6 @@
 """A whole served session: what breaks and comes back, what is recorded and run again, how it ends."""
 
+import json
 import os
 import signal
 import subprocess
@@ -68,12 +69,42 @@ def test_one_entry_more_is_another_digest(tmp_path: Path) -> None:
     assert before == digest != again
 
 
-@pytest.mark.parametrize("line", ["nonsense", "5 can9 00", "5 usb zz", "x usb 00", "5 board FF"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        "nonsense",
+        "5 can9 00",
+        "5 usb zz",
+        "x usb 00",
+        "5 board FF",
+        "5 can0 ",
+        "5 can0 00",
+        "9 usb\n5 usb",
+        "5 fault 78",
+    ],
+)
 def test_a_journal_that_was_tampered_with_is_one_line(tmp_path: Path, line: str) -> None:
     record(tmp_path / "one")
     (tmp_path / "one" / "entered.log").write_text(line + "\n")
     with pytest.raises(ReplayError):
         replay(tmp_path / "one", tmp_path / "two")
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"kinds": [1]}, {"kinds": {}}, {"end_ns": "soon"}, {"snapshots": [1]}, {"snapshots": {"a": {}}},
+        {"network": 3}, {"seed": "1"},
+    ],
+)  # fmt: skip
+def test_a_session_file_that_was_tampered_with_is_one_line(
+    tmp_path: Path, changed: dict[str, object]
+) -> None:
+    LiveNetwork(*chosen())
+    facts = {"scenario": False, "seed": 1, "kinds": ["usb"], "network": "lab"}
+    (tmp_path / "session.json").write_text(json.dumps(facts | changed))
+    with pytest.raises(ReplayError, match="no recorded session"):
+        replay(tmp_path, tmp_path / "two")
 
 
 def test_frames_keep_their_shape_in_the_journal() -> None:

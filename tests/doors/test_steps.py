@@ -136,7 +136,8 @@ def test_time_goes_to_the_nearest_goal_and_frames_enter_by_name(bench: Bench) ->
     [
         ("step", "join N"), ("step 5", "no unit"), ("step -5 ms", "does not go back"), ("step 5 kg", "kg"),
         ("send 011", "ID#DATA"), ("send 011#1", "ID#DATA"), ("send 3FFFFFFF#", "identifier"),
-        ("join x", "join N"), ("listen now", "join N"), ("speed 2", "stepped"), ("resume", "stepped"),
+        ("join x", "join N"), ("join 0", "1 to 64"), ("join 65", "1 to 64"), ("step 1e300 s", "too large"),
+        ("listen now", "join N"), ("speed 2", "stepped"), ("resume", "stepped"),
     ],
 )  # fmt: skip
 def test_a_line_that_cannot_be_meant_is_one_line_of_error(bench: Bench, line: str, reason: str) -> None:

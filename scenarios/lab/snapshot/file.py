@@ -12,7 +12,8 @@ from scenarios.lab.nodes import board_files, load_board
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 
 _HEAD = b"schmidt snapshot file 1\n"
-_DIGEST = 64
+_MOST = 1 << 28
+"""Bytes when unpacked; a network has some millions, a recorded run's graph as much again. ASSUMPTION."""
 
 
 def write(whole: dict[str, Any], file: Path) -> int:
@@ -42,11 +43,17 @@ def read(file: Path) -> dict[str, Any]:
         raise SnapshotError(f"{file}: {getattr(error, 'strerror', None) or error}") from None
     if not data.startswith(_HEAD):
         raise SnapshotError(f"{file}: this is no snapshot of schmidt's")
-    told, body = data[len(_HEAD) : len(_HEAD) + _DIGEST], data[len(_HEAD) + _DIGEST + 1 :]
-    if sha256(body).hexdigest().encode() != told or data[len(_HEAD) + _DIGEST] != ord("\n"):
+    told, _, body = data[len(_HEAD) :].partition(b"\n")
+    if sha256(body).hexdigest().encode() != told:
         raise SnapshotError(f"{file}: snapshot: damaged: its bytes have another digest than its head says")
     try:
-        whole: dict[str, Any] = restore(zlib.decompress(body))
+        unpacking = zlib.decompressobj()
+        plain = unpacking.decompress(body, _MOST)
+        if not unpacking.eof:
+            raise SnapshotError(f"snapshot: cut off, or longer than {_MOST >> 20} MB when unpacked")
+        whole: dict[str, Any] = restore(plain)
+        if not isinstance(whole, dict) or not {"files", "network", "scenario", "model"} <= set(whole):
+            raise SnapshotError("snapshot: holds no network")
         for path, digest in whole["files"].items():
             if _digest(path) != digest:
                 raise SnapshotError(f"snapshot: {path} has changed, or is another file seen from here")

@@ -69,6 +69,7 @@ def test_transaction_ids_come_back_and_count_up(live: AlpacaLive) -> None:
         ("trackingrate", "TrackingRate=sidereal"), ("action", "Action=x"), ("commandbool", "Command=x"),
         ("abortslew", "ClientTransactionID=-1"), ("abortslew", "ClientID=x"), ("nosuchmember", ""),
         ("rightascension", ""), ("abortslew", "ClientID=99999999999"),
+        ("targetdeclination", "TargetDeclination=１"), ("tracking", "Tracking=True&Tracking=False"),
     ],
 )  # fmt: skip
 def test_malformed_puts_are_400(live: AlpacaLive, member: str, parameters: str) -> None:

@@ -33,7 +33,18 @@ def test_a_torn_line_and_a_lost_run_are_made_again(tmp_path: Path) -> None:
     assert dict(zip(found["key"], found["value"], strict=True)) == {"a": 1.0, "b": 2.0, "c": 3.0}
 
 
-@pytest.mark.parametrize("line", [b"{}", b'{"key": 3}', b'{"key": "d", "index": "e"}', b"[]", b"\xff"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"{}",
+        b'{"key": 3}',
+        b'{"key": "d", "index": "e"}',
+        b"[]",
+        b"\xff",
+        b'{"key": "d", "index": 1, "failure": "", "x": [1]}',
+        b'{"key": "d", "index": 1, "failure": "", "x": 1e999}'.replace(b"1e999", b"9" * 40),
+    ],
+)
 def test_a_line_that_is_no_run_is_left_out(line: bytes, tmp_path: Path) -> None:
     (tmp_path / table.JOURNAL).write_bytes(line + b"\n")
     journal = table.Journal(tmp_path, resume=True)

@@ -100,6 +100,15 @@ def test_mistakes_name_line_field_and_nearest_word(old: str, new: str, line: int
         assert word in text
 
 
+def test_a_whole_number_with_a_point_is_one(short: Path) -> None:
+    """To a schema 5.0 is an integer; as text in a generator's name it would be another seed."""
+    text = GOOD.replace("name: test\n", "name: test\nseed: 1000.0\n")
+    text = text.replace("  - name: hold", "  - display: {brightness: 50.0}\n  - name: hold")
+    scenario = load_text(text)
+    assert type(scenario.seed) is int and scenario.seed == 1000
+    assert type(scenario.steps[2].arguments["brightness"]) is int
+
+
 def test_every_mistake_of_a_file_is_told_a_line_each(short: Path, schmidt: Command) -> None:
     """Two unknown fields in one block are two, and what a quantity says about its type is told once."""
     text = GOOD.replace("name: test\n", "name: test\nseed: -1\nsed: 1\nsid: 2\n").replace("10 s}", "[3]}")
