@@ -1,4 +1,4 @@
-"""What a PWM step does at small duties: the dead zone of a power stage, the bias that lifts both motors above
+"""A PWM step at small duties: the dead zone of a power stage, the bias that lifts both motors above
 it, the torque beyond."""
 
 from plant.gears import RATIO

@@ -163,8 +163,8 @@ STILL_MISSING = 2.0
 DOMAIN_BINS = 24
 # bins, fewest, of a domain. ASSUMPTION
 FEWEST_DOMAIN_BINS = 8
-# rows per bin at least, which halve the scatter of its mean. ASSUMPTION
-ROWS_PER_BIN = 4
+# rows per bin at least. ASSUMPTION
+ROWS_PER_BIN = 10
 # share of the mean square, explained on rows the means are not made of, before a domain is named. ASSUMPTION
 LEAST_SHARE = 0.1
 # the same of a channel twice above its floor: chance alone has none there (seed 1043: a brush has 0.07)

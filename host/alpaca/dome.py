@@ -7,8 +7,8 @@ from typing import Any
 from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters
+from host.procedures.dome import BOARD as DOME_BOARD
 from host.telescope import Job, Telescope
-from host.telescope.house import DOME_BOARD
 
 _OPEN, _CLOSED, _OPENING, _CLOSING, _BETWEEN = range(5)
 """ASCOM's ShutterState; a shutter that rests between its ends is its "error"."""

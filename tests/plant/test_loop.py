@@ -21,7 +21,7 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
     kp, ki = round(c.kp.si * 4096), round(c.ki.si * 4096)
     limit = 3000 << 16
     wanted = round(setpoint_arcsec_s / COUNT_ARCSEC / 200 * 65536)
-    effort = last_error = counter = last_steps = 0
+    effort = last_error = counter = 0
     got: dict[str, list[int]] = {"effort": [], "velocity": [], "position": [], "adc_a": [], "tach_a": []}
     last = plant.ra.incremental(0)
     last_tach = plant.ra.tachometer(0, 0)
@@ -35,11 +35,7 @@ def by_hand(setpoint_arcsec_s: float, samples: int) -> dict[str, list[int]]:
         steps = (effort + 32768) >> 16
         share = abs(steps) * 10 / 100
         if abs(share - counter) >= 1:  # the lagging motor's register is a whole step off: it moves
-            moved, counter = int(share + 0.5) - counter, int(share + 0.5)
-            if abs(steps - last_steps) <= 1:  # and an effort that only creeps takes its step along
-                effort = max(-limit, min(limit, effort + (moved << 16) * (1 if steps >= 0 else -1)))
-                steps = (effort + 32768) >> 16
-        last_steps = steps
+            counter = int(share + 0.5)
         if tick % 2 == 0:
             tach = plant.ra.tachometer(t, 0)
             got["effort"].append(steps)

@@ -6,13 +6,13 @@ from nicegui.events import MouseEventArguments
 from host.console.figures import hours, pointing
 from host.console.shell import Shell, box, button, seldom
 from host.console.skymap import SIZE, label, svg
+from host.procedures.dome import BOARD as DOME_BOARD
 from host.sky.angles import format_degrees, parse_declination, parse_right_ascension
 from host.sky.apparent import apparent_of_observed, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.listed import listed
 from host.sky.observed import Observed
 from host.telescope import Observatory
-from host.telescope.house import DOME_BOARD
 
 
 def target(shell: Shell) -> None:
