@@ -1,5 +1,4 @@
-"""A PWM step at small duties: the dead zone of a power stage, the bias that lifts both motors above
-it, the torque beyond."""
+"""Small duties: the dead zone of a power stage, the bias above it, and the torque of a PWM step beyond."""
 
 from plant.gears import RATIO
 from plant.parts import Motor, PlantModel

@@ -42,7 +42,7 @@ def check_timing(
     settings: Settings, subject: str, period_ms: int, stamps: Sequence[float], queueing: float, lost: int = 0
 ) -> Iterator[CheckResult]:
     """Period, jitter and gap of one frame. stamps: when it was heard, seconds; queueing: seconds the bus may
-    hold it up; lost: frames that the tester has dropped, of which nobody knows whose they were."""
+    hold it up. lost: frames that the tester has dropped; whose they were is not known."""
     ms = 1e3 * settings.speed
     times = np.asarray(stamps) * ms
     gaps = [later - earlier for earlier, later in pairwise(times.tolist())]

@@ -72,7 +72,7 @@ def rows(path: Path) -> Iterator[Row]:
 
 
 def _scalar(value: Any) -> bool:
-    """What a column can hold."""
+    """Values that a column can hold."""
     if isinstance(value, int):
         return abs(value) < 1 << 63
     return value is None or isinstance(value, float | str)

@@ -11,9 +11,10 @@ LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
 class PaperOptions:
     """json_file: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
     plant_high: plant files for low and high preload instead of the project's own. rows: comma-separated.
-    quick: two starts only, for a look; every: all 24 combinations of angle and seed; others: so many
-    starts and seeds that no search has used. jobs: processes (None: one per core); scheduler: a Dask
-    scheduler instead."""
+
+    quick: two starts only, for a look. every: all 24 combinations of angle and seed. others: so many starts
+    and seeds that no search has used. jobs: processes (None: one per core); scheduler: a Dask scheduler
+    instead."""
 
     out: Path
     json_file: Path | None = None
