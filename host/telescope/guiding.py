@@ -18,7 +18,7 @@ _LONGEST_S: Final = 60.0
 _LEAD: Final = (0.0, 2.0)
 """How far the board's target is led beyond the place wanted, per ″ still missing, by axis. Declination turns
 through its friction, a spring that the board's loop winds in 0.6 s; with this, in half that. ASSUMPTION:
-held on the low preload plant; with diodes at the motors Dec may still be 1.5″ off for seconds."""
+held on the plant `low_preload`; behind a power stage Dec may still be 1.5″ off for seconds."""
 _MOST_LEAD_ARCSEC: Final = 8.0
 """About the bristles' travel there. ASSUMPTION."""
 _SETTLE_S: Final = 1.0

@@ -17,8 +17,9 @@ POINTING_BANDWIDTH = 22.0
 rotors against the axis (about 130 rad/s, 5 % damped). Otherwise 10 ms of delay would drive that mode."""
 _POINTING_KI = 0.08
 """Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
-_CREEP_KI = 0.1
-"""Ki/Kp while it creeps: 20 rad/s. ASSUMPTION: more of it hunts between two PWM steps."""
+_CREEP_KI = {"ra": 0.1, "dec": 0.2}
+"""Ki/Kp while it creeps: 20 and 40 rad/s. ASSUMPTION: on the axis that tracks, more of it hunts between two
+PWM steps. Declination stands, and its effort has the dead zone of the power stage to cross."""
 _GUST_BANDWIDTH = 33.0
 """rad/s, while it creeps in wind, at least. ASSUMPTION: a quarter of that mode."""
 _GUST_KI = 0.05
@@ -62,7 +63,7 @@ def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) 
         ki=controller.ki.si * scale,
         kp_pointing=pointing,
         ki_pointing=pointing * _POINTING_KI,
-        ki_creep=pointing * _CREEP_KI,
+        ki_creep=pointing * _CREEP_KI[axis],
         kp_gust=gust,
         ki_gust=gust * _GUST_KI,
         counter_split=round(controller.counter_split.si * 100),

@@ -20,7 +20,7 @@ EDGES = [(direction, seconds) for seconds in (0.1, 5.0) for direction in "wensw"
 
 @pytest.fixture(scope="module")
 def tracking() -> Iterator[Rig]:
-    rig = Rig()
+    rig = Rig(plant="low-preload")
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=-1.0, dec_deg=20.0), wake=True))
     rig.advance(20.0)
     yield rig

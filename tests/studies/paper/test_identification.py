@@ -253,5 +253,7 @@ def test_E10_the_model_of_a_drive_does_not_depend_on_where_in_its_gears_it_begin
     for begin in (Start(101.9, 4), Start(139.2, 5), Start(188.8, 6), Start(251.5, 7)):
         found = identify(lambda begin=begin: make(plant, begin.seed, None, begin.steps))
         assert found.gain == pytest.approx(wanted.gain, rel=0.03)
-        assert found.lag_s == pytest.approx(wanted.lag_s, abs=0.0015)
+        assert found.lag_s == pytest.approx(
+            wanted.lag_s, rel=0.05
+        )  # a rule takes the gain from it as a share
         assert found.dead_s == pytest.approx(wanted.dead_s, abs=0.002)
