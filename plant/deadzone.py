@@ -37,7 +37,10 @@ def dead_zone(model: PlantModel, motor: Motor) -> float:
     """
     volts, drop = model.supply.voltage.si, drop_v(motor)
     ripple = motor.resistance.si / (2.0 * motor.inductance.si * model.controller.pwm_frequency.si)
-    return drop / (volts + drop - ripple * volts)
+    below = volts + drop - ripple * volts
+    if below <= drop:
+        raise ValueError("the current dies at every duty: a larger inductance or PWM frequency is needed")
+    return drop / below
 
 
 def bias_steps(model: PlantModel, motor: Motor) -> int:

@@ -46,7 +46,7 @@ def check_timing(
     ms = 1e3 * settings.speed
     times = np.asarray(stamps) * ms
     gaps = [later - earlier for earlier, later in pairwise(times.tolist())]
-    usual = float(np.median(gaps))  # of which a gap holds several, where the tester lost what came between
+    usual = float(np.median(gaps)) or float(period_ms)  # a gap holds several where frames were lost
     mean = sum(gaps) / (sum(max(1, round(gap / usual)) for gap in gaps) if lost else len(gaps))
     observed = f"mean {mean:.3f} ms" + (f", {lost} frames were lost here" if lost else "")
     allowed = (queueing + _RELEASE_S) * 1e3 + settings.stamps_s * ms

@@ -5,6 +5,7 @@ NumPy's archives (.npz) are read in the same words.
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -40,19 +41,42 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
 def _content(path: Path) -> dict[str, Any]:
     """Variables by their names. Raises CalibrationInputError for what is no such file."""
     from zipfile import BadZipFile
+    from zlib import error as ZlibError
 
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
     kind = "NumPy archive" if path.suffix.lower() == ".npz" else "MATLAB file"
     try:
-        return dict(np.load(path).items()) if kind.startswith("NumPy") else loadmat(path)
+        return _arrays(path) if kind.startswith("NumPy") else loadmat(path)
     except NotImplementedError:
         what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
+        if kind.startswith("NumPy"):
+            what = "is packed in a way that is not read; save it with savez"
         raise CalibrationInputError(path, what) from None
-    except (OSError, ValueError, TypeError, EOFError, AttributeError, BadZipFile, MatReadError) as error:
+    except (
+        OSError,
+        ValueError,
+        TypeError,
+        EOFError,
+        AttributeError,
+        RuntimeError,
+        BadZipFile,
+        ZlibError,
+        MatReadError,
+    ) as error:
         text = "no plain arrays" if kind.startswith("NumPy") else " ".join(str(error).split())
         raise CalibrationInputError(path, f"is not a {kind} this tool reads ({text})") from None
+
+
+def _arrays(path: Path) -> dict[str, Any]:
+    """Plain arrays of an archive; objects are passed over."""
+    found: dict[str, Any] = {}
+    with np.load(path) as archive:
+        for name in archive.files:
+            with suppress(ValueError):
+                found[name] = archive[name]
+    return found
 
 
 def columns_of(path: Path) -> list[str]:

@@ -73,9 +73,7 @@ class Run:
     @property
     def gap_s(self) -> float:
         """A step of the clock in s beyond which rows are missing: longer than its own jitter makes it."""
-        steps = np.diff(self.columns["t"])
-        usual = float(np.quantile(steps, limits.USUAL_STEPS)) if len(steps) >= limits.FEWEST_STEPS else 0.0
-        return limits.GAP * max(self.period_s, usual)
+        return longest_step(np.diff(self.columns["t"]), self.period_s)
 
     def among(self, names: Collection[str]) -> bool:
         """Whether `names` have this run, or its file."""
@@ -86,6 +84,12 @@ class Run:
         t = self.columns["t"]
         at = np.flatnonzero(np.diff(t) > self.gap_s)
         return [(float(t[k]), float(t[k + 1])) for k in at]
+
+
+def longest_step(steps: Array, period_s: float) -> float:
+    """The step (s) of a clock, of all its steps (n,), beyond which rows are missing and no stamp shakes."""
+    usual = float(np.quantile(steps, limits.USUAL_STEPS)) if len(steps) >= limits.FEWEST_STEPS else 0.0
+    return limits.GAP * max(period_s, min(usual, limits.SHAKEN * period_s))
 
 
 def numbers(records: Iterable[Run], channel: str) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
+from calibration.inputs.run import longest_step
 
 #: `format` of a time column whose stamps are ISO 8601; another one is strptime's
 ISO = "iso"
@@ -110,6 +111,6 @@ def wide(path: Path, names: list[str], stamps: Array, values: Array, wanted: lis
         step = np.diff(t)
         after = np.clip(np.searchsorted(t, base, side="right"), 1, len(t) - 1) - 1
         inside = (base != t[after]) & (base != t[after + 1])
-        found[inside & (step[after] > limits.GAP * np.quantile(step, limits.USUAL_STEPS))] = np.nan
+        found[inside & (step[after] > longest_step(step, float(np.median(step))))] = np.nan
         out[name] = found
     return out

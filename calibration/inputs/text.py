@@ -15,6 +15,8 @@ from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, wi
 
 # characters that a blank line may hold, but for the delimiter
 BLANK = " \t\r\f\v"
+# words of a column's name: itself and its unit. A remark has more. ASSUMPTION
+NAME_WORDS = 2
 MOST_COLUMNS = 4096
 """Ten times the widest table known. ASSUMPTION."""
 COMMAS = ": decimal commas? write points"
@@ -109,8 +111,9 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
 
 def _commented(above: list[str], mark: str, count: int) -> list[str]:
     """Names in the last comment above rows of numbers, where it has one for each of `count` columns."""
-    names = split(above[-1].lstrip("#% "), mark) if above else []
-    words = all(name and plain(name) is None for name in names)
+    last = next((line for line in reversed(above) if line.startswith(("#", "%"))), "")
+    names = [name.rstrip(",;") for name in split(last.lstrip("#% "), mark)]
+    words = all(name and plain(name) is None and len(name.split()) <= NAME_WORDS for name in names)
     return names if len(names) == count > 1 and words and len(set(names)) == count else []
 
 

@@ -92,6 +92,8 @@ COARSE_STEPS = 4
 GAP = 2.5
 # share of a clock's steps that are no gaps: serial stamps shake by whole periods in every tenth. ASSUMPTION
 USUAL_STEPS = 0.95
+# periods that a stamp that shakes is late by at most: more is a pause between bursts of rows. ASSUMPTION
+SHAKEN = 3.0
 
 # --- a column's step
 

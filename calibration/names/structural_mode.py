@@ -52,10 +52,10 @@ def columns(s: Scene) -> list[Candidate]:
         moves = np.diff(np.flatnonzero(np.diff(way)), prepend=-1, append=len(way) - 1)
         longest = float(np.quantile(moves, LONG_MOVES)) * v.period_s
         often = FEWEST_PERIODS / max(len(v.t) * v.period_s, 1e-9)
-        lowest = max(often, 1 / max(longest, v.period_s), SLOWEST_HZ)
+        lowest = min(max(often, 1 / max(longest, v.period_s), SLOWEST_HZ), SEEN / v.period_s)
         corner = 1 / (2 * np.pi * max(v.wide, 1.0) * v.period_s)
         top = max(BELOW * corner, 2 * lowest)
-        count = int(np.ceil(np.log(top / lowest) / (2 * DAMPING)))  # one within the width of every resonance
+        count = 1 + int(np.ceil(np.log(top / lowest) / (2 * DAMPING)))  # every resonance's width holds one
         modes = [(f, DAMPING) for f in np.geomspace(lowest, top, count)]
 
     def shape(p: Array) -> Array:

@@ -115,19 +115,22 @@ def _parked(served: LiveNetwork, way: _Way, say: Callable[[str], None]) -> str:
         Device.AXIS_DEC: mount.dec.steps(mount.park_declination_rad),
     }
     there = [axis for axis in goals if axis.name in served.network.boards]
-    silent = way.go(there, way.heard)
+    failed = way.go(there, way.heard)
+    silent = {axis: why for axis, why in failed.items() if axis not in way.link.measurements}
     moving = [axis for axis in there if axis not in silent and powered(way.client, axis)]
     if not moving and not silent:
         return "the motors were off"
     if moving:
         say(BEGUN)
     failed = way.go(moving, lambda axis: way.move(axis, goals[axis]))
-    way.go(failed, way.halt)
+    moved = way.go(failed, way.halt)
     on = way.go(moving, way.off)
     words = [f"{axis.name} is silent, its motors are as they were ({why})" for axis, why in silent.items()]
     words += [f"{axis.name} is not parked ({why})" for axis, why in failed.items()]
+    words += [f"{axis.name} did not come to rest ({why})" for axis, why in moved.items()]
     words += [f"the motors of {axis.name} may be on ({why})" for axis, why in on.items()]
     if not words:
         return "parked, motors off"
     parked = [axis.name for axis in moving if axis not in failed]
-    return "; ".join(words + [f"{' and '.join(parked)} is parked"] * bool(parked))
+    are = "are" if len(parked) > 1 else "is"
+    return "; ".join(words + [f"{' and '.join(parked)} {are} parked"] * bool(parked))

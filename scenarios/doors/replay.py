@@ -78,7 +78,7 @@ def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int 
     with shown("replaying", end_ns, begun=begun_ns) as show:
         for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
             if t_ns < served.now_ns:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the entry before it")
+                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
             _go(served, t_ns, end_ns, show)
             try:
                 served.entry.enter(kind, data)

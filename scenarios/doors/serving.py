@@ -79,8 +79,10 @@ def serve(options: ServeOptions) -> int:
         finally:
             for keeper in keepers:
                 keeper.close()
-            ended = park(served, console.print) if served.steps is None else "left where they stood"
-            digest = recording.close(served.now_ns) if recording is not None else ""
+            try:
+                ended = park(served, console.print) if served.steps is None else "left where they stood"
+            finally:
+                digest = recording.close(served.now_ns) if recording is not None else ""
     _say_goodbye(console, loop, served, doors)
     console.print(ended, soft_wrap=True)
     if recording is not None:

@@ -246,7 +246,7 @@ def test_a_smooth_torque_over_the_angle_comes_back_as_an_unknown_within_its_unce
 ) -> None:
     x = np.linspace(4.6, 5.1, 32)
     true = Function("torque", "axis_angle", "cubic", 0.0, tuple(zip(x, smooth(x), strict=True)), "a test")
-    plain = with_effects(load(), "ra", ())
+    plain = with_effects(load("low_preload"), "ra", ())
     paths = logs(tmp_path, with_effects(plain, "ra", [EffectModel("unknown", function=true)]))
     runs = [read_axis_log(p) for p in paths]
     frame = build_frame(runs)
