@@ -127,7 +127,7 @@ def _parked(served: LiveNetwork, way: _Way, say: Callable[[str], None]) -> str:
     on = way.go(moving, way.off)
     words = [f"{axis.name} is silent, its motors are as they were ({why})" for axis, why in silent.items()]
     words += [f"{axis.name} is not parked ({why})" for axis, why in failed.items()]
-    words += [f"{axis.name} did not come to rest ({why})" for axis, why in moved.items()]
+    words += [f"{axis.name} did not come to rest ({why})" for axis, why in moved.items() if axis not in on]
     words += [f"the motors of {axis.name} may be on ({why})" for axis, why in on.items()]
     if not words:
         return "parked, motors off"
