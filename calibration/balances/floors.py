@@ -102,7 +102,8 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
     friction within a step of the sensor after every reversal, less what the declared terms take of it. None
     for what is not estimated."""
     declared, _ = p.plain_fit(p.train)
-    own = passed(view, response_of(view, 0.0)[0], view.x)
+    loop = None if view.response.is_speed else view.x  # no loop makes a speed, the position is its own
+    own = passed(view, response_of(view, 0.0)[0], loop)
     step = view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain)
     if own is not None and not view.response.divide_by:  # a held or slow column hides its rounding
         own = max(own, step * ROUNDING * float(np.sqrt(view.filter.passes)))
