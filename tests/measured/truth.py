@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 UNKNOWN = "unknown"
+# names of a class that are written out: what a line of the table holds. ASSUMPTION
+ALIKE = 2
 # times the largest right value: no interval excuses more. ASSUMPTION
 FAR = 1.5
 RIGHT, HALF, MISSED, WRONG = "right", "half", "missed", "wrong"
@@ -114,4 +116,6 @@ def say(e: dict[str, Any]) -> str:
         place += f" {e['frequency_Hz']:.4g} Hz"
     if e["name"] == UNKNOWN:
         place += f" over {e['domain']}"
-    return e["name"] + place + (f" (or {', '.join(e['equivalent'])})" if e["equivalent"] else "")
+    alike = e["equivalent"][:ALIKE]
+    more = f" and {len(e['equivalent']) - ALIKE} more" if len(e["equivalent"]) > ALIKE else ""
+    return e["name"] + place + (f" (or {', '.join(alike)}{more})" if alike else "")
