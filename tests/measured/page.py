@@ -15,7 +15,7 @@ MEANT_S = 20.0
 """What a calibration should take, processor time (docs/results/speed.md)."""
 MOST = 4
 """Harmonics that a cell of the table lists."""
-GROUPS = 3
+GROUPS = 2
 """Names that it lists, so that it has no more words than a sentence may."""
 
 
