@@ -99,8 +99,8 @@ def _bent(view: View, by: Filter) -> float:
 
 def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
     """rms of the force's column and of the position through the inertia. The second value (n_fitted,) is
-    friction within a step of the sensor after every reversal, less what the declared terms take of it. None
-    for what is not estimated."""
+    friction whose direction the position's noise leaves open after a reversal, less what the declared terms
+    take of it. None for what is not estimated."""
     declared, _ = p.plain_fit(p.train)
     loop = None if view.response.is_speed else view.x  # no loop makes a speed, the position is its own
     own = passed(view, response_of(view, 0.0)[0], loop)
@@ -109,11 +109,11 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
         own = max(own, step * ROUNDING * float(np.sqrt(view.filter.passes)))
     bent = abs(declared.get("inertia", 0.0)) * _bent(view, Filter(view.wide))
     known = None if own is None else float(np.hypot(own, bent))
-    coulomb = declared.get("coulomb", 0.0)
-    if coulomb <= 0 or not view.dynamic or not p.valid.any():
+    coulomb, noise = declared.get("coulomb", 0.0), position_noise(view.x, view.file)
+    if coulomb <= 0 or noise <= 0 or not view.dynamic or not p.valid.any():
         return known, None
-    noise = position_noise(view.x, view.file)
-    wrong = norm.cdf(-np.abs(view.since) / (np.sqrt(2.0) * noise)) if noise > 0 else 0.0 * view.since
+    # the chance that noise of two places, here and where it turned, hides the way; friction is then twice off
+    wrong = norm.cdf(-np.abs(view.since) / (np.sqrt(2.0) * noise))
     column = 2 * coulomb * view.at(np.sqrt(wrong))
     beta = np.linalg.lstsq(p.base[p.train], column[p.train], rcond=None)[0]
     return known, np.asarray(column - p.base @ beta)

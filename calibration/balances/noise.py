@@ -39,7 +39,8 @@ def rough(x: Array, order: int, beside: Array | None = None) -> float:
     if beside is not None and len(d) > BLOCK:
         steps = np.diff(beside, order)
         own = np.column_stack([np.pad(steps, (k, 0))[: len(d)] for k in range(LOOP_ROWS)])
-        d = d - own @ solve(own, d)
+        known = np.isfinite(d) & np.isfinite(own).all(axis=1)
+        d = d - own @ solve(own[known], d[known])
     squares = [b**2 for b in np.split(d, range(BLOCK, len(d), BLOCK)) if np.isfinite(b).all()]
     blocks = [float(np.mean(b)) for b in squares]
     gain = comb(2 * order, order)  # sum of the squared binomials

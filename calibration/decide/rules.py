@@ -125,9 +125,9 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
-        if "damping" in told and _no_structure(told["damping"]):
-            return "damped too much for a resonance, by its interval"
-        return "damped too much for a resonance" if at.get("damping", 0.0) >= MOST_DAMPED else ""
+        return (
+            "damped too much for a resonance" if "damping" in told and _no_structure(told["damping"]) else ""
+        )
 
     return each(why)
 
@@ -143,10 +143,9 @@ def cancelled(s: Selection, k: int) -> str:
     rows = s.problem.train
     own = s.effect(k)[rows]
     for j, other in enumerate(s.candidates):
-        if j != k and (both := s.effect(j)[rows]).any():
-            least = min(float(np.std(own)), float(np.std(both)))
-            if np.std(own + both) < limits.CANCELS * least:
-                return f"cancels against {other.say()}"
+        theirs = s.effect(j)[rows]
+        if j != k and np.std(own + theirs) < limits.CANCELS * min(float(np.std(own)), float(np.std(theirs))):
+            return f"cancels against {other.say()}"
     return ""
 
 

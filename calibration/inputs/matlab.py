@@ -40,42 +40,36 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
 
 def _content(path: Path) -> dict[str, Any]:
     """Variables by their names. Raises CalibrationInputError for what is no such file."""
-    from zipfile import BadZipFile
-    from zlib import error as ZlibError
+    return _arrays(path) if path.suffix.lower() == ".npz" else _variables(path)
 
+
+def _variables(path: Path) -> dict[str, Any]:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
-    kind = "NumPy archive" if path.suffix.lower() == ".npz" else "MATLAB file"
     try:
-        return _arrays(path) if kind.startswith("NumPy") else loadmat(path)
+        return dict(loadmat(path))
     except NotImplementedError:
         what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
-        if kind.startswith("NumPy"):
-            what = "is packed in a way that is not read; save it with savez"
         raise CalibrationInputError(path, what) from None
-    except (
-        OSError,
-        ValueError,
-        TypeError,
-        EOFError,
-        AttributeError,
-        RuntimeError,
-        BadZipFile,
-        ZlibError,
-        MatReadError,
-    ) as error:
-        text = "no plain arrays" if kind.startswith("NumPy") else " ".join(str(error).split())
-        raise CalibrationInputError(path, f"is not a {kind} this tool reads ({text})") from None
+    except (OSError, ValueError, TypeError, MatReadError) as error:
+        text = " ".join(str(error).split())
+        raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({text})") from None
 
 
 def _arrays(path: Path) -> dict[str, Any]:
-    """Plain arrays of an archive; objects are passed over."""
+    """Plain arrays of a NumPy archive; objects are passed over."""
+    from zipfile import BadZipFile
+    from zlib import error as ZlibError
+
     found: dict[str, Any] = {}
-    with np.load(path) as archive:
-        for name in archive.files:
-            with suppress(ValueError):
-                found[name] = archive[name]
+    try:
+        with np.load(path) as archive:
+            for name in archive.files:
+                with suppress(ValueError):
+                    found[name] = archive[name]
+    except (OSError, ValueError, TypeError, AttributeError, EOFError, RuntimeError, BadZipFile, ZlibError):
+        raise CalibrationInputError(path, "is not a NumPy archive of plain arrays (savez)") from None
     return found
 
 

@@ -82,12 +82,12 @@ def between(rate: float, known: Array, span: float) -> tuple[float, float]:
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
     """A line at an order that no stage has is a bearing only when the gear table is there to say so."""
-    if f.name != NAME.name or not f.order:
+    if f.name != NAME.name or not (order := f.order):
         return f
-    f = replace(f, note=f"period {(s.view.turn or 1.0) / f.order:.5g} {s.angle_unit}")
+    f = replace(f, note=f"period {(s.view.turn or 1.0) / order:.5g} {s.angle_unit}")
     stage, harmonic = _harmonic_of(f, s)
     quickest = max((s.turn / g.period for g in s.view.rig.stages if g.period), default=0.0)
-    if stage is None and has_train(s) and (f.order or 0.0) <= MOST_ROLLERS * quickest:
+    if stage is None and has_train(s) and order <= MOST_ROLLERS * quickest:
         return f
     name = _called(stage, f)
     alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f), NAME.name]) if x != name]

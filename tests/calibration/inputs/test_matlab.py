@@ -20,5 +20,5 @@ def test_an_archive_has_rows_columns_and_vectors(tmp_path: Path) -> None:
 def test_what_is_no_archive_is_one_line(tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
     path.write_text("time,q\n")
-    with pytest.raises(CalibrationInputError, match="is not a NumPy archive this tool reads"):
+    with pytest.raises(CalibrationInputError, match="is not a NumPy archive of plain arrays"):
         read_matlab(path, ["q"])
