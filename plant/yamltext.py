@@ -5,6 +5,7 @@ nested deeper than the parser's stack. Both are seen in the event stream, which 
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,8 @@ MAX_BYTES = 4_000_000
 """The largest file of the project has 30 kB."""
 MAX_DEPTH = 50
 MAX_VALUES = 100_000
+MOST_TOLD = 20
+"""Mistakes of one file that are told: a screen. ASSUMPTION."""
 _TOO_LONG = re.compile(r"[-+]?(0[xb])?[0-9a-fA-F_:]{251,}")
 """A whole number that no floating-point number may hold: 250 hexadecimal digits are 1e301."""
 
@@ -25,6 +28,15 @@ class TextError(ValueError):
         self.what = what
         self.line = line
         super().__init__(what if line is None else f"line {line}: {what}")
+
+
+def beside(first: Exception, others: Sequence[str], place: str) -> Exception:
+    """`first` with a file's other mistakes as its notes: a screen of them, and how many more there are."""
+    for text in others[: MOST_TOLD - 1]:
+        first.add_note(text)
+    if len(others) >= MOST_TOLD:
+        first.add_note(f"{place}: and {len(others) - MOST_TOLD + 1} mistakes more")
+    return first
 
 
 def check_regular(path: Path) -> None:

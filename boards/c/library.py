@@ -119,6 +119,7 @@ class Memory:
         # a restored library is loaded anew: its block and callbacks are the C compiler's, not pickle's
         if state["flags"]:  # those are a program's words, and a snapshot is data
             raise FirmwareError(f"{state['file']}: a snapshot has no flags for the compiler")
+        # the same object, for whoever holds it: a checker wants a new one
         self.__init__(state["file"], (), state["ask"])  # type: ignore[misc]
         if self.digest != state["digest"]:
             raise FirmwareError(f"{self.file} has changed")

@@ -65,6 +65,7 @@ class UartLine:
         self._busy_ns = max(self._busy_ns, self._queue.now_ns)
         for byte in data:
             self._busy_ns += byte_ns
+            # bound now, by a default that the queue's type of a callback does not know
             self._queue.at(self._busy_ns, lambda t_ns, byte=byte: self._through(t_ns, byte))  # type: ignore[misc]
 
     def _through(self, t_ns: int, byte: int) -> None:

@@ -6,6 +6,7 @@ import os
 import socket
 import sys
 from contextlib import suppress
+from stat import S_ISSOCK
 
 import can
 
@@ -51,20 +52,25 @@ def open_bus(spec: str) -> can.BusABC:
         if not (key and equals):
             raise SpecError(f'"{spec}": option "{option}" is not key=value')
         settings[key] = int(value) if value.isdecimal() and len(value) < 19 else value
-    try:
+    try:  # an interface's own settings: of any type, which the signature cannot know
         bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option
         reason = " ".join(str(error).split()) or type(error).__name__
         remedy = _remedy(error).format(channel) if interface == "socketcan" else ""
         raise SpecError(f'"{spec}" cannot be opened: {reason}{remedy and f"; try: {remedy}"}') from None
-    with (
-        suppress(OSError, NotImplementedError, AttributeError, ValueError),  # no socket, or not so much
-        socket.socket(fileno=os.dup(bus.fileno())) as copy,
-    ):
+    with suppress(OSError, NotImplementedError, AttributeError, ValueError):  # no socket, or not so much
+        _prepare(bus.fileno(), interface)
+    return bus
+
+
+def _prepare(number: int, interface: str) -> None:
+    """A large buffer for a socket; of a descriptor that is none nothing is changed."""
+    if not S_ISSOCK(os.fstat(number).st_mode):
+        return
+    with socket.socket(fileno=os.dup(number)) as copy:
         copy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         if interface == "udp_multicast" and sys.platform == "linux":
             _hear_one_group(copy)
-    return bus
 
 
 def _remedy(error: BaseException | None) -> str:

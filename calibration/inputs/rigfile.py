@@ -14,14 +14,12 @@ from calibration.inputs.declaration import Rig, made
 from calibration.inputs.rigchecks import check
 from calibration.inputs.thresholds import DEFAULT_HOLD_OUT
 from calibration.inputs.train import stages_of
-from plant.yamltext import TextError, check_yaml, read_text
+from plant.yamltext import TextError, beside, check_yaml, read_text
 
 DELIMITERS = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}
 #: rig files that ship with the tool
 RIGS = Path(__file__).parent.parent / "rigs"
 SCHEMA = Path(__file__).with_name("rig.schema.json")
-_TOLD = 20
-"""Mistakes of one file: a screen. ASSUMPTION."""
 
 
 class _Loader(yaml.SafeLoader):
@@ -52,10 +50,8 @@ def load_rig(path: Path) -> Rig:
         errors = [error for error in errors if not _says(error)] or errors
         errors.sort(key=lambda e: [str(p) for p in e.absolute_path])
         first, *others = dict.fromkeys(_complaint(data, text, e, word) for e in errors for word in _words(e))
-        wrong = CalibrationInputError(path, *first)
-        for other in others[:_TOLD]:
-            wrong.add_note(str(CalibrationInputError(path, *other)))
-        raise wrong
+        more = [str(CalibrationInputError(path, *other)) for other in others]
+        raise beside(CalibrationInputError(path, *first), more, str(path))
     return _build(path, data)
 
 

@@ -79,6 +79,8 @@ def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int 
         for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
             if t_ns < served.now_ns:
                 raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
+            if "end_ns" in facts and t_ns > end_ns:
+                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is after the session's end")
             _go(served, t_ns, end_ns, show)
             try:
                 served.entry.enter(kind, data)

@@ -9,13 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from plant.yamltext import beside
 from scenarios.language.document import Document, Path_, ScenarioError
 from scenarios.language.units import BASE, UNITS, UnitError, parse, unit_of
 
 SCHEMA_FILE = Path(__file__).parents[1] / "scenario.schema.json"
 
-_TOLD = 20
-"""Mistakes of one file: a screen. ASSUMPTION."""
 Problem = tuple[int, int, str]
 """Line, rank within it, text."""
 _TYPES = {
@@ -84,12 +83,8 @@ def check(document: Document, language: dict[str, Any] | None = None) -> None:
         {each for error in errors for each in _describe(document, error)} or _infinite(document)
     )
     if problems:
-        wrong = ScenarioError(problems[0][2])
-        for _, _, text in problems[1:_TOLD]:
-            wrong.add_note(text)
-        if len(problems) > _TOLD:
-            wrong.add_note(f"{document.file}: and {len(problems) - _TOLD} mistakes more")
-        raise wrong
+        first, *others = (text for _, _, text in problems)
+        raise beside(ScenarioError(first), others, str(document.file))
 
 
 def _infinite(document: Document) -> Iterator[Problem]:

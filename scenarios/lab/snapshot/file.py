@@ -19,7 +19,10 @@ _MOST = 1 << 28
 def write(whole: dict[str, Any], file: Path) -> int:
     """Write it whole or not at all; returns its bytes. Raises SnapshotError, or LogError for the disk."""
     files = {path: _digest(path) for path in board_files(whole["scenario"])}
-    body = zlib.compress(take(whole | {"files": files}), 1)
+    plain = take(whole | {"files": files})
+    if len(plain) > _MOST:  # nobody could read it
+        raise SnapshotError(f"snapshot: longer than {_MOST >> 20} MB")
+    body = zlib.compress(plain, 1)
     data = _HEAD + sha256(body).hexdigest().encode() + b"\n" + body
     part = file.with_name(file.name + ".part")
     try:
