@@ -77,7 +77,9 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
     at = view.rows
     size, unit = (180 / np.pi, "degrees") if view.angle_unit == "rad" else (1.0, view.angle_unit)
     if c.repeats is not None:
-        return (view.x[at] / (view.turn or 1.0) * c.repeats) % 1.0, f"phase of order {c.repeats:.5g}, turns"
+        turns = view.x[at] / (view.turn or 1.0) * c.repeats
+        turns = turns % 1.0 if np.ptp(turns) > 1.0 else turns  # less than a turn is drawn in one piece
+        return turns, f"phase of order {c.repeats:.5g}, turns"
     if c.frequency is not None:
         return (view.t[at] * c.frequency) % 1.0, f"phase of {c.frequency:.5g} Hz, turns"
     if c.domain == "temperature" and "temperature" in view.columns:
