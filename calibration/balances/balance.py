@@ -129,7 +129,11 @@ def _term(view: View, name: str) -> list[Term]:
             f"{unit} s2/{x}",
             lambda: view.columns.get("acceleration", view.smoothed(view.second(view.x))),
         ),
-        "viscous": (f"{unit} s/{x}", lambda: view.smoothed(view.rate(view.x)) * brakes),
+        # a rate that no filter follows is as noisy as the sensor's steps, which would hide its coefficient
+        "viscous": (
+            f"{unit} s/{x}",
+            lambda: (view.smoothed(view.rate(view.x)) if view.dynamic else view.speed) * brakes,
+        ),
         "coulomb": (unit, lambda: sliding_of(view).shape * brakes),
         "offset": (unit, lambda: np.ones(len(view.t))),
         "drift": (f"{unit}/s", lambda: view.clock - view.clock.mean()),

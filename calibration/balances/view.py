@@ -270,13 +270,13 @@ def least_travel(x: Array) -> float:
 
 def _motion(view: View, sigma: float) -> None:
     """Speed, direction and travel since the last reversal."""
-    soft = smooth(view.x, view.segment, max(sigma / 2, 1.0))
-    view.speed = view.rate(soft)
+    width = max(sigma / 2, 1.0)
+    soft = smooth(view.x, view.segment, width)
+    view.speed = smooth(view.rate(view.x), view.segment, width)  # at an edge `soft` stands still
     view.direction = direction_of(soft, view.file, least_travel(soft))
     view.since = since_reversal(soft, view.direction, view.file)
     if view.dynamic:  # a driven axis also stands still: there its friction has no direction
         fade(view, STANDSTILLS[3])
-        width = max(sigma / 2, 1.0)
         noise = position_noise(view.x, view.file) / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
         view.slow = max(SURE_Z * noise, SLOWEST * view.top)
 

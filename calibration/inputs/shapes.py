@@ -94,19 +94,24 @@ def with_seconds(
     return out
 
 
-def wide(path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str]) -> dict[str, Array]:
-    """Columns of a long table on the stamps of the first of `wanted`, which is no interpolated one; key "" is
-    these stamps. NaN beyond a signal's own stamps and in its gaps."""
+def wide(
+    path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str], on_first: bool
+) -> dict[str, Array]:
+    """Columns of a long table on the stamps of one signal, which are key ""; NaN beyond a signal's own stamps
+    and in its gaps. The one is the first of `wanted`, or unless `on_first` a later one with more readings."""
     which = np.array(names)
-    out: dict[str, Array] = {}
+    known = np.isfinite(stamps) & np.isfinite(values)
+    rows = {name: np.flatnonzero((which == name) & known) for name in wanted}
     for name in wanted:
-        mine = np.flatnonzero((which == name) & np.isfinite(stamps) & np.isfinite(values))
-        if len(mine) < limits.FEWEST_VALUES:
+        if len(mine := rows[name]) < limits.FEWEST_VALUES:
             have = ", ".join(dict.fromkeys(names))
             raise CalibrationInputError(path, f"has {len(mine)} rows; the table has {have}", None, name)
+    most = 0 if on_first else max(map(len, rows.values()))
+    base = np.sort(stamps[next(mine for mine in rows.values() if len(mine) >= limits.SAME_RATE * most)])
+    out = {"": base}
+    for name, mine in rows.items():
         mine = mine[np.argsort(stamps[mine], kind="stable")]
         t, x = stamps[mine], values[mine]
-        base = out.setdefault("", t)
         found = np.interp(base, t, x, left=np.nan, right=np.nan)
         step = np.diff(t)
         after = np.clip(np.searchsorted(t, base, side="right"), 1, len(t) - 1) - 1

@@ -146,15 +146,16 @@ def read_long(
     long: Mapping[str, str],
     time: str,
     stamps: Mapping[str, str],
+    on_first: bool,
 ) -> dict[str, Array]:
-    """The wanted signals of a long table, on the stamps of the first signal wanted. Its rows hold a name, a
-    stamp and a value (`long`: the columns of name and value)."""
+    """The wanted signals of a long table on the stamps of one of them, as `wide` has it. Its rows hold a name,
+    a stamp and a value (`long`: the columns of name and value)."""
     got = read_columns(path, text, [time, long["value"]], (), None, stamps)
     lines, fields, first, mark, at = heading(path, text)
     place = _place(path, long["name"], fields, True, at + 1)
     names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[time])]
     signals = [str(c) for c in wanted if str(c) != time]
-    found = wide(path, names, got[time], got[long["value"]], signals)
+    found = wide(path, names, got[time], got[long["value"]], signals, on_first)
     return {time: found.pop(""), **found}
 
 

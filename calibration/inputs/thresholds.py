@@ -99,6 +99,8 @@ SHAKEN = 3.0
 
 # values that tell a step: two differences; by definition
 FEWEST_VALUES = 3
+# of the readings of another signal, of one that is logged as often: a few are lost. ASSUMPTION
+SAME_RATE = 0.9
 # of the largest value: closer numbers are one, rounded; by arithmetic of doubles
 SAME_VALUE = 1e-12
 # share of the steps that is taken for one count: a wide, sparse column has few. ASSUMPTION

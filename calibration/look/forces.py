@@ -11,6 +11,7 @@ from calibration.balances.problem import Problem
 from calibration.balances.slowoffset import offset_order
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
+from calibration.decide.onecolumn import by_one_column
 from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, of_one_place, quick_lines, settle
 from calibration.decide.selection import Selection
@@ -118,7 +119,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
-    s, together, beyond = beyond_names(s, scene)
+    s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
     findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)

@@ -125,7 +125,7 @@ def test_a_long_table_has_a_clock_per_signal(tmp_path: Path, as_json: bool) -> N
 
 
 def test_a_signal_that_a_long_table_has_not_is_told(tmp_path: Path) -> None:
-    with pytest.raises(CalibrationInputError, match=r"column 'x': has 0 rows; the table has y"):
+    with pytest.raises(CalibrationInputError, match=r"column 'u': has 0 rows; the table has y"):
         read(tmp_path, "t,signal,value\n0,y,1\n1,y,2\n", COLUMNS, LONG)
 
 
