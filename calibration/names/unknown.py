@@ -1,6 +1,5 @@
 """Smooth functions of every domain: what an effect outside the catalogue enters the plant as."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,11 +7,21 @@ import numpy as np
 from calibration.balances.candidate import waves
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
-from calibration.balances.view import View
 from calibration.finding import UNKNOWN, Finding, of_columns
 from calibration.names.gravity_imbalance import gravity
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
-from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene, candidate
+from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene
+from calibration.names.spline import spline_columns
+from calibration.names.unknown_shapes import (
+    bend,
+    each,
+    end_stop,
+    loops,
+    lost_motion,
+    moving_scale,
+    over,
+    spring,
+)
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
@@ -20,10 +29,6 @@ from calibration.statistics.tails import middle
 
 # knots of a smooth function. ASSUMPTION: names against what only looks smooth
 KNOTS = 8
-# knots over time of a scale that moves. ASSUMPTION
-SLOW = 4
-# part of the usual stroke, of the widest of several loops. ASSUMPTION
-WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)
 # part of the usual stroke, of the loops in a flexible fit. ASSUMPTION
 RADII = (0.002, 0.01, 0.05, 0.2)
 # rad/s, of an axis with two motors, 10 arcsec/s: quicker, the logarithm of the speed counts. ASSUMPTION
@@ -38,19 +43,6 @@ FEWEST_CYCLES = 4
 MOST_CYCLES = 2e5
 # harmonics of such a line. ASSUMPTION
 HARMONICS = 5
-
-
-def spline_columns(x: Array, knots: int) -> Array:
-    """Cubic B-splines of x over its range, `knots` columns without the constant."""
-    from scipy.interpolate import BSpline
-
-    low, high = float(np.min(x)), float(np.max(x))
-    if high <= low:
-        return np.zeros((len(x), 0))
-    inner = np.linspace(low, high, knots - 2)
-    full = np.concatenate([[low] * 3, inner, [high] * 3])
-    columns = BSpline.design_matrix(np.clip(x, low, high), full, 3).toarray()
-    return np.asarray(columns[:, 1:])
 
 
 def domains(s: Scene) -> list[tuple[str, Array]]:
@@ -91,17 +83,8 @@ def smooth_functions(s: Scene) -> list[Candidate]:
             shapes.append(columns * s.view.direction[s.view.rows][:, None])
         if s.force and s.view.dynamic and domain == "axis_angle":
             shapes.append(columns * _declared_force(s)[:, None])
-        out += [_over(domain, one, *_each("knot", one, s.unit)) for one in shapes]
+        out += [over(domain, one, *each("knot", one, s.unit)) for one in shapes]
     return out
-
-
-def _over(domain: str, columns: Array, *sizes: tuple[str, str], **more: Any) -> Candidate:
-    return candidate(UNKNOWN, columns, *sizes, domain=domain, **more)
-
-
-def _each(label: str, columns: Array, unit: str) -> list[tuple[str, str]]:
-    """A size for every column."""
-    return [(f"{label}_{k}", unit) for k in range(columns.shape[1])]
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -110,67 +93,8 @@ def columns(s: Scene) -> list[Candidate]:
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
-        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s)]
+        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s), *end_stop(s)]
     return [*_torques(s), *_fixed_lines(s)] if s.force else []
-
-
-def moving_scale(s: Scene) -> list[Candidate]:
-    """Two sensors whose ratio moves with time, steadily or by a smooth function. Thermal growth errs in
-    proportion to the distance from where it is held (ISO 230-3). No sensor knows that place, so a drift goes
-    with it. A gap and a delay together follow it, too."""
-    if s.force:
-        return []
-    x = s.view.x[s.view.rows]
-    x = x - x.mean()
-    t = s.problem.t
-    span = float(np.ptp(t)) or 1.0
-    drift, knots = ((t - t.min()) / span)[:, None], spline_columns(t, SLOW)
-    per_place = f"{s.unit}/{s.angle_unit}"
-    return [
-        _over(
-            "time",
-            np.hstack([shape * x[:, None], shape]),
-            *_each(f"scale_{name}", shape, per_place),
-            *_each(f"offset_{name}", shape, s.unit),
-        )
-        for name, shape in (("drift", drift), ("knot", knots))
-        if shape.shape[1]
-    ]
-
-
-def lost_motion(s: Scene) -> list[Candidate]:
-    """Two sensors: elastoplastic elements of several widths together (Prandtl-Ishlinskii), the lost motion of
-    a strain wave gear (Ruderman, Hoffmann, Bertram 2009). One gap alone is `play`, and cheaper."""
-    if s.force or not s.both or s.view.response.ratio == 0:
-        return []
-    out = []
-    for part in WIDTHS:
-        radii = [part * s.stroke * f for f in (1.0, 1 / 3, 1 / 9)]
-        if radii[-1] >= s.view.resolved:
-            sizes = [(f"loop_of_{r:.3g}", s.unit) for r in radii]
-            out.append(_over("reversal", s.at(_loops(s.view, radii)), *sizes, searched=1))
-    return out
-
-
-def _loops(v: View, radii: Sequence[float]) -> Array:
-    """(n, k) of height 1."""
-    return np.column_stack([stop_operator(v.x, v.file, r) / r for r in radii])
-
-
-def spring(s: Scene) -> list[Candidate]:
-    """A force in proportion to the place of a slide (a cable chain, a bellows): wide loops follow it, too."""
-    if not s.force or s.view.turn or "stiffness" in (*s.view.rig.estimate, *s.view.rig.constants):
-        return []
-    size = ("stiffness", f"{s.unit}/{s.angle_unit}")
-    return [_over("axis_angle", s.at(s.view.x - s.view.x.mean()), size)]
-
-
-def bend(s: Scene) -> list[Candidate]:
-    """Friction that bends with the speed, as grease and strain wave gears have it: odd, of second order."""
-    if not s.force or s.view.response.is_speed or "viscous" not in s.declared:
-        return []
-    part = s.view.speed / (s.view.top or 1.0)
-    return [_over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
 
 
 def flexible(s: Scene) -> Array:
@@ -186,7 +110,7 @@ def plain(s: Scene) -> Array:
     parts = [np.zeros((len(s.problem.y), 0))]
     if s.force and s.both:
         parts.append(s.at(np.column_stack([np.abs(v.direction), np.abs(v.speed)])))
-        parts.append(s.at(_loops(v, [r * s.stroke for r in RADII])))
+        parts.append(s.at(loops(v, [r * s.stroke for r in RADII])))
     if s.force and v.turn:
         parts.append(s.at(gravity(s)))
     return np.hstack(parts)
@@ -205,14 +129,14 @@ def _torques(s: Scene) -> list[Candidate]:
     session = s.pair.motion.frame.session[s.view.rows]
     w = speed / (float(np.quantile(np.abs(speed), 0.95)) or 1.0)
     knots = spline_columns(np.sign(speed) * np.log1p(np.abs(speed) / SLOW_RATE), SPEED_KNOTS)
-    loops = np.column_stack([stop_operator(x, session, r) / r for r in LOOPS])
+    held = np.column_stack([stop_operator(x, session, r) / r for r in LOOPS])
     return [
-        _over("velocity", np.column_stack([w * np.abs(w), w**3]), ("square", s.unit), ("cube", s.unit)),
-        _over("velocity", knots, *_each("knot", knots, s.unit)),
-        _over("reversal", loops, *_each("loop", loops, s.unit)),
+        over("velocity", np.column_stack([w * np.abs(w), w**3]), ("square", s.unit), ("cube", s.unit)),
+        over("velocity", knots, *each("knot", knots, s.unit)),
+        over("reversal", held, *each("loop", held, s.unit)),
         *(
-            _over("reversal", one, ("loop", s.unit), fixed={"travel": (r, "rad")})
-            for r, one in zip(LOOPS, loops.T, strict=True)
+            over("reversal", one, ("loop", s.unit), fixed={"travel": (r, "rad")})
+            for r, one in zip(LOOPS, held.T, strict=True)
         ),
     ]
 
@@ -230,7 +154,7 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
         for count in sorted({1, most}):
             wave = waves(2 * np.pi * f0 * clock, range(1, count + 1))
             at: dict[str, Any] = {"frequency": f0, "fixed": {"frequency": (f0, "Hz")}}
-            out.append(_over("time", wave, ("amplitude", s.unit), kind="line", **at))
+            out.append(over("time", wave, ("amplitude", s.unit), kind="line", **at))
     return out
 
 
