@@ -29,11 +29,12 @@ EARNS = 0.05
 
 @dataclass
 class Timed:
-    """Effort where it belongs: `delay` if an effect, `before` its held-out error without; a hold's `note`."""
+    """What is found once the effort is where it belongs, or slips are apart: `first`, if such is an effect,
+    `before` the held-out error without it; a hold's `note`."""
 
     problem: Problem
     found: Found
-    delay: Finding | None = None
+    first: Finding | None = None
     before: float | None = None
     note: str = ""
     close: str = ""  # a delay that the log can neither name nor leave out, and what would tell

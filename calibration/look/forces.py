@@ -25,6 +25,7 @@ from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, one_filter, sharpest, turned
+from calibration.look.slips import slipped
 
 # of what an offset takes that is fitted anew in every file, by effects that stand in its place. ASSUMPTION
 AS_MUCH = 0.9
@@ -60,8 +61,10 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
 
     def attempt() -> Timed:
         whole = made(0.0)
+        if not response.is_force:
+            return slipped(whole, crossed_first(search(whole), view, search), view, search)
         if response.channel not in ("effort", "current", "force") or not view.dynamic:
-            return Timed(whole, crossed_first(search(whole), view, search))
+            return Timed(whole, search(whole))
         return timed(view, made, whole, response.channel, search)
 
     if view.dynamic:
@@ -110,7 +113,7 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
 def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Balance:
     """The parts of the answer: floor, names that stay, what no name explains, controls."""
     channel, unit = view.response.channel, view.angle_unit
-    (s, scene, bounds), delay = when.found, when.delay
+    s, scene, bounds = when.found
     s = weight_first(told_by_the_clock(where_known(s, view), scene), scene)
     problem = s.problem
     floor, source = floor_of(view, problem)
@@ -132,7 +135,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
         selection=together,
         floor=floor,
         before=when.before,
-        findings=[*([delay] if delay is not None else []), *unnamed(findings, tried)],
+        findings=[*([when.first] if when.first is not None else []), *unnamed(findings, tried)],
         numbers=calibrated(s),
         controls=tried,
         missing=left_over(together, scene, floor),

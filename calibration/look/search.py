@@ -15,6 +15,7 @@ from calibration.names import NAMES
 from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible
+from calibration.names.unknown_shapes import end_stop
 
 # effects: a cogging motor shows several orders. ASSUMPTION
 MOST = 14
@@ -66,7 +67,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
     kind = scene.channel
     searched = sorted(n.name for n in NAMES.values() if n.searched and kind in n.channels)
     named = [c for n in NAMES.values() if kind in n.channels and not n.searched for c in n.columns(scene)]
-    found: list[Candidate] = []
+    stops, found = end_stop(scene), list[Candidate]()
     s: Selection | None = None
     extra: list[Array] = []
     for k in range(ROUNDS):
@@ -77,6 +78,9 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
             break
         found += fresh
         s = _select(problem, named, found, rng)
+        if stops and _takes_more(select(problem, stops, rng, most=1, margin=NOISE_SHARE), s):
+            named, stops = [*named, *stops], []
+            s = _select(problem, named, found, rng)
         extra = [c.columns for c in s.candidates]
         if not any(c.name in searched for c in s.candidates) and k > 0:
             break
@@ -98,6 +102,11 @@ def _select(
         if any(c.frequency for c in s.candidates):
             return s
     return select(problem, [*named, *found], rng, most=MOST, margin=NOISE_SHARE)
+
+
+def _takes_more(one: Selection, other: Selection) -> bool:
+    """Whether an end stop alone takes more off the held-out error than all names, which it would replace."""
+    return bool(one.chosen) and one.held.after < other.held.after
 
 
 def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:

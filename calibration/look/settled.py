@@ -52,7 +52,7 @@ def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
     """How sharply friction turns with the speed, of STANDSTILLS. It follows from what the declared terms
     leave on fitted rows, beside the effects of `known` and a delay, where there are any."""
     shown = (view.standstill, view.direction)
-    delay = known.delay.parameters["delay"].value if known is not None and known.delay is not None else 0.0
+    delay = known.first.parameters["delay"].value if known is not None and known.first is not None else 0.0
     s = known.found[0] if known is not None else None
     effects = sum(s.effect(k) for k in range(len(s.chosen))) if s is not None else 0.0
     left = []

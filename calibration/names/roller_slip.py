@@ -8,14 +8,10 @@ import numpy as np
 from scipy.special import ndtr
 
 from calibration.balances.motion import acceleration_of, rate_of
-from calibration.names.name import Array, Candidate, Name, candidate, tried
+from calibration.names.name import Array, Candidate, Name, tried
 from calibration.names.scene import RATES, SENSORS, Scene
 from plant.units import ARCSEC
 
-# places of the step that are looked at in each file. ASSUMPTION
-TRIALS = 60
-# likewise places in all files together. ASSUMPTION
-MOST_TRIALS = 120
 # rad/s2, limits that are tried: the axis is asked for 2 deg/s2 (paper)
 LIMITS = (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02)
 # of the rows, that are beyond a limit which is tried: least and most. ASSUMPTION
@@ -32,22 +28,10 @@ MOST_LIMIT = 0.1
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """A step in time, file by file; of rates, travel that is lost while the axis accelerates too hard."""
-    if s.pair is not None:
-        return _lost(s) if s.rates else []
-    out, v = [], s.view
-    for k in np.unique(v.file):
-        mine = v.file == k
-        for at in np.linspace(0.05, 0.95, TRIALS) * float(v.t[mine][-1]):
-            step = np.where(mine, np.clip((v.t - at) / v.period_s, 0.0, 1.0), 0.0)
-            fixed = {"time": (float(at), "s")}
-            out.append(candidate("roller_slip", s.at(step), ("step", s.unit), fixed=fixed, searched=1))
-    return out[:: max(len(out) // MOST_TRIALS, 1)]
-
-
-def _lost(s: Scene) -> list[Candidate]:
-    """A share of the travel, or what exceeds the limit; row by row, means would round it off."""
-    assert s.pair is not None
+    """Of rates, travel that is lost while the axis accelerates too hard: a share of it, or what exceeds the
+    limit; row by row, means would round it off. Slips of two sensors are found by look/slips.py."""
+    if s.pair is None or not s.rates:
+        return []
     m, roller = s.pair.motion, s.pair.train.one("roller")
     if roller is None:
         return []

@@ -15,7 +15,6 @@ from calibration.names.spline import spline_columns
 from calibration.names.unknown_shapes import (
     bend,
     each,
-    end_stop,
     loops,
     lost_motion,
     moving_scale,
@@ -93,7 +92,7 @@ def columns(s: Scene) -> list[Candidate]:
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
-        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s), *end_stop(s)]
+        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s)]
     return [*_torques(s), *_fixed_lines(s)] if s.force else []
 
 

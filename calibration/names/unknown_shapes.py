@@ -102,8 +102,9 @@ def bend(s: Scene) -> list[Candidate]:
 
 
 def end_stop(s: Scene) -> list[Candidate]:
-    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before."""
-    if not s.force or not s.view.dynamic:
+    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before. Beside
+    an offset that wanders within a file it would be any slope over one stroke."""
+    if not s.force or not s.view.dynamic or s.pair is not None or s.view.slow_offset:
         return []
     x, ok = s.view.x, s.view.ok
     low, high = float(np.min(x[ok])), float(np.max(x[ok]))

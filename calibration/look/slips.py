@@ -1,0 +1,71 @@
+"""Slips between two sensors: from a slip on, the difference has another offset, as a sensor has that starts.
+
+What comes before a slip says nothing of the offset behind it. So each stretch has its own, on fitted and on
+held-out rows, as each file has, and everything else is looked for beside them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.arrays import Array
+from calibration.balances.problem import Problem
+from calibration.balances.slowoffset import SLOW
+from calibration.balances.view import View
+from calibration.decide.parameters import interval
+from calibration.decide.selection import Selection
+from calibration.finding import Finding, Parameter
+from calibration.look.delay import Find, Found, Timed
+from calibration.look.jumps import SIDES, jumps_of, steps_at
+from calibration.look.worm import FREE_GAIN
+from calibration.names.roller_slip import NAME
+
+# of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
+PLAYS = 0.5
+
+
+def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
+    """`found` on `whole`, or what is found beside slips where they explain what nothing else does."""
+    s = found[0]
+    places, turns = jumps_of(s), np.flatnonzero(np.diff(view.direction[view.rows]) != 0)
+    near = sum(bool(np.any(np.abs(turns - at) <= SIDES[0])) for at in places)
+    if not places or near > PLAYS * len(turns):
+        return Timed(whole, found)
+    apart = _apart(whole, places)
+    again = find(apart)
+    left, was = again[0].held.after, s.held.after
+    if not left**2 < (1 - FREE_GAIN) * was**2:
+        return Timed(whole, found)
+    before = Selection.of(whole).held.before
+    share = max(1 - (again[0].held.before / before) ** 2, 0.0) if before > 0 else 0.0
+    return Timed(apart, again, _finding(again[0], places, view, share), before)
+
+
+def _apart(p: Problem, places: list[int]) -> Problem:
+    """With an offset for every stretch between slips."""
+    steps = steps_at(p, places)
+    stretch = p.session * len(p.y) + np.sum(steps, axis=0, dtype=np.int64)
+    return replace(
+        p,
+        base=np.column_stack([p.base, *steps]),
+        base_labels=[*p.base_labels, *[(SLOW, p.unit)] * len(steps)],
+        fresh=np.column_stack([(stretch == k).astype(float) for k in np.unique(stretch)]),
+    )
+
+
+def _finding(s: Selection, places: list[int], view: View, share: float) -> Finding:
+    """The largest slip, with all of them in the note."""
+    p = s.problem
+    first = [label for label, _ in p.base_labels].index(SLOW)
+    sizes, errors = s.after.beta[first:][: len(places)], s.after.errors[first:][: len(places)]
+    times: Array = view.t[view.rows][places]
+    files = p.session[places]
+    told = [
+        f"{x:.3g} {p.unit} at {t:.4g} s of file {k + 1}" for x, t, k in zip(sizes, times, files, strict=True)
+    ]
+    k = int(np.argmax(np.abs(sizes)))
+    low, high = interval(float(sizes[k]), float(errors[k]), p.blocks, None)
+    size = Parameter(float(sizes[k]), p.unit, low, high)
+    at = {"step": size, "time": Parameter(float(times[k]), "s")}
+    note = f"slips: {', '.join(told)}"
+    return Finding(NAME.name, p.channel, "time", parameters=at, share=share, note=note)
