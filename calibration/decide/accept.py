@@ -26,8 +26,8 @@ def _beside(others: Selection, one: Contender) -> Model:
     return Model(x=x, beta=one.fit.beta, phases=others.problem.phases([*others.candidates, one.candidate]))
 
 
-def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float) -> str:
-    """Why the scores of a contender do not let it in; empty when they do.
+def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, tried: int) -> str:
+    """Why the scores of a contender, one of so many that were `tried`, do not let it in; empty when they do.
 
     An effect that the held-out run does not excite may gain nothing there, but none may make it worse.
     """
@@ -48,23 +48,29 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float) 
         return "no held-out rows to test it on"
     if held.share < -limits.ROUNDING:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
-    least = contender.candidate.least or limits.LEAST_EVIDENCE
+    least = contender.candidate.least or needed(tried)
     if contender.evidence >= least:
         return ""
     times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)
     if times and held.share > limits.MARGIN:
         return (
             f"{SHORT}: it lowers the held-out mean square by {100 * held.share:.0f} %, but -log10 p is"
-            f" {contender.evidence:.1f} of {least:.0f}. A log {times} times as long would decide."
+            f" {contender.evidence:.1f} of {least:.1f}. A log {times} times as long would decide."
         )
     return f"too little evidence (-log10 p = {contender.evidence:.1f})"
 
 
-def least_share(p: Problem) -> float:
-    """Share of the fitted rows' mean square from which on one line could be named: the power of the log."""
+def needed(tried: int) -> float:
+    """-log10 p that the best of so many candidates needs."""
+    return limits.LEAST_EVIDENCE + float(np.log10(max(tried, 1)))
+
+
+def least_share(p: Problem, tried: int) -> float:
+    """Share of the fitted rows' mean square from which on one line of so many that are tried could be named:
+    the power of the log."""
     rows, blocks = int(p.train.sum()), p.train.sum() / p.block
     shares = np.arange(1, 100) / 100
-    seen = wald_log10(rows * shares / (1 - shares), 2, blocks) >= limits.LEAST_EVIDENCE
+    seen = wald_log10(rows * shares / (1 - shares), 2, blocks) >= needed(tried)
     return float(shares[np.argmax(seen)]) if seen.any() else 1.0
 
 

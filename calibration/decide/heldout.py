@@ -28,6 +28,11 @@ class HeldOut:
     everywhere: bool = False  # cross-validation only: every fold gained
 
     @property
+    def taken(self) -> float:
+        """What is off the mean square."""
+        return self.before**2 - self.after**2
+
+    @property
     def sure(self) -> bool:
         """Whether the gain is more than luck, and more than rounding."""
         return self.z > limits.LUCK_Z and self.share > limits.ROUNDING

@@ -4,12 +4,10 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.rules import OTHER_COLUMNS
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
+from calibration.decide.thresholds import AS_MUCH
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
-
-# of what several functions take off the held-out mean square, that one in their place takes. ASSUMPTION
-AS_MUCH = 0.9
 
 
 def by_one_column(
@@ -24,11 +22,6 @@ def by_one_column(
         scene.model = None
         columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
         alone = select(s.problem, columns, most=1)
-        if alone.chosen and _taken(alone) > AS_MUCH * _taken(together):
+        if alone.chosen and alone.held.taken > AS_MUCH * together.held.taken:
             return s.keep([]), alone, [finding_of(alone, 0)]
     return s, together, findings
-
-
-def _taken(s: Selection) -> float:
-    """What is off the held-out mean square."""
-    return s.held.before**2 - s.held.after**2

@@ -69,7 +69,11 @@ def needless(margin: float) -> Rule:
             return ""
         others = s.without(k)
         again = fit_with(s.problem, others.columns, s.candidates[k])
-        text = "cannot be determined" if again is None else refuse(again, *scores(others, again), margin)
+        text = (
+            "cannot be determined"
+            if again is None
+            else refuse(again, *scores(others, again), margin, s.looked_at)
+        )
         return f"beside the others: {text}" if text else ""
 
     return each(why)
@@ -177,7 +181,7 @@ def remainder(s: Selection) -> tuple[int, str] | None:
     strongest = dominant(s)
     if not strongest:
         return None
-    taken = s.held.before**2 - _left(s)
+    taken = s.held.taken
     each_worth = [_left(x) - _left(s) for x in _each_left_out(s)]
     told = [
         c.name == strongest or (c.domain in OTHER_COLUMNS and x > limits.PLAINLY * (x + _left(s)))
@@ -195,7 +199,7 @@ def dominant(s: Selection) -> str:
     names = {c.name for c in s.candidates}
     alone = {n: _left(s.keep([x for x in s.chosen if x.candidate.name == n])) for n in names}
     name = min(alone, key=lambda n: alone[n], default="")
-    taken = s.held.before**2 - _left(s)
+    taken = s.held.taken
     return name if name and s.held.before**2 - alone[name] >= limits.DOMINANT * taken > 0 else ""
 
 

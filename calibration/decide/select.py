@@ -35,7 +35,6 @@ def select(
         if _explains_more(other, s, margin):
             why = f"{' and '.join(c.say() for c in other.candidates)} explain it better"
             s = replace(other, refused=[*other.refused, Refusal(pick.say(), why)])
-    s = replace(s, looked_at=len(candidates))
     s.scores = gate(s, candidates, np.random.default_rng(0) if rng is None else rng)
     return rules.leave_out(s, rules.below_surrogates)
 
@@ -87,6 +86,7 @@ class _Search:
             self.picks.refused.append(Refusal("every effect that no declared stage has", why))
             left = [c for c in left if c.stage]
         left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
+        self.picks = replace(self.picks, looked_at=len(left))
         while len(self.picks.chosen) < most and left:
             found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]
             if not found:
@@ -136,7 +136,8 @@ class _Search:
                 break
             contender = replace(one, candidate=settled(p, base, one.candidate, one.fit))
             inside, held = scores(others, contender)
-            why = refuse(contender, inside, held, self.margin) or too_small(others, contender, further)
+            tried = self.picks.looked_at
+            why = refuse(contender, inside, held, self.margin, tried) or too_small(others, contender, further)
             if not why:
                 rivals = [*contender.confounded, *equivalents(others, contenders, contender)]
                 out.append(replace(contender, held=held, confounded=rivals))

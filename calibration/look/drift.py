@@ -86,7 +86,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     needs = [f"{what} was close, but {why}" for _, what, why in refused]
     if slow:
         needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
-    effects, needs = unnamed_where_missing(effects, needs, [b])
+    effects, needs = unnamed_where_missing(effects, [*needs, *b.short], [b])
     return Looked(
         title=title,
         balances=[b],

@@ -15,6 +15,7 @@ from calibration.decide.onecolumn import by_one_column
 from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, of_one_place, quick_lines, settle
 from calibration.decide.selection import Selection
+from calibration.decide.thresholds import AS_MUCH
 from calibration.decide.twins import told_by_the_clock, weight_first
 from calibration.decide.verdict import ROWS
 from calibration.decide.withdraw import as_told, of_calibrated, unnamed
@@ -26,9 +27,6 @@ from calibration.look.said import close, filtered, lacking_names, moves_with, pl
 from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, one_filter, sharpest, turned
 from calibration.look.slips import slipped
-
-# of what an offset takes that is fitted anew in every file, by effects that stand in its place. ASSUMPTION
-AS_MUCH = 0.9
 
 
 def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
@@ -90,8 +88,7 @@ def _instead(steady: Timed, slow: Timed) -> bool:
     one, other = steady.found[0], slow.found[0]
     if not one.chosen or other.chosen:
         return _better(steady, slow)
-    before = one.held.before
-    return before**2 - one.held.after**2 > AS_MUCH * (before**2 - other.held.after**2)
+    return one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
 
 
 def _better(one: Timed, other: Timed) -> bool:

@@ -117,7 +117,7 @@ class Balance:
     def short(self) -> list[str]:
         """What it holds too little of, where nothing else is named."""
         s, p = self.selection, self.selection.problem
-        power = least_share(p) if not s.chosen and s.looked_at else 0.0
+        power = least_share(p, s.looked_at) if not s.chosen and s.looked_at else 0.0
         few = f"{p.train.sum() * p.period_s:.3g} s to fit show only what is {100 * power:.0f} % of it"
         at_the_floor = 0 < self.times <= 1  # what hides below it needs a better sensor, no longer log
         why_not = [] if s.chosen or at_the_floor else s.refused

@@ -9,13 +9,13 @@ from calibration.balances.view import View
 from calibration.decide import rules
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import NOISE_SHARE
+from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE
 from calibration.decide.twins import one_line
 from calibration.names import NAMES
 from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible
-from calibration.names.unknown_shapes import end_stop
+from calibration.names.unknown_shapes import alone
 
 # effects: a cogging motor shows several orders. ASSUMPTION
 MOST = 14
@@ -67,7 +67,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
     kind = scene.channel
     searched = sorted(n.name for n in NAMES.values() if n.searched and kind in n.channels)
     named = [c for n in NAMES.values() if kind in n.channels and not n.searched for c in n.columns(scene)]
-    stops, found = end_stop(scene), list[Candidate]()
+    shapes, found = alone(scene), list[Candidate]()
     s: Selection | None = None
     extra: list[Array] = []
     for k in range(ROUNDS):
@@ -78,8 +78,8 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
             break
         found += fresh
         s = _select(problem, named, found, rng)
-        if stops and _takes_more(select(problem, stops, rng, most=1, margin=NOISE_SHARE), s):
-            named, stops = [*named, *stops], []
+        if shapes and _takes_more(select(problem, shapes, rng, most=1, margin=NOISE_SHARE), s):
+            named, shapes = [*named, *shapes], []
             s = _select(problem, named, found, rng)
         extra = [c.columns for c in s.candidates]
         if not any(c.name in searched for c in s.candidates) and k > 0:
@@ -105,8 +105,10 @@ def _select(
 
 
 def _takes_more(one: Selection, other: Selection) -> bool:
-    """Whether an end stop alone takes more off the held-out error than all names, which it would replace."""
-    return bool(one.chosen) and one.held.after < other.held.after
+    """Whether a shape alone takes clearly more off the held-out error than all names, which it would replace
+    where they leave more than the floor."""
+    more = AS_MUCH * one.held.taken > other.held.taken
+    return bool(one.chosen) and more and other.held.after > other.problem.floor
 
 
 def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:

@@ -2,24 +2,24 @@
 
 import numpy as np
 
-from calibration.balances.filters import smooth
-from calibration.names.gravity_imbalance import gravity
 from calibration.names.name import Candidate, Name, Scene, candidate
+
+#: declared terms that carry no load
+FRICTION = ("coulomb", "viscous")
 
 
 def columns(s: Scene) -> list[Candidate]:
     """The load against the motion: from the motion, not from the response, whose noise it would share."""
     if s.pair is not None:  # through both trains, which pull against each other
-        both, m = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging), s.pair.motion
-        load = np.interp(np.arange(len(m.x)), m.rows, both)
+        load = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging)
     elif lacks(s) or not s.both:
         return []
-    else:  # what accelerations and gravity need
-        v, load = s.view, s.declared.get("inertia", 0.0) * s.view.second(s.view.x)
-        if "gravity_cos" in s.declared:
-            load = load + gravity(s) @ np.array([s.declared["gravity_cos"], s.declared["gravity_sin"]])
-        load = np.abs(smooth(load, v.segment, max(v.wide, 1.0)))
-    return [candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=1.0)]
+    else:  # all that the declared terms make but friction: an offset and a weight share what they make
+        p = s.problem
+        friction = [s.declared[n] * p.base[:, p.place(n)] for n in FRICTION if n in s.declared]
+        load = np.abs(s.declared_part - np.sum(friction, axis=0))
+    full = np.interp(np.arange(len(s.view.t)), s.view.rows, load)
+    return [candidate(NAME.name, s.answer(full), "coefficient", sign=1, most=1.0)]
 
 
 def lacks(s: Scene) -> str:

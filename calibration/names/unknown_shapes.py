@@ -86,26 +86,36 @@ def spring(s: Scene) -> list[Candidate]:
 
 
 def bend(s: Scene) -> list[Candidate]:
-    """Odd and of second order: friction that bends with the speed, as grease and strain wave gears have it,
-    and torque that falls behind its effort, as iron saturates (`_declared_force` alone follows no bend)."""
+    """Friction that bends with the speed, as grease and strain wave gears have it: odd, of second order."""
     if not s.force or s.view.response.is_speed or "viscous" not in s.declared:
         return []
     part = s.view.speed / (s.view.top or 1.0)
-    out = [over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
-    if s.view.dynamic and s.view.response.channel != "acceleration":
-        force = s.declared_part
-        for _ in range(SETTLED):
-            bent = force * np.abs(force) / (float(np.max(np.abs(force))) or 1.0)
-            force = s.fitted(bent[:, None])[1]
-        out.append(over("current", bent, ("square", s.unit)))
-    return out
+    return [over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
 
 
-def end_stop(s: Scene) -> list[Candidate]:
-    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before. Beside
-    an offset that wanders within a file it would be any slope over one stroke."""
-    if not s.force or not s.view.dynamic or s.pair is not None or s.view.slow_offset:
-        return []
+def alone(s: Scene) -> list[Candidate]:
+    """Shapes that imitate sums of names, and are looked for beside none: an end stop, a torque that bends.
+    Beside an offset that wanders within a file either would be any slope over one stroke."""
+    wanders = s.view.slow_offset > 0 or s.view.response.channel == "acceleration"
+    return (
+        []
+        if not s.force or not s.view.dynamic or s.pair is not None or wanders
+        else [*_saturation(s), *_end_stop(s)]
+    )
+
+
+def _saturation(s: Scene) -> list[Candidate]:
+    """Torque that falls behind its effort, as iron saturates: the square of the force that the declared terms
+    make beside it."""
+    force = s.declared_part
+    for _ in range(SETTLED):
+        bent = force * np.abs(force) / (float(np.max(np.abs(force))) or 1.0)
+        force = s.fitted(bent[:, None])[1]
+    return [over("current", bent, ("square", s.unit))]
+
+
+def _end_stop(s: Scene) -> list[Candidate]:
+    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before."""
     x, ok = s.view.x, s.view.ok
     low, high = float(np.min(x[ok])), float(np.max(x[ok]))
     span = (high - low) or 1.0

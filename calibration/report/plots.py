@@ -213,10 +213,14 @@ def gate_plot(selection: Selection, title: str) -> str:
     """Surrogate maxima, threshold, and where the log's own maximum fell."""
     _, ax = figure(9.0, 2.4)
     s = selection.scores
-    ax.hist(s.surrogate_max, bins=30, color=GREY, label=f"{len(s.surrogate_max)} surrogates of the residual")
+    # a log of one block has one score, but for rounding
+    largest = float(np.max(s.surrogate_max, initial=0.0))
+    most = max(largest, s.threshold) or 1.0
+    drawn_from = f"{len(s.surrogate_max)} surrogates of the residual"
+    ax.hist(s.surrogate_max, bins=30, range=(0.0, most), color=GREY, label=drawn_from)
     ax.axvline(s.threshold, color=GREEN, lw=1.5, label=f"99 % threshold, {s.threshold:.2f}")
     top = selection.statistic
-    limit = max(2.5 * s.threshold, float(s.surrogate_max.max()) * 1.2 if len(s.surrogate_max) else 1.0)
+    limit = max(2.5 * s.threshold, 1.2 * largest)
     ax.axvline(
         min(top, limit),
         color=RED,

@@ -15,6 +15,7 @@ from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, Signal, signal_of
 from calibration.inputs.thresholds import MOST_POINTS
 from calibration.report.plots import drawn, figure
+from calibration.report.thresholds import USUAL_CANDIDATES
 
 
 def show_rig(rig_file: Path, logs: list[Path], out: Path | None = None) -> str:
@@ -116,7 +117,7 @@ def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
     if turns:
         yield f"  turns: {', '.join(turns)}"
     rest = float(np.std(p.plain_fit(p.train)[1][p.train]))
-    share = least_share(p)
+    share = least_share(p, USUAL_CANDIDATES)
     line = f"a line of {rest * np.sqrt(2 * share):.3g} {p.unit} ({100 * share:.0f} % of it)"
     named = line if share < 1 else "nothing: the log is too short"
     yield f"  the declared terms leave {rest:.3g} {p.unit} rms; could be named beside it: {named}"

@@ -16,3 +16,5 @@ MOST_MARKED = 12
 WINDOW_S = 2.0
 # share of a window's rows that must be usable for it to be shown. ASSUMPTION: single rows may be missing
 WHOLE = 0.99
+# candidates that a balance has before one is known to be none of it. ASSUMPTION
+USUAL_CANDIDATES = 1000
