@@ -86,7 +86,7 @@ class _Search:
             self.picks.refused.append(Refusal("every effect that no declared stage has", why))
             left = [c for c in left if c.stage]
         left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
-        self.picks = replace(self.picks, looked_at=len(left))
+        self.picks = replace(self.picks, looked_at=len(left) or len(self.candidates))
         while len(self.picks.chosen) < most and left:
             found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]
             if not found:

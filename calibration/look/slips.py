@@ -12,24 +12,34 @@ from calibration.arrays import Array
 from calibration.balances.problem import Problem
 from calibration.balances.slowoffset import SLOW
 from calibration.balances.view import View
+from calibration.decide import rules
 from calibration.decide.parameters import interval
+from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
+from calibration.decide.thresholds import MARGIN
 from calibration.finding import Finding, Parameter
 from calibration.look.delay import Find, Found, Timed
 from calibration.look.jumps import SIDES, jumps_of, steps_at
 from calibration.look.worm import FREE_GAIN
+from calibration.names.play import NAME as PLAY
 from calibration.names.roller_slip import NAME
+from calibration.names.scene import Scene
 
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
 
 
 def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
-    """`found` on `whole`, or what is found beside slips where they explain what nothing else does."""
-    s = found[0]
+    """`found` on `whole`, or what is found beside slips where they explain what nothing else does. Jumps at
+    the reversals are a gap's."""
+    s, scene, bounds = found
     places, turns = jumps_of(s), np.flatnonzero(np.diff(view.direction[view.rows]) != 0)
-    near = sum(bool(np.any(np.abs(turns - at) <= SIDES[0])) for at in places)
-    if not places or near > PLAYS * len(turns):
+    turning = {at for at in places if np.any(np.abs(turns - at) <= SIDES[0])}
+    if len(turning) > PLAYS * len(turns):
+        places = [at for at in places if at not in turning]
+        s = _with_gap(s, scene)
+        found = s, scene, bounds
+    if not places:
         return Timed(whole, found)
     apart = _apart(whole, places)
     again = find(apart)
@@ -39,6 +49,16 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     before = Selection.of(whole).held.before
     share = max(1 - (again[0].held.before / before) ** 2, 0.0) if before > 0 else 0.0
     return Timed(apart, again, _finding(again[0], places, view, share), before)
+
+
+def _with_gap(s: Selection, scene: Scene) -> Selection:
+    """With the gap that leaves least on held-out rows, where `s` has none: reversals show it one by one."""
+    if any(c.name == PLAY.name for c in s.candidates):
+        return s
+    fits = (fit_with(s.problem, s.columns, c) for c in PLAY.columns(scene))
+    tried = [s.keep([*s.chosen, one]) for one in fits if one is not None]
+    best = min(tried, key=lambda x: x.held.after, default=s)
+    return rules.signed(best) if best.held.after**2 < (1 - MARGIN) * s.held.after**2 else s
 
 
 def _apart(p: Problem, places: list[int]) -> Problem:
