@@ -1,0 +1,89 @@
+"""Shapes without a name that look like sums of names: a slip, an end stop, what hangs on a measured load."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import COULOMB, FORCE, SENSORS, motion
+from tests.calibration.test_drives import answer as answer_of
+from tests.calibration.test_strangers import LONG, answer, domains, rate
+
+RATIO = 0.02  # of the second sensor to the first
+QUIET = 2e-7  # rad, rms, of the second sensor
+LOADED = SENSORS.replace("response:", "  effort: {column: load, unit: N m}\nresponse:")
+
+
+def sensors(seconds: float = LONG) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, motor and output of a gear with nothing in it."""
+    t, x, _ = motion(seconds)
+    return t, x, RATIO * x + QUIET * np.random.default_rng(2).standard_normal(len(t))
+
+
+@pytest.mark.parametrize("files", [1, 3])
+def test_slips_have_their_sizes_and_the_rest_is_as_if_there_were_none(tmp_path: Path, files: int) -> None:
+    """At other times in each file: no file tells of another's slip."""
+    tables, largest = [], 4e-5
+    for k in range(files):
+        t, x, y = sensors()
+        steps = largest * (t > 22.0 + 7.0 * k) - 1.5e-5 * (t > 41.0 - 3.0 * k)
+        tables.append((t, np.round(x, 5), y + steps))
+    data = answer_of(tmp_path, SENSORS, *tables)
+    assert [e["name"] for e in data["effects"]] == ["roller_slip"]
+    first = data["effects"][0]
+    assert first["parameters"]["step"]["value"] == pytest.approx(largest, rel=0.02)
+    assert first["note"].count(" of file ") == 2 * files
+    error = data["error"]["position"]
+    assert error["after"] < 1.2 * error["floor"] < error["before"]
+
+
+def test_a_gap_that_every_reversal_crosses_is_no_slip(tmp_path: Path) -> None:
+    t, x, y = sensors()
+    way = np.sign(rate(x))
+    data = answer(tmp_path, SENSORS, (t, x, y - 2e-5 * way))
+    assert [e["name"] for e in data["effects"]] == ["play"]
+
+
+def test_an_end_stop_is_one_function_of_the_place(tmp_path: Path) -> None:
+    """A buffer that is pressed over the last third of the stroke."""
+    t, x, u = motion(LONG)
+    data = answer(tmp_path, FORCE, (t, x, u + 150.0 * np.maximum(x - 0.12, 0.0) ** 2))
+    assert domains(data) == {("unknown", "axis_angle")}
+    (stop,) = data["effects"]
+    assert stop["parameters"]["begin"]["value"] == pytest.approx(0.12, abs=0.01)
+    assert data["error"]["torque"]["after"] < 1.2 * data["error"]["torque"]["floor"]
+
+
+def test_iron_that_saturates_is_a_function_of_the_current(tmp_path: Path) -> None:
+    """The force that the motion needs is what is left of the effort, less a tenth of its square at 8 N."""
+    t, x, force = motion(LONG)
+    bend = 0.1 / 8.0  # effort less bend times its square is the force: the root of that
+    effort = np.sign(force) * (1 - np.sqrt(1 - 4 * bend * np.abs(force))) / (2 * bend)
+    data = answer(tmp_path, FORCE, (t, x, effort))
+    assert domains(data) == {("unknown", "current")}
+    assert data["error"]["torque"]["after"] < 0.3 * data["error"]["torque"]["before"]
+
+
+def test_what_hangs_on_a_load_is_a_function_of_it_and_not_of_place_and_way(tmp_path: Path) -> None:
+    """Teeth that stiffen; the load is a weight that is lifted, and what it rubs."""
+    t, x, y = sensors()
+    load = np.sin(3.0 * x) + 0.4 * np.tanh(rate(x) / 0.05)
+    y = y - 4e-5 * load**3
+    seen = load + 0.01 * np.random.default_rng(5).standard_normal(len(t))
+    data = answer_of(tmp_path, LOADED, (t, np.round(x, 5), y, seen), header="t,x,u,load")
+    assert domains(data) <= {("unknown", "current"), ("shaft_compliance", "current")}
+    assert data["error"]["position"]["after"] < 0.3 * data["error"]["position"]["before"]
+
+
+def test_friction_grows_with_what_two_joints_weigh(tmp_path: Path) -> None:
+    """The weight of the next joint is a load as well, though the offset shares what it makes."""
+    t, x, u = motion(LONG)
+    joint = 0.8 * np.sin(2 * np.pi * 0.17 * t)
+    weight = 6.0 * np.sin(x) + 9.0 * np.sin(x + joint + 0.4)
+    rubbing = 0.08 * np.abs(weight + u - COULOMB * np.sign(rate(x))) * np.sign(rate(x))
+    text = FORCE.replace("unit: m}", "unit: rad}").replace("offset]", "offset, gravity]")
+    text = text.replace("response:", "  joint: {column: q, unit: rad}\nresponse:")
+    data = answer_of(tmp_path, text, (t, np.round(x, 5), u + weight + rubbing, joint), header="t,x,u,q")
+    first = data["effects"][0]
+    assert first["name"] == "load_friction"
+    assert first["parameters"]["coefficient"]["value"] == pytest.approx(0.08, rel=0.1)
