@@ -17,7 +17,8 @@ HARMONICS = 6
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """An `unknown` effect of the plant file, its uncertainty in the source of its function; or why not."""
-    made, source, period = Made(), f"fitted to {facts.name}", 1.0 / f.frequency if f.frequency else 0.0
+    made, source = Made(), f"fitted to {facts.name}"
+    period = float(1.0 / f.frequency) if f.frequency else 0.0
     if f.curve is not None:
         c, half = f.curve, np.array(f.curve.half)
         source += f"; 95 % within +-{float(np.median(half)):.2g} {c.unit}"
