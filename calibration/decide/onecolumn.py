@@ -21,7 +21,7 @@ def by_one_column(
     if len(together.chosen) > 1 and any(c.name == UNKNOWN for c in together.candidates):
         scene.model = None
         columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
-        alone = select(s.problem, columns, most=1)
+        alone = select(s.problem, columns, most=1, before=s.looked_at)
         if alone.chosen and alone.held.taken > AS_MUCH * together.held.taken:
             return s.keep([]), alone, [finding_of(alone, 0)]
     return s, together, findings

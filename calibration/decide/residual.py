@@ -196,7 +196,7 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
     together = s
     findings: list[Finding] = []
     floor = s.problem.floor
-    little = scene.force and bool(floor) and left_over(s, scene, floor) is None
+    little = bool(floor) and left_over(s, scene, floor) is None
     if little and s.chosen:  # the names leave what is not called missing either
         return s, s, []
     for _ in range(MOST[scene.force]):
@@ -206,10 +206,10 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
             offered = [replace(c, apart=float(k)) for k, c in enumerate(offered)]
         own = tuple(together.model.phases)
         beside_names = replace(s.problem, base=together.columns, base_phases=own)
-        more = select(beside_names, offered, most=1)
+        more = select(beside_names, offered, most=1, before=s.looked_at)
         s.refused += more.refused
         # what the floor may hold is no function of anything, unless most of it goes with that
-        if not more.chosen or (little and not clear(more)):
+        if not more.chosen or (scene.force and little and not clear(more)):
             break
         kept = leave_out(s, displaced(more.chosen[0])) if not findings else s
         s, names = kept, together if kept is s else kept

@@ -24,14 +24,16 @@ def select(
     most: int = limits.MOST_EFFECTS,
     margin: float = limits.MARGIN,
     around: bool = False,
+    before: int = 0,
 ) -> Selection:
     """Pick effects one by one while each helps on held-out rows; then hold them against surrogates.
 
     around: search once more without each pick. One name may imitate two that no step of the search takes.
+    before: candidates of the same balance that were tried before these.
     """
-    s = _searched(problem, candidates, most, margin)
+    s = _searched(problem, candidates, most, margin, before)
     for pick in s.candidates if around else ():
-        other = _searched(problem, [c for c in candidates if c.key != pick.key], most, margin)
+        other = _searched(problem, [c for c in candidates if c.key != pick.key], most, margin, before)
         if _explains_more(other, s, margin):
             why = f"{' and '.join(c.say() for c in other.candidates)} explain it better"
             s = replace(other, refused=[*other.refused, Refusal(pick.say(), why)])
@@ -39,8 +41,10 @@ def select(
     return rules.leave_out(s, rules.below_surrogates)
 
 
-def _searched(problem: Problem, candidates: list[Candidate], most: int, margin: float) -> Selection:
-    search = _Search(Selection.of(problem), candidates, margin)
+def _searched(
+    problem: Problem, candidates: list[Candidate], most: int, margin: float, before: int
+) -> Selection:
+    search = _Search(Selection.of(problem), candidates, margin, before)
     search.pick(most)
     search.revise()
     return search.picks
@@ -76,6 +80,7 @@ class _Search:
     picks: Selection
     candidates: list[Candidate]
     margin: float
+    before: int
 
     def pick(self, most: int) -> None:
         """Accept effects, strongest first, until none is acceptable or `most` are there."""
@@ -86,7 +91,7 @@ class _Search:
             self.picks.refused.append(Refusal("every effect that no declared stage has", why))
             left = [c for c in left if c.stage]
         left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
-        self.picks = replace(self.picks, looked_at=len(left) or len(self.candidates))
+        self.picks = replace(self.picks, looked_at=self.before + (len(left) or len(self.candidates)))
         while len(self.picks.chosen) < most and left:
             found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]
             if not found:

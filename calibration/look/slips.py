@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from calibration.arrays import Array
 from calibration.balances.problem import Problem
@@ -37,7 +38,10 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     """`found` on `whole`, or what is found beside slips where they explain what nothing else does. Jumps at
     the reversals are a gap's."""
     s, scene, bounds = found
-    places, turns = jumps_of(s), np.flatnonzero(np.diff(view.direction[view.rows]) != 0)
+    # where a file begins, columns that look back are no measurement
+    begins = maximum_filter1d(np.diff(whole.session, prepend=-1) != 0, 2 * SIDES[-1] + 1)
+    places = [at for at in jumps_of(s) if not begins[at]]
+    turns = np.flatnonzero(np.diff(view.direction[view.rows]) != 0)
     turning = {at for at in places if np.any(np.abs(turns - at) <= SIDES[0])}
     if len(turning) > PLAYS * len(turns):
         places = [at for at in places if at not in turning]
