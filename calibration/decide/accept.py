@@ -66,8 +66,8 @@ def needed(tried: int) -> float:
 
 
 def least_share(p: Problem, tried: int) -> float:
-    """Share of the fitted rows' mean square from which on one line of so many that are tried could be named:
-    the power of the log."""
+    """The power of the log: the share of the fitted rows' mean square that one line needs for a name. So many
+    are tried."""
     rows, blocks = int(p.train.sum()), p.train.sum() / p.block
     shares = np.arange(1, 100) / 100
     seen = wald_log10(rows * shares / (1 - shares), 2, blocks) >= needed(tried)

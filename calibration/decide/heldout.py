@@ -29,7 +29,7 @@ class HeldOut:
 
     @property
     def taken(self) -> float:
-        """What is off the mean square."""
+        """The mean square that is taken off."""
         return self.before**2 - self.after**2
 
     @property

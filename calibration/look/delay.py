@@ -29,8 +29,8 @@ EARNS = 0.05
 
 @dataclass
 class Timed:
-    """What is found once the effort is where it belongs, or slips are apart: `first`, if such is an effect,
-    `before` the held-out error without it; a hold's `note`."""
+    """The search once the effort is where it belongs, or slips are apart. Such an effect is `first`, and
+    `before` is the held-out error without it. `note`: of a hold."""
 
     problem: Problem
     found: Found

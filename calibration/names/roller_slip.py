@@ -28,8 +28,8 @@ MOST_LIMIT = 0.1
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """Of rates, travel that is lost while the axis accelerates too hard: a share of it, or what exceeds the
-    limit; row by row, means would round it off. Slips of two sensors are found by look/slips.py."""
+    """Of rates, travel that is lost while the axis accelerates too hard: a share of it, or what is beyond the
+    limit. Row by row, as means would round it off. Slips of two sensors are found by look/slips.py."""
     if s.pair is None or not s.rates:
         return []
     m, roller = s.pair.motion, s.pair.train.one("roller")
