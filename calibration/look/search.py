@@ -9,13 +9,13 @@ from calibration.balances.view import View
 from calibration.decide import rules
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE
+from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE, STILL_MISSING
 from calibration.decide.twins import one_line
 from calibration.names import NAMES
 from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
 from calibration.names.unknown import flexible
-from calibration.names.unknown_shapes import alone
+from calibration.names.unknown_alone import alone
 
 # effects: a cogging motor shows several orders. ASSUMPTION
 MOST = 14
@@ -110,7 +110,8 @@ def _takes_more(one: Selection, other: Selection) -> bool:
     """Whether a shape alone takes clearly more off the held-out error than all names, which it would replace
     where they leave more than the floor."""
     more = AS_MUCH * one.held.taken > other.held.taken
-    return bool(one.chosen) and more and other.held.after > other.problem.floor
+    fraction = other.held.after > STILL_MISSING * one.held.after
+    return bool(one.chosen) and (more or fraction) and other.held.after > other.problem.floor
 
 
 def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:

@@ -8,7 +8,6 @@ import numpy as np
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
 from calibration.finding import UNKNOWN
-from calibration.names.candidates import tried
 from calibration.names.name import Array, Candidate, Scene, candidate
 from calibration.names.spline import spline_columns
 
@@ -16,12 +15,6 @@ from calibration.names.spline import spline_columns
 SLOW = 4
 # part of the usual stroke, of the widest of several loops. ASSUMPTION
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)
-# fits of the declared terms beside a force's own square, until both hold still. ASSUMPTION
-SETTLED = 5
-# part of the range, where an end stop may begin, from the other end. ASSUMPTION: a margin of a stroke
-BEGINS = (0.5, 0.6, 0.7, 0.8, 0.9)
-# part of the range, a small change of that place. ASSUMPTION
-PLACE_STEP = 0.01
 
 
 def over(domain: str, columns: Array, *sizes: tuple[str, str], **more: Any) -> Candidate:
@@ -91,42 +84,3 @@ def bend(s: Scene) -> list[Candidate]:
         return []
     part = s.view.speed / (s.view.top or 1.0)
     return [over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
-
-
-def alone(s: Scene) -> list[Candidate]:
-    """Shapes that imitate sums of names, and are looked for beside none: an end stop, a torque that bends.
-    Beside an offset that wanders within a file either would be any slope over one stroke."""
-    wanders = s.view.slow_offset > 0 or s.view.response.channel == "acceleration"
-    return (
-        []
-        if not s.force or not s.view.dynamic or s.pair is not None or wanders
-        else [*_saturation(s), *_end_stop(s)]
-    )
-
-
-def _saturation(s: Scene) -> list[Candidate]:
-    """Torque that falls behind its effort, as iron saturates: the square of the force that the declared terms
-    make beside it."""
-    force = s.declared_part
-    for _ in range(SETTLED):
-        bent = force * np.abs(force) / (float(np.max(np.abs(force))) or 1.0)
-        force = s.fitted(bent[:, None])[1]
-    return [over("current", bent, ("square", s.unit))]
-
-
-def _end_stop(s: Scene) -> list[Candidate]:
-    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before."""
-    x, ok = s.view.x, s.view.ok
-    low, high = float(np.min(x[ok])), float(np.max(x[ok]))
-    span = (high - low) or 1.0
-    out = []
-    for side, end in ((1.0, low), (-1.0, high)):
-
-        def full(p: Array, side: float = side) -> Array:
-            return np.asarray(side * np.maximum(side * (x - p[0]), 0.0) ** 2 / span**2)
-
-        for part in BEGINS:
-            at = {"begin": (end + side * part * span, s.angle_unit)}
-            more: dict[str, Any] = {"domain": "axis_angle", "positive": (0,), "steps": (PLACE_STEP * span,)}
-            out.append(tried(UNKNOWN, s.shaped(full), ("square", s.unit), at=at, **more))
-    return out

@@ -46,10 +46,15 @@ def _say(effect: dict[str, Any]) -> str:
     return f"{effect['name']}{place}" + (f" ({', '.join(detail)})" if detail else "")
 
 
+#: where a shape without a name lies
+PLACES = ("begin", "place")
+
+
 def size(effect: dict[str, Any]) -> list[tuple[str, str, dict[str, Any]]]:
     """Name, unit and numbers of the parameter that says how large it is: the amplitude, else the first that
-    is no phase. Empty where there is none."""
-    named = [] if effect["name"] == UNKNOWN else [x for x in parameters(effect) if "phase" not in x[0]]
+    is no phase. Of a function without a name, its place. Empty where there is none."""
+    wanted = PLACES if effect["name"] == UNKNOWN else effect["parameters"]
+    named = [x for x in parameters(effect) if x[0] in wanted and "phase" not in x[0]]
     named.sort(key=lambda x: x[0] != "amplitude")
     return [(n.replace("_", " "), p["unit"] if p["unit"] != "1" else "", p) for n, p in named[:1]]
 

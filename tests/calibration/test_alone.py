@@ -87,3 +87,16 @@ def test_friction_grows_with_what_two_joints_weigh(tmp_path: Path) -> None:
     first = data["effects"][0]
     assert first["name"] == "load_friction"
     assert first["parameters"]["coefficient"]["value"] == pytest.approx(0.08, rel=0.1)
+
+
+def test_a_dent_is_one_place_and_no_harmonics(tmp_path: Path) -> None:
+    """Of a tape: 8 µrad high, 20 mm wide, where the stage of three turns has its own harmonics declared."""
+    t, x, y = sensors()
+    dent = 8e-6 * np.exp(-0.5 * ((x + 0.07) / 0.02) ** 2)
+    rig = SENSORS + "stages:\n  - {name: disc, period: 0.25, harmonics: 3}\n"
+    data = answer_of(tmp_path, rig, (t, np.round(x, 5), y + dent))
+    assert domains(data) == {("unknown", "axis_angle")}
+    (only,) = data["effects"]
+    assert only["parameters"]["place"]["value"] == pytest.approx(-0.07, abs=0.002)
+    assert only["parameters"]["amplitude"]["value"] == pytest.approx(8e-6, rel=0.1)
+    assert data["error"]["position"]["after"] < 1.5 * data["error"]["position"]["floor"]

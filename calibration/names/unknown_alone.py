@@ -1,0 +1,85 @@
+"""Shapes without a name that sums of names imitate: each is looked for alone, in the place of all names."""
+
+from typing import Any
+
+import numpy as np
+
+from calibration.arrays import Array
+from calibration.finding import UNKNOWN
+from calibration.names.candidates import tried
+from calibration.names.name import Candidate, Scene
+from calibration.names.unknown_shapes import over
+
+# fits of the declared terms beside a force's own square, until both hold still. ASSUMPTION
+SETTLED = 5
+# part of the range, where an end stop may begin, from the other end. ASSUMPTION: a margin of a stroke
+BEGINS = (0.5, 0.6, 0.7, 0.8, 0.9)
+# part of the range, a small change of that place. ASSUMPTION
+PLACE_STEP = 0.01
+# places and widths of a dent that are tried, of the range. ASSUMPTION: two widths apart; a drop and a thumb
+PLACES = tuple((k + 0.5) / 25 for k in range(25))
+WIDTHS = (0.02, 0.05)
+# of a dent's width, a small change of it. ASSUMPTION
+WIDTH_STEP = 0.1
+
+
+def alone(s: Scene) -> list[Candidate]:
+    """The shapes of this balance: a dent between two sensors, an end stop or a bent torque in a force.
+
+    Beside an offset that wanders within a file either of these would be any slope over one stroke.
+    """
+    if s.pair is not None or s.view.slow_offset or not s.view.ok.any():
+        return []
+    if not s.force:
+        return _dents(s)
+    moves = s.view.dynamic and s.view.response.channel != "acceleration"
+    return [*_saturation(s), *_end_stops(s)] if moves else []
+
+
+def _saturation(s: Scene) -> list[Candidate]:
+    """Torque that falls behind its effort, as iron saturates: the square of the force that the declared terms
+    make beside it."""
+    force = s.declared_part
+    for _ in range(SETTLED):
+        bent = force * np.abs(force) / (float(np.max(np.abs(force))) or 1.0)
+        force = s.fitted(bent[:, None])[1]
+    return [over("current", bent, ("square", s.unit))]
+
+
+def _end_stops(s: Scene) -> list[Candidate]:
+    """A buffer of rubber at one end of the stroke: stiffer the further it is pressed, no force before."""
+    low, span = _range(s)
+    out = []
+    for side, end in ((1.0, low), (-1.0, low + span)):
+
+        def full(p: Array, side: float = side) -> Array:
+            return np.asarray(side * np.maximum(side * (s.view.x - p[0]), 0.0) ** 2 / span**2)
+
+        for part in BEGINS:
+            at = {"begin": (end + side * part * span, s.angle_unit)}
+            more: dict[str, Any] = {"domain": "axis_angle", "positive": (0,), "steps": (PLACE_STEP * span,)}
+            out.append(tried(UNKNOWN, s.shaped(full), ("square", s.unit), at=at, **more))
+    return out
+
+
+def _dents(s: Scene) -> list[Candidate]:
+    """A dent in a tape or a rack, dirt on a disc: one place of the travel."""
+    low, span = _range(s)
+
+    def full(p: Array) -> Array:
+        return np.asarray(np.exp(-0.5 * ((s.view.x - p[0]) / max(abs(p[1]), 1e-9 * span)) ** 2))
+
+    out = []
+    for width in WIDTHS:
+        steps = (PLACE_STEP * span, WIDTH_STEP * width * span)
+        for place in PLACES:
+            at = {"place": (low + place * span, s.angle_unit), "width": (width * span, s.angle_unit)}
+            size = ("amplitude", s.unit)
+            out.append(tried(UNKNOWN, s.shaped(full), size, at=at, steps=steps, domain="axis_angle"))
+    return out
+
+
+def _range(s: Scene) -> tuple[float, float]:
+    """Where the position's range begins, and its length, position units."""
+    x = s.view.x[s.view.ok]
+    return float(np.min(x)), float(np.ptp(x)) or 1.0
