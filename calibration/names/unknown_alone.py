@@ -16,8 +16,9 @@ SETTLED = 5
 BEGINS = (0.5, 0.6, 0.7, 0.8, 0.9)
 # part of the range, a small change of that place. ASSUMPTION
 PLACE_STEP = 0.01
-# places and widths of a dent that are tried, of the range. ASSUMPTION: two widths apart; a drop and a thumb
+# places of a dent that are tried, of the range: two of the least widths apart. ASSUMPTION
 PLACES = tuple((k + 0.5) / 25 for k in range(25))
+# of the range: widths of a dent that are tried, standard deviations. ASSUMPTION
 WIDTHS = (0.02, 0.05)
 # of a dent's width, a small change of it. ASSUMPTION
 WIDTH_STEP = 0.1
