@@ -201,7 +201,8 @@ def movable(s: Scene, rate: float, within: tuple[float, float]) -> list[Candidat
     Where the drive is at some places more often than at others, the spectrum's peak lies beside it."""
     at = {"order": (float(rate * s.turn), "1/turn" if s.view.turn else f"1/{s.angle_unit}")}
     step = (STEP_OF_CELL * s.turn / s.span,)
-    blank = line(s, "bearing_pass", rate, apart=float(rate), searched=1, fixed=at, steps=step)
+    twins = (CLOCKED,) if on_clock(s, rate) else ()
+    blank = line(s, "bearing_pass", rate, apart=float(rate), searched=1, fixed=at, steps=step, twins=twins)
 
     def with_shape(c: Candidate) -> Candidate:
         def shape(p: Array) -> Array:
