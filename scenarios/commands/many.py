@@ -31,7 +31,6 @@ def campaign(options: CampaignOptions) -> None:
 @click.option("--out", type=PATH, default=Path("out/paper"), show_default=True)
 @click.option("--plant", type=PATH, help="Plant file with low preload.")
 @click.option("--plant-high", type=PATH, help="Plant file with high preload.")
-@click.option("--markdown", type=PATH, help="Write the table to this file.")
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")

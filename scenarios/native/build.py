@@ -14,7 +14,6 @@ from pathlib import Path
 
 from scenarios.native import stamp
 from scenarios.native.compile import TRANSLATED
-from scenarios.native.derived import derived_from
 from scenarios.native.modules import PACKAGE, ROOT, selected
 from scenarios.progress import Stage
 
@@ -71,7 +70,7 @@ def compiler() -> bool:
 def _compile(folder: Path, say: Say, root: Path, stage: Stage) -> Path:
     """Compile what can be; returns the folder that holds it."""
     files = selected(root)
-    refused = derived_from(root, files)
+    refused: dict[str, str] = {}
     for _ in range(_ROUNDS):
         for file, why in sorted(refused.items()):
             say(f"{file} stays plain: {why}")

@@ -13,8 +13,19 @@ from scenarios.language import compensation as compensations
 from scenarios.progress import shown
 from scenarios.studies.objective.bench import MODES
 from scenarios.studies.objective.bound import bound
-from scenarios.studies.objective.cases import PAPER, cases, ladder, starts
-from scenarios.studies.objective.table import HEADINGS, Row, bound_line, line, markdown, measure, over_paper
+from scenarios.studies.objective.cases import (
+    HEADINGS,
+    PAPER,
+    Row,
+    bound_line,
+    cases,
+    ladder,
+    line,
+    markdown,
+    measure,
+    over_paper,
+    starts,
+)
 from scenarios.studies.options import ObjectiveOptions
 
 

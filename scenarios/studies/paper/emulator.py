@@ -15,7 +15,7 @@ from bus.protocol import MEASUREMENT_BASE, AxisParameter, Opcode, unpack_motion
 from bus.protocol.scales import rate_q16
 from plant.parts import PlantModel
 from scenarios.lab.axisbench import AXIS, AxisBench
-from scenarios.studies.paper.log import Log
+from scenarios.studies.paper.measures import Log
 from scenarios.studies.paper.scales import ARCSEC, LOG_PERIOD_S
 
 START_STEPS = float(1 << 28)

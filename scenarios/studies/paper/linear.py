@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant.parts import PlantModel
-from scenarios.studies.paper.log import Array, Log
+from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.runs import STEP_TO
 from scenarios.studies.paper.scales import (
     ARCSEC,

@@ -8,8 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
-from scenarios.studies.paper.log import Log, join
-from scenarios.studies.paper.measures import stalled
+from scenarios.studies.paper.measures import Log, join, stalled
 from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
 
 TRACKING = 15.0
@@ -18,8 +17,6 @@ HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
 """arcsec/s, "higher speeds of 600 to 1000 arc sec/s" (paper 4)."""
 OPENED = (600.0, 1000.0)
 """arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a))."""
-OPENED_S = 200.0
-"""s in open loop: 33 and 56 degrees of sky."""
 SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
 LOW = 100.0
@@ -47,29 +44,11 @@ def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:
     return bench.closed_loop(TRACKING, discard + seconds).after(discard)
 
 
-@dataclass(frozen=True)
-class HighSpeed:
-    """One speed of E3 and E5: closed loop, and open loop at the mean effort the loop had needed; None: not
-    run."""
-
-    setpoint: float
-    closed: Log
-    opened: Log | None
-
-
-def high_speed(
-    bench: Bench, setpoint: float, seconds: float = 12.0, settle: float = 4.0, opened_s: float = 0.0
-) -> HighSpeed:
-    """E3, E5: closed loop at a speed, then for `opened_s` open loop at the effort that had held it.
-
-    The open-loop run is as long as a slew across the sky. Not only the gears throw an open-loop drive off its
-    speed but also the balance, which changes over tens of degrees.
-    """
+def high_speed(bench: Bench, setpoint: float, seconds: float, settle: float) -> tuple[Log, Log]:
+    """E3, E5: closed loop at a speed, then as long in open loop at the mean effort that had held it."""
     closed = bench.closed_loop(setpoint, settle + seconds).after(settle)
-    if not opened_s:
-        return HighSpeed(setpoint, closed, None)
     effort = round(float(closed.effort.mean()))
-    return HighSpeed(setpoint, closed, bench.open_loop(effort, settle + opened_s).after(settle))
+    return closed, bench.open_loop(effort, settle + seconds).after(settle)
 
 
 def slow_slew(bench: Bench, setpoint: float, seconds: float = 6.0, settle: float = 7.0) -> Log:

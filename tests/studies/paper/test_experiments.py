@@ -8,14 +8,14 @@ from plant.model import load
 from scenarios.studies.paper.experiments import closed as in_loop
 from scenarios.studies.paper.experiments import opened as out_of_loop
 from scenarios.studies.paper.experiments import tracking
-from scenarios.studies.paper.experiments.identify import fit, second_order
-from scenarios.studies.paper.experiments.noise import CONSTANT_ERROR, Noise
+from scenarios.studies.paper.experiments.frictionmap import CONSTANT_ERROR, Noise
+from scenarios.studies.paper.experiments.identify import FirstOrder, fit, second_order
+from scenarios.studies.paper.experiments.models import RULES
 from scenarios.studies.paper.experiments.tracking import stick_slips
 from scenarios.studies.paper.rows import Row
 from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.scales import COUNT_RATE
 from scenarios.studies.paper.starts import STARTS, Benches
-from scenarios.studies.paper.tuning import RULES, FirstOrder
 from tests.studies.paper.synthetic import log_of
 
 PLANTS = {preload: load(name) for preload, name in DEFAULTS.items()}

@@ -3,8 +3,7 @@
 import numpy as np
 
 from scenarios.studies.paper.experiments.experiment import Figures, row
-from scenarios.studies.paper.log import Log
-from scenarios.studies.paper.measures import means, peak_percent
+from scenarios.studies.paper.measures import Log, means, peak_percent
 from scenarios.studies.paper.runs import TRACKING, Bench, tracking
 from scenarios.studies.paper.scales import COUNT_RATE, LOG_PERIOD_S
 from scenarios.studies.paper.starts import Benches, viscous_only
