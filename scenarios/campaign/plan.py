@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.campaign import calibration, inputs
+from scenarios.lab.prepare import CAMPAIGNS, located
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
-from scenarios.language.own import CAMPAIGNS, located
 from scenarios.language.units import parse
 from scenarios.language.validate import check, schema
 
@@ -25,14 +25,23 @@ MOST = 1_000_000
 report take some 3 GB. Beyond that there would be minutes of planning without a word."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Case:
-    """One planned run. key: hash of everything that decides its outcome. document: the scenario, plain."""
+    """One planned run, as a worker is sent it.
+
+    key: hash of everything that decides its outcome. document: the scenario, plain. beside: folder in which
+    relative names are looked for. kept: where the logs of those to `keep` (nothing, failed, all) stay, or
+    None.
+    """
 
     key: str
     index: int
     values: dict[str, Any]
     document: dict[str, Any]
+    beside: str
+    metrics: tuple[str, ...]
+    keep: str = "nothing"
+    kept: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +95,10 @@ class Plan:
         text = json.dumps([document, folder], sort_keys=True)
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
         named = {each.name: value for each, value in zip(self.inputs, values, strict=True)}
-        return Case(key, index, named, document)
+        return Case(
+            key=key, index=index, values=named, document=document, beside=folder, metrics=self.metrics,
+            keep=self.keep,
+        )  # fmt: skip
 
 
 def load(file: Path) -> Plan:

@@ -1,12 +1,21 @@
 """Commands that say what is there: conformance, eds, protocol, effects."""
 
 import sys
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import click
 
 from scenarios.commands.options import PATH, SPEED, Number, network
+
+_FILE_INFO = {
+    "FileVersion": "1", "FileRevision": "1", "Description": "schmidt",
+    "CreatedBy": "schmidt", "ModifiedBy": "schmidt",
+    "CreationDate": "01-01-2026", "CreationTime": "12:00AM",
+    "ModificationDate": "01-01-2026", "ModificationTime": "12:00AM",
+}  # fmt: skip
+"""Of the section FileInfo (CiA 306). The same dates whenever it is written: the same bytes."""
 
 
 @click.command(short_help="Check boards, emulated or real, against the protocol.")
@@ -64,10 +73,36 @@ def conformance(
 def eds(folder: Path, scenario: Path | None, network: str | None) -> None:
     """Write a CANopen data sheet (EDS) per type of board into FOLDER; SCENARIO or --network says which
     boards, those of one's own too."""
-    from scenarios.commands.datasheets import write_eds
-
     for file in write_eds(folder, scenario, network):
         click.echo(file)
+
+
+def write_eds(folder: Path, scenario: Path | None = None, name: str | None = None) -> list[Path]:
+    """One file per type of board into `folder`, node numbers of the first of each, boards of one's own too;
+    and `canopen.dbc`.
+
+    scenario, name: whose network (neither: `lab`). Raises OSError when it cannot be written, ValueError
+    subclasses for a scenario that cannot be used.
+    """
+    from canopen.objectdictionary.eds import export_eds
+
+    from boards.canopen import canopen_dbc, dictionary
+    from boards.canopen.dictionary import type_of
+    from host.logs.files import write_file
+    from scenarios.lab import wiring
+
+    made = wiring.network(scenario, network_name=name)
+    texts = {}
+    for kind, board in sorted(
+        {type_of(each)[0].lower(): each for each in reversed(made.boards.values())}.items()
+    ):
+        text = StringIO()
+        export_eds(dictionary(board), text, {"FileName": f"{kind}.eds", **_FILE_INFO})
+        texts[f"{kind}.eds"] = text.getvalue()
+    texts["canopen.dbc"] = canopen_dbc(made.devices)
+    for file, text_of in texts.items():
+        write_file(folder / file, text_of)
+    return [folder / file for file in texts]
 
 
 @click.command()

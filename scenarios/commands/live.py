@@ -129,6 +129,6 @@ def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     Faults: fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/reference/faults.md).
     With serve --clock steps: step 5ms.
     """
-    from scenarios.doors.tell import tell
+    from scenarios.doors.stepped import tell
 
     click.echo(tell(" ".join(command), at, token))

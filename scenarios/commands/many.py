@@ -2,10 +2,10 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
-from scenarios.campaign.options import CampaignOptions
 from scenarios.commands.options import PATH, Number, filled, jobs
 from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
@@ -17,13 +17,13 @@ from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster).")
 @click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
-@filled(CampaignOptions)
-def campaign(options: CampaignOptions) -> None:
+def campaign(scheduler: str | None, **given: Any) -> None:
     """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
-    need("calibrate", *(("cluster",) if options.scheduler else ()))
+    need("calibrate", *(("cluster",) if scheduler else ()))
+    from scenarios.campaign.run_campaign import CampaignOptions
     from scenarios.campaign.run_campaign import campaign as command
 
-    sys.exit(command(options))
+    sys.exit(command(CampaignOptions(scheduler=scheduler, **given)))
 
 
 @click.command(short_help="Repeat the paper's experiments.")

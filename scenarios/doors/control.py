@@ -18,8 +18,7 @@ from collections.abc import Callable
 from functools import partial
 
 from bus.outside.punctual import Punctuality
-from scenarios.doors.address import address, is_local, listen
-from scenarios.doors.clients import Client, Clients
+from scenarios.doors.clients import Client, Clients, address, is_local, listen
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 

@@ -4,9 +4,8 @@ import os
 from struct import Struct
 
 from scenarios.doors.door import DoorError, counted
-from scenarios.doors.hid_report import DESCRIPTOR, NAME, PRODUCT, VENDOR, VERSION, out_report
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.usb import UsbFull, UsbPlug
+from scenarios.doors.usb import DESCRIPTOR, NAME, PRODUCT, VENDOR, VERSION, UsbFull, UsbPlug, out_report
 
 DEVICE = "/dev/uhid"
 _DESTROY, _CREATE2, _INPUT2 = 1, 11, 12

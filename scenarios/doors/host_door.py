@@ -11,16 +11,14 @@ from time import monotonic
 
 from host.client import TICK_NS
 from host.console.views import BusState
-from scenarios.doors.busview import EmulatedBus
+from scenarios.doors.busview import EmulatedBus, Looks
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.looks import Looks
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import dated
 from scenarios.doors.pipe_messages import (
     Close,
-    Done,
     Opened,
     Report,
     Said,
@@ -125,7 +123,6 @@ class HostProcess:
             self._hear()
         if self._waiting and self._served.pacer.speed > 1.0 and now_ns - self._sent_ns > 2 * TICK_NS:
             self._let_it_catch_up(_BUS_S)
-        self._bus.poll()
         self._looks.poll(now_ns)
         if self._waiting or not self._ready:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
@@ -191,9 +188,7 @@ class HostProcess:
             self._looks.wanted = said.looking
             self._record(said.recording)
         elif isinstance(said, Wish):
-            self._bus.wish(
-                said.name, said.arguments, lambda text, bad: self._send(Done(said.number, text, bad))
-            )
+            self._send(self._bus.wish(said))
         elif isinstance(said, Said):
             self._say(said.text)
         elif isinstance(said, Opened):

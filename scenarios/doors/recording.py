@@ -1,18 +1,46 @@
 """`--record DIR`: all logs of a served session, and what entered it, so that it can be run again."""
 
 import json
+import struct
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from bus.can.candump import CandumpWriter
 from host.logs.files import LineFile, LogError, write_file
+from plant.kernels import layout
 from plant.model import PlantModel, dump
+from plant.plant import Plant
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.rest import Rest
 from scenarios.lab.networks import SERIAL
 from scenarios.lab.recorder import Recorder
 from scenarios.lab.session import log_headers
 from scenarios.language.model import Scenario
+
+
+def state_of(plant: Plant) -> bytes:
+    """Every number that the plant's future depends on: all but what is recorded of it."""
+    world = plant.world.copy()
+    world[:, layout.TRUTH : layout.DELAYS] = 0.0
+    world[:, [layout.RECORD_EVERY, layout.RECORDED]] = 0.0
+    return world.tobytes() + struct.pack("<d", plant.focus.position(plant.now_ns))
+
+
+class Rest:
+    """From now on: every frame on the bus, and at its end the plant to the last bit."""
+
+    def __init__(self, served: LiveNetwork) -> None:
+        self._served = served
+        self._log = CandumpWriter(None)
+        served.network.wire.tap(self._log.take)
+
+    def digest(self) -> str:
+        """Until now: SHA-256 over the log of the bus and the state of the plant."""
+        plant = self._served.network.plant
+        plant.advance(self._served.now_ns)
+        return sha256(self._log.hexdigest().encode() + state_of(plant)).hexdigest()
+
 
 SESSION, ENTERED, PLANT, SCENARIO = "session.json", "entered.log", "plant.yaml", "scenario.yaml"
 BEGUN = "begun.snapshot"

@@ -6,8 +6,7 @@ own implementation (`rfc2217://`), so that a program may set what it likes. The 
 
 from typing import Any
 
-from scenarios.doors.address import address, listen
-from scenarios.doors.clients import Client, Clients
+from scenarios.doors.clients import Client, Clients, address, listen
 from scenarios.doors.door import counted
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork

@@ -11,19 +11,14 @@ from rich.live import Live
 from bus.can.candump import CandumpWriter
 from bus.outside.pacer import checked_speed
 from plant.model import PlantModel
-from scenarios.doors.attach import attached
-from scenarios.doors.door import Door
-from scenarios.doors.interrupt import interrupts
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import Door, Keeper
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.loop import Loop
-from scenarios.doors.making import check, make_doors
+from scenarios.doors.loop import Loop, first
+from scenarios.doors.making import attached, check, make_doors
 from scenarios.doors.options import ServeOptions
-from scenarios.doors.parking import park
-from scenarios.doors.priority import first
+from scenarios.doors.parking import interrupts, park
 from scenarios.doors.recording import Recording
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import Standing, standing
+from scenarios.doors.snapshots import Snapshots, Standing, standing
 from scenarios.doors.steps import Steps
 from scenarios.lab.muted import Feed, FeedError
 from scenarios.lab.prepare import chosen
@@ -65,7 +60,7 @@ def serve(options: ServeOptions) -> int:
         if recording is not None:
             recording.attach(served)
         keepers = [Keeper(door, console.print) for door in doors]
-        show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
+        show = partial(line.update, refresh=True) if console.is_terminal else lambda _text: None
         loop = Loop(served, keepers, console, show, options.duration, recording)
         try:
             _warm_up(scenario, model)
@@ -145,7 +140,3 @@ def _say_goodbye(console: Console, loop: Loop, served: LiveNetwork, doors: Seque
         console.print(f"  nobody came to {unused}", markup=False, highlight=False, soft_wrap=True)
     if served.punctual.ticks:
         console.print(served.punctual.text(), soft_wrap=True)
-
-
-def _nowhere(_text: str) -> None:
-    """The line for a terminal that is none."""

@@ -80,7 +80,7 @@ def _hid(asked: Asked, live: LiveNetwork) -> Door:
 
 
 def _debug(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.debug_pty import DebugDoor
+    from scenarios.doors.serial_pty import DebugDoor
 
     return DebugDoor(asked.spec, live)
 

@@ -14,13 +14,36 @@ from scenarios.language.configure import read_tables, with_firmware, with_parame
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
 from scenarios.language.model import Scenario
-from scenarios.language.own import located
 from scenarios.language.targets import check_targets
-from scenarios.language.validate import schema
+from scenarios.language.validate import nearest, schema
 
 if TYPE_CHECKING:
     from boards.core.declared import DeclaredBoard
     from plant.model import PlantModel
+
+
+SCENARIOS = Path(__file__).parents[1]
+"""Those that come with schmidt, by name: `quick-look`."""
+CAMPAIGNS = SCENARIOS / "campaigns"
+
+
+def located(given: Path, folder: Path = SCENARIOS) -> Path:
+    """The file that is meant: the one of this path, or else the one of this name in `folder`.
+
+    A path with a suffix or a folder in it is never a name. Raises ScenarioError for a name that nothing has.
+    """
+    try:
+        there = given.exists()
+    except (OSError, ValueError):  # a path that no system takes; reading it says why
+        return given
+    if there or given.suffix or len(given.parts) != 1:
+        return given
+    own = {file.stem: file for file in sorted(folder.glob("*.yaml"))}
+    found = own.get(given.name.replace("_", "-"))
+    if found is None:
+        raise ScenarioError(f"{given}: no such file, and none of schmidt's own; {nearest(given.name, own)}")
+    return found
+
 
 UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 """The lab network has no date: boards do not look at the sky, and a host takes today's."""

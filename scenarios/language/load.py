@@ -199,30 +199,23 @@ def _site(document: Document, data: dict[str, Any]) -> Site:
         raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
 
 
-def _model(path: Path) -> pointmodel.PointingModel:
-    try:
-        text = read_text(path)
-    except (OSError, ValueError) as error:
-        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error
-        raise pointmodel.PointingFileError(f"{path}: {reason}") from None
-    return pointmodel.parsed(text, path)
-
-
 def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, Any]) -> model.Scenario:
     said = data.get("mount", {})
     given = {key: value / ARCSEC_PER_RAD for key, value in said.items() if key != "pointing_model"}
     low = given.get("declination_low", model.DECLINATION_LOW_RAD)
     high = given.get("declination_high", model.DECLINATION_HIGH_RAD)
-    park = min(max(scenario.site.latitude_rad, low), high)
+    park, where = min(max(scenario.site.latitude_rad, low), high), document.where(("mount",))
     horizon = data.get("site", {}).get("horizon")
     try:
         mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
         if "pointing_model" in said:
             path = Path(said["pointing_model"])
-            beside = document.file.parent / path
-            mount = dataclasses.replace(mount, model=_model(path if path.exists() else beside))
-    except ValueError as error:
-        raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
+            path = path if path.exists() else document.file.parent / path
+            mount = dataclasses.replace(mount, model=pointmodel.parsed(read_text(path), path))
+    except FileNotFoundError:
+        raise ScenarioError(f"{where}: mount: {path}: there is no such file") from None
+    except (OSError, ValueError) as error:
+        raise ScenarioError(f"{where}: mount: {error}") from None
     for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):
         angle = scenario.start_rad.get(axis)
         if angle is not None and not scale.within(angle):

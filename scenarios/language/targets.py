@@ -3,7 +3,7 @@
 from typing import Any
 
 from host.sky.angles import parse_declination, parse_right_ascension
-from host.sky.catalogue import Star, UnknownTarget, star
+from host.sky.catalogue import Star, star
 from host.sky.visibility import Unreachable, check_reachable
 from scenarios.language.document import ScenarioError
 from scenarios.language.model import Scenario
@@ -33,8 +33,6 @@ def target_of(given: Any, where: str) -> Star:
             pm_ra_mas_yr=float(given.get("pm_ra", 0.0)),
             pm_dec_mas_yr=float(given.get("pm_dec", 0.0)),
         )
-    except UnknownTarget as error:
-        raise ScenarioError(f"{where}: target: {error}") from None
     except ValueError as error:
         raise ScenarioError(f"{where}: target: {error}") from None
 

@@ -13,7 +13,7 @@ from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe_many
 from plant.mount import sky
 from plant.parts import MountErrors
-from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Evidence
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Record
 

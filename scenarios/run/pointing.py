@@ -1,10 +1,13 @@
-"""Files of pointing runs: their stars, and the last model."""
+"""Files of a run's steps: stars and model of pointing runs, the guide log of autoguide steps."""
 
 import csv
 import io
 import math
+from importlib.metadata import version
 
 from host.logs.files import write_file
+from host.logs.guidelog import hysteresis, opening, section
+from scenarios.language.programme import guiding_of
 from scenarios.run.outcome import Outcome
 
 COLUMNS = (
@@ -34,3 +37,22 @@ def write_runs(outcome: Outcome) -> None:
             record.model.save(outcome.folder / "pointing-model.json")
     if any(record.visits for record in outcome.records):
         write_file(outcome.folder / "pointing-stars.csv", text.getvalue())
+
+
+def write_guiding(outcome: Outcome) -> None:
+    """Write guiding.txt, where a step has guided."""
+    clock = outcome.scenario.clock
+    sections = []
+    for each in outcome.records:
+        if each.guided and each.star is not None and each.start_s is not None:
+            how = guiding_of(each.step.arguments)
+            words = hysteresis(how.aggressiveness)
+            sections.append(
+                section(
+                    each.step.name, each.start_s, each.star, clock, each.guided,
+                    exposure_s=how.exposure_s, algorithm=words,
+                )
+            )  # fmt: skip
+    if sections:
+        text = "\n".join([opening(version("schmidt"), clock, 0.0), *sections])
+        write_file(outcome.folder / "guiding.txt", text)

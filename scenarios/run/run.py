@@ -20,9 +20,8 @@ from scenarios.language.model import Scenario
 from scenarios.language.targets import STARS
 from scenarios.progress import shown
 from scenarios.run.evaluate import Verdict, judge
-from scenarios.run.guiding import write_guiding
 from scenarios.run.outcome import Outcome
-from scenarios.run.pointing import write_runs
+from scenarios.run.pointing import write_guiding, write_runs
 from scenarios.run.report import html
 
 _PIECE_NS = 1_000_000_000

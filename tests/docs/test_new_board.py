@@ -71,7 +71,7 @@ def test_the_new_board_has_a_data_sheet(folder: Path) -> None:
     from canopen import import_od
 
     from boards.canopen.dictionary import NO_REMOTE
-    from scenarios.commands.datasheets import write_eds
+    from scenarios.commands.describing import write_eds
 
     sheets = {file.stem: file for file in write_eds(folder / "sheets", folder / "mirror.yaml")}
     assert {"axis", "mirror"} <= set(sheets)

@@ -16,12 +16,11 @@ from bus.protocol.report import pack_report
 from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
-from scenarios.doors.hid_report import out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay, replay_rest
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import Snapshots, standing
+from scenarios.doors.usb import out_report
 from scenarios.lab.prepare import chosen, prepare
 from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
@@ -215,7 +214,7 @@ AGAIN = """
 import sys
 from pathlib import Path
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import standing
 from scenarios.lab.snapshot.file import read
 stood = standing(read(Path(sys.argv[1])))
 served = LiveNetwork(stood.scenario, stood.model, begun=stood)

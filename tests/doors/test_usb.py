@@ -5,8 +5,7 @@ import pytest
 from bus.protocol import Device, Opcode, Reply, pack_command, unpack_reply
 from bus.protocol.report import pack_report
 from host.link import HidLink
-from scenarios.doors.entry import EntryError
-from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.livenetwork import EntryError, LiveNetwork
 from scenarios.doors.usb import OUT_LIMIT, UsbFull, UsbPlug
 from scenarios.lab.prepare import chosen
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from random import Random
 
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read

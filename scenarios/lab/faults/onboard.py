@@ -6,9 +6,8 @@ from typing import Any
 from boards.core import Board, PeriodicBoard
 from boards.core.halt import Halt
 from bus.can import Frame, Port
-from scenarios.lab.faults.evidence import Evidence, words
-from scenarios.lab.faults.layers import Laid, Stacks
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, words
 from scenarios.lab.faults.place import Place
 
 

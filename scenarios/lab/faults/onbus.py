@@ -11,9 +11,8 @@ from bus.can.sampling import BitTiming
 from bus.can.stuck import StuckDominant
 from bus.can.wire import Disturb
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
-from scenarios.lab.faults.evidence import Errors, words
-from scenarios.lab.faults.layers import Laid
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Errors, Laid, words
 from scenarios.lab.faults.place import Place
 
 _BUS = "the bus"

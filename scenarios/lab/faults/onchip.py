@@ -5,11 +5,10 @@ from typing import Any
 
 from bus.can import Frame, Port
 from bus.protocol import COMMAND_BASE, REPLY_BASE
-from scenarios.lab.faults.evidence import Evidence, words
-from scenarios.lab.faults.layers import Laid, Stacks
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, words
 from scenarios.lab.faults.onboard import Deaf
 from scenarios.lab.faults.onplant import Staged
-from scenarios.lab.faults.parameter import FaultError
 from scenarios.lab.faults.place import Place
 
 _ENDAT_BITS = 36

@@ -3,8 +3,7 @@
 from functools import partial
 
 from scenarios.lab.faults import onboard, onbus, onchip, onplant, onsensor
-from scenarios.lab.faults.kind import Kind
-from scenarios.lab.faults.parameter import Parameter
+from scenarios.lab.faults.kind import Kind, Parameter
 
 _bus = partial(Kind, "bus")
 _board = partial(Kind, "board")

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.lab.snapshot import admitted, code
-from scenarios.lab.snapshot.outside import Nobody
+from scenarios.lab.snapshot.code import Nobody
 from scenarios.native.finder import compiled
 from scenarios.native.modules import PACKAGE, ROOMS, ROOT
 

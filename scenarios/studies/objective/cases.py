@@ -10,7 +10,7 @@ from bus.protocol import AxisParameter
 from plant.model import with_effects
 from plant.parts import EffectModel, PlantModel
 from plant.wind import wind
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.studies.objective.bench import MODES, Held, hold
 from scenarios.studies.objective.bound import Bound
 from scenarios.studies.options import ObjectiveOptions

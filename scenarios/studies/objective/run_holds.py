@@ -9,7 +9,7 @@ from rich.console import Console
 from host.logs.files import write_file
 from plant.model import load
 from plant.wind import wind
-from scenarios.language import compensation as compensations
+from scenarios.language.configure import load_compensation
 from scenarios.progress import shown
 from scenarios.studies.objective.bench import MODES
 from scenarios.studies.objective.bound import bound
@@ -44,7 +44,7 @@ def objective(options: ObjectiveOptions) -> int:
         raise ValueError(f"--only {options.only}: no row's name contains this; the rows are: {names}")
     plants = load(options.plant), load(options.plant_high)
     given = options.compensation
-    table = [] if given is None else compensations.load(given).parameters()
+    table = [] if given is None else load_compensation(given).parameters()
     out.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
     console.print(_aligned(HEADINGS), highlight=False, soft_wrap=True)

@@ -19,9 +19,8 @@ from scenarios.progress import shown
 from scenarios.studies.options import HIGH, LOW, PaperOptions
 from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment, Figures
-from scenarios.studies.paper.rows import Row
+from scenarios.studies.paper.rows import Row, markdown
 from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start, others
-from scenarios.studies.paper.table import markdown, show
 
 DEFAULTS = {"low": LOW, "high": HIGH}
 Outcome = tuple[Figures, str]
@@ -152,11 +151,12 @@ def paper(options: PaperOptions) -> int:
             progress=lambda text: tell(next(count), text),
         )
     seconds = monotonic() - begin
-    show(found, console)
     document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
     write_file(options.json_file or out / "paper.json", document)
     command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
-    write_file(out / "experiments.md", markdown(found, names_of(files), command, date.today()))
+    table = markdown(found, names_of(files), command, date.today())
+    console.print(table, markup=False, highlight=False, soft_wrap=True)
+    write_file(out / "experiments.md", table)
     met = sum(row.passed for row in found)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if options.quick else "")
     console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")

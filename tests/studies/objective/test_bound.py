@@ -11,7 +11,7 @@ from plant.parts import EffectModel, Number
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
 from plant.wind import wind
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.studies.objective import bound as best
 from scenarios.studies.objective.bench import SIDEREAL, hold
 from scenarios.studies.objective.bound import ANGLE, RATE

@@ -8,7 +8,7 @@ import pytest
 from plant.model import get, load, with_effects, with_value
 from plant.parts import EffectModel, Number, PlantModel
 from plant.wind import wind
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.studies.objective.bench import hold
 from scenarios.studies.objective.cases import Row, cases, line, starts
 from scenarios.studies.objective.run_holds import objective

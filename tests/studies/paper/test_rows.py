@@ -7,10 +7,9 @@ import pytest
 
 from scenarios.studies.paper.experiments import EXPERIMENTS
 from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Limit
-from scenarios.studies.paper.rows import Row
+from scenarios.studies.paper.rows import Row, markdown
 from scenarios.studies.paper.run_experiments import DEFAULTS, measure, pair, row_of, select
 from scenarios.studies.paper.starts import ALL, ANGLES_DEG, QUICK, SEEDS, STARTS
-from scenarios.studies.paper.table import markdown
 from tests.studies.paper.docs_page import PAGE, page
 
 BAND = Limit(figure="peak", unit="%", low=10.0, high=25.0, words="peak", scale=5.0)

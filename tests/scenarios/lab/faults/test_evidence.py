@@ -7,7 +7,7 @@ import pytest
 
 from bus.protocol import Device, Opcode
 from scenarios.lab.faults import KINDS
-from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Evidence
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 
 PULL = (Device.AXIS_RA, Opcode.OPEN_LOOP)
