@@ -24,10 +24,8 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
     try:
         model = plants.load(_source(str(given["file"]), beside))
         for axis in ("ra", "dec"):
-            on_axis = (
-                e for e in given.get("effects", []) if isinstance(e, str) or e.get("axis", axis) == axis
-            )
-            extra = [_effect(each) for each in on_axis]
+            blocks = [{"name": e} if isinstance(e, str) else e for e in given.get("effects", [])]
+            extra = [_effect(each) for each in blocks if each.get("axis", axis) == axis]
             if extra:
                 model = plants.with_effects(model, axis, (*getattr(model.axes, axis).effects, *extra))
         model = plants.with_mount_errors(model, given.get("mount", True))
