@@ -51,7 +51,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         pictures=pictures,
         worst=worst,
         repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
-        failures=_failures(columns),
+        failures=Counter(filter(None, columns["failure"])).most_common(20),
         speed=_speed(columns, wall_s, made),
     )
     write_file(folder / "report.html", text)
@@ -161,11 +161,6 @@ def _summary(
         hits = int(np.sum(good > limit if upper else good < limit))
         row["missed"] = "{:.1%} ({:.1%}–{:.1%})".format(*share(hits, len(good)))
     return row
-
-
-def _failures(columns: Columns) -> list[tuple[str, int]]:
-    """Runs that ended in an error, by what they said."""
-    return Counter(filter(None, columns["failure"])).most_common(20)
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:

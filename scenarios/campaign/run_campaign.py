@@ -80,7 +80,11 @@ def campaign(options: CampaignOptions, task: Callable[[plan.Case], Row] = run) -
                     journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
                     status = INCOMPLETE
                 elif done.value["probe"] != ours:
-                    raise ScenarioError(_other_version(done.value, ours))
+                    machine, theirs, its = (done.value[word] for word in ("machine", "version", "probe"))
+                    raise ScenarioError(
+                        f"the worker on {machine} runs another version (schmidt {theirs}): "
+                        f"the digest of its probe is {its[:12]}, here it is {ours[:12]}"
+                    )
                 else:
                     journal.add(done.value)
                 advance(len(journal.done), f"{len(journal.done)} of {planned.count}")
@@ -102,10 +106,3 @@ def campaign(options: CampaignOptions, task: Callable[[plan.Case], Row] = run) -
     why = "interrupted" if status == INTERRUPTED else "out of time" if waiting.late else "workers were lost"
     print(f"schmidt: {why}, {missing} runs are missing: --resume makes them", file=sys.stderr)
     return status or INCOMPLETE
-
-
-def _other_version(row: Row, ours: str) -> str:
-    return (
-        f"the worker on {row['machine']} runs another version (schmidt {row['version']}): "
-        f"the digest of its probe is {row['probe'][:12]}, here it is {ours[:12]}"
-    )

@@ -46,7 +46,7 @@ _MOST = 256
 
 
 class HostProcess:
-    """The host as a door; what it has open for others are `HostedDoor`s. say: takes lines for the user.
+    """The host as a door; what it has open for others is over there. say: takes lines for the user.
 
     Its program is started at once, as it has much to import; `open` waits until it has opened its doors.
     """
@@ -70,7 +70,7 @@ class HostProcess:
         self._watching = False
         self._looks = Looks(served)
         self.doors: list[tuple[str, str]] = []
-        """(name, state) of its doors, as it last said."""
+        """(name, state) of itself and its doors, as it last said."""
         self.lost = 0
         """USB reports it wanted to send while the cable was full."""
         self._start()
@@ -225,30 +225,3 @@ class HostProcess:
             for name, feed in self._feeds:
                 lines.drop(name, feed)
             self._feeds = []
-
-
-class HostedDoor:
-    """A door of the host, for those who list doors: it opens, breaks and closes over there."""
-
-    def __init__(self, host: HostProcess, index: int, name: str) -> None:
-        self._host = host
-        self._index = index
-        self.name = name
-
-    def open(self) -> None:
-        """The host has done it; it may have something to add to the name."""
-        self.name = self._told()[0]
-
-    def poll(self, now_ns: int) -> None:
-        """The host does it."""
-
-    def close(self) -> None:
-        """The host does it."""
-
-    def state(self) -> str:
-        """As the host last said."""
-        return self._told()[1]
-
-    def _told(self) -> tuple[str, str]:
-        doors = self._host.doors
-        return doors[self._index] if self._index < len(doors) else (self.name, "not there yet")

@@ -37,7 +37,7 @@ def first(asked: bool = True) -> Iterator[str]:
     said = AHEAD
     before: dict[int, int] = {}
     try:
-        for thread in _threads():
+        for thread in [int(each.name) for each in _THREADS.iterdir()] if _THREADS.is_dir() else [0]:
             with suppress(ProcessLookupError):  # it has ended
                 policy = os.sched_getscheduler(thread)
                 os.sched_setscheduler(thread, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
@@ -55,11 +55,6 @@ def first(asked: bool = True) -> Iterator[str]:
         yield said
     finally:
         _back(before)
-
-
-def _threads() -> list[int]:
-    """Identifiers of this process's threads; 0 is the calling one's, where the system does not list them."""
-    return [int(each.name) for each in _THREADS.iterdir()] if _THREADS.is_dir() else [0]
 
 
 def _back(before: dict[int, int]) -> None:
@@ -125,7 +120,9 @@ class Loop:
             keeper.poll(now_ns)
         now_s = perf_counter()
         if now_s >= self._next_s:
-            self._each_second(now_s)
+            self._next_s = now_s + _STATUS_S
+            pace = self._keeping_up(now_s)
+            self._show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
         elif (
             now_s >= self._flush_s and self._recording is not None
         ):  # in another slice: half a millisecond each
@@ -144,13 +141,6 @@ class Loop:
 
     def _over(self, now_s: float) -> bool:
         return self._served.ending or (self._end_s is not None and now_s >= self._end_s)
-
-    def _each_second(self, now_s: float) -> None:
-        self._next_s = now_s + _STATUS_S
-        pace = self._keeping_up(now_s)
-        self._show(
-            f"{self.text()}, {'paused' if self._served.pacer.paused else f'{pace:.2f} times real time'}"
-        )
 
     def _keeping_up(self, now_s: float) -> float:
         """The pace of the last second; said once when the machine is too slow, and once when it is quick

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from scenarios.doors.clients import AddressError, address
 from scenarios.doors.door import Door
-from scenarios.doors.host_door import HostedDoor, HostProcess
+from scenarios.doors.host_door import HostProcess
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import DoorOptions, OptionError, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, DoorKind, asked, doors_on, named
@@ -72,9 +72,8 @@ def make_doors(options: DoorOptions, live: LiveNetwork, say: Callable[[str], Non
     The host comes first of its own, in a process of its own: what stands on it is opened over there.
     """
     doors = doors_on(ON_NETWORK, options, live)
-    names = [f"--{kind.name} {each.spec}" for kind, each in asked(ON_HOST, options)]
-    check_ports([*(door.name for door in doors), *names], list(live.lines.uarts))
     wanted = [(f"--{kind.name}", each.spec) for kind, each in asked(ON_HOST, options)]
+    check_ports([*(door.name for door in doors), *map(" ".join, wanted)], list(live.lines.uarts))
     if not wanted:
         return doors
     if "GATEWAY" not in live.network.boards:
@@ -82,5 +81,4 @@ def make_doors(options: DoorOptions, live: LiveNetwork, say: Callable[[str], Non
     for option, spec in wanted:
         if not spec.startswith("pty:"):
             address(spec, option)  # said before anything is started
-    host = HostProcess(live, options, say)
-    return [*doors, host, *(HostedDoor(host, k, " ".join(each)) for k, each in enumerate(wanted, 1))]
+    return [*doors, HostProcess(live, options, say)]

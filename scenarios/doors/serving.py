@@ -1,6 +1,6 @@
 """`schmidt serve [SCENARIO] [doors]`: the network in real time, for others to join."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from io import BytesIO
@@ -12,6 +12,7 @@ from bus.can.candump import CandumpWriter
 from bus.outside.pacer import checked_speed
 from plant.model import PlantModel
 from scenarios.doors.door import Door, Keeper
+from scenarios.doors.host_door import HostProcess
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.loop import Loop, first
 from scenarios.doors.making import attached, check, make_doors
@@ -122,16 +123,22 @@ def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> 
     count, boards, speed = len(served.network.boards), list(served.lines.uarts), served.pacer.speed
     pace = f"at {speed:g} times real time" if served.steps is None else "as clients step them"
     console.print(f"serving {count} boards {pace}; Ctrl-C ends it")
-    names = [door.name for door in doors if door.name.startswith("--")]
+    names = [name for name, _ in _states(doors) if name.startswith("--")]
     for name in names:
         text = f"  {name:{max(map(len, names))}}  {attached(name, boards).words}"
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
+def _states(doors: Sequence[Door]) -> Iterator[tuple[str, str]]:
+    """Name and state of every door, those of the host too."""
+    for door in doors:
+        yield from door.doors if isinstance(door, HostProcess) else [(door.name, door.state())]
+
+
 def _say_goodbye(console: Console, loop: Loop, served: LiveNetwork, doors: Sequence[Door]) -> None:
     """The session in figures, and each door that somebody used."""
     console.print(loop.text(), soft_wrap=True)
-    states = {door.name.partition(" (")[0]: door.state() for door in doors}  # no token again
+    states = {name.partition(" (")[0]: state for name, state in _states(doors)}  # no token again
     for name, state in states.items():
         if state:
             console.print(f"  {name}: {state}", markup=False, highlight=False, soft_wrap=True)

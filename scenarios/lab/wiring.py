@@ -29,7 +29,8 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
 
     Its steps are not run: whoever is on the bus commands.
     """
-    limits = soft_limits(scenario)
+    scales = {axis: getattr(scenario.mount, axis) for axis in AXES}
+    limits = {axis: (scale.low_steps, scale.high_steps) for axis, scale in scales.items()}
     soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
     wind_from = scenario.network.get("wind_from")
     built = model if wind_from is None else in_the_wind(model)
@@ -70,9 +71,3 @@ def start_steps(scenario: Scenario) -> dict[str, float]:
         "dec": mount.dec.steps(scenario.start_rad.get("declination", mount.park_declination_rad)),
         "focus": float(periods * _HALF_STEPS_PER_PERIOD),
     }
-
-
-def soft_limits(scenario: Scenario) -> dict[str, tuple[int, int]]:
-    """Soft limits of each axis, (low, high) in steps."""
-    scales = {name: getattr(scenario.mount, name) for name in AXES}
-    return {name: (scale.low_steps, scale.high_steps) for name, scale in scales.items()}

@@ -94,19 +94,16 @@ def _part(rule: Mapping[str, Any], part: str) -> Mapping[str, Any]:
 def _step(document: Document, index: int, data: dict[str, Any]) -> model.Step:
     action = next(key for key in data if key not in _STEP_FIELDS and key != "name")
     arguments = data[action]
-    target = arguments.get("target")
-    name = data.get("name") or (f"{action} {_target_name(target)}" if target else f"{action} {index + 1}")
+    target = arguments.get("target") or index + 1
+    if isinstance(target, dict):
+        target = target.get("name") or f"{target['ra']} {target['dec']}"
     return model.Step(
-        name=name,
+        name=data.get("name") or f"{action} {target}",
         action=action,
         arguments=arguments,
         where=document.where(("steps", index)),
         **{field: data[word] for word, field in _STEP_FIELDS.items() if word in data},
     )
-
-
-def _target_name(target: Any) -> str:
-    return target if isinstance(target, str) else str(target.get("name") or f"{target['ra']} {target['dec']}")
 
 
 def _fault(document: Document, index: int, data: dict[str, Any]) -> model.Fault:

@@ -16,7 +16,7 @@ from bus.protocol.nodes import arguments_of, documented
 from scenarios.lab.network import Network
 from scenarios.lab.networks import config_from, devices_of
 from scenarios.lab.prepare import chosen, load
-from scenarios.lab.snapshot import restore, take
+from scenarios.lab.snapshot.freeze import restore, take
 from scenarios.lab.wiring import wire
 from scenarios.language.document import ScenarioError
 from scenarios.native import compiled

@@ -22,8 +22,8 @@ from scenarios.doors.replay import replay, replay_rest
 from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.doors.usb import out_report
 from scenarios.lab.prepare import chosen, prepare
-from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.freeze import SnapshotError
 from scenarios.lab.snapshot.run import Order
 from scenarios.native.finder import compiled
 from scenarios.run.run import Way, run

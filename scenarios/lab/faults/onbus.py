@@ -144,10 +144,8 @@ class WrongRate:
         self._port, self._values = place.board(given["node"]).port, place.values
         self.value = BitTiming(1e9 / given["bitrate"])
         self._values.add(self._port, "timing", self)
-        self._errors = Errors(place.layers, self._port, place.evidence, self._misfits)
-
-    def _misfits(self) -> bool:
-        return self._port.timing is not None
+        port = self._port
+        self._errors = Errors(place.layers, port, place.evidence, lambda: port.timing is not None)
 
     def clear(self, t_ns: int) -> None:
         """Set right."""

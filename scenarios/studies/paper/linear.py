@@ -37,24 +37,6 @@ class LinearAxis:
     voltage: float
     drive: float
 
-    @property
-    def denominator(self) -> tuple[float, float, float]:
-        """Coefficients of s^2, s, 1 in equation (6)."""
-        r, inductance, j, s2, k = (
-            self.resistance, self.inductance, self.inertia, self.viscous, self.torque_constant,
-        )  # fmt: skip
-        return 1.0, r / inductance + s2 / j, r * s2 / (inductance * j) + k * k / (j * inductance)
-
-    @property
-    def gain(self) -> float:
-        """Steady rad/s at the motor per volt."""
-        return self.torque_constant / (self.inertia * self.inductance) / self.denominator[2]
-
-    @property
-    def offset_voltage(self) -> float:
-        """Voltage that stiction takes away: Ts R / K."""
-        return self.stiction * self.resistance / self.torque_constant
-
 
 def linear_axis(model: PlantModel) -> LinearAxis:
     """Return equation (6) for the RA axis of a plant. Torsion and play are neglected, the rotors' inertia is
@@ -101,12 +83,13 @@ def simulate_loop(
     count = round(seconds / CONTROL_PERIOD_S)
     out, efforts = np.zeros(count), np.zeros(count)
     to_axis = 1.0 / GEAR_RATIO / ARCSEC
+    held = axis.stiction * axis.resistance / axis.torque_constant  # V that stiction takes away
     current = speed = effort = before = error = setpoint = 0.0
     for k in range(count):
         travelled = 0.0
         for j in range(fine):
             applied = before if j < fine // 2 else effort
-            volt = applied / pwm_steps * axis.voltage * axis.drive - axis.offset_voltage
+            volt = applied / pwm_steps * axis.voltage * axis.drive - held
             goal = (volt - axis.torque_constant * speed) / axis.resistance
             current = goal + (current - goal) * decay
             speed += dt * (axis.torque_constant * current - axis.viscous * speed) / axis.inertia

@@ -1,8 +1,7 @@
-"""A row of the table: what an experiment measured at every start, median and worst, and whether all of it
-holds."""
+"""Rows of the table: what was measured at every start, median, worst, whether all holds; and its page."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import date
 from statistics import median
 from typing import Any
@@ -58,9 +57,8 @@ class Row:
         return sum(not limit.holds(value) for value in self.values(limit.figure)) + len(self.failed)
 
     def _line(self, limit: Limit) -> str:
-        unit = "" if limit.unit == "1" else f" {limit.unit}"
         middle, far = self.median(limit.figure), self.worst(limit)
-        text = f"{limit.words} {_short(middle)}, worst {_short(far)}{unit} ({limit.bounds})"
+        text = f"{limit.words} {_short(middle)}, worst {_short(far, limit.unit)} ({limit.bounds})"
         count = self.misses(limit)
         return f"{text} at {count} of {len(self.found) + len(self.failed)} starts" if count else text
 
@@ -104,16 +102,9 @@ class Row:
             "quote": said.quote,
             "bound": said.bound,
             "limits": [
-                {
-                    "figure": limit.figure,
-                    "unit": limit.unit,
-                    "low": limit.low,
-                    "high": limit.high,
-                    "median": _plain(self.median(limit.figure)),
-                    "worst": _plain(self.worst(limit)),
-                    "missed_at": self.misses(limit),
-                    "met": self.holds(limit),
-                }
+                asdict(limit)
+                | {"median": _plain(self.median(limit.figure)), "worst": _plain(self.worst(limit))}
+                | {"missed_at": self.misses(limit), "met": self.holds(limit)}
                 for limit in self.experiment.limits
             ],
             "starts": [
@@ -128,16 +119,8 @@ def _plain(value: float) -> float | None:
     return round(value, 6) if value == value else None
 
 
-def _short(value: float) -> str:
-    return f"{value:.3g}" if value == value else "none"
-
-
-def figure(row: Row, value: float) -> str:
-    """Return a value of the row's deciding figure with its unit."""
-    if value != value:
-        return "none"
-    unit = row.decisive.unit
-    return f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
+def _short(value: float, unit: str = "1") -> str:
+    return "none" if value != value else f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
 
 
 _HEAD = """# The paper's experiments
@@ -156,7 +139,7 @@ to, and why not all can be met.
 def _line(row: Row) -> str:
     said, limit = row.experiment.said, row.decisive
     verdict = "met" if row.passed else "**miss**"
-    middle, far = (figure(row, value) for value in (row.median(limit.figure), row.worst(limit)))
+    middle, far = (_short(value, limit.unit) for value in (row.median(limit.figure), row.worst(limit)))
     decides = f"{limit.words} ({limit.bounds})"
     title = f"{said.title} ({said.where})"
     return f"| {row.id} | {title} | {said.figure} | {decides} | {middle} | {far} | {verdict} |"

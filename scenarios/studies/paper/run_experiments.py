@@ -96,11 +96,6 @@ def pair(low: Path | None, high: Path | None) -> dict[str, str]:
     return names
 
 
-def names_of(files: Mapping[str, str]) -> list[str]:
-    """Return plant files as a table names them: without the folder they happen to lie in."""
-    return [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
-
-
 def select(names: str | None) -> list[Experiment]:
     """Return the experiments named by a comma-separated list; all without one. Raises ValueError."""
     if names is None:
@@ -154,7 +149,8 @@ def paper(options: PaperOptions) -> int:
     document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
     write_file(options.json_file or out / "paper.json", document)
     command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
-    table = markdown(found, names_of(files), command, date.today())
+    names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
+    table = markdown(found, names, command, date.today())
     console.print(table, markup=False, highlight=False, soft_wrap=True)
     write_file(out / "experiments.md", table)
     met = sum(row.passed for row in found)

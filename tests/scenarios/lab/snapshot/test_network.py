@@ -22,7 +22,7 @@ from plant.plant import Plant
 from scenarios.lab.faults import KINDS
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import NetworkConfig
-from scenarios.lab.snapshot import SnapshotError, restore, take
+from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 from tests.bus.can.test_wire import network as bare
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 
