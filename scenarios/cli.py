@@ -6,8 +6,7 @@ from collections.abc import Mapping
 import click
 
 from scenarios.commands import calibrating, describing, exporting, live, many, running
-from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
-from scenarios.commands.parts import advice
+from scenarios.commands.parts import INTERRUPTED, UNUSABLE, advice, fail
 
 Section = tuple[tuple[click.Command, str], ...]
 """Commands with an example each."""
@@ -67,7 +66,12 @@ SECTIONS: dict[str, Section] = {
 }
 HELP = "Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."
 cli = click.version_option(package_name="schmidt", prog_name="schmidt")(
-    Sections(SECTIONS, name="schmidt", help=HELP, context_settings={"help_option_names": ["-h", "--help"]})
+    Sections(
+        SECTIONS,
+        name="schmidt",
+        help=HELP,
+        context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+    )
 )
 
 

@@ -28,8 +28,7 @@ from typing import Any, Generic, TypeVar
 Input = TypeVar("Input")
 Output = TypeVar("Output")
 AHEAD = 3
-"""Tasks handed out per worker: enough that none waits, few enough that a hundred thousand planned runs need
-no memory here."""
+"""Tasks handed out per worker: enough that none waits, few enough for the memory of a hundred thousand."""
 _LOOK_S = 5.0
 """How often somebody looks whether the scheduler is still there."""
 TRIES = 5
@@ -38,8 +37,7 @@ TRIES = 5
 
 @dataclass(frozen=True)
 class Done(Generic[Output]):
-    """A finished task: its value, or the error as one line. died: the workers died, and the task never
-    ended."""
+    """A finished task: its value, or the error in one line. died: its workers did, and it never ended."""
 
     key: str
     value: Output | None
@@ -115,8 +113,7 @@ Alive = Callable[[], bool]
 
 
 def _local(jobs: int | None) -> tuple[Maker, int, Alive]:
-    """A process pool. Workers start afresh, without inherited threads and locks, and leave Ctrl-C to this
-    process."""
+    """A process pool. Workers start afresh, inherit no threads or locks, and leave Ctrl-C to this process."""
     width = jobs or os.cpu_count() or 1
 
     @contextmanager

@@ -28,13 +28,12 @@ _FILE_INFO = {
     help="Where the boards are, such as socketcan:can0. Without it: the emulated network in this process.",
 )
 @click.option("--json", "json_file", type=PATH, help="Write the results to this file.")
-@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Speed the boards are served at.")
+@click.option("--speed", type=SPEED, default=1.0, help="Speed the boards are served at.")
 @click.option(
     "--tolerance",
     "period_tolerance",
     type=Number(min=0, max=1, min_open=True),
     default=0.02,
-    show_default=True,
     help="Allowed error of a message's mean period, relative.",
 )
 @click.option(
@@ -42,7 +41,6 @@ _FILE_INFO = {
     "stamps_s",
     type=Number(min=0),
     default=0.001,
-    show_default=True,
     help="Uncertainty of the tester's time stamps, seconds (in process: 0).",
 )
 @click.option("--board", "boards", multiple=True, metavar="TYPE:ID", help="Check this one only (repeatable).")

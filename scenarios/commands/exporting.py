@@ -11,9 +11,9 @@ from scenarios.commands.parts import need
 @click.command(short_help="Write one axis as an FMU.")
 @click.option("--axis", type=click.Choice(["ra", "dec"]), required=True, help="Which axis.")
 @click.option("--out", type=PATH, required=True, help="File to write, such as drive.fmu.")
-@click.option("--plant", default="low-preload-bridge", show_default=True, help="Plant file, or a name.")
-@click.option("--seed", type=SEED, default=1, show_default=True, help="Of noise.")
-@click.option("--fmi", type=click.Choice(["2", "3"]), default="3", show_default=True, help="Version of FMI.")
+@click.option("--plant", default="low-preload-bridge", help="Plant file, or a name.")
+@click.option("--seed", type=SEED, default=1, help="Of noise.")
+@click.option("--fmi", type=click.Choice(["2", "3"]), default="3", help="Version of FMI.")
 def fmu(axis: str, out: Path, plant: str, seed: int, fmi: str) -> None:
     """Write one axis as an FMU for co-simulation: duties in; encoders, currents, rate and torque out."""
     need("fmu")

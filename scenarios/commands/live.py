@@ -20,12 +20,11 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 @click.option("--stars", type=PATH, help="The cameras' stars: a CSV with name, ra, dec, magnitude.")
 @click.option("--frames", type=PATH, metavar="DIR", help="Folder for the cameras' frames as FITS files.")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
-@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
+@click.option("--speed", type=SPEED, default=1.0, help="Times real time.")
 @click.option(
     "--clock",
     type=click.Choice(["wall", "steps"]),
     default="wall",
-    show_default=True,
     help="steps: time stands until clients of --control step it.",
 )
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
@@ -115,13 +114,7 @@ def replay(folder: Path, out: Path | None, begun: Path | None) -> None:
 
 @click.command(short_help="Speed, pause, faults, supply, end of a served network.")
 @click.argument("command", nargs=-1, required=True)
-@click.option(
-    "--at",
-    default="127.0.0.1:7411",
-    show_default=True,
-    metavar="[HOST:]PORT",
-    help="Where serve --control listens.",
-)
+@click.option("--at", default="127.0.0.1:7411", metavar="[HOST:]PORT", help="Where serve --control listens.")
 @click.option("--token", help="The word serve has printed; for other machines.")
 def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop, snapshot [NAME].

@@ -36,11 +36,7 @@ jobs = click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
 )
 runs = click.option(
-    "--runs",
-    type=PATH,
-    default=Path("out/console"),
-    show_default=True,
-    help="Folder of the runs recorded on the console.",
+    "--runs", type=PATH, default=Path("out/console"), help="Folder of the runs recorded on the console."
 )
 
 

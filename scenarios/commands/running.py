@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
 from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, Number, muting, network
-from scenarios.commands.parts import need
+from scenarios.commands.parts import INTERRUPTED, UNUSABLE, fail, need
 
 if TYPE_CHECKING:
     from plant.model import PlantModel

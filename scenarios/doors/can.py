@@ -22,8 +22,7 @@ class CanDoor:
         self._bus: can.BusABC | None = None
         self.fence: Fence | None = None
         self._before = [0, 0, 0, 0, 0, 0]
-        """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out, and dropped
-        by the system."""
+        """Of closed fences: in, out, refused, rejected, lost on the way out, dropped by the system."""
 
     def open(self) -> None:
         """Open the interface; raises SpecError."""

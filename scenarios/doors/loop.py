@@ -22,8 +22,7 @@ from scenarios.doors.recording import Recording
 AHEAD = "ticks run before other programs, as the system allows it"
 NOT_GRANTED = "run as root, or give the user an rtprio limit (ulimit -r 1)"
 _PRIORITY = 1
-"""The lowest of the real-time class: before all ordinary programs, after what the system's own owner put
-higher."""
+"""The lowest of the real-time class: before ordinary programs, after what the system's owner put higher."""
 _THREADS = Path("/proc/self/task")
 
 
@@ -143,8 +142,7 @@ class Loop:
         return self._served.ending or (self._end_s is not None and now_s >= self._end_s)
 
     def _keeping_up(self, now_s: float) -> float:
-        """The pace of the last second; said once when the machine is too slow, and once when it is quick
-        enough again."""
+        """The pace of the last second; said when the machine is too slow, and when it no longer is."""
         served = self._served
         before_s, before_ns, slips = self._second
         self._second = (now_s, served.now_ns, served.pacer.slips)

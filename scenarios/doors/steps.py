@@ -38,8 +38,7 @@ def _span_ns(text: str) -> int:
 
 @dataclass
 class _Member:
-    """A client. wanted: clients it waits for; goal_ns: the time it waits for; heard: None: it does not
-    listen."""
+    """A client. wanted: clients it waits for; goal_ns: time it waits for; heard: None: it does not listen."""
 
     name: str
     wanted: int = 0

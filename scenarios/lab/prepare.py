@@ -13,8 +13,7 @@ from host.sky.observed import Clock
 from scenarios.language.configure import read_tables, with_firmware, with_parameters
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
-from scenarios.language.model import Scenario
-from scenarios.language.targets import check_targets
+from scenarios.language.model import Scenario, check_targets
 from scenarios.language.validate import nearest, schema
 
 if TYPE_CHECKING:

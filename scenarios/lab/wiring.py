@@ -62,8 +62,7 @@ def network(scenario_file: Path | None = None, network_name: str | None = None) 
 
 
 def start_steps(scenario: Scenario) -> dict[str, float]:
-    """Where the telescope stands at first: parked unless the scenario says where, and the focus somewhere
-    near the middle, by the seed."""
+    """Where the telescope stands at first: parked unless the scenario says where; the focus, by the seed."""
     mount = scenario.mount
     periods = int(generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1))
     return {

@@ -60,8 +60,7 @@ class Line:
 
 @dataclasses.dataclass(frozen=True)
 class Compensation:
-    """axis: ra or dec. friction_steps: effort of sliding friction, PWM steps. travel_arcsec: in which it
-    turns."""
+    """axis: ra or dec. friction_steps: effort of sliding friction, PWM steps; it turns in travel_arcsec."""
 
     axis: str
     lines: tuple[Line, ...]
@@ -115,8 +114,7 @@ def load_compensation(file: Path) -> Compensation:
 NAMES = ("paper", "fine")
 """paper: everything off. fine: what docs/results/one-arcsecond.md proposes, without compensation."""
 BLEND_SHIFT = 11
-"""10.2 s: four lines of the absolute encoder at the tracking rate. A roller ratio that is wrong by 1e-4 then
-costs 0.015 arcsec."""
+"""10.2 s: four encoder lines when tracking. A roller ratio that is wrong by 1e-4 then costs 0.015 arcsec."""
 
 
 def parameters_of(name: str, model: PlantModel, axis: str = "ra") -> Mapping[int, int]:

@@ -203,15 +203,19 @@ def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, An
     high = given.get("declination_high", model.DECLINATION_HIGH_RAD)
     park, where = min(max(scenario.site.latitude_rad, low), high), document.where(("mount",))
     horizon = data.get("site", {}).get("horizon")
+    path, text = Path(said.get("pointing_model", "")), ""
+    if "pointing_model" in said:
+        path = path if path.exists() else document.file.parent / path
+        try:
+            text = read_text(path)
+        except (OSError, ValueError) as error:
+            reason = "there is no such file" if isinstance(error, FileNotFoundError) else error
+            raise ScenarioError(f"{where}: mount: {path}: {reason}") from None
     try:
         mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
         if "pointing_model" in said:
-            path = Path(said["pointing_model"])
-            path = path if path.exists() else document.file.parent / path
-            mount = dataclasses.replace(mount, model=pointmodel.parsed(read_text(path), path))
-    except FileNotFoundError:
-        raise ScenarioError(f"{where}: mount: {path}: there is no such file") from None
-    except (OSError, ValueError) as error:
+            mount = dataclasses.replace(mount, model=pointmodel.parsed(text, path))
+    except ValueError as error:
         raise ScenarioError(f"{where}: mount: {error}") from None
     for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):
         angle = scenario.start_rad.get(axis)

@@ -18,8 +18,7 @@ from host.sky.pointmodel import PointingModel
 from host.sky.track import StarTrack
 from host.sky.visibility import Unreachable, check_reachable
 from scenarios.language import configure
-from scenarios.language.model import Scenario, Step
-from scenarios.language.targets import STARS, target_of
+from scenarios.language.model import STARS, Scenario, Step, target_of
 
 
 @dataclass(frozen=True)

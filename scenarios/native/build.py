@@ -117,8 +117,7 @@ def _started(
 
 
 def _check(made: Path, root: Path) -> None:
-    """Hold a short run on the library against one without it, where that can be done: same digest or no
-    library."""
+    """Hold a short run on the library against one without it, if that can be: same digest or no library."""
     if any(importlib.util.find_spec(need) is None for need in _PROBED):
         return  # an isolated build has nothing but the compilers
     found = []

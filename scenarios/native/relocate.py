@@ -20,8 +20,7 @@ class RelocationError(ValueError):
 
 
 def relocate(folder: Path) -> Path:
-    """Move the rooms in `folder` below `folder/schmidt`, which begins as `schmidt.py`, and rewrite their
-    imports; returns that package."""
+    """Move the rooms below `folder/schmidt`, which begins as `schmidt.py`, rewrite imports; returns it."""
     package = folder / PACKAGE
     shutil.rmtree(package, ignore_errors=True)
     package.mkdir()

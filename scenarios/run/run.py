@@ -16,8 +16,7 @@ from plant.model import PlantModel
 from scenarios.lab.muted import Feed
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.run import Order, Progress, resume
-from scenarios.language.model import Scenario
-from scenarios.language.targets import STARS
+from scenarios.language.model import STARS, Scenario
 from scenarios.progress import shown
 from scenarios.run.evaluate import Verdict, judge
 from scenarios.run.outcome import Outcome

@@ -98,8 +98,7 @@ class Resets:
 
 
 class _Halted(Laid):
-    """A processor that stands still; in the place of its port's receiver: the controller's two buffers, then
-    nothing."""
+    """A processor that stands still; its port is received by the controller's two buffers, then nothing."""
 
     def __init__(self, layers: Stacks, board: PeriodicBoard, t_ns: int, evidence: Evidence) -> None:
         self._halt, self._board, self._evidence = Halt(board, t_ns), board, evidence

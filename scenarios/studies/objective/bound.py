@@ -105,8 +105,7 @@ def designed(
 
 
 def disturbed(model: PlantModel, wind: EffectModel) -> tuple[Floats, Floats, Floats]:
-    """Matrices of state and effort with the wind's lags behind the plant's states, and the density of what
-    drives them; angles in arcsec."""
+    """Matrices of state and effort, the wind's lags behind the plant's states, and their drive; in arcsec."""
     plant, effort, push = continuous(model, SIDEREAL * ARCSEC)
     given = values(wind)
     time = given["correlation_time"]

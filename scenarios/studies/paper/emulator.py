@@ -24,8 +24,7 @@ _Q12 = 4096
 
 
 class EmulatorBench(AxisBench):
-    """A bench (see runs.py) on the emulator; gains: (Kp, Ki) instead of the plant file's, set over the
-    bus."""
+    """A bench (see runs.py) on the emulator; gains: (Kp, Ki) instead of the plant file's, over the bus."""
 
     def __init__(
         self,

@@ -1,5 +1,4 @@
-"""Torque over velocity from steady runs, and the static LuGre curve through it (paper, Fig. 8 and Table
-2)."""
+"""Torque over velocity from steady runs, the static LuGre curve through it (paper, Fig. 8, Table 2)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

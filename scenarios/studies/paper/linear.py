@@ -39,8 +39,7 @@ class LinearAxis:
 
 
 def linear_axis(model: PlantModel) -> LinearAxis:
-    """Return equation (6) for the RA axis of a plant. Torsion and play are neglected, the rotors' inertia is
-    counted."""
+    """Return equation (6) for a plant's RA axis, without torsion and play, the rotors' inertia counted."""
     axis, motor = model.axes.ra, model.axes.ra.motor
     square = GEAR_RATIO**2
     return LinearAxis(

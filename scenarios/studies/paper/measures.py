@@ -82,11 +82,9 @@ def means(rate: Array, seconds: float = 1.0) -> Array:
 
 
 def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
-    """Return how often the velocity went from below to above: below (1 - depth) and then above (1 + depth)
-    set points.
+    """Return how often the velocity went from below (1 - depth) to above (1 + depth) set points.
 
-    A limit cycle does that again and again; quantisation of a steady motion (7 to 8 percent at 15 arcsec/s)
-    never.
+    A limit cycle does so again and again; quantisation of steady motion (7 to 8 % at 15 arcsec/s) never.
     """
     ratio = rate / setpoint
     state, count = 0, 0
@@ -124,27 +122,28 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
     y = record[: count * width].reshape(count, width).mean(axis=1)
     t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
     t = t - t.mean()
-    still = np.column_stack([np.ones_like(t), t / span])
-    rest = y - still @ np.linalg.lstsq(still, y, rcond=None)[0]
-    best, most = Line(low_hz, 0.0), -1.0
+    rest = y - np.polyval(np.polyfit(t, y, 1), t)
+    best, least = Line(low_hz, 0.0), np.inf
     for f in np.arange(low_hz, high_hz, 0.1 / span):
-        swing = np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
-        coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
-        explained = float(rest @ rest - np.sum((rest - swing @ coefficient) ** 2))
-        if explained > most:
-            best, most = Line(float(f), float(np.hypot(coefficient[0], coefficient[1]))), explained
+        amplitude, left = _sinusoid(t, rest, f)
+        if left < least:
+            best, least = Line(float(f), amplitude), left
     return best
 
 
 def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
-    t = np.arange(record.size) * period_s
-    t = t - t.mean()
-    still = np.column_stack([np.ones_like(t), t])
-    rest = record - still @ np.linalg.lstsq(still, record, rcond=None)[0]
-    swing = np.column_stack([np.cos(2 * np.pi * frequency_hz * t), np.sin(2 * np.pi * frequency_hz * t)])
-    coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
-    return float(np.hypot(coefficient[0], coefficient[1]))
+    t = (np.arange(record.size) - (record.size - 1) / 2.0) * period_s
+    rest = np.asarray(record - np.polyval(np.polyfit(t, record, 1), t), dtype=np.float64)
+    return _sinusoid(t, rest, frequency_hz)[0]
+
+
+def _sinusoid(t: Array, rest: Array, frequency_hz: float) -> tuple[float, float]:
+    """Amplitude of the sinusoid of one frequency that fits best, and the square sum that it leaves."""
+    turn = 2 * np.pi * frequency_hz * t
+    swing = np.column_stack([np.cos(turn), np.sin(turn)])
+    found = np.linalg.lstsq(swing, rest, rcond=None)[0]
+    return float(np.hypot(*found)), float(np.sum((rest - swing @ found) ** 2))
 
 
 def stalled(rate: Array) -> bool:

@@ -39,8 +39,7 @@ class Bench(Protocol):
 
 
 def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:
-    """E1, E2: closed loop at 15 arcsec/s from rest; start-up is discarded (hardware.md 2.4: more than 20
-    s)."""
+    """E1, E2: closed loop at 15 arcsec/s from rest, less start-up (hardware.md 2.4: more than 20 s)."""
     return bench.closed_loop(TRACKING, discard + seconds).after(discard)
 
 
@@ -126,8 +125,7 @@ MAP_SPEEDS = (
     10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0,
     1200.0, 1400.0, 1600.0, 1800.0, 2400.0, 4800.0, 7200.0,
 )  # fmt: skip
-"""arcsec/s, set points of the torque-velocity map (Fig. 8): from below tracking to the slew speed of Table
-1."""
+"""arcsec/s, set points of the torque-velocity map (Fig. 8): below tracking to the slew speed of Table 1."""
 
 
 MAP_AVERAGED_S, MAP_STRETCH_ARCSEC = 30.0, 36_000.0

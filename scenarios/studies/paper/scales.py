@@ -80,8 +80,7 @@ class Drive:
 
 
 def drive(plant: PlantModel) -> Drive:
-    """Return the data sheets of a plant's RA drive. Friction, inertia and damping of the trains are not in
-    them."""
+    """Return the data sheets of a plant's RA drive, without friction, inertia and damping of the trains."""
     axis, controller = plant.axes.ra, plant.controller
     motor = axis.motor
     drop = motor.diode_drop.si if motor.diode_drop else None

@@ -26,8 +26,7 @@ from scenarios.studies.paper.scales import ARCSEC, Drive, drive
 from scenarios.studies.paper.starts import Benches
 
 ADC_NOISE = 1.0
-"""Counts rms on every current sample: 6.1 mA of 6 A. ASSUMPTION: one count of a 10-bit converter beside a
-PWM."""
+"""Counts rms on every current sample: 6.1 mA of 6 A. ASSUMPTION: one count of ten bits beside a PWM."""
 GAIN_NOISE = 0.01
 """Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION."""
 CONSTANT_ERROR = 0.05
@@ -57,8 +56,7 @@ class Noise:
 
 
 STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
-"""Shares: how far the mean velocity may be off the set point, and how uncertain the mean torque may be, for a
-steady state."""
+"""Shares, of a steady state: mean velocity off the set point, and uncertainty of the mean torque, at most."""
 ADC_FULL = 1023.0
 """Largest count of the 10-bit converter: 6.24 A."""
 BREAK_AWAYS = (0.15, 0.2, 0.3)
@@ -91,8 +89,7 @@ class Map:
 
 
 def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
-    """Measure the map: steady states in both directions, and the break-away torques as its points near
-    rest."""
+    """Measure the map: steady states both ways, and the break-away torques as its points near rest."""
     sheet = noise.sheet(drive(benches.plants[preload]))
     points = []
     for step_s in BREAK_AWAYS:

@@ -74,8 +74,7 @@ def equation_6(benches: Benches) -> Figures:
 
 @row("E10", tuple((name, "factor") for name in RULES))
 def tuning_rules(benches: Benches) -> Figures:
-    """Factors between the plant file's gains and those of each rule, for a model identified on the
-    emulator."""
+    """Factors between the plant file's gains and each rule's, for a model identified on the emulator."""
     model = identify(lambda: benches("low"))
     own = Gains(*benches.gains)
     found = {name: factor(own, rule(model)) for name, rule in RULES.items()}
