@@ -122,7 +122,7 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
     y = record[: count * width].reshape(count, width).mean(axis=1)
     t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
     t = t - t.mean()
-    rest = y - np.polyval(np.polyfit(t, y, 1), t)
+    rest = _detrended(t, y)
     best, least = Line(low_hz, 0.0), np.inf
     for f in np.arange(low_hz, high_hz, 0.1 / span):
         amplitude, left = _sinusoid(t, rest, f)
@@ -134,8 +134,11 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
 def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
     t = (np.arange(record.size) - (record.size - 1) / 2.0) * period_s
-    rest = np.asarray(record - np.polyval(np.polyfit(t, record, 1), t), dtype=np.float64)
-    return _sinusoid(t, rest, frequency_hz)[0]
+    return _sinusoid(t, _detrended(t, record), frequency_hz)[0]
+
+
+def _detrended(t: Array, y: Array) -> Array:
+    return np.asarray(y - np.polyval(np.polyfit(t, y, 1), t), dtype=np.float64)
 
 
 def _sinusoid(t: Array, rest: Array, frequency_hz: float) -> tuple[float, float]:
