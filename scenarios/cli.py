@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import click
 
-from scenarios.commands import calibrating, describing, exporting, live, many, running
+from scenarios.commands import calibrating, describing, live, many, running
 from scenarios.commands.parts import INTERRUPTED, UNUSABLE, advice, fail
 
 Section = tuple[tuple[click.Command, str], ...]
@@ -56,8 +56,8 @@ SECTIONS: dict[str, Section] = {
         (describing.effects, "schmidt effects gear_mesh"),
     ),
     "Take it elsewhere": (
-        (exporting.fmu, "schmidt fmu --axis ra --out drive.fmu"),
-        (exporting.export, "schmidt export out/quick-look --mcap night.mcap"),
+        (describing.fmu, "schmidt fmu --axis ra --out drive.fmu"),
+        (describing.export, "schmidt export out/quick-look --mcap night.mcap"),
     ),
     "Repeat the paper": (
         (many.paper, "schmidt paper --quick"),

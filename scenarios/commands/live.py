@@ -3,10 +3,11 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, doors, filled, muting, network, runs
+from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, doors, muting, network, runs
 from scenarios.commands.parts import need
 from scenarios.doors.options import DoorOptions, HostOptions, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
@@ -45,9 +46,9 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
     help="Take snapshots into DIR when schmidt control asks for them; runs plain.",
 )
 @click.option("--from", "begun", type=PATH, help="Go on from this snapshot; takes no SCENARIO.")
-@filled(ServeOptions)
-def serve(options: ServeOptions) -> None:
+def serve(**given: Any) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
+    options = ServeOptions(**given)
     need(*_extras(options), *(() if options.record is None else ("parquet",)))
     need(*(() if options.frames is None else ("camera",)))
     if options.snapshots is not None or options.begun is not None:
@@ -79,9 +80,9 @@ def _extras(options: DoorOptions) -> Iterator[str]:
 @network
 @click.option("--logs", type=PATH, help="Folder of the four logs.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
-@filled(HostOptions)
-def host(options: HostOptions) -> None:
+def host(**given: Any) -> None:
     """The host program by itself, on the boards' cables; SCENARIO gives site, mount and date."""
+    options = HostOptions(**given)
     need(*_extras(options))
     from rich.console import Console
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, Number, filled, jobs
+from scenarios.commands.options import PATH, Number, jobs
 from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 
@@ -37,9 +37,9 @@ def campaign(scheduler: str | None, **given: Any) -> None:
 @click.option("--others", type=click.IntRange(0), default=0, help="Starts and seeds that no search used.")
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
-@filled(PaperOptions)
-def paper(options: PaperOptions) -> None:
+def paper(**given: Any) -> None:
     """Repeat the paper's experiments from eight starts: published against emulated (exit 1: a row missed)."""
+    options = PaperOptions(**given)
     need("calibrate", *(("cluster",) if options.scheduler else ()))
     from scenarios.studies.paper.run_experiments import paper as command
 
@@ -57,10 +57,9 @@ def paper(options: PaperOptions) -> None:
 @click.option("--seconds", type=Number(1, 1e6), default=600.0, help="Length of each run.")
 @click.option("--only", help="Only rows whose name contains this.")
 @click.option("--steps", is_flag=True, help="The firmware's changes one after the other instead.")
-@filled(ObjectiveOptions)
-def objective(options: ObjectiveOptions) -> None:
+def objective(**given: Any) -> None:
     """Hold 15 arcsec/s from many starts; print by how much the true rate errs (exit 1: a row is missed)."""
     need("calibrate")
     from scenarios.studies.objective.run_holds import objective as command
 
-    sys.exit(command(options))
+    sys.exit(command(ObjectiveOptions(**given)))

@@ -11,7 +11,7 @@ from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.pipe_messages import Done, Wish
 from scenarios.lab.eye import look
-from scenarios.lab.faults import FaultError, Kind, Parameter
+from scenarios.lab.faults.kind import FaultError, Kind, Parameter
 
 _LOAD_NS = 1_000_000_000
 

@@ -25,7 +25,7 @@ from scenarios.doors.recording import Recording
 from scenarios.doors.serial_pty import DebugFeed
 from scenarios.doors.steps import Steps
 from scenarios.doors.usb import Usb, UsbPlug
-from scenarios.lab.faults import Faults
+from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network
 from scenarios.lab.networks import SERIAL
 from scenarios.lab.recorder import Recorder

@@ -68,18 +68,14 @@ class Changes:
 
     def to(self, scenario: Scenario) -> Scenario:
         """The scenario with them; the firmware is a step and comes when the steps are checked."""
-        changed: dict[str, Any] = {
-            name: value
-            for name in ("seed", "speed", "status_period_s")
-            if (value := getattr(self, name)) is not None
-        }
-        if self.plant is not None:
-            changed["plant"] = {**scenario.plant, "file": self.plant}
-        if self.network is not None:
-            changed["network"] = {**scenario.network, "name": self.network}
-        if self.isolated:
-            changed["network"] = {**changed.get("network", scenario.network), "isolated": True}
-        return dataclasses.replace(scenario, **changed)
+        names = ("seed", "speed", "status_period_s")
+        changed = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        plant = {} if self.plant is None else {"file": self.plant}
+        network: dict[str, Any] = {} if self.network is None else {"name": self.network}
+        network |= {"isolated": True} if self.isolated else {}
+        return dataclasses.replace(
+            scenario, plant=scenario.plant | plant, network=scenario.network | network, **changed
+        )
 
 
 def load(source: Path | Document) -> Scenario:

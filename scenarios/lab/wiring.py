@@ -11,7 +11,7 @@ from plant.plant import Plant
 from plant.stops import with_stops
 from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
-from scenarios.lab.faults import Faults
+from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen

@@ -180,18 +180,13 @@ def _clock(document: Document, text: str) -> Clock:
 
 
 def _site(document: Document, data: dict[str, Any]) -> Site:
-    height = data.get("height", NAINITAL.height_m)
-    temperature = data.get("temperature", NAINITAL.temperature_c)
+    words = {"height": "height_m", "temperature": "temperature_c", "humidity": "humidity"}
+    said = {field: data[word] for word, field in words.items() if word in data}
+    said |= {f"{word}_rad": data[word] / ARCSEC_PER_RAD for word in ("latitude", "longitude") if word in data}
     try:
-        return dataclasses.replace(
-            NAINITAL,
-            latitude_rad=data.get("latitude", NAINITAL.latitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
-            longitude_rad=data.get("longitude", NAINITAL.longitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
-            height_m=height,
-            temperature_c=temperature,
-            pressure_hpa=data.get("pressure", standard_pressure_hpa(height, temperature)),
-            humidity=data.get("humidity", NAINITAL.humidity),
-        )
+        site = dataclasses.replace(NAINITAL, **said)
+        usual = standard_pressure_hpa(site.height_m, site.temperature_c)
+        return dataclasses.replace(site, pressure_hpa=data.get("pressure", usual))
     except (ValueError, ArithmeticError) as error:
         raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
 

@@ -5,16 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant.parts import PlantModel
+from scenarios.studies.paper import scales
 from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.runs import STEP_TO
-from scenarios.studies.paper.scales import (
-    ARCSEC,
-    CONTROL_PERIOD_S,
-    COUNT_RATE,
-    EFFORT_SCALE,
-    GEAR_RATIO,
-    LOG_PERIOD_S,
-)
 from scenarios.studies.paper.starts import Benches
 
 RAMP_ARCSEC_S2 = 7200.0
@@ -41,14 +34,14 @@ class LinearAxis:
 def linear_axis(model: PlantModel) -> LinearAxis:
     """Return equation (6) for a plant's RA axis, without torsion and play, the rotors' inertia counted."""
     axis, motor = model.axes.ra, model.axes.ra.motor
-    square = GEAR_RATIO**2
+    square = scales.GEAR_RATIO**2
     return LinearAxis(
         torque_constant=motor.torque_constant.si,
         resistance=motor.loop,
         inductance=motor.inductance.si,
         inertia=axis.inertia.si / square + 2.0 * motor.rotor_inertia.si,
         viscous=axis.friction.viscous.si / square + 2.0 * motor.drag.si,
-        stiction=axis.friction.stiction.si / GEAR_RATIO,
+        stiction=axis.friction.stiction.si / scales.GEAR_RATIO,
         voltage=model.supply.voltage.si,
         drive=1.0 - model.controller.counter_split.si,
     )
@@ -57,7 +50,7 @@ def linear_axis(model: PlantModel) -> LinearAxis:
 def beside(benches: Benches, log: Log) -> tuple[Array, Array, Array]:
     """Return what `simulate_loop` makes of a bench's low preload for as long as its log of a step."""
     plant = benches.plants["low"]
-    steps, seconds = round(plant.controller.pwm_steps.si), log.t_s.size * LOG_PERIOD_S
+    steps, seconds = round(plant.controller.pwm_steps.si), log.t_s.size * scales.LOG_PERIOD_S
     return simulate_loop(linear_axis(plant), benches.gains, steps, STEP_TO, seconds, RAMP_ARCSEC_S2)
 
 
@@ -77,11 +70,11 @@ def simulate_loop(
     the mean velocity of its period, unquantised. At rest the stiction only holds: it never pushes back.
     """
     kp, ki = gains
-    fine, dt = 50, CONTROL_PERIOD_S / 50
+    fine, dt = 50, scales.CONTROL_PERIOD_S / 50
     decay = float(np.exp(-axis.resistance * dt / axis.inductance))
-    count = round(seconds / CONTROL_PERIOD_S)
+    count = round(seconds / scales.CONTROL_PERIOD_S)
     out, efforts = np.zeros(count), np.zeros(count)
-    to_axis = 1.0 / GEAR_RATIO / ARCSEC
+    to_axis = 1.0 / scales.GEAR_RATIO / scales.ARCSEC
     held = axis.stiction * axis.resistance / axis.torque_constant  # V that stiction takes away
     current = speed = effort = before = error = setpoint = 0.0
     for k in range(count):
@@ -95,12 +88,12 @@ def simulate_loop(
             if speed <= 0.0 and volt <= 0.0:
                 speed = current = 0.0
             travelled += speed * dt
-        out[k] = travelled / CONTROL_PERIOD_S * to_axis
-        setpoint = min(arcsec_s, setpoint + ramp_arcsec_s2 * CONTROL_PERIOD_S)
-        new = (setpoint - out[k]) / COUNT_RATE
+        out[k] = travelled / scales.CONTROL_PERIOD_S * to_axis
+        setpoint = min(arcsec_s, setpoint + ramp_arcsec_s2 * scales.CONTROL_PERIOD_S)
+        new = (setpoint - out[k]) / scales.COUNT_RATE
         before = effort
         effort = min(max(effort + kp * (new - error) + ki * new, -pwm_steps), pwm_steps)
         error = new
-        efforts[k] = effort * EFFORT_SCALE / pwm_steps
-    times: Array = (np.arange(count, dtype=np.float64) + 1.0) * CONTROL_PERIOD_S
+        efforts[k] = effort * scales.EFFORT_SCALE / pwm_steps
+    times: Array = (np.arange(count, dtype=np.float64) + 1.0) * scales.CONTROL_PERIOD_S
     return times, out, efforts

@@ -62,8 +62,6 @@ class Log:
 
 def join(logs: list[Log]) -> Log:
     """Return consecutive logs of one bench as one."""
-    if not logs:
-        raise ValueError("no logs to join")
     return Log(*(np.concatenate(columns) for columns in zip(*(log._columns() for log in logs), strict=True)))
 
 
@@ -133,7 +131,7 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
 
 def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
-    t = (np.arange(record.size) - (record.size - 1) / 2.0) * period_s
+    t: Array = (np.arange(record.size, dtype=np.float64) - (record.size - 1) / 2.0) * period_s
     return _sinusoid(t, _detrended(t, record), frequency_hz)[0]
 
 

@@ -13,7 +13,7 @@ from pyarrow import parquet
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.recordings import read_mcap, read_mf4
-from scenarios.commands import exporting, parts
+from scenarios.commands import describing, parts
 from scenarios.lab.prepare import prepare
 from scenarios.run import run as runner
 from scenarios.run.mcapfile import Entry, Source, _of_summary, export
@@ -195,8 +195,8 @@ def test_a_part_that_is_missing_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp
     real = parts.find_spec
     monkeypatch.setattr(parts, "find_spec", lambda name: None if name in ("mcap", "llvmlite") else real(name))
     for command, arguments, extra in (
-        (exporting.export, [str(tmp_path), "--mcap", "x.mcap"], "recordings"),
-        (exporting.fmu, ["--axis", "ra", "--out", "x.fmu"], "fmu"),
+        (describing.export, [str(tmp_path), "--mcap", "x.mcap"], "recordings"),
+        (describing.fmu, ["--axis", "ra", "--out", "x.fmu"], "fmu"),
     ):
         with pytest.raises(parts.MissingPart, match=rf"extra {extra}\); .* -m pip install"):
             command.main(arguments, standalone_mode=False)

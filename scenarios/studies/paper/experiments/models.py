@@ -1,11 +1,14 @@
 """The emulator beside models of it: equation (6) with the same PI, and tuning rules (E9, E10).
 
 The rules are for a PI on a first-order model with dead time. All are in O'Dwyer's Handbook of PI and PID
-Controller Tuning Rules (the paper's ref. 15), under their authors: Ziegler and Nichols (1942, reaction
-curve); Chien, Hrones and Reswick (1952, servo, without and with 20 % overshoot); Cohen and Coon (1953,
-quarter decay ratio). Rivera, Morari and Skogestad (1986, improved PI, lambda = 1.7 L); Skogestad (2003, the
-tightest closed-loop time constant that is advised, the dead time); Astrom and Hagglund (2006, AMIGO, largest
-integral gain at a maximum sensitivity of 1.4; also the paper's ref. 16).
+Controller Tuning Rules (the paper's ref. 15), under their authors:
+
+- Ziegler and Nichols (1942), reaction curve.
+- Chien, Hrones and Reswick (1952), servo, without and with 20 % overshoot.
+- Cohen and Coon (1953), quarter decay ratio.
+- Rivera, Morari and Skogestad (1986), improved PI, lambda = 1.7 L.
+- Skogestad (2003), closed-loop time constant = dead time, the tightest that is advised.
+- Astrom and Hagglund (2006), AMIGO, largest integral gain at a maximum sensitivity of 1.4 (also ref. 16).
 """
 
 from collections.abc import Callable

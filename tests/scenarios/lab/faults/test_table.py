@@ -10,7 +10,8 @@ import yaml
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay
-from scenarios.lab.faults import KINDS, FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.table import KINDS
 from scenarios.lab.prepare import chosen
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
