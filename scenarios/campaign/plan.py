@@ -85,9 +85,6 @@ class Plan:
         else:
             row = self.shares[index]
             values = tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
-        return self._case(index, values)
-
-    def _case(self, index: int, values: tuple[Any, ...]) -> Case:
         document = json.loads(json.dumps(self.base))
         folder = document.pop("_folder")
         for each, value in zip(self.inputs, values, strict=True):

@@ -46,7 +46,8 @@ def convert(document: Document, language: dict[str, Any] | None = None) -> model
     check(document, language)
     data: dict[str, Any] = in_base_units(document.data, language)
     steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
-    _check_names(document, steps)
+    expected = tuple(_expectation(document, index, each) for index, each in enumerate(data.get("expect", [])))
+    _check_names(document, steps, expected)
     plant = data.get("plant", DEFAULT_PLANT)
     said = {**data, **data.get("logs", {})}
     scenario = model.Scenario(
@@ -54,18 +55,14 @@ def convert(document: Document, language: dict[str, Any] | None = None) -> model
         clock=_clock(document, str(data["start_utc"])),
         steps=steps,
         faults=tuple(_fault(document, index, each) for index, each in enumerate(data.get("faults", []))),
-        expectations=tuple(
-            _expectation(document, index, each) for index, each in enumerate(data.get("expect", []))
-        ),
+        expectations=expected,
         plant={"file": plant} if isinstance(plant, str) else plant,
         site=_site(document, data.get("site", {})),
         start_rad={axis: angle / ARCSEC_PER_RAD for axis, angle in data.get("start", {}).items()},
         speed=None if data.get("speed", "max") == "max" else float(data["speed"]),
         **{field: said[word] for word, field in _AS_SAID.items() if word in said},
     )
-    scenario = _with_mount(document, scenario, data)
-    _check_windows(document, scenario)
-    return scenario
+    return _with_mount(document, scenario, data)
 
 
 def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
@@ -140,7 +137,9 @@ def _expectation(document: Document, index: int, data: dict[str, Any]) -> model.
     )
 
 
-def _check_names(document: Document, steps: tuple[model.Step, ...]) -> None:
+def _check_names(
+    document: Document, steps: tuple[model.Step, ...], expected: tuple[model.Expectation, ...]
+) -> None:
     known: list[str] = []
     for index, step in enumerate(steps):
         if step.name in known and "name" in document.data["steps"][index]:
@@ -151,16 +150,10 @@ def _check_names(document: Document, steps: tuple[model.Step, ...]) -> None:
                 f"{where}: no earlier step is called {step.after!r}; {nearest(step.after, known)}"
             )
         known.append(step.name)
-
-
-def _check_windows(document: Document, scenario: model.Scenario) -> None:
-    names = [step.name for step in scenario.steps]
-    for expectation in scenario.expectations:
-        during = expectation.arguments.get("during")
-        if during is not None and during not in names:
-            raise ScenarioError(
-                f"{expectation.where}: no step is called {during!r}; {nearest(during, names)}"
-            )
+    for each in expected:
+        during = each.arguments.get("during")
+        if during is not None and during not in known:
+            raise ScenarioError(f"{each.where}: no step is called {during!r}; {nearest(during, known)}")
 
 
 def _clock(document: Document, text: str) -> Clock:

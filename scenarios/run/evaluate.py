@@ -170,35 +170,19 @@ def _counter(name: str, text: str, limit: str = "") -> Kind:
 
 KINDS: dict[str, Kind] = {
     "pointing_error": Kind(
-        pointing_error,
-        "angle",
-        "telescope less the star's observed place",
-        ("track",),
-        {
-            "axis": {"sky": "the angle between them", "ra": "", "dec": ""},
-            "source": {"truth": "the plant", "encoder": "what the host read"},
-        },
+        pointing_error, "angle", "telescope less the star's observed place", ("track",),
+        {"axis": {"sky": "the angle between them", "ra": "", "dec": ""},
+         "source": {"truth": "the plant", "encoder": "what the host read"}},
     ),
     "tracking_rate_error": Kind(
-        tracking_rate_error,
-        "rate",
-        "rate of an axis less the rate it should have",
-        ("track", "set_rate"),
-        {
-            "axis": {"ra": "", "dec": ""},
-            "source": {
-                "truth": "the plant",
-                "counts_5ms": "velocity counts of single 5 ms samples",
-                "mean_1s": "their means over 1 s",
-            },
-        },
+        tracking_rate_error, "rate", "rate of an axis less the rate it should have", ("track", "set_rate"),
+        {"axis": {"ra": "", "dec": ""},
+         "source": {"truth": "the plant", "counts_5ms": "velocity counts of single 5 ms samples",
+                    "mean_1s": "their means over 1 s"}},
     ),
     "guiding_error": Kind(
-        guiding_error,
-        "angle",
-        "the star less its place in the first exposure, as the guide camera saw it",
-        ("autoguide",),
-        {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
+        guiding_error, "angle", "the star less its place in the first exposure, as the guide camera saw it",
+        ("autoguide",), {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
     ),
     "focus_error": Kind(focus_error, "focus", "true focus position less the commanded one", ("focus",)),
     "bus_load": _counter("bus_load", "mean load of the CAN bus", "fraction"),
@@ -207,4 +191,4 @@ KINDS: dict[str, Kind] = {
     "error_log_entries": _counter("error_log_entries", "lines in `errors.log`"),
     "steps_completed": _counter("steps_completed", "steps that ended as they should"),
     "real_time_factor": _counter("real_time_factor", "simulated over wall time (depends on the machine)"),
-}
+}  # fmt: skip

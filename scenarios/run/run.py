@@ -19,8 +19,7 @@ from scenarios.lab.snapshot.run import Order, Progress, resume
 from scenarios.language.model import STARS, Scenario
 from scenarios.progress import shown
 from scenarios.run.evaluate import Verdict, judge
-from scenarios.run.outcome import Outcome
-from scenarios.run.pointing import write_guiding, write_runs
+from scenarios.run.outcome import Outcome, write_guiding, write_runs
 from scenarios.run.report import html
 
 _PIECE_NS = 1_000_000_000

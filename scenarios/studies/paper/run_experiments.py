@@ -17,10 +17,9 @@ from plant.parts import PlantModel
 from scenarios.campaign.executor import each
 from scenarios.progress import shown
 from scenarios.studies.options import HIGH, LOW, PaperOptions
-from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment, Figures
 from scenarios.studies.paper.rows import Row, markdown
-from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start, others
+from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, EmulatorBench, Start, others
 
 DEFAULTS = {"low": LOW, "high": HIGH}
 Outcome = tuple[Figures, str]

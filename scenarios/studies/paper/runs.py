@@ -50,11 +50,6 @@ def high_speed(bench: Bench, setpoint: float, seconds: float, settle: float) -> 
     return closed, bench.open_loop(effort, settle + seconds).after(settle)
 
 
-def slow_slew(bench: Bench, setpoint: float, seconds: float = 6.0, settle: float = 7.0) -> Log:
-    """E4: closed loop at 1 to 3 deg/s, after the acceleration."""
-    return bench.closed_loop(setpoint, settle + seconds).after(settle)
-
-
 @dataclass(frozen=True)
 class LowSpeed:
     """E6: closed loop at 100 arcsec/s and a staircase of open-loop efforts down to standstill.
@@ -140,7 +135,8 @@ def map_run(bench: Bench, setpoint: float) -> Log:
     """
     settle = map_settle(setpoint)
     at_least = max(6.0, min(MAP_AVERAGED_S, MAP_STRETCH_ARCSEC / abs(setpoint)))
-    return bench.closed_loop(setpoint, settle + whole_turns(setpoint, at_least)).after(settle)
+    half_turn = MOTOR_TURN_ARCSEC / abs(setpoint) / 2.0
+    return bench.closed_loop(setpoint, settle + half_turn * ceil(at_least / half_turn)).after(settle)
 
 
 def map_settle(setpoint: float) -> float:
@@ -154,12 +150,6 @@ def map_pair(bench: Bench, setpoint: float) -> tuple[Log, Log]:
     there = map_run(bench, setpoint)
     bench.closed_loop(setpoint, map_settle(setpoint))
     return there, map_run(bench, -setpoint)
-
-
-def whole_turns(arcsec_s: float, at_least: float = 6.0) -> float:
-    """Return the time of the fewest half motor turns that last `at_least` seconds, s."""
-    half_turn = MOTOR_TURN_ARCSEC / abs(arcsec_s) / 2.0
-    return half_turn * ceil(at_least / half_turn)
 
 
 def opened_run(bench: Bench, begin: float, effort: int) -> Log:
@@ -213,8 +203,3 @@ def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
 
 STEP_TO = 600.0
 """arcsec/s, Fig. 11."""
-
-
-def step(bench: Bench, setpoint: float = STEP_TO, seconds: float = 3.0) -> Log:
-    """E9: from rest to 600 arcsec/s, closed loop."""
-    return bench.closed_loop(setpoint, seconds)

@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plant.model import load, with_effects, with_value
-from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
 from scenarios.studies.paper.experiments.frictionmap import Noise, friction_map
 from scenarios.studies.paper.experiments.identify import identify
@@ -39,7 +38,7 @@ from scenarios.studies.paper.scales import (
     Drive,
     drive,
 )
-from scenarios.studies.paper.starts import STARTS, Benches, Start, with_inertia
+from scenarios.studies.paper.starts import STARTS, Benches, EmulatorBench, Start, with_inertia
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.synthetic import current_for, log_of
 

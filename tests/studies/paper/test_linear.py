@@ -1,7 +1,7 @@
 import pytest
 
 from plant.model import load, with_value
-from scenarios.studies.paper.linear import LinearAxis, linear_axis, simulate_loop
+from scenarios.studies.paper.experiments.models import LinearAxis, linear_axis, simulate_loop
 from scenarios.studies.paper.scales import ARCSEC, GEAR_RATIO
 
 # hardware.md 2.3, the first set, with L = R * 2 ms: poles -15.4 and -488 1/s, 1.91 counts per PWM step
