@@ -10,13 +10,12 @@ from typing import Any
 from bus.can.candump import CandumpWriter
 from host.logs.files import LineFile, LogError, write_file
 from plant.kernels import layout
-from plant.model import PlantModel, dump
+from plant.model import dump
 from plant.plant import Plant
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.lab.networks import SERIAL
 from scenarios.lab.recorder import Recorder
 from scenarios.lab.session import log_headers
-from scenarios.language.model import Scenario
 
 
 def state_of(plant: Plant) -> bytes:
@@ -54,12 +53,8 @@ class Recording:
     stays in the folder.
     """
 
-    def __init__(
-        self, folder: Path, scenario: Scenario, model: PlantModel, begun: Path | None = None
-    ) -> None:
+    def __init__(self, folder: Path, begun: Path | None = None) -> None:
         self.folder = folder
-        self._scenario = scenario
-        self._model = model
         self._recorder: Recorder | None = None
         self._facts: dict[str, Any] = {}
         self._rests: dict[str, Rest] = {}
@@ -74,14 +69,12 @@ class Recording:
 
     def attach(self, served: LiveNetwork) -> None:
         """Record this session, from its very start; its doors are made (not open) by now."""
-        scenario, model = self._scenario, self._model
-        self._recorder = recorder = Recorder(
-            self.folder, scenario, served.network.plant, log_headers(scenario, model)
-        )
+        scenario, headers = served.scenario, log_headers(served.scenario, served.model)
+        self._recorder = recorder = Recorder(self.folder, scenario, served.network.plant, headers)
         served.network.wire.tap(recorder.can.take)
         for device in SERIAL:
             served.network.uarts[device.name].sink = recorder.link(device).receive
-        dump(model, self.folder / PLANT)
+        dump(served.model, self.folder / PLANT)
         if scenario.file.is_file():
             (self.folder / SCENARIO).write_bytes(scenario.file.read_bytes())
         self._facts = {

@@ -39,7 +39,7 @@ def replay(folder: Path, out: Path) -> tuple[str, str | None]:
         scenario_file = folder / SCENARIO if facts["scenario"] else None
         scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
         model = load_plant(folder / PLANT)
-    recording = Recording(out, scenario, model, begun)
+    recording = Recording(out, begun)
     served = LiveNetwork(scenario, model, journal=recording, begun=stood)
     _nodes(served, facts)
     recording.attach(served)

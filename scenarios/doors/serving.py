@@ -19,7 +19,7 @@ from scenarios.doors.making import attached, check, make_doors
 from scenarios.doors.options import ServeOptions
 from scenarios.doors.parking import interrupts, park
 from scenarios.doors.recording import Recording
-from scenarios.doors.snapshots import Snapshots, Standing, standing
+from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.doors.steps import Steps
 from scenarios.lab.muted import Feed, FeedError
 from scenarios.lab.prepare import chosen
@@ -55,8 +55,14 @@ def serve(options: ServeOptions) -> int:
     ) as line:
         line.refresh()
         folder = options.record
-        recording = None if folder is None else Recording(folder, scenario, model, options.begun)
-        served = _network(options, scenario, model, recording, stood)
+        recording = None if folder is None else Recording(folder, options.begun)
+        served = LiveNetwork(scenario, model, options.speed, recording, stood)
+        if options.clock == "steps":
+            served.steps = Steps(served)
+        if options.snapshots is not None:
+            Snapshots(options.snapshots, served, recording)
+        if options.muted is not None:
+            Feed(served.network, *options.muted)
         doors = make_doors(options, served, console.print)
         if recording is not None:
             recording.attach(served)
@@ -84,24 +90,6 @@ def serve(options: ServeOptions) -> int:
     if recording is not None:
         console.print(f"recorded in {folder}, digest {digest[:16]}; schmidt replay {folder} repeats it")
     return 0
-
-
-def _network(
-    options: ServeOptions,
-    scenario: Scenario,
-    model: PlantModel,
-    recording: Recording | None,
-    stood: Standing | None,
-) -> LiveNetwork:
-    """As the options want it, with nobody at its doors yet."""
-    served = LiveNetwork(scenario, model, options.speed, recording, stood)
-    if options.clock == "steps":
-        served.steps = Steps(served)
-    if options.snapshots is not None:
-        Snapshots(options.snapshots, served, recording)
-    if options.muted is not None:
-        Feed(served.network, *options.muted)
-    return served
 
 
 def _ahead(options: ServeOptions) -> AbstractContextManager[str | None]:

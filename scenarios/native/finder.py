@@ -8,8 +8,7 @@ from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from scenarios.native.modules import PACKAGE, ROOT
-from scenarios.native.relocate import ROOMS
+from scenarios.native.modules import PACKAGE, ROOMS, ROOT
 from scenarios.native.stamp import LIBRARY, difference, read
 
 PURE = "SCHMIDT_PURE"
@@ -70,14 +69,14 @@ def use(library: Path = LIBRARY) -> None:
 class Rooms:
     """Entry of `sys.meta_path`: the six rooms from where this file lies, not somebody's `plant.py`.
 
-    A wheel needs none of this: its rooms lie below the package `schmidt` (`native/relocate.py`).
+    A wheel needs none of this: its rooms lie below the package `schmidt` (`setup.py`).
     """
 
     def find_spec(
         self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """A room by its name; the modules in it follow."""
-        return PathFinder.find_spec(name, [str(ROOT)]) if name in ROOMS else None
+        return PathFinder.find_spec(name, [str(ROOT)]) if name in (*ROOMS, "calibration") else None
 
 
 def ours_first() -> None:

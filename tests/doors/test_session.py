@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[2]
 def record(folder: Path, seed: int = 3) -> str:
     """A session with commands over CAN and USB and hostile frames, in slices of odd lengths."""
     scenario, model = chosen()
-    recording = Recording(folder, scenario, model)
+    recording = Recording(folder)
     served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:session", 0, served)
     recording.attach(served)

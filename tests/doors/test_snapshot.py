@@ -72,7 +72,7 @@ def _session(folder: Path, seed: int) -> list[Path]:
     """A recorded session with two snapshots on the way, each in the middle of things."""
     random = Random(seed)
     scenario, model = chosen()
-    recording = Recording(folder / "session", scenario, model)
+    recording = Recording(folder / "session")
     served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:snapshot", 0, served)
     recording.attach(served)
@@ -111,7 +111,7 @@ def test_a_session_that_goes_on_is_recorded_and_replayed_like_any(tmp_path: Path
     """And its log of the bus is the end of the first session's."""
     snapshot = _session(tmp_path, 5)[1]
     stood = standing(read(snapshot))
-    recording = Recording(tmp_path / "on", stood.scenario, stood.model, snapshot)
+    recording = Recording(tmp_path / "on", snapshot)
     served = LiveNetwork(stood.scenario, stood.model, journal=recording, begun=stood)
     CanDoor("virtual:on", 0, served)
     recording.attach(served)

@@ -93,7 +93,7 @@ def test_clearing_what_is_not_on_says_what_is() -> None:
 
 def test_a_session_with_live_faults_replays_to_the_same_digest(tmp_path: Path) -> None:
     scenario, model = chosen()
-    recording = Recording(tmp_path / "one", scenario, model)
+    recording = Recording(tmp_path / "one")
     served = LiveNetwork(scenario, dataclasses.replace(model), journal=recording)
     recording.attach(served)
     served.run_until(50_000_000)
