@@ -56,12 +56,11 @@ class Plan:
     inputs: tuple[inputs.Input, ...]
     shares: npt.NDArray[np.float64]
     """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
-    grid: bool
+    way: str
+    """Of sampling: grid, random, latin hypercube, sobol, or saltelli for Sobol indices."""
     metrics: tuple[str, ...]
     keep: str
     time_s: float | None
-    saltelli: bool = False
-    """Whether the sample is one for Sobol indices."""
 
     @property
     def calibrates(self) -> bool:
@@ -71,7 +70,7 @@ class Plan:
     @property
     def count(self) -> int:
         """Planned runs."""
-        return math.prod(len(each.values) for each in self.inputs) if self.grid else len(self.shares)
+        return math.prod(len(each.values) for each in self.inputs) if self.way == "grid" else len(self.shares)
 
     def cases(self) -> Iterator[Case]:
         """The planned runs, one after the other."""
@@ -79,7 +78,7 @@ class Plan:
 
     def case(self, index: int) -> Case:
         """One of the planned runs; a grid's last input changes fastest."""
-        if self.grid:
+        if self.way == "grid":
             places = np.unravel_index(index, [len(each.values) for each in self.inputs])
             values = tuple(each.values[int(place)] for each, place in zip(self.inputs, places, strict=True))
         else:
@@ -134,11 +133,10 @@ def load(file: Path) -> Plan:
         base=plain,
         inputs=found,
         shares=np.zeros((0, 0)) if way == "grid" else sample(way, runs, len(found), int(data.get("seed", 1))),
-        grid=way == "grid",
+        way=way,
         metrics=tuple(data.get("metrics", ("expectations",))),
         keep=data.get("keep", "nothing"),
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
-        saltelli=way == "saltelli",
     )
     first = plan.case(0).document
     if plan.calibrates:

@@ -70,15 +70,13 @@ def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]
 
 def _again(plan: Plan) -> str:
     """The calibration alone, as it is declared; the run's own numbers stand above it."""
-    given = plan.base[FIELD]
-    return " ".join(
-        ["schmidt calibrate", *(str(plan.file.parent / log) for log in given["logs"]), "--out", "again"]
-    )
+    logs = " ".join(str(plan.file.parent / log) for log in plan.base[FIELD]["logs"])
+    return f"schmidt calibrate {logs} --out again"
 
 
 def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
     """Sobol indices of the metrics that every run of a `saltelli` sample has."""
-    if not plan.saltelli or len(columns["key"]) < plan.count:
+    if plan.way != "saltelli" or len(columns["key"]) < plan.count:
         return []
     order = np.argsort(np.array(columns["index"]))
     found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]

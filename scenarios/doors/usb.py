@@ -51,7 +51,7 @@ OUT_LIMIT = 1024
 """OUT reports that wait for the gateway; a driver's write blocks or fails beyond. ASSUMPTION."""
 IN_LIMIT = 4096
 """IN reports kept for a host program that does not read. Linux' hidraw keeps 64; a program in this process
-may be busy for a second. Older ones are lost and counted. ASSUMPTION."""
+may be busy for a second. ASSUMPTION."""
 
 
 class UsbFull(OSError):
@@ -59,13 +59,12 @@ class UsbFull(OSError):
 
 
 class UsbPlug:
-    """One host program's end. lost: reports it did not read in time."""
+    """One host program's end; of what it does not read in time the oldest is gone."""
 
     def __init__(self, usb: Usb, name: str) -> None:
         self.name = name
-        self.lost = 0
         self._usb = usb
-        self._reports: deque[tuple[int, bytes]] = deque()
+        self._reports: deque[tuple[int, bytes]] = deque(maxlen=IN_LIMIT)
 
     def write(self, t_ns: int, report: bytes) -> None:
         """Send an OUT report of 64 bytes, now (`t_ns` is there for `HidLink`).
@@ -87,9 +86,6 @@ class UsbPlug:
 
     def hear(self, t_ns: int, report: bytes) -> None:
         """The gateway has sent a report; called by `Usb`."""
-        if len(self._reports) >= IN_LIMIT:
-            self._reports.popleft()
-            self.lost += 1
         self._reports.append((t_ns, report))
 
     def unplug(self) -> None:
