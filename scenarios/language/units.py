@@ -25,9 +25,7 @@ QUANTITIES = {
         "s", 1e7, {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
     ),
     "angle": Quantity(
-        "arcsec",
-        1e10,
-        {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0},
+        "arcsec", 1e10, {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0}
     ),
     "rate": Quantity(
         "arcsec/s", 1e10, {"arcsec/s": 1.0, "″/s": 1.0, "arcmin/s": 60.0, "deg/s": 3600.0, "°/s": 3600.0}

@@ -4,15 +4,7 @@ import numpy as np
 
 from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.measures import Array, Log, means, peak_percent
-from scenarios.studies.paper.runs import (
-    HIGH,
-    LOW,
-    SLOW_SLEW,
-    TRACKING,
-    Bench,
-    high_speed,
-    tracking,
-)
+from scenarios.studies.paper.runs import HIGH, LOW, SLOW_SLEW, TRACKING, Bench, high_speed, tracking
 from scenarios.studies.paper.scales import COUNT_RATE, LOG_PERIOD_S
 from scenarios.studies.paper.starts import Benches, viscous_only
 
