@@ -112,7 +112,7 @@ Make = Callable[["Place", Mapping[str, Any], int], Active]
 
 @dataclass(frozen=True)
 class Kind:
-    """One fault. text: what happens. cleared: what is left when it is over. source: of its constants."""
+    """One fault. text: what happens. cleared: what is left when it is over."""
 
     level: Level
     name: str

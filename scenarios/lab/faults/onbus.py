@@ -120,7 +120,7 @@ class Cut:
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         wire = place.network.wire
-        if not given["nodes"] or len(given["nodes"]) >= len(place.network.boards):
+        if len(given["nodes"]) >= len(place.network.boards):
             raise FaultError("partition: nodes: some boards, not all of them")
         ports = [place.board(name).port for name in given["nodes"]]
         if any(port._wire is not wire for port in ports):
