@@ -1,7 +1,7 @@
 """Scenario files, their schema, the wiring, the runner and the command line."""
 
 from scenarios.native import use
-from scenarios.native.checkout import ours_first
+from scenarios.native.finder import ours_first
 
 ours_first()
 try:

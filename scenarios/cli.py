@@ -1,13 +1,38 @@
 """The command `schmidt`. Commands import what they need when they are called, so that it starts at once."""
 
 import signal
+from collections.abc import Mapping
 
 import click
 
-from scenarios.commands import calibrating, describing, exporting, live, many, running
-from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
-from scenarios.commands.parts import advice
-from scenarios.commands.sections import Section, Sections
+from scenarios.commands import calibrating, describing, live, many, running
+from scenarios.commands.parts import INTERRUPTED, UNUSABLE, advice, fail
+
+Section = tuple[tuple[click.Command, str], ...]
+"""Commands with an example each."""
+
+
+class Sections(click.Group):
+    """A group whose help shows its commands in sections."""
+
+    def __init__(self, sections: Mapping[str, Section], **settings: object) -> None:
+        super().__init__(**settings)  # type: ignore[arg-type]
+        self.sections = sections
+        for section in sections.values():
+            for command, _ in section:
+                self.add_command(command)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the sections; below what a command does stands its example."""
+        width = max(len(command.name or "") for section in self.sections.values() for command, _ in section)
+        for title, section in self.sections.items():
+            rows = []
+            for command, example in section:
+                name = (command.name or "").ljust(width)  # one column for all sections
+                rows += [(name, command.get_short_help_str(limit=90)), ("", f"$ {example}")]
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
 
 SECTIONS: dict[str, Section] = {
     "Run a night": (
@@ -31,8 +56,8 @@ SECTIONS: dict[str, Section] = {
         (describing.effects, "schmidt effects gear_mesh"),
     ),
     "Take it elsewhere": (
-        (exporting.fmu, "schmidt fmu --axis ra --out drive.fmu"),
-        (exporting.export, "schmidt export out/quick-look --mcap night.mcap"),
+        (describing.fmu, "schmidt fmu --axis ra --out drive.fmu"),
+        (describing.export, "schmidt export out/quick-look --mcap night.mcap"),
     ),
     "Repeat the paper": (
         (many.paper, "schmidt paper --quick"),
@@ -41,7 +66,12 @@ SECTIONS: dict[str, Section] = {
 }
 HELP = "Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."
 cli = click.version_option(package_name="schmidt", prog_name="schmidt")(
-    Sections(SECTIONS, name="schmidt", help=HELP, context_settings={"help_option_names": ["-h", "--help"]})
+    Sections(
+        SECTIONS,
+        name="schmidt",
+        help=HELP,
+        context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+    )
 )
 
 

@@ -28,7 +28,7 @@ def _options(command: click.Command, context: click.Context) -> str:
 
 
 def _section(command: click.Command, path: str, depth: int, example: str | None) -> Iterator[str]:
-    context = click.Context(command, info_name=path)
+    context = click.Context(command, info_name=path, show_default=True)
     yield f"\n{'#' * depth} {path}\n"
     yield f"\n{prose(command.help or '')}\n"
     yield f"\n    {_usage(command, path, context)}\n"

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from scenarios.lab.faults.kind import Kind
+from scenarios.lab.faults.kind import Kind, Parameter
 from scenarios.lab.faults.onsensor import unit
-from scenarios.lab.faults.parameter import Parameter
 from scenarios.lab.faults.place import AXES, SENSORS
 from scenarios.lab.faults.table import KINDS
 

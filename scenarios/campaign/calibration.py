@@ -6,17 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from plant.model import PlantModel, dump
-from scenarios.language.load import DEFAULT_PLANT
+from plant.model import dump
 from scenarios.language.plants import named, plant_model
 
 Document = dict[str, Any]
 FIELD = "calibration"
-
-
-def declared(document: Document, beside: Path) -> PlantModel:
-    """The declared plant with the document's overrides. beside: folder of relative names."""
-    return plant_model(named(document.get("plant", DEFAULT_PLANT)), beside)
 
 
 def base(given: Document, folder: Path) -> Document:
@@ -36,7 +30,7 @@ def row(document: Document, beside: Path, folder: Path) -> Document:
     plant = None
     if "plant" in document:
         plant = folder / "declared.yaml"
-        dump(declared(document, beside), plant)
+        dump(plant_model(named(document["plant"]), beside), plant)
     rig = beside / given["rig"] if "rig" in given else None
     logs = [beside / name for name in given["logs"]]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):

@@ -12,15 +12,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    wait,
-)
+from concurrent import futures
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -28,8 +20,7 @@ from typing import Any, Generic, TypeVar
 Input = TypeVar("Input")
 Output = TypeVar("Output")
 AHEAD = 3
-"""Tasks handed out per worker: enough that none waits, few enough that a hundred thousand planned runs need
-no memory here."""
+"""Tasks handed out per worker: enough that none waits, few enough for the memory of a hundred thousand."""
 _LOOK_S = 5.0
 """How often somebody looks whether the scheduler is still there."""
 TRIES = 5
@@ -38,8 +29,7 @@ TRIES = 5
 
 @dataclass(frozen=True)
 class Done(Generic[Output]):
-    """A finished task: its value, or the error as one line. died: the workers died, and the task never
-    ended."""
+    """A finished task: its value, or the error in one line. died: its workers did, and it never ended."""
 
     key: str
     value: Output | None
@@ -66,7 +56,7 @@ def each(
     lost: list[tuple[str, Input, int]] = []
     more = True
     while more or lost:
-        running: dict[Future[Output], tuple[str, Input, int]] = {}
+        running: dict[futures.Future[Output], tuple[str, Input, int]] = {}
         broken = False
         with make() as executor:
             while not broken:
@@ -83,7 +73,7 @@ def each(
                         break
                 if not running:
                     break
-                ended = wait(running, timeout=_LOOK_S, return_when=FIRST_COMPLETED).done
+                ended = futures.wait(running, timeout=_LOOK_S, return_when=futures.FIRST_COMPLETED).done
                 if not ended and not alive():  # its futures will never end
                     raise ConnectionError(f"the scheduler at {scheduler} is gone; what has ended is kept")
                 for future in ended:
@@ -97,32 +87,34 @@ def each(
                             yield Done(key, None, f"the worker died {tried} times: {_line(error)}", died=True)
                         else:
                             lost.append((key, given, tried + 1))
-                            broken = broken or isinstance(error, BrokenExecutor)
+                            broken = broken or isinstance(error, futures.BrokenExecutor)
         lost += [(key, given, tried + 1) for key, given, tried in running.values()]
 
 
 def _lost(error: BaseException) -> bool:
     """Whether the worker is to blame, not the task. (Dask is not there to be asked for its class.)"""
-    return isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker"
+    return (
+        isinstance(error, futures.BrokenExecutor | futures.CancelledError)
+        or type(error).__name__ == "KilledWorker"
+    )
 
 
 def _line(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-Maker = Callable[[], AbstractContextManager[Executor]]
+Maker = Callable[[], AbstractContextManager[futures.Executor]]
 Alive = Callable[[], bool]
 
 
 def _local(jobs: int | None) -> tuple[Maker, int, Alive]:
-    """A process pool. Workers start afresh, without inherited threads and locks, and leave Ctrl-C to this
-    process."""
+    """A process pool. Workers start afresh, inherit no threads or locks, and leave Ctrl-C to this process."""
     width = jobs or os.cpu_count() or 1
 
     @contextmanager
-    def make() -> Iterator[Executor]:
+    def make() -> Iterator[futures.Executor]:
         before = set(multiprocessing.active_children())
-        pool = ProcessPoolExecutor(width, multiprocessing.get_context("spawn"), _worker)
+        pool = futures.ProcessPoolExecutor(width, multiprocessing.get_context("spawn"), _worker)
         try:
             yield pool
         except BaseException:  # leaving early: what runs is lost, and made again by whoever goes on
@@ -163,7 +155,7 @@ def _cluster(address: str) -> tuple[Maker, int, Alive]:
     width = max(1, sum(client.nthreads().values()))
 
     @contextmanager
-    def make() -> Iterator[Executor]:
+    def make() -> Iterator[futures.Executor]:
         executor = client.get_executor(pure=False, retries=TRIES)
         try:
             yield executor

@@ -15,8 +15,6 @@ from scenarios.language.plants import named, plant_model
 from scenarios.language.validate import nearest
 
 Document = dict[str, Any]
-_WORDS = {"parameter": "firmware parameter"}
-"""Kinds that a message calls by another name."""
 _LEVELS = 5
 """Grid points of a distribution when the campaign does not say how many."""
 
@@ -46,7 +44,7 @@ def read(given: dict[str, Any], where: str, base: Document) -> Input:
     if "times" not in given:
         return Input(name, draw, put, values)
     if number is None:
-        raise ScenarioError(f"{where}: a {_WORDS.get(kind, kind)} has no value to multiply; use `is`")
+        raise ScenarioError(f"{where}: a {kind} has no value to multiply; use `is`")
     return Input(name, draw, lambda document, value: put(document, number * value), values)
 
 
@@ -119,23 +117,22 @@ def _plant(path: Any, where: str, base: Document) -> Put:
 
 def _parameter(given: Any, where: str, base: Document) -> Put:
     """A firmware parameter of a board, by number."""
-    node, number = given["node"], given["number"]
-    put = _at("network", "nodes", node, "parameters", str(number), read=int)
-    return put, f"{node} parameter {number}", None
+    path = ("network", "nodes", given["node"], "parameters", str(given["number"]))
+    return _at(path, int), f"{given['node']} parameter {given['number']}", None
 
 
 def _seed(_given: Any, where: str, base: Document) -> Put:
     """The scenario's seed: crystals, encoders' fractions, noise, lost frames."""
-    return _at("seed", read=int), "seed", None
+    return _at(("seed",), int), "seed", None
 
 
 def _start(axis: Any, where: str, base: Document) -> Put:
     """Where an axis of the telescope stands at first, degrees."""
-    put = _at("start", axis, read=lambda value: f"{float(value)!r} deg")
+    put = _at(("start", axis), lambda value: f"{float(value)!r} deg")
     return put, f"start, {str(axis).replace('_', ' ')}", None
 
 
-def _at(*path: str, read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
+def _at(path: Sequence[str], read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
     """Writes a value, as `read` makes it, at a path whose blocks need not be there."""
 
     def put(document: Document, value: Any) -> None:
@@ -175,10 +172,6 @@ def _field(path: Any, where: str, base: Document) -> Put:
 
 
 _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
-    "plant": _plant,
-    "parameter": _parameter,
-    "seed": _seed,
-    "start": _start,
-    "fault": _fault,
+    "plant": _plant, "parameter": _parameter, "seed": _seed, "start": _start, "fault": _fault,
     "field": _field,
-}
+}  # fmt: skip

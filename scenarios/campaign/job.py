@@ -6,12 +6,12 @@ import platform
 import shutil
 import tempfile
 import time
-from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from scenarios.campaign import calibration
+from scenarios.campaign.plan import Case
 from scenarios.lab.prepare import prepare
 from scenarios.language.document import Document
 from scenarios.language.load import BESIDE
@@ -23,29 +23,15 @@ Row = dict[str, Any]
 _EXPECTATIONS = "expectations"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Job:
-    """What a worker is sent. beside: folder in which relative names are looked for. kept: where the logs of
-    those to `keep` (nothing, failed, all) stay, or None."""
-
-    key: str
-    index: int
-    values: dict[str, Any]
-    document: dict[str, Any]
-    beside: str
-    metrics: tuple[str, ...]
-    keep: str
-    kept: str | None
-
-
-def run(job: Job) -> Row:
+def run(job: Case) -> Row:
     """Run one case. What the run makes of it is the row's `failure`; only a broken machine raises."""
     start, cpu = time.perf_counter(), time.process_time()
     row: Row = {"key": job.key, "index": job.index, "failure": ""}
     row |= {f"input: {name}": _cell(value) for name, value in job.values.items()}
     with tempfile.TemporaryDirectory(prefix="schmidt-run-") as folder:
         try:
-            row |= _made(job, Path(folder))
+            made = _calibrated if calibration.FIELD in job.document else _simulated
+            row |= made(job, Path(folder))
         except ValueError as error:
             row |= {"failure": " ".join(str(error).split()), "passed": False, "missed": ""}
         if job.kept and (job.keep == "all" or (job.keep == "failed" and not row["passed"])):
@@ -60,12 +46,7 @@ def run(job: Job) -> Row:
     }
 
 
-def _made(job: Job, folder: Path) -> Row:
-    """What this kind of run makes of its document."""
-    return _calibrated(job, folder) if calibration.FIELD in job.document else _simulated(job, folder)
-
-
-def _calibrated(job: Job, folder: Path) -> Row:
+def _calibrated(job: Case, folder: Path) -> Row:
     found = calibration.row(job.document, Path(job.beside), folder)
     figures = found.pop("figures")
     row: Row = {"passed": True, "missed": "", **found}
@@ -73,7 +54,7 @@ def _calibrated(job: Job, folder: Path) -> Row:
     return row | _figures(job.metrics, figures, figures)
 
 
-def _simulated(job: Job, folder: Path) -> Row:
+def _simulated(job: Case, folder: Path) -> Row:
     document = Document(Path(job.beside) / f"{job.key}.yaml", job.document, {})
     scenario, model = prepare(document)
     result = runner.run(scenario, model, folder, lambda _step, _t, _factor: None, runner.Way(report=False))

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.campaign import calibration, inputs
+from scenarios.lab.prepare import CAMPAIGNS, located
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
-from scenarios.language.own import CAMPAIGNS, located
 from scenarios.language.units import parse
 from scenarios.language.validate import check, schema
 
@@ -25,14 +25,23 @@ MOST = 1_000_000
 report take some 3 GB. Beyond that there would be minutes of planning without a word."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Case:
-    """One planned run. key: hash of everything that decides its outcome. document: the scenario, plain."""
+    """One planned run, as a worker is sent it.
+
+    key: hash of everything that decides its outcome. document: the scenario, plain. beside: folder in which
+    relative names are looked for. kept: where the logs of those to `keep` (nothing, failed, all) stay, or
+    None.
+    """
 
     key: str
     index: int
     values: dict[str, Any]
     document: dict[str, Any]
+    beside: str
+    metrics: tuple[str, ...]
+    keep: str = "nothing"
+    kept: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,12 +56,11 @@ class Plan:
     inputs: tuple[inputs.Input, ...]
     shares: npt.NDArray[np.float64]
     """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
-    grid: bool
+    way: str
+    """Of sampling: grid, random, latin hypercube, sobol, or saltelli for Sobol indices."""
     metrics: tuple[str, ...]
     keep: str
     time_s: float | None
-    saltelli: bool = False
-    """Whether the sample is one for Sobol indices."""
 
     @property
     def calibrates(self) -> bool:
@@ -62,7 +70,7 @@ class Plan:
     @property
     def count(self) -> int:
         """Planned runs."""
-        return math.prod(len(each.values) for each in self.inputs) if self.grid else len(self.shares)
+        return math.prod(len(each.values) for each in self.inputs) if self.way == "grid" else len(self.shares)
 
     def cases(self) -> Iterator[Case]:
         """The planned runs, one after the other."""
@@ -70,15 +78,12 @@ class Plan:
 
     def case(self, index: int) -> Case:
         """One of the planned runs; a grid's last input changes fastest."""
-        if self.grid:
+        if self.way == "grid":
             places = np.unravel_index(index, [len(each.values) for each in self.inputs])
             values = tuple(each.values[int(place)] for each, place in zip(self.inputs, places, strict=True))
         else:
             row = self.shares[index]
             values = tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
-        return self._case(index, values)
-
-    def _case(self, index: int, values: tuple[Any, ...]) -> Case:
         document = json.loads(json.dumps(self.base))
         folder = document.pop("_folder")
         for each, value in zip(self.inputs, values, strict=True):
@@ -86,7 +91,10 @@ class Plan:
         text = json.dumps([document, folder], sort_keys=True)
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
         named = {each.name: value for each, value in zip(self.inputs, values, strict=True)}
-        return Case(key, index, named, document)
+        return Case(
+            key=key, index=index, values=named, document=document, beside=folder, metrics=self.metrics,
+            keep=self.keep,
+        )  # fmt: skip
 
 
 def load(file: Path) -> Plan:
@@ -125,11 +133,10 @@ def load(file: Path) -> Plan:
         base=plain,
         inputs=found,
         shares=np.zeros((0, 0)) if way == "grid" else sample(way, runs, len(found), int(data.get("seed", 1))),
-        grid=way == "grid",
+        way=way,
         metrics=tuple(data.get("metrics", ("expectations",))),
         keep=data.get("keep", "nothing"),
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
-        saltelli=way == "saltelli",
     )
     first = plan.case(0).document
     if plan.calibrates:

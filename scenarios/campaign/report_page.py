@@ -51,7 +51,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         pictures=pictures,
         worst=worst,
         repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
-        failures=_failures(columns),
+        failures=Counter(filter(None, columns["failure"])).most_common(20),
         speed=_speed(columns, wall_s, made),
     )
     write_file(folder / "report.html", text)
@@ -70,15 +70,13 @@ def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]
 
 def _again(plan: Plan) -> str:
     """The calibration alone, as it is declared; the run's own numbers stand above it."""
-    given = plan.base[FIELD]
-    return " ".join(
-        ["schmidt calibrate", *(str(plan.file.parent / log) for log in given["logs"]), "--out", "again"]
-    )
+    logs = " ".join(str(plan.file.parent / log) for log in plan.base[FIELD]["logs"])
+    return f"schmidt calibrate {logs} --out again"
 
 
 def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
     """Sobol indices of the metrics that every run of a `saltelli` sample has."""
-    if not plan.saltelli or len(columns["key"]) < plan.count:
+    if plan.way != "saltelli" or len(columns["key"]) < plan.count:
         return []
     order = np.argsort(np.array(columns["index"]))
     found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
@@ -161,11 +159,6 @@ def _summary(
         hits = int(np.sum(good > limit if upper else good < limit))
         row["missed"] = "{:.1%} ({:.1%}–{:.1%})".format(*share(hits, len(good)))
     return row
-
-
-def _failures(columns: Columns) -> list[tuple[str, int]]:
-    """Runs that ended in an error, by what they said."""
-    return Counter(filter(None, columns["failure"])).most_common(20)
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:

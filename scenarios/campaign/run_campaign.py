@@ -3,16 +3,35 @@
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
-from scenarios.campaign.job import Job, Row, run
-from scenarios.campaign.options import CampaignOptions
+from scenarios.campaign.job import Row, run
 from scenarios.campaign.report_page import write
 from scenarios.language.document import ScenarioError
 from scenarios.progress import shown
 from scenarios.run.probe import digest
+
+
+@dataclass(frozen=True, kw_only=True)
+class CampaignOptions:
+    """file: the campaign, or the name of one of schmidt's own. out: folder; None: out/ and the file's name.
+    jobs: processes (None: one per core); scheduler: a Dask scheduler instead. resume: go on with what is in
+    the folder."""
+
+    file: Path
+    out: Path | None = None
+    jobs: int | None = None
+    scheduler: str | None = None
+    resume: bool = False
+
+    @property
+    def folder(self) -> Path:
+        """Where everything goes."""
+        return Path("out") / self.file.stem if self.out is None else self.out
+
 
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
 
@@ -21,7 +40,8 @@ class _Waiting:
     """The planned runs that are not made yet; `late` when time is over before all were given."""
 
     def __init__(self, planned: plan.Plan, done: set[str], out: Path) -> None:
-        self._planned, self._done, self._out = planned, done, out
+        self._planned, self._done = planned, done
+        self._kept = None if planned.keep == "nothing" else str(out.resolve() / "runs")
         self._begun_s = time.perf_counter()
         self.late = False
 
@@ -30,7 +50,7 @@ class _Waiting:
         """Since the beginning."""
         return time.perf_counter() - self._begun_s
 
-    def __iter__(self) -> Iterator[tuple[str, Job]]:
+    def __iter__(self) -> Iterator[tuple[str, plan.Case]]:
         limit_s = self._planned.time_s
         for case in self._planned.cases():
             if case.key in self._done:
@@ -38,10 +58,10 @@ class _Waiting:
             if limit_s is not None and self.wall_s > limit_s:
                 self.late = True
                 return
-            yield case.key, _job(self._planned, case, self._out)
+            yield case.key, replace(case, kept=self._kept)
 
 
-def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
+def campaign(options: CampaignOptions, task: Callable[[plan.Case], Row] = run) -> int:
     """Run a campaign into its folder; exit 0 when every planned run is there, 130 when it was interrupted.
 
     task: what makes a row of a planned run; the bench has one that does nothing.
@@ -60,7 +80,11 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
                     journal.add({"key": done.key, "index": -1, "failure": done.error, "lost": True})
                     status = INCOMPLETE
                 elif done.value["probe"] != ours:
-                    raise ScenarioError(_other_version(done.value, ours))
+                    machine, theirs, its = (done.value[word] for word in ("machine", "version", "probe"))
+                    raise ScenarioError(
+                        f"the worker on {machine} runs another version (schmidt {theirs}): "
+                        f"the digest of its probe is {its[:12]}, here it is {ours[:12]}"
+                    )
                 else:
                     journal.add(done.value)
                 advance(len(journal.done), f"{len(journal.done)} of {planned.count}")
@@ -82,23 +106,3 @@ def campaign(options: CampaignOptions, task: Callable[[Job], Row] = run) -> int:
     why = "interrupted" if status == INTERRUPTED else "out of time" if waiting.late else "workers were lost"
     print(f"schmidt: {why}, {missing} runs are missing: --resume makes them", file=sys.stderr)
     return status or INCOMPLETE
-
-
-def _job(planned: plan.Plan, case: plan.Case, out: Path) -> Job:
-    return Job(
-        key=case.key,
-        index=case.index,
-        values=case.values,
-        document=case.document,
-        beside=str(planned.scenario.parent.resolve()),
-        metrics=planned.metrics,
-        keep=planned.keep,
-        kept=None if planned.keep == "nothing" else str(out.resolve() / "runs"),
-    )
-
-
-def _other_version(row: Row, ours: str) -> str:
-    return (
-        f"the worker on {row['machine']} runs another version (schmidt {row['version']}): "
-        f"the digest of its probe is {row['probe'][:12]}, here it is {ours[:12]}"
-    )

@@ -95,7 +95,10 @@ def write(folder: Path) -> Path:
     try:
         with pq.ParquetWriter(folder / TABLE, schema, compression="zstd") as writer:
             for part in iter(lambda: list(islice(chosen, _CHUNK)), []):
-                data = {name: [_as(kind, row.get(name)) for row in part] for name, kind in columns.items()}
+                data = {
+                    name: [None if row.get(name) is None else kind(row[name]) for row in part]
+                    for name, kind in columns.items()
+                }
                 writer.write_table(pa.table(data, schema=schema))
     except OSError as error:
         raise LogError(f"{folder / TABLE}: cannot be written: {error.strerror or error}") from None
@@ -116,7 +119,3 @@ def _wider(kind: type | None, value: Any) -> type:
     if kind is None or kind is new:
         return new
     return float if {kind, new} <= {int, float} else str
-
-
-def _as(kind: type, value: Any) -> Any:
-    return None if value is None else kind(value)

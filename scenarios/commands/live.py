@@ -3,10 +3,11 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, doors, filled, muting, network, runs
+from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, doors, muting, network, runs
 from scenarios.commands.parts import need
 from scenarios.doors.options import DoorOptions, HostOptions, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
@@ -20,12 +21,11 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
 @click.option("--stars", type=PATH, help="The cameras' stars: a CSV with name, ra, dec, magnitude.")
 @click.option("--frames", type=PATH, metavar="DIR", help="Folder for the cameras' frames as FITS files.")
 @click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
-@click.option("--speed", type=SPEED, default=1.0, show_default=True, help="Times real time.")
+@click.option("--speed", type=SPEED, default=1.0, help="Times real time.")
 @click.option(
     "--clock",
     type=click.Choice(["wall", "steps"]),
     default="wall",
-    show_default=True,
     help="steps: time stands until clients of --control step it.",
 )
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
@@ -46,9 +46,9 @@ from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
     help="Take snapshots into DIR when schmidt control asks for them; runs plain.",
 )
 @click.option("--from", "begun", type=PATH, help="Go on from this snapshot; takes no SCENARIO.")
-@filled(ServeOptions)
-def serve(options: ServeOptions) -> None:
+def serve(**given: Any) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
+    options = ServeOptions(**given)
     need(*_extras(options), *(() if options.record is None else ("parquet",)))
     need(*(() if options.frames is None else ("camera",)))
     if options.snapshots is not None or options.begun is not None:
@@ -80,9 +80,9 @@ def _extras(options: DoorOptions) -> Iterator[str]:
 @network
 @click.option("--logs", type=PATH, help="Folder of the four logs.")
 @click.option("--duration", type=SECONDS, help="End after this many seconds.")
-@filled(HostOptions)
-def host(options: HostOptions) -> None:
+def host(**given: Any) -> None:
     """The host program by itself, on the boards' cables; SCENARIO gives site, mount and date."""
+    options = HostOptions(**given)
     need(*_extras(options))
     from rich.console import Console
 
@@ -115,13 +115,7 @@ def replay(folder: Path, out: Path | None, begun: Path | None) -> None:
 
 @click.command(short_help="Speed, pause, faults, supply, end of a served network.")
 @click.argument("command", nargs=-1, required=True)
-@click.option(
-    "--at",
-    default="127.0.0.1:7411",
-    show_default=True,
-    metavar="[HOST:]PORT",
-    help="Where serve --control listens.",
-)
+@click.option("--at", default="127.0.0.1:7411", metavar="[HOST:]PORT", help="Where serve --control listens.")
 @click.option("--token", help="The word serve has printed; for other machines.")
 def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     """Tell a served network: status, speed X, pause, resume, power BOARD on|off, stop, snapshot [NAME].
@@ -129,6 +123,6 @@ def control(command: tuple[str, ...], at: str, token: str | None) -> None:
     Faults: fault list, fault start NAME [ARGUMENT=VALUE...], fault clear NUMBER (docs/reference/faults.md).
     With serve --clock steps: step 5ms.
     """
-    from scenarios.doors.tell import tell
+    from scenarios.doors.stepped import tell
 
     click.echo(tell(" ".join(command), at, token))

@@ -2,11 +2,11 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
-from scenarios.campaign.options import CampaignOptions
-from scenarios.commands.options import PATH, Number, filled, jobs
+from scenarios.commands.options import PATH, Number, jobs
 from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 
@@ -17,31 +17,29 @@ from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster).")
 @click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
-@filled(CampaignOptions)
-def campaign(options: CampaignOptions) -> None:
+def campaign(scheduler: str | None, **given: Any) -> None:
     """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
-    need("calibrate", *(("cluster",) if options.scheduler else ()))
+    need("calibrate", *(("cluster",) if scheduler else ()))
+    from scenarios.campaign.run_campaign import CampaignOptions
     from scenarios.campaign.run_campaign import campaign as command
 
-    sys.exit(command(options))
+    sys.exit(command(CampaignOptions(scheduler=scheduler, **given)))
 
 
 @click.command(short_help="Repeat the paper's experiments.")
 @click.option("--json", "json_file", type=PATH, help="Write the rows to this file.")
-@click.option("--out", type=PATH, default=Path("out/paper"), show_default=True)
+@click.option("--out", type=PATH, default=Path("out/paper"))
 @click.option("--plant", type=PATH, help="Plant file with low preload.")
 @click.option("--plant-high", type=PATH, help="Plant file with high preload.")
-@click.option("--markdown", type=PATH, help="Write the table to this file.")
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
 @click.option("--others", type=click.IntRange(0), default=0, help="Starts and seeds that no search used.")
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
-@filled(PaperOptions)
-def paper(options: PaperOptions) -> None:
-    """Repeat the paper's experiments from eight starts: published against emulated (exit 1 when a row is
-    missed)."""
+def paper(**given: Any) -> None:
+    """Repeat the paper's experiments from eight starts: published against emulated (exit 1: a row missed)."""
+    options = PaperOptions(**given)
     need("calibrate", *(("cluster",) if options.scheduler else ()))
     from scenarios.studies.paper.run_experiments import paper as command
 
@@ -49,32 +47,19 @@ def paper(options: PaperOptions) -> None:
 
 
 @click.command(short_help="Hold 15 arcsec/s from many starts and measure the rate.")
-@click.option("--out", type=PATH, default=Path("out/objective"), show_default=True)
-@click.option("--plant", default=LOW, show_default=True, help="Plant with low preload: a file or a name.")
-@click.option(
-    "--plant-high", default=HIGH, show_default=True, help="Plant with high preload: a file or a name."
-)
+@click.option("--out", type=PATH, default=Path("out/objective"))
+@click.option("--plant", default=LOW, help="Plant with low preload: a file or a name.")
+@click.option("--plant-high", default=HIGH, help="Plant with high preload: a file or a name.")
 @click.option("--compensation", type=PATH, help="A compensation.yaml of schmidt calibrate.")
-@click.option(
-    "--starts", type=click.IntRange(1, 64), default=8, show_default=True, help="Number of start angles."
-)
-@click.option(
-    "--seeds", type=click.IntRange(1, 16), default=3, show_default=True, help="Seeds, taken in turn."
-)
-@click.option(
-    "--shift",
-    type=Number(-360, 360),
-    default=0.0,
-    show_default=True,
-    help="Added to all start angles, degrees.",
-)
-@click.option("--seconds", type=Number(1, 1e6), default=600.0, show_default=True, help="Length of each run.")
+@click.option("--starts", type=click.IntRange(1, 64), default=8, help="Number of start angles.")
+@click.option("--seeds", type=click.IntRange(1, 16), default=3, help="Seeds, taken in turn.")
+@click.option("--shift", type=Number(-360, 360), default=0.0, help="Added to all start angles, degrees.")
+@click.option("--seconds", type=Number(1, 1e6), default=600.0, help="Length of each run.")
 @click.option("--only", help="Only rows whose name contains this.")
 @click.option("--steps", is_flag=True, help="The firmware's changes one after the other instead.")
-@filled(ObjectiveOptions)
-def objective(options: ObjectiveOptions) -> None:
+def objective(**given: Any) -> None:
     """Hold 15 arcsec/s from many starts; print by how much the true rate errs (exit 1: a row is missed)."""
     need("calibrate")
     from scenarios.studies.objective.run_holds import objective as command
 
-    sys.exit(command(options))
+    sys.exit(command(ObjectiveOptions(**given)))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
@@ -36,11 +36,7 @@ jobs = click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
 )
 runs = click.option(
-    "--runs",
-    type=PATH,
-    default=Path("out/console"),
-    show_default=True,
-    help="Folder of the runs recorded on the console.",
+    "--runs", type=PATH, default=Path("out/console"), help="Folder of the runs recorded on the console."
 )
 
 
@@ -81,19 +77,3 @@ def doors(*kinds: DoorKind[Any]) -> Callable[[Callable[..., Any]], Callable[...,
         return call
 
     return with_options
-
-
-Record = TypeVar("Record")
-
-
-def filled(record: Callable[..., Record]) -> Callable[[Callable[[Record], Any]], Callable[..., Any]]:
-    """The command gets its options and arguments as one record, whose fields have their names."""
-
-    def with_record(command: Callable[[Record], Any]) -> Callable[..., Any]:
-        @wraps(command)
-        def call(**given: Any) -> Any:
-            return command(record(**given))
-
-        return call
-
-    return with_record

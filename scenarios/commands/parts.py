@@ -1,15 +1,31 @@
-"""Extras of the installation: which one a package belongs to, and the command that installs it."""
+"""How a command ends that does not end well; extras of the installation, and what installs them."""
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, requires
 from importlib.util import find_spec
+from typing import NoReturn
 
-PROJECT = "schmidt"
+import click
+
+UNUSABLE = 2
+INTERRUPTED = 130
+_LONGEST = 600
+"""Longer messages quote somebody's megabyte."""
 _LINE = re.compile(
     r"(?P<name>[\w-]+)(?:\[(?P<extras>[\w,-]+)\])?(?P<versions>[^;]*).*extra == ['\"](?P<of>[\w-]+)"
 )
+
+
+def fail(text: str, status: int, more: Iterable[str] = ()) -> NoReturn:
+    """Say `schmidt: text` on stderr, in one line, and a line for each of `more`; leave with `status`."""
+    for each in (text, *more):
+        said = " ".join(each.split())
+        if len(said) > _LONGEST:
+            said = said[: _LONGEST // 2] + " … " + said[-_LONGEST // 2 :]
+        click.echo(f"schmidt: {said}".encode(errors="backslashreplace").replace(b"\0", b"\\0"), err=True)
+    sys.exit(status)
 
 
 class MissingPart(ValueError):
@@ -45,7 +61,7 @@ def _packages(extra: str) -> Iterator[tuple[str, str]]:
     for found in _lines():
         if found["of"] != extra:
             continue
-        if found["name"] == PROJECT:
+        if found["name"] == "schmidt":
             for inner in found["extras"].split(","):
                 yield from _packages(inner)
         else:
@@ -54,6 +70,6 @@ def _packages(extra: str) -> Iterator[tuple[str, str]]:
 
 def _lines() -> list[re.Match[str]]:
     try:
-        return list(filter(None, map(_LINE.match, requires(PROJECT) or ())))
+        return list(filter(None, map(_LINE.match, requires("schmidt") or ())))
     except PackageNotFoundError:  # a source tree on the path alone
         return []

@@ -3,47 +3,19 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenarios.commands.endings import INTERRUPTED, UNUSABLE, fail
-from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, Number, filled, muting, network
-from scenarios.commands.parts import need
+from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, Number, muting, network
+from scenarios.commands.parts import INTERRUPTED, UNUSABLE, fail, need
 
 if TYPE_CHECKING:
     from plant.model import PlantModel
     from scenarios.language.model import Scenario
     from scenarios.run.run import Result
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunOptions:
-    """What the command line says, as click has read it. speed: times real time. log_rate: lines a second."""
-
-    scenario: Path | None
-    out: Path | None
-    seed: int | None
-    plant: str | None
-    speed: float | None
-    log_rate: float | None
-    network: str | None
-    firmware: str | None
-    compensation: Path | None
-    no_report: bool
-    isolated: bool
-    muted: tuple[str, Path] | None
-    snapshot_at: float | None
-    snapshot: Path | None
-    begun: Path | None
-
-    @property
-    def changed(self) -> bool:
-        """Whether anything is said that a snapshot has settled."""
-        words = self.scenario, self.plant, self.network, self.firmware, self.compensation, self.log_rate
-        return any(words) or self.isolated or self.seed is not None
 
 
 @click.command(short_help="Run a scenario and judge it.")
@@ -52,7 +24,13 @@ class RunOptions:
 @click.option("--seed", type=SEED, help="Another seed than the scenario's.")
 @click.option("--plant", help="Another plant file, or the name of one that comes with schmidt.")
 @click.option("--speed", type=SPEED, help="Times real time (default: as fast as it goes).")
-@click.option("--log-rate", type=Number(0.01, 20), help="Lines per second of the status and sensor logs.")
+@click.option(
+    "--log-rate",
+    "status_period_s",
+    type=Number(0.01, 20),
+    callback=lambda _context, _option, rate: rate and 1.0 / rate,
+    help="Lines per second of the status and sensor logs.",
+)
 @network
 @click.option(
     "--firmware",
@@ -72,92 +50,74 @@ class RunOptions:
 )
 @click.option("--snapshot", type=PATH, help="File of the snapshot (default: OUT/snapshot).")
 @click.option("--from", "begun", type=PATH, help="Go on from this snapshot; takes no SCENARIO.")
-@filled(RunOptions)
-def run(options: RunOptions) -> None:
+def run(
+    scenario: Path | None,
+    out: Path | None,
+    compensation: Path | None,
+    no_report: bool,
+    muted: tuple[str, Path] | None,
+    snapshot_at: float | None,
+    snapshot: Path | None,
+    begun: Path | None,
+    **given: Any,
+) -> None:
     """Run SCENARIO and say whether its expectations hold (exit 0: all, 1: not all, 2: unusable input)."""
-    muted = options.muted
-    need("parquet", *(() if options.no_report else ("plots",)))
-    if options.begun is not None or options.snapshot_at is not None:
+    need("parquet", *(() if no_report else ("plots",)))
+    if begun is not None or snapshot_at is not None:
         from scenarios.native.finder import plain
 
         plain()  # compiled instances cannot be taken apart; the source gives the same bits
-    scenario, model, whole = _loaded(options)
-    if scenario.can_log == "mf4":
-        need("recordings")
-    folder = options.out if options.out is not None else Path("out") / scenario.file.stem
-    if options.compensation is not None:
-        if options.snapshot_at is not None:
-            raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
-        result = _compared(scenario, model, folder, options.compensation)
+    from scenarios.lab.prepare import Changes, prepare
+    from scenarios.lab.snapshot.run import Order
+    from scenarios.lab.snapshot.run import begun as read_run
+    from scenarios.run import run as runner
+
+    changes, whole = Changes(**given), None
+    if begun is not None:
+        if scenario or compensation or changes != Changes():
+            raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
+        whole = read_run(begun)
+        found, model = whole["scenario"], whole["model"]
+    elif scenario is None:
+        raise click.UsageError("Missing argument 'SCENARIO'.")
     else:
-        result = _once(scenario, model, folder, options, whole)
-    _tell(result, folder, options.no_report)
+        if compensation is not None and changes.firmware is None:
+            changes = replace(changes, firmware="fine")  # its fractions of a step want a duty in fractions
+        found, model = prepare(scenario, changes)
+    if found.can_log == "mf4":
+        need("recordings")
+    folder = out if out is not None else Path("out") / found.file.stem
+    order = None
+    if snapshot_at is not None:
+        order = Order(round(snapshot_at * 1e9), snapshot or folder / "snapshot")
+    if compensation is not None:
+        if order is not None:
+            raise click.UsageError("--snapshot-at and --compensation do not go together: that is three runs")
+        result = _compared(found, model, folder, compensation)
+    else:
+        way = runner.Way(report=not no_report, snapshot=order, begun=whole, mute=muted)
+        with runner.bar(found) as progress:
+            result = runner.run(found, model, folder, progress, way)
+        if order is not None and not order.done:
+            fail(f"the run ended before {snapshot_at:g} s: no snapshot", UNUSABLE)
+    _tell(result, folder, no_report)
     if muted is not None:
         from scenarios.lab.muted import compare
         from scenarios.lab.networks import devices_in
 
-        board = next(device for device in devices_in(scenario) if device.name == muted[0])
+        board = next(device for device in devices_in(found) if device.name == muted[0])
         click.echo(compare(muted[1], folder / "can.log", board).text())
     if result.interrupted:
         fail(f"interrupted, logs up to t={result.summary['simulated_s']:.1f} s in {folder}", INTERRUPTED)
     sys.exit(0 if result.passed else 1)
 
 
-def _loaded(options: RunOptions) -> tuple[Scenario, PlantModel, dict[str, Any] | None]:
-    """Scenario, plant and the snapshot that a run goes on from (None: it starts)."""
-    from scenarios.lab.prepare import Changes, prepare
-
-    if options.begun is not None:
-        from scenarios.lab.snapshot.run import begun
-
-        if options.changed:
-            raise click.UsageError("--from goes on with what is in the snapshot, nothing else")
-        whole = begun(options.begun)
-        return whole["scenario"], whole["model"], whole
-    if options.scenario is None:
-        raise click.UsageError("Missing argument 'SCENARIO'.")
-    # a table in fractions of a step wants a duty in fractions of a step
-    firmware = options.firmware or (None if options.compensation is None else "fine")
-    changes = Changes(
-        seed=options.seed,
-        plant=options.plant,
-        speed=options.speed,
-        status_period_s=1.0 / options.log_rate if options.log_rate else None,
-        firmware=firmware,
-        network=options.network,
-        isolated=options.isolated,
-    )
-    return *prepare(options.scenario, changes), None
-
-
-def _once(
-    scenario: Scenario,
-    model: PlantModel,
-    folder: Path,
-    options: RunOptions,
-    whole: dict[str, Any] | None,
-) -> Result:
-    from scenarios.lab.snapshot.run import Order
-    from scenarios.run import run as runner
-
-    order = None
-    if options.snapshot_at is not None:
-        order = Order(round(options.snapshot_at * 1e9), options.snapshot or folder / "snapshot")
-    way = runner.Way(report=not options.no_report, snapshot=order, begun=whole, mute=options.muted)
-    with runner.bar(scenario) as progress:
-        result = runner.run(scenario, model, folder, progress, way)
-    if order is not None and not order.done:
-        fail(f"the run ended before {options.snapshot_at:g} s: no snapshot", UNUSABLE)
-    return result
-
-
 def _compared(scenario: Scenario, model: PlantModel, folder: Path, file: Path) -> Result:
-    from scenarios.language import compensation as tables
+    from scenarios.language.configure import load_compensation
     from scenarios.run import compared
     from scenarios.run import run as runner
 
-    table = tables.load(file)
-    result, gains = compared.run(scenario, model, folder, table, runner.bar)
+    result, gains = compared.run(scenario, model, folder, load_compensation(file), runner.bar)
     for text in compared.lines(gains):
         click.echo(text)
     return result

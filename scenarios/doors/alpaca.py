@@ -2,10 +2,9 @@
 
 from host.alpaca import discovery
 from host.alpaca.server import Alpaca
-from scenarios.doors.address import address, is_local, listen
+from scenarios.doors.clients import address, is_local, listen
 from scenarios.doors.door import counted
-from scenarios.doors.pc import Host
-from scenarios.doors.server import ServerDoor
+from scenarios.doors.pc import Host, ServerDoor
 
 
 class AlpacaDoor(ServerDoor):

@@ -1,23 +1,23 @@
-"""The wire of a served network, for the bus page of a host's consoles: this is the emulator's side."""
+"""What the host beside a served network sees of the emulator: its wire for the bus page, sky for cameras."""
 
 from collections import Counter, deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from bus.can.frame import Frame
 from bus.can.length import frame_bits
+from host.camera.look import Look
 from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.lab.faults import FaultError, Kind, Parameter
+from scenarios.doors.pipe_messages import Done, Wish
+from scenarios.lab.eye import look
+from scenarios.lab.faults.kind import FaultError, Kind, Parameter
 
 _LOAD_NS = 1_000_000_000
-REFUSALS = (ValueError, TypeError)
-"""What a wish may be refused by: FaultError, NetworkError, arguments of another kind."""
 
 
 class EmulatedBus:
-    """The wire for a host elsewhere: `look` is what it shows, `wish` what it may ask for; `poll`, between two
-    slices, does it."""
+    """The wire for a host elsewhere, between slices: `look` is what it shows, `wish` what it may ask for."""
 
     def __init__(self, served: LiveNetwork) -> None:
         self._served = served
@@ -25,12 +25,6 @@ class EmulatedBus:
         self._sent: Counter[str] = Counter()
         self._bits: deque[tuple[int, int, dict[str, int]]] = deque([(0, 0, {})])
         """Time and bits on the wire so far, all and by sender, of the last second."""
-        self._wanted: deque[Callable[[], None]] = deque()
-        self._acts: dict[str, Callable[..., str]] = {
-            "start_fault": self._start_fault,
-            "clear_fault": self._clear_fault,
-            "switch": self._switch,
-        }
         served.network.wire.tap(self._tap)
 
     def _tap(self, t_ns: int, frame: Frame, sender: str) -> None:
@@ -82,33 +76,24 @@ class EmulatedBus:
             for each in self._served.faults.running
         ]
 
-    def wish(self, name: str, arguments: tuple[Any, ...], answer: Callable[[str, bool], None]) -> None:
-        """Have `poll` do it and call answer(text, bad)."""
+    def wish(self, wished: Wish) -> Done:
+        """Do it; refused are faults and boards that cannot be, and arguments of another kind."""
+        try:
+            return Done(wished.number, self._do(wished.name, wished.arguments), False)
+        except (ValueError, TypeError) as error:
+            return Done(wished.number, str(error), True)
 
-        def act() -> None:
-            try:
-                text, bad = self._acts[name](*arguments), False
-            except REFUSALS as error:
-                text, bad = str(error), True
-            answer(text, bad)
-
-        self._wanted.append(act)
-
-    def poll(self) -> None:
-        """On the ticking thread."""
-        while self._wanted:
-            self._wanted.popleft()()
-
-    def _start_fault(self, name: str, arguments: str) -> str:
-        return f"fault {self._served.start_fault(name, **_pairs(arguments))} is on"
-
-    def _clear_fault(self, number: int) -> str:
-        self._served.clear_fault(number)
-        return f"fault {number} is cleared"
-
-    def _switch(self, board: str, on: bool) -> str:
-        self._served.switch(board, on)
-        return f"{board} is switched {'on' if on else 'off'}"
+    def _do(self, name: str, arguments: tuple[Any, ...]) -> str:
+        match name, arguments:
+            case "start_fault", (kind, words):
+                return f"fault {self._served.start_fault(kind, **_pairs(words))} is on"
+            case "clear_fault", (number,):
+                self._served.clear_fault(number)
+                return f"fault {number} is cleared"
+            case "switch", (board, on):
+                self._served.switch(board, on)
+                return f"{board} is switched {'on' if on else 'off'}"
+        raise ValueError(f"nobody can do {name}")
 
 
 def _template(kind: Kind) -> str:
@@ -140,3 +125,31 @@ def _pairs(text: str) -> dict[str, str]:
 
 def _arguments(given: Mapping[str, Any]) -> str:
     return " ".join(f"{name}={value}" for name, value in given.items()) or "no arguments"
+
+
+PERIOD_NS = 10_000_000
+"""Between two looks: 0.15″ of the sky's turn."""
+
+
+class Looks:
+    """Where the telescope truly looks, for cameras whose shutter is open; kept since they were last taken.
+
+    The plant is asked between two slices, which changes nothing in it.
+    """
+
+    def __init__(self, served: LiveNetwork) -> None:
+        self._served = served
+        self._kept: list[Look] = []
+        self._next_ns = 0
+        self.wanted = False
+
+    def poll(self, now_ns: int) -> None:
+        """Look, when somebody wants it and it is time."""
+        if self.wanted and now_ns >= self._next_ns:
+            self._next_ns = now_ns + PERIOD_NS
+            self._kept.append(look(self._served.network.plant, self._served.scenario, now_ns))
+
+    def taken(self) -> list[Look]:
+        """Those since the last call."""
+        kept, self._kept = self._kept, []
+        return kept

@@ -1,7 +1,7 @@
 """`schmidt host`: the host program by itself, on real cables or on a served network's."""
 
-from collections.abc import Callable
-from queue import Empty, SimpleQueue
+from functools import partial
+from queue import SimpleQueue
 from time import monotonic, sleep
 
 from rich.console import Console
@@ -41,7 +41,7 @@ class CabledHost(Host):
         self.tasks = [self.usb]
         self.serial: dict[str, SerialLink] = {}
         for board, url in ports.items():
-            self.tasks.append(LinkTask(_SERIAL + board, _serial(url), self.inbox, said.put))
+            self.tasks.append(LinkTask(_SERIAL + board, partial(SerialPort, url), self.inbox, said.put))
             self.serial[_SERIAL + board] = SerialLink(Device[board], pc.journal, lambda _t, _packet: None)
         self._heard = HeardBus(pc.telescope.client)
         runs = RecordedRuns(options.runs, log_headers(scenario, model), pc.journal, list(ports))
@@ -88,11 +88,8 @@ class CabledHost(Host):
             task.close()
 
     def _tell(self, now_ns: int) -> None:
-        while True:
-            try:
-                line = self._said.get_nowait()
-            except Empty:
-                return
+        while not self._said.empty():
+            line = self._said.get()
             self._console.print(line)
             self.pc.journal.status(now_ns, "LINK", line)
 
@@ -102,10 +99,6 @@ def _port(spec: str) -> HidrawPort | SocketPort | CanPort:
     if kind == "unix":
         return SocketPort(rest)
     return CanPort(rest) if kind == "can" else HidrawPort(spec)
-
-
-def _serial(url: str) -> Callable[[], SerialPort]:
-    return lambda: SerialPort(url)
 
 
 def _ports(serial: tuple[str, ...]) -> dict[str, str]:

@@ -9,6 +9,12 @@ from bus.outside.external import open_bus
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 
+_COUNTS = (
+    ("frames_in", "frames in"), ("frames_out", "frames out"), ("refused", "refused (the bus was full)"),
+    ("rejected", "were no CAN 2.0 frames"), ("lost_out", "not taken outside"),
+)  # fmt: skip
+"""What a fence counts, in words."""
+
 
 class CanDoor:
     """One interface. Its node stays on the wire while the interface is away."""
@@ -21,14 +27,15 @@ class CanDoor:
         self.node = served.node(index)
         self._bus: can.BusABC | None = None
         self.fence: Fence | None = None
-        self._before = [0, 0, 0, 0, 0, 0]
-        """Counts of the fences that were closed: in, out, refused, rejected, lost on the way out, and dropped
-        by the system."""
+        self._fences: list[Fence] = []
+        """All there have been: one each time the interface was opened."""
+        self._dropped = 0
 
     def open(self) -> None:
         """Open the interface; raises SpecError."""
         self._bus = bus = open_bus(self._spec)
         self.fence = Fence(self._network.queue, self._network.wire, bus, self.node, self._enter)
+        self._fences.append(self.fence)
 
     def poll(self, _now_ns: int) -> None:
         """Bring in what has arrived; what the boards say goes out as they say it."""
@@ -41,27 +48,12 @@ class CanDoor:
         self.fence = self._bus = None
         if fence is not None:
             fence.close()
-            self._before = self._counts(fence)
+            self._dropped += fence.system_lost  # nobody knows it of an interface that is shut
         if bus is not None:
             bus.shutdown()
 
-    def _counts(self, fence: Fence | None) -> list[int]:
-        if fence is None:
-            return self._before
-        now = (
-            fence.frames_in, fence.frames_out, fence.refused, fence.rejected, fence.lost_out,
-            fence.system_lost,
-        )  # fmt: skip
-        return [before + each for before, each in zip(self._before, now, strict=True)]
-
     def state(self) -> str:
         """Frames in and out, and what was not carried."""
-        frames_in, frames_out, refused, rejected, lost, dropped = self._counts(self.fence)
-        return counted(
-            (frames_in, "frames in"),
-            (frames_out, "frames out"),
-            (refused, "refused (the bus was full)"),
-            (dropped, "dropped by the system's buffer"),
-            (rejected, "were no CAN 2.0 frames"),
-            (lost, "not taken outside"),
-        )
+        counts = [(sum(getattr(each, name) for each in self._fences), said) for name, said in _COUNTS]
+        dropped = self._dropped + (0 if self.fence is None else self.fence.system_lost)
+        return counted(*counts, (dropped, "dropped by the system's buffer"))

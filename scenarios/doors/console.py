@@ -5,11 +5,10 @@ import secrets
 
 from host.console.server import Consoles
 from host.sky.listed import VARIABLE, listed
-from scenarios.doors.address import address, is_local, listen
+from scenarios.doors.clients import address, is_local, listen
 from scenarios.doors.control import TOKEN_VARIABLE
 from scenarios.doors.door import DoorError, counted
-from scenarios.doors.pc import Host
-from scenarios.doors.server import ServerDoor
+from scenarios.doors.pc import Host, ServerDoor
 
 
 class ConsoleDoor(ServerDoor):

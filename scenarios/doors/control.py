@@ -14,12 +14,9 @@ import hmac
 import json
 import os
 import secrets
-from collections.abc import Callable
-from functools import partial
 
 from bus.outside.punctual import Punctuality
-from scenarios.doors.address import address, is_local, listen
-from scenarios.doors.clients import Client, Clients
+from scenarios.doors.clients import Client, Clients, address, is_local, listen
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 
@@ -28,11 +25,12 @@ _LINE_LIMIT = 1000
 _LINES_PER_POLL = 8
 STEPPING, _PACING = ("join", "listen", "send", "step"), ("speed", "pause", "resume")
 TOKEN_VARIABLE = "SCHMIDT_TOKEN"
-HELP = (
-    "status | speed X | pause | resume | power BOARD on|off | late | stop | "
-    "fault list | fault kinds | fault start NAME ARGUMENT=VALUE ... | fault clear NUMBER | "
-    "snapshot [NAME]; with --clock steps: join N [NAME] | listen | send ID#DATA | step 5ms"
-)
+_USAGE = {
+    "status": "status", "speed": "speed X, a number, for example speed 2", "pause": "pause",
+    "resume": "resume", "power": "power BOARD on|off",
+    "fault": "fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER",
+    "late": "late", "snapshot": "snapshot [NAME]", "stop": "stop", "help": "help",
+}  # fmt: skip
 
 
 class ControlError(ValueError):
@@ -65,12 +63,6 @@ class ControlDoor:
         self._rest: dict[Client, bytes] = {}
         self._trusted: set[Client] = set()
         self.refused = 0
-        self._commands: dict[str, Callable[[list[str]], str]] = {
-            "status": self._status, "speed": self._speed, "pause": partial(self._pause, True),
-            "resume": partial(self._pause, False),
-            "power": self._power, "fault": self._fault, "late": self._late,
-            "snapshot": self._snapshot, "stop": self._stop, "help": lambda _: HELP,
-        }  # fmt: skip
 
     def open(self) -> None:
         """Listen; raises OSError."""
@@ -122,17 +114,13 @@ class ControlDoor:
             self.refused += 1
             return "error: this needs a token: token WORD"
         steps = self._served.steps
-        command = self._commands.get(words[0])
         try:
             if words[0] in STEPPING or (steps is not None and words[0] in _PACING):
                 if steps is None or words[0] in _PACING:
                     how = "paced" if steps is None else "stepped"
                     raise ControlError(f"{words[0]}: time is {how} here (schmidt serve --clock)")
                 return steps.take(client, words)
-            if command is None:
-                known = ", ".join(self._commands)
-                return f"error: no command {words[0][:40]!r}; use one of {known}"
-            return "ok " + command(words[1:])
+            return "ok " + self._done(words)
         except ValueError as error:
             return f"error: {' '.join(str(error).split())}"
 
@@ -144,7 +132,52 @@ class ControlDoor:
         client.gone = True
         return "error: wrong token"
 
-    def _status(self, _words: list[str]) -> str:
+    def _done(self, words: list[str]) -> str:
+        """Carry a command out; its answer. Raises ValueError with one line."""
+        served = self._served
+        match words:
+            case ["status"]:
+                return self._status()
+            case ["speed", text]:
+                try:
+                    speed = float(text)
+                except ValueError:
+                    raise ControlError(_USAGE["speed"]) from None
+                served.pacer.speed = speed
+                return f"speed {speed:g}"
+            case ["pause" | "resume"]:
+                served.pacer.paused = words[0] == "pause"
+                return "paused" if served.pacer.paused else "running"
+            case ["power", board, "on" | "off" as state]:
+                served.switch(board, state == "on")
+                return f"{board} {state}"
+            case ["fault", "list"]:
+                return json.dumps([vars(each) for each in served.faults.running])
+            case ["fault", "kinds"]:
+                return ", ".join(kind.name for kind in served.faults.kinds())
+            case ["fault", "start", name, *pairs]:
+                given = dict(pair.partition("=")[::2] for pair in pairs)
+                return f"fault {served.start_fault(name, **given)}"
+            case ["fault", "clear", number] if number.isdecimal():
+                served.clear_fault(int(number))
+                return f"fault {number} cleared"
+            case ["late"]:  # when the last late ticks were due, s on the monotonic clock, and how late, ms
+                return json.dumps([(due_s, late_s * 1e3) for due_s, late_s in served.punctual.late])
+            case ["snapshot", *name] if len(name) < 2:
+                if served.snapshot is None:
+                    raise ControlError("this session takes no snapshots: schmidt serve --snapshots DIR does")
+                return served.snapshot(*name or [""])
+            case ["stop"]:
+                served.stop()
+                return "ending"
+            case ["help"]:
+                steps = "with --clock steps: join N [NAME] | listen | send ID#DATA | step 5ms"
+                return f"{' | '.join(_USAGE.values())}; {steps}"
+        if words[0] in _USAGE:
+            raise ControlError(_USAGE[words[0]])
+        raise ControlError(f"no command {words[0][:40]!r}; use one of {', '.join(_USAGE)}")
+
+    def _status(self) -> str:
         served = self._served
         pacer, wire = served.pacer, served.network.wire
         return json.dumps(
@@ -160,56 +193,6 @@ class ControlDoor:
                 "boards": {name: board.on for name, board in served.network.boards.items()},
             }
         )
-
-    def _speed(self, words: list[str]) -> str:
-        try:
-            (text,) = words
-            speed = float(text)
-        except ValueError:
-            raise ControlError("speed X, a number, for example speed 2") from None
-        self._served.pacer.speed = speed
-        return f"speed {speed:g}"
-
-    def _pause(self, paused: bool, _words: list[str]) -> str:
-        self._served.pacer.paused = paused
-        return "paused" if paused else "running"
-
-    def _power(self, words: list[str]) -> str:
-        if len(words) != 2 or words[1] not in ("on", "off"):
-            raise ControlError("power BOARD on|off")
-        self._served.switch(words[0], words[1] == "on")
-        return f"{words[0]} {words[1]}"
-
-    def _fault(self, words: list[str]) -> str:
-        faults = self._served.faults
-        match words:
-            case ["list"]:
-                return json.dumps([vars(each) for each in faults.running])
-            case ["kinds"]:
-                return ", ".join(kind.name for kind in faults.kinds())
-            case ["start", name, *pairs]:
-                given = dict(pair.partition("=")[::2] for pair in pairs)
-                return f"fault {self._served.start_fault(name, **given)}"
-            case ["clear", number] if number.isdecimal():
-                self._served.clear_fault(int(number))
-                return f"fault {number} cleared"
-        raise ControlError("fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER")
-
-    def _late(self, _words: list[str]) -> str:
-        """When the last late ticks were due, s on the machine's monotonic clock, and how late, ms."""
-        return json.dumps([(due_s, late_s * 1e3) for due_s, late_s in self._served.punctual.late])
-
-    def _snapshot(self, words: list[str]) -> str:
-        take = self._served.snapshot
-        if take is None:
-            raise ControlError("this session takes no snapshots: schmidt serve --snapshots DIR does")
-        if len(words) > 1:
-            raise ControlError("snapshot [NAME]")
-        return take(words[0] if words else "")
-
-    def _stop(self, _words: list[str]) -> str:
-        self._served.stop()
-        return "ending"
 
     def _forget(self, client: Client) -> None:
         if self._served.steps is not None:

@@ -8,11 +8,11 @@ import socket
 import stat
 from pathlib import Path
 
+from boards.silicon.hid import REPORT_BYTES
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.door import DoorError, counted
-from scenarios.doors.hid_report import BYTES, out_report
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.usb import UsbPlug
+from scenarios.doors.usb import UsbPlug, out_report
 
 _READS = 16
 """Reports taken from one client in one look."""
@@ -99,6 +99,6 @@ class UnixDoor:
         """How many came, and what did not pass."""
         return counted(
             (self._clients.came, "programs"),
-            (self.rejected, f"were no reports of {BYTES} bytes"),
-            (self._clients.lost // BYTES, "reports lost by slow readers"),
+            (self.rejected, f"were no reports of {REPORT_BYTES} bytes"),
+            (self._clients.lost // REPORT_BYTES, "reports lost by slow readers"),
         )

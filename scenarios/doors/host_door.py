@@ -11,25 +11,13 @@ from time import monotonic
 
 from host.client import TICK_NS
 from host.console.views import BusState
-from scenarios.doors.busview import EmulatedBus
+from scenarios.doors import pipe_messages as messages
+from scenarios.doors.busview import EmulatedBus, Looks
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.looks import Looks
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import dated
-from scenarios.doors.pipe_messages import (
-    Close,
-    Done,
-    Opened,
-    Report,
-    Said,
-    Settings,
-    Slice,
-    Taken,
-    Wish,
-    program,
-)
 from scenarios.doors.usb import UsbFull, UsbPlug
 from scenarios.lab.session import log_headers
 
@@ -48,7 +36,7 @@ _MOST = 256
 
 
 class HostProcess:
-    """The host as a door; what it has open for others are `HostedDoor`s. say: takes lines for the user.
+    """The host as a door; what it has open for others is over there. say: takes lines for the user.
 
     Its program is started at once, as it has much to import; `open` waits until it has opened its doors.
     """
@@ -72,16 +60,14 @@ class HostProcess:
         self._watching = False
         self._looks = Looks(served)
         self.doors: list[tuple[str, str]] = []
-        """(name, state) of its doors, as it last said."""
-        self.lost = 0
-        """USB reports it wanted to send while the cable was full."""
+        """(name, state) of itself and its doors, as it last said."""
         self._start()
 
     def _start(self) -> None:
         ours, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-c", program(), str(theirs.fileno())],
+                [sys.executable, "-c", messages.program(), str(theirs.fileno())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 start_new_session=True,  # a Ctrl-C is the emulator's, which tells its host when it is over
@@ -91,7 +77,7 @@ class HostProcess:
         self._heard.register(ours.fileno(), select.POLLIN)
         served = self._served
         ours.send(
-            Settings(
+            messages.Settings(
                 dated(served.scenario),
                 self._options,
                 list(served.network.boards),
@@ -125,7 +111,6 @@ class HostProcess:
             self._hear()
         if self._waiting and self._served.pacer.speed > 1.0 and now_ns - self._sent_ns > 2 * TICK_NS:
             self._let_it_catch_up(_BUS_S)
-        self._bus.poll()
         self._looks.poll(now_ns)
         if self._waiting or not self._ready:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
@@ -139,7 +124,7 @@ class HostProcess:
         lines = [(name, data) for name, feed in self._feeds if (data := feed.until(now_ns))]
         bus = self._bus_state()
         if reports or lines or bus is not None or now_ns - self._sent_ns >= TICK_NS:
-            self._send(Slice(now_ns, reports, lines, bus, self._looks.taken()))
+            self._send(messages.Slice(now_ns, reports, lines, bus, self._looks.taken()))
             self._waiting, self._asked_s, self._sent_ns = True, monotonic(), now_ns
             if self._served.steps is not None:
                 self._let_it_catch_up(_SILENT_S)
@@ -154,11 +139,11 @@ class HostProcess:
         self._record(False)
         if pipe is not None:
             with pipe, suppress(OSError, EOFError):
-                pipe.send(Close())
+                pipe.send(messages.Close())
                 end_s = monotonic() + _END_S
                 while pipe.poll(max(0.0, end_s - monotonic())):
                     said = pipe.recv()
-                    if isinstance(said, Taken):
+                    if isinstance(said, messages.Taken):
                         self.doors = said.doors
         if process is not None:
             try:
@@ -184,19 +169,18 @@ class HostProcess:
             said = self._pipe.recv()
         except (EOFError, OSError):
             raise DoorError("its process has ended") from None
-        if isinstance(said, Report):
-            self._out(said.data)
-        elif isinstance(said, Taken):
+        if isinstance(said, messages.Report) and self._plug is not None:
+            with suppress(UsbFull):  # as if it were lost on the way
+                self._plug.write(self._served.now_ns, said.data)
+        elif isinstance(said, messages.Taken):
             self._waiting, self._watching, self.doors = False, said.watching, said.doors
             self._looks.wanted = said.looking
             self._record(said.recording)
-        elif isinstance(said, Wish):
-            self._bus.wish(
-                said.name, said.arguments, lambda text, bad: self._send(Done(said.number, text, bad))
-            )
-        elif isinstance(said, Said):
+        elif isinstance(said, messages.Wish):
+            self._send(self._bus.wish(said))
+        elif isinstance(said, messages.Said):
             self._say(said.text)
-        elif isinstance(said, Opened):
+        elif isinstance(said, messages.Opened):
             if said.error:
                 raise DoorError(said.error)
             self._ready, self.doors = True, said.doors
@@ -207,13 +191,6 @@ class HostProcess:
                 self._pipe.send(message)
         except OSError:
             raise DoorError("its process has ended") from None
-
-    def _out(self, report: bytes) -> None:
-        try:
-            if self._plug is not None:
-                self._plug.write(self._served.now_ns, report)
-        except UsbFull:
-            self.lost += 1
 
     def _bus_state(self) -> BusState | None:
         now_s = monotonic()
@@ -230,30 +207,3 @@ class HostProcess:
             for name, feed in self._feeds:
                 lines.drop(name, feed)
             self._feeds = []
-
-
-class HostedDoor:
-    """A door of the host, for those who list doors: it opens, breaks and closes over there."""
-
-    def __init__(self, host: HostProcess, index: int, name: str) -> None:
-        self._host = host
-        self._index = index
-        self.name = name
-
-    def open(self) -> None:
-        """The host has done it; it may have something to add to the name."""
-        self.name = self._told()[0]
-
-    def poll(self, now_ns: int) -> None:
-        """The host does it."""
-
-    def close(self) -> None:
-        """The host does it."""
-
-    def state(self) -> str:
-        """As the host last said."""
-        return self._told()[1]
-
-    def _told(self) -> tuple[str, str]:
-        doors = self._host.doors
-        return doors[self._index] if self._index < len(doors) else (self.name, "not there yet")

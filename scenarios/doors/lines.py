@@ -10,10 +10,9 @@ _WAITING_PACKETS = 64
 
 
 class Feed:
-    """One listener of one line. lost: packets it did not fetch in time."""
+    """One listener of one line."""
 
     def __init__(self, uart: Uart) -> None:
-        self.lost = 0
         self._uart = uart
         self._packets: deque[tuple[int, bytes]] = deque()
         self._sent = 0
@@ -24,7 +23,6 @@ class Feed:
         if len(self._packets) >= _WAITING_PACKETS:
             self._packets.popleft()
             self._sent = 0
-            self.lost += 1
         self._packets.append((start_ns, packet))
 
     def until(self, now_ns: int) -> bytes:

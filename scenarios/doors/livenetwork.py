@@ -1,26 +1,71 @@
-"""A served network: everything a door may touch."""
+"""A served network, everything a door may touch, and its fence: what enters is stamped and recorded."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
 from struct import Struct
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer
 from bus.outside.punctual import Punctuality
+from bus.time import EventQueue
 from plant.model import PlantModel
-from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines
-from scenarios.doors.standing import Standing
 from scenarios.doors.usb import Usb
 from scenarios.lab.wiring import wired
 from scenarios.language.model import Scenario
 
 if TYPE_CHECKING:
+    from scenarios.doors.snapshots import Standing
     from scenarios.doors.steps import Steps
+
+
+class Journal(Protocol):
+    """Where entries are written."""
+
+    def write(self, t_ns: int, kind: str, data: bytes) -> None:
+        """Record one entry."""
+
+
+class EntryError(RuntimeError):
+    """Somebody tried to enter while simulated time was running: a bug in a door."""
+
+
+class Entry:
+    """Kinds of input by name and what each does. The same entries at the same times give the same trace.
+
+    That holds because entries are made between slices only, when all events up to the present have happened.
+    """
+
+    def __init__(self, queue: EventQueue, journal: Journal | None = None) -> None:
+        self.count = 0
+        self._queue = queue
+        self._journal = journal
+        self._apply: dict[str, Callable[[bytes], None]] = {}
+        self.running = False
+
+    def register(self, kind: str, apply: Callable[[bytes], None]) -> None:
+        """Let `kind` enter: `apply(data)` puts it into the network, at the present. One registration each."""
+        if kind in self._apply:
+            raise EntryError(f"{kind} is registered twice")
+        self._apply[kind] = apply
+
+    def enter(self, kind: str, data: bytes) -> None:
+        """Something comes in, now."""
+        if self.running:
+            raise EntryError(f"{kind} would enter in the middle of a slice")
+        if self._journal is not None:
+            self._journal.write(self._queue.now_ns, kind, data)
+        self.count += 1
+        self._apply[kind](data)
+
+    def kinds(self) -> list[str]:
+        """What may enter, in the order it was registered."""
+        return list(self._apply)
+
 
 BOARD = "board"
 """Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""

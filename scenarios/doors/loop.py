@@ -1,16 +1,66 @@
-"""The loop of `schmidt serve`: doors are polled between two slices, and once a second things are said."""
+"""The loop of `schmidt serve`: doors are polled between two slices, and once a second things are said.
+
+A door's thread may hold Python's lock while an ordinary program has its processor. That would hold up a tick,
+so all threads of the process may be lifted (`first`, unless `--no-realtime`). The process' children, and
+threads that come later, are ordinary.
+"""
 
 import gc
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
 
 from scenarios.doors.control import ControlDoor
-from scenarios.doors.door import counted
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import DoorError, Keeper, counted
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
+
+AHEAD = "ticks run before other programs, as the system allows it"
+NOT_GRANTED = "run as root, or give the user an rtprio limit (ulimit -r 1)"
+_PRIORITY = 1
+"""The lowest of the real-time class: before ordinary programs, after what the system's owner put higher."""
+_THREADS = Path("/proc/self/task")
+
+
+@contextmanager
+def first(asked: bool = True) -> Iterator[str]:
+    """This process before all ordinary programs; the line that says so.
+
+    Where the system has no such class or does not grant it, this raises DoorError. If nobody asked for it,
+    the line says what to do.
+    """
+    said = AHEAD
+    before: dict[int, int] = {}
+    try:
+        for thread in [int(each.name) for each in _THREADS.iterdir()] if _THREADS.is_dir() else [0]:
+            with suppress(ProcessLookupError):  # it has ended
+                policy = os.sched_getscheduler(thread)
+                os.sched_setscheduler(thread, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
+                before[thread] = policy & ~os.SCHED_RESET_ON_FORK
+    except AttributeError:
+        if asked:
+            raise DoorError("--realtime: this system has no real-time scheduling for programs") from None
+        said = "ticks run among other programs; busy ones make them late, so end those"
+    except OSError:
+        _back(before)
+        if asked:
+            raise DoorError(f"--realtime: not granted; {NOT_GRANTED}") from None
+        said = f"ticks run among other programs; if busy ones make them late, {NOT_GRANTED}"
+    try:
+        yield said
+    finally:
+        _back(before)
+
+
+def _back(before: dict[int, int]) -> None:
+    for thread, policy in before.items():
+        with suppress(OSError):
+            os.sched_setscheduler(thread, policy, os.sched_param(0))
+
 
 _STATUS_S = 1.0
 """Wall time between two status lines. ASSUMPTION."""
@@ -69,7 +119,9 @@ class Loop:
             keeper.poll(now_ns)
         now_s = perf_counter()
         if now_s >= self._next_s:
-            self._each_second(now_s)
+            self._next_s = now_s + _STATUS_S
+            pace = self._keeping_up(now_s)
+            self._show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
         elif (
             now_s >= self._flush_s and self._recording is not None
         ):  # in another slice: half a millisecond each
@@ -89,16 +141,8 @@ class Loop:
     def _over(self, now_s: float) -> bool:
         return self._served.ending or (self._end_s is not None and now_s >= self._end_s)
 
-    def _each_second(self, now_s: float) -> None:
-        self._next_s = now_s + _STATUS_S
-        pace = self._keeping_up(now_s)
-        self._show(
-            f"{self.text()}, {'paused' if self._served.pacer.paused else f'{pace:.2f} times real time'}"
-        )
-
     def _keeping_up(self, now_s: float) -> float:
-        """The pace of the last second; said once when the machine is too slow, and once when it is quick
-        enough again."""
+        """The pace of the last second; said when the machine is too slow, and when it no longer is."""
         served = self._served
         before_s, before_ns, slips = self._second
         self._second = (now_s, served.now_ns, served.pacer.slips)

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from scenarios.doors.address import address
+from scenarios.doors.clients import address
 from scenarios.doors.door import DoorError, counted
-from scenarios.doors.pc import Host
-from scenarios.doors.server import ServerDoor
+from scenarios.doors.pc import Host, ServerDoor
 
 
 class Lx200Door(ServerDoor):

@@ -1,7 +1,9 @@
-"""The end of serving: both axes are parked and their motors off, or it is said which is not."""
+"""The end of serving: by a signal, between two slices; both axes are parked, or it is said which is not."""
 
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 
 from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, unpack_target
 from host.client import TICK_NS, Client, ClientError, Procedure
@@ -10,9 +12,35 @@ from host.logs.journal import Journal
 from host.procedures.manual import AXES
 from host.procedures.pointing import REACH
 from host.procedures.power import powered
-from scenarios.doors.interrupt import interrupts
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbFull
+
+
+@contextmanager
+def interrupts(stop: Callable[[], None]) -> Iterator[None]:
+    """Within, the first Ctrl-C or SIGTERM calls `stop`; a second one raises KeyboardInterrupt at once.
+
+    Outside the main thread nobody gets signals, so nothing is changed there.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    asked = False
+
+    def handle(_signal: int, _frame: object) -> None:
+        nonlocal asked
+        if asked:
+            raise KeyboardInterrupt
+        asked = True
+        stop()
+
+    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
 
 BEGUN = "parking the axes; Ctrl-C again stops them where they are"
 _HEARD_S = 1.0

@@ -1,7 +1,7 @@
 """The host's telescope client for a scenario: link, logs, telescope, ticked by whoever owns the time."""
 
 import datetime as dt
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -17,10 +17,10 @@ from host.logs.journal import Journal
 from host.logs.rotation import rotating
 from host.logs.sensors import readings
 from host.lx200.server import Lx200
-from host.outside import Outside
+from host.outside import Outside, Service
 from host.sky.observed import Clock
 from host.telescope import Observatory, Telescope
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import Keeper
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.runs import RecordedRuns
 from scenarios.doors.table import ON_HOST, doors_on
@@ -133,3 +133,27 @@ class Host:
             keeper.close()
         self.outside.close()
         self.pc.close()
+
+
+class ServerDoor:
+    """A door on the host: servers in the host's own thread, one loop for all, until it is closed."""
+
+    def __init__(self, name: str, host: Host) -> None:
+        self.name = name
+        self._host = host
+        self._services: list[Service] = []
+
+    def keep(self, work: Coroutine[object, object, object]) -> None:
+        """Serve until the door closes; raises what that raises at once, OSError for a port that is taken."""
+        self._services.append(self._host.outside.keep(work))
+
+    def poll(self, _now_ns: int) -> None:
+        """Servers run by themselves; only a broken one is noticed here."""
+        for service in self._services:
+            service.check()
+
+    def close(self) -> None:
+        """Hang up."""
+        for service in self._services:
+            service.cancel()
+        self._services = []

@@ -1,15 +1,101 @@
 """The host program beside `schmidt serve`: telescope client, consoles, LX200, Alpaca in their own process."""
 
+from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import suppress
+from itertools import count
 from multiprocessing.connection import Connection
 from threading import Lock
+from time import monotonic
+from typing import Any
 
-from scenarios.doors.busmirror import BusMirror
-from scenarios.doors.cameras import cameras
+from host.camera.camera import Camera, Frame
+from host.camera.models import CAMERAS
+from host.camera.stars import SyntheticSky, from_file
+from host.console.views import BusState, FaultKind
+from host.logs.clientguiding import ClientGuiding
 from scenarios.doors.door import counted
+from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import Host, TelescopePc
-from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken
+from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken, Wish
 from scenarios.doors.runs import RecordedRuns
+from scenarios.language.model import Scenario
+
+_LOOKED_S = 1.0
+"""Pages refresh four times a second; when nobody has asked for so long, nobody looks."""
+
+
+class BusMirror:
+    """A `BusView`. boards: whose supply can be switched. send: takes a `Wish`, from any thread."""
+
+    def __init__(self, boards: list[str], kinds: list[FaultKind], send: Callable[[Wish], None]) -> None:
+        self.boards = tuple(boards)
+        self.kinds = kinds
+        self._send = send
+        self._numbers = count()
+        self._open: dict[int, Future[str]] = {}
+        self._asked_s = float("-inf")
+        self.state = BusState([], 0.0, {}, [], [])
+
+    @property
+    def watching(self) -> bool:
+        """Whether somebody looks."""
+        return monotonic() - self._asked_s < _LOOKED_S
+
+    def look(self) -> BusState:
+        """The last picture."""
+        self._asked_s = monotonic()
+        return self.state
+
+    def start_fault(self, name: str, arguments: str) -> Future[str]:
+        """Wished for; the next slice does it."""
+        return self._wish("start_fault", name, arguments)
+
+    def clear_fault(self, number: int) -> Future[str]:
+        """Wished for; the next slice does it."""
+        return self._wish("clear_fault", number)
+
+    def switch(self, board: str, on: bool) -> None:
+        """Wished for; the next slice does it."""
+        self._wish("switch", board, on)
+
+    def done(self, answer: Done) -> None:
+        """What became of a wish."""
+        future = self._open.pop(answer.number, None)
+        if future is None or not future.set_running_or_notify_cancel():
+            return  # whoever wished has gone
+        if answer.bad:
+            future.set_exception(ValueError(answer.text))
+        else:
+            future.set_result(answer.text)
+
+    def _wish(self, name: str, *arguments: Any) -> Future[str]:
+        number = next(self._numbers)
+        future = self._open[number] = Future()
+        self._send(Wish(number, name, arguments))
+        return future
+
+
+def cameras(
+    scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None = None
+) -> tuple[Camera, ...]:
+    """By Alpaca's number, where there is an Alpaca door. scenario: one with a date. guiding: sees the frames.
+    Raises ValueError for a catalogue that cannot be used."""
+    if not options.asked.get("alpaca"):
+        return ()
+    sky = SyntheticSky() if options.stars is None else from_file(options.stars)
+    folder = options.frames
+
+    def keep(frame: Frame) -> None:
+        if guiding is not None:
+            guiding.frame(frame)
+        if folder is not None:
+            from host.camera.fits import write  # of the extra `camera`
+
+            write(frame, scenario.site, scenario.clock, folder)
+
+    return tuple(Camera(model, sky, scenario.site, scenario.clock, scenario.seed, keep) for model in CAMERAS)
+
 
 _LOOK_S = 0.02
 """Wall time without a slice after which the host looks for itself, for a stop while time stands still."""

@@ -1,18 +1,45 @@
 """`--record DIR`: all logs of a served session, and what entered it, so that it can be run again."""
 
 import json
+import struct
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from bus.can.candump import CandumpWriter
 from host.logs.files import LineFile, LogError, write_file
-from plant.model import PlantModel, dump
+from plant.kernels import layout
+from plant.model import dump
+from plant.plant import Plant
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.rest import Rest
 from scenarios.lab.networks import SERIAL
 from scenarios.lab.recorder import Recorder
 from scenarios.lab.session import log_headers
-from scenarios.language.model import Scenario
+
+
+def state_of(plant: Plant) -> bytes:
+    """Every number that the plant's future depends on: all but what is recorded of it."""
+    world = plant.world.copy()
+    world[:, layout.TRUTH : layout.DELAYS] = 0.0
+    world[:, [layout.RECORD_EVERY, layout.RECORDED]] = 0.0
+    return world.tobytes() + struct.pack("<d", plant.focus.position(plant.now_ns))
+
+
+class Rest:
+    """From now on: every frame on the bus, and at its end the plant to the last bit."""
+
+    def __init__(self, served: LiveNetwork) -> None:
+        self._served = served
+        self._log = CandumpWriter(None)
+        served.network.wire.tap(self._log.take)
+
+    def digest(self) -> str:
+        """Until now: SHA-256 over the log of the bus and the state of the plant."""
+        plant = self._served.network.plant
+        plant.advance(self._served.now_ns)
+        return sha256(self._log.hexdigest().encode() + state_of(plant)).hexdigest()
+
 
 SESSION, ENTERED, PLANT, SCENARIO = "session.json", "entered.log", "plant.yaml", "scenario.yaml"
 BEGUN = "begun.snapshot"
@@ -26,12 +53,8 @@ class Recording:
     stays in the folder.
     """
 
-    def __init__(
-        self, folder: Path, scenario: Scenario, model: PlantModel, begun: Path | None = None
-    ) -> None:
+    def __init__(self, folder: Path, begun: Path | None = None) -> None:
         self.folder = folder
-        self._scenario = scenario
-        self._model = model
         self._recorder: Recorder | None = None
         self._facts: dict[str, Any] = {}
         self._rests: dict[str, Rest] = {}
@@ -46,14 +69,12 @@ class Recording:
 
     def attach(self, served: LiveNetwork) -> None:
         """Record this session, from its very start; its doors are made (not open) by now."""
-        scenario, model = self._scenario, self._model
-        self._recorder = recorder = Recorder(
-            self.folder, scenario, served.network.plant, log_headers(scenario, model)
-        )
+        scenario, headers = served.scenario, log_headers(served.scenario, served.model)
+        self._recorder = recorder = Recorder(self.folder, scenario, served.network.plant, headers)
         served.network.wire.tap(recorder.can.take)
         for device in SERIAL:
             served.network.uarts[device.name].sink = recorder.link(device).receive
-        dump(model, self.folder / PLANT)
+        dump(served.model, self.folder / PLANT)
         if scenario.file.is_file():
             (self.folder / SCENARIO).write_bytes(scenario.file.read_bytes())
         self._facts = {

@@ -11,9 +11,8 @@ from typing import Any
 from plant.model import load as load_plant
 from plant.yamltext import TextError, check_regular, read_text
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording
-from scenarios.doors.rest import Rest
-from scenarios.doors.standing import standing
+from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, Recording, Rest
+from scenarios.doors.snapshots import standing
 from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot.file import read
 from scenarios.progress import Show, shown
@@ -40,7 +39,7 @@ def replay(folder: Path, out: Path) -> tuple[str, str | None]:
         scenario_file = folder / SCENARIO if facts["scenario"] else None
         scenario, _ = chosen(scenario_file, int(facts["seed"]), network_name=facts.get("network"))
         model = load_plant(folder / PLANT)
-    recording = Recording(out, scenario, model, begun)
+    recording = Recording(out, begun)
     served = LiveNetwork(scenario, model, journal=recording, begun=stood)
     _nodes(served, facts)
     recording.attach(served)

@@ -1,4 +1,4 @@
-"""`--serial pty:DIR`: the five lines as pseudo-terminals, with stable names in DIR."""
+"""`--serial pty:DIR`, `--debug DIR`: boards' lines and debug ports as pseudo-terminals, with stable names."""
 
 import os
 import select
@@ -6,9 +6,11 @@ import termios
 import tty
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
+from boards.core.debug import DebugPort
 from scenarios.doors.door import DoorError, counted
 from scenarios.doors.livenetwork import LiveNetwork
 
@@ -154,3 +156,45 @@ class PtyDoor:
         """Bytes read at each port, and those that readers were too slow for."""
         read = [(port.heard, f"bytes read at {port.link.name}") for port in self.ports]
         return counted(*read, (sum(port.lost for port in self.ports), "bytes lost by slow readers"))
+
+
+_KEPT = 4096
+"""Bytes that wait for a slice; older ones are lost."""
+
+
+class DebugFeed:
+    """What a debug port has said since the last look."""
+
+    def __init__(self, port: DebugPort) -> None:
+        self._port = port
+        self._heard = bytearray()
+        port.sink = self.hear
+
+    def hear(self, _t_ns: int, data: bytes) -> None:
+        """The port has said something."""
+        self._heard += data
+        del self._heard[:-_KEPT]
+
+    def until(self, _now_ns: int) -> bytes:
+        """All of it, once."""
+        data = bytes(self._heard)
+        self._heard.clear()
+        return data
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._port.sink = None
+
+
+class DebugDoor(PtyDoor):
+    """All boards' debug ports (B9), both ways, for `slcan` drivers."""
+
+    option = "--debug "
+
+    def _names(self) -> Iterable[str]:
+        return self._live.network.debug
+
+    def _ends(self, board: str) -> tuple[Source, Callable[[bytes], None]]:
+        feed = DebugFeed(self._live.network.debug[board])
+        self._close.callback(feed.close)
+        return feed, partial(self._live.debug, board)

@@ -4,10 +4,10 @@ tcp is the bare byte stream (pyserial: `socket://`). rfc2217 speaks Telnet's por
 own implementation (`rfc2217://`), so that a program may set what it likes. The board's side does not follow.
 """
 
+from types import SimpleNamespace
 from typing import Any
 
-from scenarios.doors.address import address, listen
-from scenarios.doors.clients import Client, Clients
+from scenarios.doors.clients import Client, Clients, address, listen
 from scenarios.doors.door import counted
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
@@ -80,13 +80,6 @@ class TcpDoor:
         return counted(*came, (lost, "bytes lost by slow readers"))
 
 
-class _Wire:
-    """Where PortManager writes its Telnet words."""
-
-    def __init__(self, client: Client) -> None:
-        self.write = client.send
-
-
 class Rfc2217Door(TcpDoor):
     """The same with Telnet and port control."""
 
@@ -102,7 +95,7 @@ class Rfc2217Door(TcpDoor):
         from serial.rfc2217 import PortManager
 
         settings = serial_for_url("loop://", baudrate=115_200)  # kept; nothing is sent or read through it
-        self._managers[client] = PortManager(settings, _Wire(client))
+        self._managers[client] = PortManager(settings, SimpleNamespace(write=client.send))
 
     def take(self, client: Client, data: bytes) -> None:
         """Telnet commands are answered; the rest goes nowhere. Who breaks the protocol is hung up on."""

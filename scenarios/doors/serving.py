@@ -1,6 +1,6 @@
 """`schmidt serve [SCENARIO] [doors]`: the network in real time, for others to join."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from io import BytesIO
@@ -11,19 +11,15 @@ from rich.live import Live
 from bus.can.candump import CandumpWriter
 from bus.outside.pacer import checked_speed
 from plant.model import PlantModel
-from scenarios.doors.attach import attached
-from scenarios.doors.door import Door
-from scenarios.doors.interrupt import interrupts
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import Door, Keeper
+from scenarios.doors.host_door import HostProcess
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.loop import Loop
-from scenarios.doors.making import check, make_doors
+from scenarios.doors.loop import Loop, first
+from scenarios.doors.making import attached, check, make_doors
 from scenarios.doors.options import ServeOptions
-from scenarios.doors.parking import park
-from scenarios.doors.priority import first
+from scenarios.doors.parking import interrupts, park
 from scenarios.doors.recording import Recording
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import Standing, standing
+from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.doors.steps import Steps
 from scenarios.lab.muted import Feed, FeedError
 from scenarios.lab.prepare import chosen
@@ -59,13 +55,19 @@ def serve(options: ServeOptions) -> int:
     ) as line:
         line.refresh()
         folder = options.record
-        recording = None if folder is None else Recording(folder, scenario, model, options.begun)
-        served = _network(options, scenario, model, recording, stood)
+        recording = None if folder is None else Recording(folder, options.begun)
+        served = LiveNetwork(scenario, model, options.speed, recording, stood)
+        if options.clock == "steps":
+            served.steps = Steps(served)
+        if options.snapshots is not None:
+            Snapshots(options.snapshots, served, recording)
+        if options.muted is not None:
+            Feed(served.network, *options.muted)
         doors = make_doors(options, served, console.print)
         if recording is not None:
             recording.attach(served)
         keepers = [Keeper(door, console.print) for door in doors]
-        show = partial(line.update, refresh=True) if console.is_terminal else _nowhere
+        show = partial(line.update, refresh=True) if console.is_terminal else lambda _text: None
         loop = Loop(served, keepers, console, show, options.duration, recording)
         try:
             _warm_up(scenario, model)
@@ -90,24 +92,6 @@ def serve(options: ServeOptions) -> int:
     return 0
 
 
-def _network(
-    options: ServeOptions,
-    scenario: Scenario,
-    model: PlantModel,
-    recording: Recording | None,
-    stood: Standing | None,
-) -> LiveNetwork:
-    """As the options want it, with nobody at its doors yet."""
-    served = LiveNetwork(scenario, model, options.speed, recording, stood)
-    if options.clock == "steps":
-        served.steps = Steps(served)
-    if options.snapshots is not None:
-        Snapshots(options.snapshots, served, recording)
-    if options.muted is not None:
-        Feed(served.network, *options.muted)
-    return served
-
-
 def _ahead(options: ServeOptions) -> AbstractContextManager[str | None]:
     """Real-time priority, where it is meant; quicker than the wall, ticks would leave others no processor."""
     if options.realtime is None and (options.clock == "steps" or options.speed > 1):
@@ -127,16 +111,22 @@ def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> 
     count, boards, speed = len(served.network.boards), list(served.lines.uarts), served.pacer.speed
     pace = f"at {speed:g} times real time" if served.steps is None else "as clients step them"
     console.print(f"serving {count} boards {pace}; Ctrl-C ends it")
-    names = [door.name for door in doors if door.name.startswith("--")]
+    names = [name for name, _ in _states(doors) if name.startswith("--")]
     for name in names:
         text = f"  {name:{max(map(len, names))}}  {attached(name, boards).words}"
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
+def _states(doors: Sequence[Door]) -> Iterator[tuple[str, str]]:
+    """Name and state of every door, those of the host too."""
+    for door in doors:
+        yield from door.doors if isinstance(door, HostProcess) else [(door.name, door.state())]
+
+
 def _say_goodbye(console: Console, loop: Loop, served: LiveNetwork, doors: Sequence[Door]) -> None:
     """The session in figures, and each door that somebody used."""
     console.print(loop.text(), soft_wrap=True)
-    states = {door.name.partition(" (")[0]: door.state() for door in doors}  # no token again
+    states = {name.partition(" (")[0]: state for name, state in _states(doors)}  # no token again
     for name, state in states.items():
         if state:
             console.print(f"  {name}: {state}", markup=False, highlight=False, soft_wrap=True)
@@ -145,7 +135,3 @@ def _say_goodbye(console: Console, loop: Loop, served: LiveNetwork, doors: Seque
         console.print(f"  nobody came to {unused}", markup=False, highlight=False, soft_wrap=True)
     if served.punctual.ticks:
         console.print(served.punctual.text(), soft_wrap=True)
-
-
-def _nowhere(_text: str) -> None:
-    """The line for a terminal that is none."""

@@ -1,26 +1,89 @@
-"""`--snapshots DIR`: snapshots of a served session while it goes on, for who asks at the control plane."""
+"""A served network in a file, and on from it: `schmidt control snapshot NAME`, `schmidt serve --from FILE`.
+
+What stands in it is what the queue drives: boards, bus, frames in flight and waiting at a door, USB reports
+under way, faults, plant. What lives in real time does not: doors with their clients, the host program in its
+own process (sockets, threads and generators), what is recorded.
+"""
 
 import re
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from bus.can.candump import CandumpWriter
 from bus.outside.door import Door as Fence
 from bus.outside.errorframes import ErrorFrames
+from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer
 from bus.outside.punctual import Punctuality
 from host.serial_link import SerialLink
+from plant.model import PlantModel
 from scenarios.doors.busview import EmulatedBus
-from scenarios.doors.debug_pty import DebugFeed
-from scenarios.doors.entry import Entry
 from scenarios.doors.lines import Feed
-from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.livenetwork import Entry, LiveNetwork
 from scenarios.doors.recording import Recording
+from scenarios.doors.serial_pty import DebugFeed
 from scenarios.doors.steps import Steps
-from scenarios.doors.usb import UsbPlug
+from scenarios.doors.usb import Usb, UsbPlug
+from scenarios.lab.faults.live import Faults
+from scenarios.lab.network import Network
+from scenarios.lab.networks import SERIAL
 from scenarios.lab.recorder import Recorder
+from scenarios.lab.snapshot.code import Nobody, nothing
 from scenarios.lab.snapshot.file import write
-from scenarios.lab.snapshot.freeze import SnapshotError, take
+from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
+from scenarios.language.model import Scenario
+
+_OF_A_RUN = ("session", "can", "recorder", "usb", "truth", "chain", *(device.name for device in SERIAL))
+"""What the snapshot of a run names as outside of it (`snapshot/run.py`)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """A network as it stood. entries: how many inputs the session had had. nodes: of the doors to CAN, by
+    their kinds of entry. usb: the cable with what is on it."""
+
+    scenario: Scenario
+    model: PlantModel
+    network: Network
+    faults: Faults
+    entries: int = 0
+    usb: Usb | None = None
+    nodes: dict[str, OutsideNode] = field(default_factory=dict)
+
+
+def standing(found: dict[str, Any]) -> Standing:
+    """The network of what `read` has found: of a served session, or of a run at its instant.
+
+    Nobody listens to it. Raises SnapshotError.
+    """
+    network, faults, *more = restore(found["network"], dict.fromkeys(_OF_A_RUN, Nobody()))
+    usb, nodes = more if found.get("kind") == "served" else (None, {})
+    made = Standing(
+        scenario=found["scenario"],
+        model=found["model"],
+        network=network,
+        faults=faults,
+        entries=found.get("entries", 0),
+        usb=usb,
+        nodes=nodes,
+    )
+    _silence(made)
+    return made
+
+
+def _silence(made: Standing) -> None:
+    network = made.network
+    network.wire._taps[:] = [tap for tap in network.wire._taps if tap is not nothing]
+    network.plant.record(None)
+    network.hid.to_host = None
+    for uart in network.uarts.values():
+        uart.sink = uart.line = None
+    for port in network.debug.values():
+        port.sink = None
+    for node in made.nodes.values():
+        node.port.on_receive = node.port.on_error = None
+
 
 _OUTSIDERS = (
     CandumpWriter, DebugFeed, EmulatedBus, Entry, ErrorFrames, Feed, Fence, Pacer, Punctuality, Recorder,
@@ -31,7 +94,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 class Snapshots:
-    """Files in one folder, by names: whoever reaches the control plane writes nowhere else, and over nothing.
+    """`--snapshots DIR`: whoever reaches the control plane writes there only, by a name, and over nothing.
 
     Time stands still while one is taken, some hundredths of a second; the pace is not counted as missed.
     """

@@ -1,19 +1,19 @@
-"""A client of `schmidt serve --clock steps`, in Python: time goes on in its calls and stands between."""
+"""The other end of the control plane: one command and its answer, or a client that steps time."""
 
 import socket
 from contextlib import AbstractContextManager
 
 from bus.can import Frame
 from bus.can.candump import line, parsed
-from scenarios.doors.address import address
+from scenarios.doors.clients import address
 from scenarios.doors.control import ControlError
 
 
 class Stepped(AbstractContextManager["Stepped"]):
     """Joins the network served at [HOST:]PORT, once `clients` have (docs/guides/stepped-host.md).
 
-    name: puts its frames in order with those of others. token: for servers of another machine. Raises
-    ControlError for what is refused, OSError.
+    Time goes on in its calls and stands between them. name: puts its frames in order with those of others.
+    token: for servers of another machine. Raises ControlError for what is refused, OSError.
     """
 
     def __init__(self, at: str, name: str = "", clients: int = 1, token: str | None = None) -> None:
@@ -59,3 +59,35 @@ class Stepped(AbstractContextManager["Stepped"]):
         """Leave; nobody waits for it any more."""
         self._stream.close()
         self._socket.close()
+
+
+_PATIENCE_S = 5.0
+_ANSWER_S = 60.0
+"""A snapshot on a busy machine takes its time."""
+
+
+def tell(command: str, at: str, token: str | None = None) -> str:
+    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ControlError."""
+    host, port = address(at, "--at")
+    lines = ([f"token {token}"] if token else []) + [" ".join(command.split())]
+    try:
+        with (
+            socket.create_connection((host, port), _PATIENCE_S) as connection,
+            connection.makefile("rw", encoding="utf-8", newline="\n") as stream,
+        ):
+            connection.settimeout(None if command.startswith(("step", "join")) else _ANSWER_S)
+            answer = ""
+            for line in lines:
+                stream.write(line + "\n")
+                stream.flush()
+                answer = stream.readline().rstrip("\n")
+                if not answer.startswith("ok"):
+                    break
+    except ConnectionRefusedError:
+        what = f"nobody listens; start schmidt serve --control {port} first"
+        raise ControlError(f"{host}:{port}: {what}") from None
+    except (OSError, UnicodeError) as error:
+        raise ControlError(f"{host}:{port}: no answer: {error}") from None
+    if not answer.startswith("ok"):
+        raise ControlError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
+    return answer.removeprefix("ok").strip()

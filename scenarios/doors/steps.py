@@ -28,22 +28,17 @@ NODE = 99
 """Of the clients' frames on the wire; beyond any number of `--can` doors."""
 
 
-class StepError(ValueError):
-    """A line that cannot be meant."""
-
-
 @lru_cache(maxsize=64)  # a host steps by the same span for hours
 def _span_ns(text: str) -> int:
     span_ns = round(parse(text, "time") * 1e9)
     if span_ns < 0:
-        raise StepError("time does not go back")
+        raise ValueError("time does not go back")
     return span_ns
 
 
 @dataclass
 class _Member:
-    """A client. wanted: clients it waits for; goal_ns: the time it waits for; heard: None: it does not
-    listen."""
+    """A client. wanted: clients it waits for; goal_ns: time it waits for; heard: None: it does not listen."""
 
     name: str
     wanted: int = 0
@@ -73,7 +68,7 @@ class Steps:
         match words:
             case ["join", number, *name] if number.isdecimal() and len(name) <= 1:
                 if not 1 <= int(number) <= LIMIT:  # nobody would ever be answered
-                    raise StepError(f"join N: 1 to {LIMIT} clients")
+                    raise ValueError(f"join N: 1 to {LIMIT} clients")
                 self._member(client, *name).wanted = int(number)
                 return None
             case ["listen"]:
@@ -85,19 +80,19 @@ class Steps:
             case ["send", text]:
                 found = parsed(f"(0.000000) can0 {text}")
                 if found is None:
-                    raise StepError("send ID#DATA, such as 011#1105")
+                    raise ValueError("send ID#DATA, such as 011#1105")
                 check(found[1])
                 self._member(client).sent.append(found[1])
                 return "ok"
             case ["step", *span] if span:
                 self._member(client).goal_ns = self._served.now_ns + _span_ns(" ".join(span))
                 return None
-        raise StepError("join N [NAME] | listen | send ID#DATA | step 5ms")
+        raise ValueError("join N [NAME] | listen | send ID#DATA | step 5ms")
 
     def _member(self, client: Client, name: str = "") -> _Member:
         member = self._members.get(client)
         if name and any(each.name == name for each in self._members.values() if each is not member):
-            raise StepError(f"there is a client {name} already")
+            raise ValueError(f"there is a client {name} already")
         if member is None:
             member = self._members[client] = _Member(name)
         member.name = name or member.name or f"~{len(self._members):04}"  # those without a name come last

@@ -80,7 +80,7 @@ def _hid(asked: Asked, live: LiveNetwork) -> Door:
 
 
 def _debug(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.debug_pty import DebugDoor
+    from scenarios.doors.serial_pty import DebugDoor
 
     return DebugDoor(asked.spec, live)
 
@@ -111,71 +111,46 @@ def _console(asked: Asked, host: Host) -> Door:
 
 ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
     DoorKind(
-        name="can",
-        form="INTERFACE:CHANNEL",
+        name="can", form="INTERFACE:CHANNEL", make=_can,
         help="The CAN bus, such as socketcan:vcan0; repeatable.",
-        make=_can,
         attach={"": "python-can: interface={word}, channel={rest}"},
     ),
     DoorKind(
-        name="serial",
-        form="pty:DIR|tcp:PORT|rfc2217:PORT",
+        name="serial", form="pty:DIR|tcp:PORT|rfc2217:PORT", make=_serial,
         help="The RS232 lines: pseudo-terminals in DIR, or TCP ports from PORT on (five; final: twelve).",
-        make=_serial,
-        attach={
-            "pty": "{lines}",
-            "tcp": "socket://{at} is {first}, and so on to {last}",
-            "rfc2217": "rfc2217://{at} is {first}, and so on to {last}",
-        },
+        attach={"pty": "{lines}", "tcp": "socket://{at} is {first}, and so on to {last}",
+                "rfc2217": "rfc2217://{at} is {first}, and so on to {last}"},
     ),
     DoorKind(
-        name="hid", form="uhid|unix:PATH", help="The gateway's USB: /dev/hidrawN, or a socket.", make=_hid
+        name="hid", form="uhid|unix:PATH", make=_hid, help="The gateway's USB: /dev/hidrawN, or a socket.",
     ),
     DoorKind(
-        name="debug",
-        form="DIR",
+        name="debug", form="DIR", make=_debug, attach={"": "slcan in {spec}"}, repeatable=False,
         help="Every board's debug port as a pseudo-terminal in DIR (slcan).",
-        make=_debug,
-        attach={"": "slcan in {spec}"},
-        repeatable=False,
     ),
     DoorKind(
-        name="control",
-        form="[HOST:]PORT",
+        name="control", form="[HOST:]PORT", make=_control, repeatable=False,
         help="Speed, pause, status, stop (see schmidt control).",
-        make=_control,
         attach={"": "schmidt control status --at {at}"},
-        repeatable=False,
     ),
-)
+)  # fmt: skip
 """In the order in which their nodes come onto the wire."""
 ON_HOST: tuple[DoorKind[Host], ...] = (
     DoorKind(
-        name="lx200",
-        form="[HOST:]PORT|pty:NAME",
+        name="lx200", form="[HOST:]PORT|pty:NAME", make=_lx200,
         help="LX200, for Stellarium and INDI; repeatable.",
-        make=_lx200,
         attach={"pty": "{spec}", "": "LX200 over TCP, {at}"},
     ),
     DoorKind(
-        name="alpaca",
-        form="[HOST:]PORT",
+        name="alpaca", form="[HOST:]PORT", make=_alpaca, extra="alpaca", repeatable=False,
         help="ASCOM Alpaca telescope and focuser, of an emulated sky (serve) cameras, too; with discovery.",
-        make=_alpaca,
         attach={"": "ASCOM Alpaca at http://{at}/"},
-        extra="alpaca",
-        repeatable=False,
     ),
     DoorKind(
-        name="console",
-        form="[HOST:]PORT",
-        help="The consoles, for a browser.",
-        make=_console,
-        attach={"": "open http://{at}/"},
-        extra="consoles",
-        repeatable=False,
+        name="console", form="[HOST:]PORT", make=_console, extra="consoles", repeatable=False,
+        help="The consoles, for a browser.", attach={"": "open http://{at}/"},
     ),
-)
+)  # fmt: skip
 
 
 def asked(kinds: Sequence[DoorKind[Place]], options: DoorOptions) -> list[tuple[DoorKind[Place], Asked]]:

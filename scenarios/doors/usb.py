@@ -1,4 +1,4 @@
-"""The USB cable of the gateway and the host programs that share it.
+"""The gateway as a USB HID device: identity, report descriptor, cable, and the programs that share it.
 
     usb = Usb(queue, network.hid)
     usb.enter_by(entry)
@@ -13,17 +13,45 @@ Every plug hears every report; commands of all plugs go out one after the other,
 from __future__ import annotations
 
 from collections import deque
+from typing import TYPE_CHECKING
 
 from boards.silicon.hid import FRAME_NS, REPORT_BYTES, HidEndpoint, next_frame_ns
 from bus.time import EventQueue
-from scenarios.doors.entry import Entry
+
+if TYPE_CHECKING:
+    from scenarios.doors.livenetwork import Entry
+
+VENDOR, PRODUCT, VERSION = 0x04D8, 0x003F, 0x0100
+"""ASSUMPTION: the paper gives none. Microchip's vendor id and the product id of its HID example, which
+a PIC18F4550 without an id of its own would carry."""
+NAME = "Schmidt telescope gateway"
+DESCRIPTOR = bytes.fromhex(
+    "0600ff 0901 a101"  # usage page (vendor), usage, collection (application)
+    "1500 26ff00 7508 9540"  # logical 0..255, 8 bits, 64 of them
+    "0901 8102"  # input
+    "9540 0901 9102"  # output
+    "c0"
+)
+"""64-byte reports without report numbers, in and out, on a vendor-defined page."""
+
+
+def out_report(data: bytes) -> bytes | None:
+    """The 64 bytes of an OUT report as a program wrote them, or None when it is none.
+
+    A program that writes to hidraw puts report number 0 in front. Uhid passes on all 65 bytes where usbhid
+    strips the first (drivers/hid/uhid.c, hardware.md 3.6).
+    """
+    if len(data) == REPORT_BYTES + 1 and data[0] == 0:
+        return data[1:]
+    return data if len(data) == REPORT_BYTES else None
+
 
 KIND = "usb"
 OUT_LIMIT = 1024
 """OUT reports that wait for the gateway; a driver's write blocks or fails beyond. ASSUMPTION."""
 IN_LIMIT = 4096
 """IN reports kept for a host program that does not read. Linux' hidraw keeps 64; a program in this process
-may be busy for a second. Older ones are lost and counted. ASSUMPTION."""
+may be busy for a second. ASSUMPTION."""
 
 
 class UsbFull(OSError):
@@ -31,13 +59,12 @@ class UsbFull(OSError):
 
 
 class UsbPlug:
-    """One host program's end. lost: reports it did not read in time."""
+    """One host program's end; of what it does not read in time the oldest is gone."""
 
     def __init__(self, usb: Usb, name: str) -> None:
         self.name = name
-        self.lost = 0
         self._usb = usb
-        self._reports: deque[tuple[int, bytes]] = deque()
+        self._reports: deque[tuple[int, bytes]] = deque(maxlen=IN_LIMIT)
 
     def write(self, t_ns: int, report: bytes) -> None:
         """Send an OUT report of 64 bytes, now (`t_ns` is there for `HidLink`).
@@ -59,9 +86,6 @@ class UsbPlug:
 
     def hear(self, t_ns: int, report: bytes) -> None:
         """The gateway has sent a report; called by `Usb`."""
-        if len(self._reports) >= IN_LIMIT:
-            self._reports.popleft()
-            self.lost += 1
         self._reports.append((t_ns, report))
 
     def unplug(self) -> None:

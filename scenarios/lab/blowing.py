@@ -46,10 +46,10 @@ class Blowing:
         self._from_rad = from_rad
         self._network = network
         world = network.plant.world
-        self.places = [
-            row * at.WIDTH + max(place for place in _rows(int(each[at.ROWS_ALL])) if each[place] == _KIND)
-            for row, each in enumerate(world)
-        ]
+        self.places = []
+        for row, each in enumerate(world):
+            kinds = (at.EFFECTS + number * at.ROW + at.ROW_KIND for number in range(int(each[at.ROWS_ALL])))
+            self.places.append(row * at.WIDTH + max(place for place in kinds if each[place] == _KIND))
         self._blow(network.queue.now_ns)
 
     def speed(self, t_ns: int) -> float:
@@ -72,8 +72,3 @@ class Blowing:
 _KIND: Final = float(KINDS[formula])
 _FIRST: Final = at.ROW_MEMORY + 4 - at.ROW_KIND
 """From a row's kind to its first parameter: memory and seed lie between."""
-
-
-def _rows(count: int) -> list[int]:
-    """Where the kinds of the rows stand."""
-    return [at.EFFECTS + number * at.ROW + at.ROW_KIND for number in range(count)]

@@ -38,10 +38,7 @@ class Chain:
     """
 
     def __init__(
-        self,
-        network: Network,
-        ends: Mapping[str, tuple[float, float]],
-        guards: Mapping[str, PeriodicBoard],
+        self, network: Network, ends: Mapping[str, tuple[float, float]], guards: Mapping[str, PeriodicBoard]
     ) -> None:
         self._network = network
         self._ends = ends

@@ -27,11 +27,6 @@ _GUST_KI = 0.05
 slow torque then leaves twice as much, so these gains are for wind alone."""
 
 
-def _inertia(axis: AxisModel) -> float:
-    """Load and both rotors at the axis, kg m2."""
-    return axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2
-
-
 def _bandwidth(axis: AxisModel) -> float:
     """rad/s, of that loop: where the trains damp well it may be as fast as the rotors' swing dies away."""
     rotor = axis.motor.rotor_inertia.si * RATIO**2
@@ -44,7 +39,8 @@ def _unit_gain(model: PlantModel, axis: AxisModel) -> float:
     lagging = 0.0 if axis.motor.diode_drop else model.controller.counter_split.si
     torque_per_step = step_torque(model, axis.motor) * (1.0 - lagging)
     counts_per_rad_s = COUNTS_PER_TURN / (2 * pi) * TICK_NS * 1e-9
-    return _inertia(axis) / (torque_per_step * counts_per_rad_s)
+    inertia = axis.inertia.si + 2 * axis.motor.rotor_inertia.si * RATIO**2  # load and both rotors, kg m2
+    return inertia / (torque_per_step * counts_per_rad_s)
 
 
 def axis_config(plant: Plant, axis: str, limits: tuple[int, int], bitrate: int) -> AxisConfig:

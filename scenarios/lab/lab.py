@@ -115,8 +115,7 @@ class Lab(AbstractContextManager["Lab"]):
         return np.array(rows, _FRAME)
 
     def signals(self, message: str) -> Table:
-        """A message of the DBC, such as `AXIS_RA_MOTION`: t_s and its signals in the DBC's units; nan where a
-        frame does not have one."""
+        """A message of the DBC, such as `AXIS_RA_MOTION`: t_s and signals in the DBC's units, else nan."""
         try:
             found = self._database.get_message_by_name(message)
         except KeyError:

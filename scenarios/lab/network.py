@@ -247,8 +247,7 @@ _IN_C = ("AXIS_", "POSITION_", "MOTOR_")
 
 
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
-    """The network, every board running from time 0 on; raises NetworkError for settings no network can
-    have."""
+    """The network, every board running from time 0 on; raises NetworkError for settings that cannot be."""
     config = config or NetworkConfig()
     devices = devices_of(config)
     size = len(devices) if config.size is None else config.size

@@ -1,4 +1,4 @@
-"""Declared boards: found, wired to the plant and to what a scenario puts on their inputs."""
+"""Declared boards: found, wired to the plant, the supplies and what a scenario puts on their inputs."""
 
 import sys
 from bisect import bisect_right
@@ -19,8 +19,55 @@ from boards.weather import WeatherBoard
 from bus.protocol.nodes import KINDS, KindError, arguments_of, check_kind, messages_of
 from plant.dome import DomePort
 from plant.plant import Plant
-from scenarios.lab.supply import CHANNELS, Supply
 from scenarios.language.model import Scenario
+
+BOARD_A = 0.15
+"""Of one board with its transceiver at 24 V, ASSUMPTION."""
+CHANNELS: dict[str, tuple[tuple[str, ...], ...]] = {
+    "POWER_DRIVES": (
+        ("AXIS_RA",), ("AXIS_DEC",), ("POSITION_RA",), ("POSITION_DEC",), ("MOTOR_RA_A", "MOTOR_RA_B"),
+        ("MOTOR_DEC_A", "MOTOR_DEC_B"), (), (),
+    ),
+    "POWER_ROOM": (
+        ("FOCUS",), ("DISPLAY",), ("AUXILIARY_RA", "AUXILIARY_DEC"), ("WEATHER_MAST",), ("WEATHER_DOME",),
+        ("DOME",), (), (),
+    ),
+}  # fmt: skip
+"""Boards by relay 1..8, ASSUMPTION. The gateway lives on USB; the power boards hang on no relay."""
+
+
+class Supply:
+    """What one power board measures and switches: the boards on its relays, and what current they take."""
+
+    def __init__(
+        self, plant: Plant, boards: Mapping[str, Board], channels: tuple[tuple[str, ...], ...]
+    ) -> None:
+        self._plant = plant
+        self._boards = boards
+        self._channels = channels
+
+    def voltage(self, _t_ns: int) -> float:
+        """V; stiff."""
+        return float(self._plant.model.supply.voltage.si)
+
+    def current(self, t_ns: int) -> float:
+        """A: the motors of the axes on this supply, and its boards."""
+        names = [name for channel in self._channels for name in channel]
+        on = sum(self._boards[name].on for name in names if name in self._boards)
+        motors = [
+            port
+            for name, port in (("AXIS_RA", self._plant.ra), ("AXIS_DEC", self._plant.dec))
+            if name in names
+        ]
+        return BOARD_A * on + sum(port.current(t_ns, motor) for port in motors for motor in (0, 1))
+
+    def relay(self, t_ns: int, channel: int, on: bool) -> None:
+        """Relay 1..8: its boards lose or get their supply."""
+        for name in self._channels[channel - 1]:
+            board = self._boards.get(name)
+            if board is not None:
+                (board.power_on if on else board.power_off)(t_ns)
+
 
 BOARDS: tuple[type[DeclaredBoard], ...] = (AuxiliaryBoard, DomeBoard, WeatherBoard, PowerBoard)
 """Those that come along."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 from plant.kernels import layout as at
 
 if TYPE_CHECKING:
-    from scenarios.lab.faults.evidence import Evidence
+    from scenarios.lab.faults.layers import Evidence
     from scenarios.lab.network import Network
 
 

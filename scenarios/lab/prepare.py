@@ -13,14 +13,36 @@ from host.sky.observed import Clock
 from scenarios.language.configure import read_tables, with_firmware, with_parameters
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
-from scenarios.language.model import Scenario
-from scenarios.language.own import located
-from scenarios.language.targets import check_targets
-from scenarios.language.validate import schema
+from scenarios.language.model import Scenario, check_targets
+from scenarios.language.validate import nearest, schema
 
 if TYPE_CHECKING:
     from boards.core.declared import DeclaredBoard
     from plant.model import PlantModel
+
+
+SCENARIOS = Path(__file__).parents[1]
+"""Those that come with schmidt, by name: `quick-look`."""
+CAMPAIGNS = SCENARIOS / "campaigns"
+
+
+def located(given: Path, folder: Path = SCENARIOS) -> Path:
+    """The file that is meant: the one of this path, or else the one of this name in `folder`.
+
+    A path with a suffix or a folder in it is never a name. Raises ScenarioError for a name that nothing has.
+    """
+    try:
+        there = given.exists()
+    except (OSError, ValueError):  # a path that no system takes; reading it says why
+        return given
+    if there or given.suffix or len(given.parts) != 1:
+        return given
+    own = {file.stem: file for file in sorted(folder.glob("*.yaml"))}
+    found = own.get(given.name.replace("_", "-"))
+    if found is None:
+        raise ScenarioError(f"{given}: no such file, and none of schmidt's own; {nearest(given.name, own)}")
+    return found
+
 
 UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 """The lab network has no date: boards do not look at the sky, and a host takes today's."""
@@ -46,18 +68,14 @@ class Changes:
 
     def to(self, scenario: Scenario) -> Scenario:
         """The scenario with them; the firmware is a step and comes when the steps are checked."""
-        changed: dict[str, Any] = {
-            name: value
-            for name in ("seed", "speed", "status_period_s")
-            if (value := getattr(self, name)) is not None
-        }
-        if self.plant is not None:
-            changed["plant"] = {**scenario.plant, "file": self.plant}
-        if self.network is not None:
-            changed["network"] = {**scenario.network, "name": self.network}
-        if self.isolated:
-            changed["network"] = {**changed.get("network", scenario.network), "isolated": True}
-        return dataclasses.replace(scenario, **changed)
+        names = ("seed", "speed", "status_period_s")
+        changed = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        plant = {} if self.plant is None else {"file": self.plant}
+        network: dict[str, Any] = {} if self.network is None else {"name": self.network}
+        network |= {"isolated": True} if self.isolated else {}
+        return dataclasses.replace(
+            scenario, plant=scenario.plant | plant, network=scenario.network | network, **changed
+        )
 
 
 def load(source: Path | Document) -> Scenario:

@@ -52,7 +52,6 @@ class Recorder:
         (folder / ("can.log" if packed else "can.log.zst")).unlink(missing_ok=True)  # an earlier run's
         self._can_file = ZstdFile(folder / "can.log.zst") if packed else BlockFile(folder / "can.log")
         self.can = CandumpWriter(cast(BinaryIO, self._can_file))
-        self._can_digest = ""
         columns = ("t_s", *(str(name) for name in TRUTH_COLUMNS[1:]))
         self.truth = {name: Trace(folder / f"truth-{name}.parquet", columns, {"t_s": "s"}) for name in AXES}
         self.host = Trace(folder / "host.parquet", HOST_COLUMNS, _HOST_UNITS)
@@ -87,7 +86,7 @@ class Recorder:
         """Close everything, whatever fails; returns what could not be written."""
         self._plant.record(None)
         failures: list[str] = []
-        closers: list[Callable[[], None]] = [self._close_can, self._can_file.close]
+        closers: list[Callable[[], None]] = [self.can.close, self._can_file.close]
         closers += [file.close for file in self.ascii.files()]
         closers += [log.file.close for log in self.axis.values()]
         closers += [trace.close for trace in (*self.truth.values(), self.host, self.focus)]
@@ -100,13 +99,9 @@ class Recorder:
 
     def digest(self) -> str:
         """The trace digest; call it after `close`."""
-        parts = [self._can_digest, *(self.axis[name].file.hexdigest() for name in AXES)]
+        parts = [self.can.hexdigest(), *(self.axis[name].file.hexdigest() for name in AXES)]
         parts += [self._truth_digest[name].hexdigest() for name in AXES]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
-
-    def _close_can(self) -> None:
-        self.can.close()
-        self._can_digest = self.can.hexdigest()
 
 
 def _distortions(plant: Plant, axis: str, seed: int) -> Distortion | None:

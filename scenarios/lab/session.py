@@ -1,25 +1,63 @@
 """One run, wired: plant, boards, host and recorder on one event queue."""
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from bus.protocol import Device
+from boards.core.debug import DebugPort, frame_of, line_of
+from bus.protocol import COMMAND_BASE, Device
+from bus.protocol.report import ReportError, pack_report, slot, unpack_commands
 from host.client import TICK_NS, Client
 from host.link import HidLink
 from host.logs.sensors import readings
 from host.procedures.manual import AXES
 from plant.model import PlantModel
-from scenarios.lab.cables import Cables
 from scenarios.lab.eye import Eye
-from scenarios.lab.faults import Faults
+from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network
 from scenarios.lab.networks import SERIAL, in_order
 from scenarios.lab.recorder import Recorder
 from scenarios.lab.wiring import powered
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Programme
+
+
+class Cables:
+    """Joins the debug ports of a network without a gateway to a host's link (H1, L3). Reports of commands go
+    out line by line; frames come back in reports of one slot.
+
+    ports: by device type.
+    """
+
+    def __init__(self, ports: dict[int, DebugPort]) -> None:
+        self.ports = ports
+        self._partial = dict.fromkeys(ports, b"")
+        """Of each cable, what has come of a line: bytes may come cut anywhere."""
+
+    def plug(self, link: HidLink, t_ns: int) -> None:
+        """Open all ports and listen."""
+        for device, port in self.ports.items():
+            port.sink = partial(self._hear, link, device)
+            port.write(t_ns, b"O\r")
+
+    def write(self, t_ns: int, report: bytes) -> None:
+        """A 64-byte OUT report: each command goes to its own board; one for nobody is lost."""
+        for frame in unpack_commands(report):
+            port = self.ports.get(frame.identifier - COMMAND_BASE)
+            if port is not None:
+                port.write(t_ns, line_of(frame))
+
+    def _hear(self, link: HidLink, device: int, t_ns: int, data: bytes) -> None:
+        *lines, self._partial[device] = (self._partial[device] + data).split(b"\r")
+        for line in lines:
+            frame = frame_of(line)
+            if frame is not None:
+                with suppress(ReportError):
+                    link.receive(t_ns, pack_report([slot(frame)]))
+
 
 Rows = tuple[tuple[float, ...], tuple[float, ...]]
 """Of the host's trace and of the focus', at one tick."""

@@ -11,7 +11,7 @@ from plant.plant import Plant
 from plant.stops import with_stops
 from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
-from scenarios.lab.faults import Faults
+from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
@@ -29,7 +29,8 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
 
     Its steps are not run: whoever is on the bus commands.
     """
-    limits = soft_limits(scenario)
+    scales = {axis: getattr(scenario.mount, axis) for axis in AXES}
+    limits = {axis: (scale.low_steps, scale.high_steps) for axis, scale in scales.items()}
     soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
     wind_from = scenario.network.get("wind_from")
     built = model if wind_from is None else in_the_wind(model)
@@ -61,8 +62,7 @@ def network(scenario_file: Path | None = None, network_name: str | None = None) 
 
 
 def start_steps(scenario: Scenario) -> dict[str, float]:
-    """Where the telescope stands at first: parked unless the scenario says where, and the focus somewhere
-    near the middle, by the seed."""
+    """Where the telescope stands at first: parked unless the scenario says where; the focus, by the seed."""
     mount = scenario.mount
     periods = int(generator(scenario.seed, "focus.start").integers(-_FOCUS_START, _FOCUS_START + 1))
     return {
@@ -70,9 +70,3 @@ def start_steps(scenario: Scenario) -> dict[str, float]:
         "dec": mount.dec.steps(scenario.start_rad.get("declination", mount.park_declination_rad)),
         "focus": float(periods * _HALF_STEPS_PER_PERIOD),
     }
-
-
-def soft_limits(scenario: Scenario) -> dict[str, tuple[int, int]]:
-    """Soft limits of each axis, (low, high) in steps."""
-    scales = {name: getattr(scenario.mount, name) for name in AXES}
-    return {name: (scale.low_steps, scale.high_steps) for name, scale in scales.items()}

@@ -1,18 +1,134 @@
-"""What a host loads into the axis boards before a programme: a firmware's parameters, a compensation."""
+"""What a host loads into the axis boards before a programme: the parameters of a firmware, a compensation."""
+
+from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from bus.protocol import HARMONICS, AxisParameter
+from bus.protocol.scales import COUNTS_PER_TURN
+from bus.units import ARCSEC_PER_TURN
 from host.client import Client, Procedure
 from host.procedures import parameters
 from host.procedures.manual import AXES
-from plant.parts import PlantModel
-from scenarios.language import compensation
-from scenarios.language.document import ScenarioError
-from scenarios.language.firmware import parameters_of
+from plant.deadzone import bias_steps
+from plant.parts import AxisModel, PlantModel
+from scenarios.language.document import ScenarioError, read
 from scenarios.language.model import Scenario, Step
+from scenarios.language.validate import check
+
+FORMAT = "schmidt-compensation 1"
+_Q8, _Q16 = 256, 65536
+_MOST_STEPS = 3000
+
+
+def _block(**fields: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "required": list(fields), "properties": fields}
+
+
+def _number(low: float, **high: float) -> dict[str, Any]:
+    return {"type": "number", "minimum": low, **high}
+
+
+_WAVE = _number(-_MOST_STEPS, maximum=_MOST_STEPS)
+_ROW = _block(order=_number(0, exclusiveMaximum=32768), cosine_steps=_WAVE, sine_steps=_WAVE)
+_LANGUAGE = _block(
+    axis={"enum": ["ra", "dec"]},
+    friction=_block(
+        steps=_number(0, maximum=_MOST_STEPS),
+        travel_arcsec={"type": "number", "exclusiveMinimum": 0, "maximum": ARCSEC_PER_TURN},
+    ),
+)
+_LANGUAGE["properties"]["lines"] = {"type": "array", "maxItems": HARMONICS, "items": _ROW}
+"""What a file may say; orders are cycles per turn, with 16 bits before the point."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Line:
+    """A wave of the effort over the absolute encoder's angle.
+
+    order: cycles per turn of the axis. cosine, sine: PWM steps.
+    """
+
+    order: float
+    cosine: float
+    sine: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Compensation:
+    """axis: ra or dec. friction_steps: effort of sliding friction, PWM steps; it turns in travel_arcsec."""
+
+    axis: str
+    lines: tuple[Line, ...]
+    friction_steps: float
+    travel_arcsec: float
+
+    def parameters(self) -> list[tuple[int, int]]:
+        """Parameter numbers and values in the order to send them: off first and on last, so that a table that
+        is half loaded never acts."""
+        first, on = AxisParameter.HARMONIC_FIRST, int(AxisParameter.COMPENSATION)
+        travel = max(1, round(self.travel_arcsec / ARCSEC_PER_TURN * COUNTS_PER_TURN))
+        wanted = [(on, 0)]
+        for k, line in enumerate(self.lines + (Line(0.0, 0.0, 0.0),) * (HARMONICS - len(self.lines))):
+            numbers = round(line.order * _Q16), round(line.cosine * _Q8), round(line.sine * _Q8)
+            wanted += [(first + 3 * k + place, number) for place, number in enumerate(numbers)]
+        wanted.append((int(AxisParameter.FRICTION_TRAVEL_COUNTS), travel))
+        wanted.append((int(AxisParameter.FRICTION_LEVEL_Q8), round(self.friction_steps * _Q8)))
+        return [*wanted, (on, 1)]
+
+    def wrong(self, scale: float, turn_rad: float) -> Compensation:
+        """The same with every wave `scale` times as large and turned by `turn_rad`: how far may it be off?"""
+        cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
+        lines = tuple(
+            Line(
+                each.order,
+                scale * (each.cosine * cosine + each.sine * sine),
+                scale * (each.sine * cosine - each.cosine * sine),
+            )
+            for each in self.lines
+        )
+        return dataclasses.replace(self, lines=lines, friction_steps=scale * self.friction_steps)
+
+
+def load_compensation(file: Path) -> Compensation:
+    """Read and check what `schmidt calibrate` wrote; raises `ScenarioError` with what and where."""
+    document = read(file)
+    data = document.data
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise ScenarioError(f"{file}: is not a compensation file, 'format: {FORMAT}' is missing")
+    check(document, _LANGUAGE)
+    lines = [
+        Line(*(float(row[name]) for name in ("order", "cosine_steps", "sine_steps")))
+        for row in data.get("lines", [])
+    ]
+    friction = data["friction"]
+    return Compensation(
+        data["axis"], tuple(lines), float(friction["steps"]), float(friction["travel_arcsec"])
+    )
+
+
+NAMES = ("paper", "fine")
+"""paper: everything off. fine: what docs/results/one-arcsecond.md proposes, without compensation."""
+BLEND_SHIFT = 11
+"""10.2 s: four encoder lines when tracking. A roller ratio that is wrong by 1e-4 then costs 0.015 arcsec."""
+
+
+def parameters_of(name: str, model: PlantModel, axis: str = "ra") -> Mapping[int, int]:
+    """Return the parameters of a firmware on an axis of a plant: its bias follows from the power stage."""
+    if name == "paper":
+        return {}
+    part: AxisModel = getattr(model.axes, axis)
+    return {
+        AxisParameter.DUTY_FRACTION: 1,
+        AxisParameter.RATE_LOCK: 1,
+        AxisParameter.POSITION_BLEND: BLEND_SHIFT,
+        AxisParameter.COUNTER_BIAS_Q8: bias_steps(model, part.motor) * 256,
+    }
+
 
 _COMMAND_LINE = "command line"
 
@@ -23,7 +139,7 @@ def firmware(client: Client, of_axes: Mapping[str, Mapping[int, int]]) -> Proced
         yield from parameters.load(client, device, of_axes[axis].items())
 
 
-def compensate(client: Client, wanted: compensation.Compensation) -> Procedure:
+def compensate(client: Client, wanted: Compensation) -> Procedure:
     """Load a compensation into its axis board."""
     yield from parameters.load(client, AXES[wanted.axis], wanted.parameters())
 
@@ -33,7 +149,7 @@ def with_firmware(scenario: Scenario, name: str) -> Scenario:
     return _before(scenario, _step("firmware", f"firmware {name}", use=name))
 
 
-def with_compensation(scenario: Scenario, wanted: compensation.Compensation) -> Scenario:
+def with_compensation(scenario: Scenario, wanted: Compensation) -> Scenario:
     """The scenario with a compensation loaded before everything except the firmware."""
     step = _step("compensation", "compensation", table=wanted)
     first, *rest = scenario.steps
@@ -44,14 +160,13 @@ def with_compensation(scenario: Scenario, wanted: compensation.Compensation) -> 
 
 def with_parameters(scenario: Scenario, model: PlantModel) -> Scenario:
     """The scenario whose firmware steps know what their firmware is on the drives of a plant."""
-    return dataclasses.replace(scenario, steps=tuple(_known(step, model) for step in scenario.steps))
-
-
-def _known(step: Step, model: PlantModel) -> Step:
-    if step.action != "firmware":
-        return step
-    of_axes = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
-    return dataclasses.replace(step, arguments={**step.arguments, "of_axes": of_axes})
+    steps = []
+    for step in scenario.steps:
+        if step.action == "firmware":
+            of_axes = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
+            step = dataclasses.replace(step, arguments={**step.arguments, "of_axes": of_axes})
+        steps.append(step)
+    return dataclasses.replace(scenario, steps=tuple(steps))
 
 
 def _step(action: str, name: str, **arguments: Any) -> Step:
@@ -64,18 +179,15 @@ def _before(scenario: Scenario, step: Step) -> Scenario:
 
 def read_tables(scenario: Scenario) -> Scenario:
     """Read the files of the scenario's `compensation` steps: from here, then beside the scenario."""
-    return dataclasses.replace(scenario, steps=tuple(_read(scenario.file.parent, scenario.steps)))
-
-
-def _read(beside: Path, steps: tuple[Step, ...]) -> Iterator[Step]:
-    for step in steps:
-        if step.action != "compensation" or "table" in step.arguments:
-            yield step
-            continue
-        name = step.arguments["file"]
-        found = next((path for path in (Path(name), beside / name) if path.is_file()), Path(name))
-        try:
-            table = compensation.load(found)
-        except ScenarioError as error:
-            raise ScenarioError(f"{step.where}: compensation: {error}") from None
-        yield dataclasses.replace(step, arguments={**step.arguments, "table": table})
+    steps = []
+    for step in scenario.steps:
+        if step.action == "compensation" and "table" not in step.arguments:
+            name = step.arguments["file"]
+            places = Path(name), scenario.file.parent / name
+            try:
+                table = load_compensation(next((path for path in places if path.is_file()), Path(name)))
+            except ScenarioError as error:
+                raise ScenarioError(f"{step.where}: compensation: {error}") from None
+            step = dataclasses.replace(step, arguments={**step.arguments, "table": table})
+        steps.append(step)
+    return dataclasses.replace(scenario, steps=tuple(steps))

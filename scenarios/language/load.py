@@ -46,7 +46,8 @@ def convert(document: Document, language: dict[str, Any] | None = None) -> model
     check(document, language)
     data: dict[str, Any] = in_base_units(document.data, language)
     steps = tuple(_step(document, index, each) for index, each in enumerate(data["steps"]))
-    _check_names(document, steps)
+    expected = tuple(_expectation(document, index, each) for index, each in enumerate(data.get("expect", [])))
+    _check_names(document, steps, expected)
     plant = data.get("plant", DEFAULT_PLANT)
     said = {**data, **data.get("logs", {})}
     scenario = model.Scenario(
@@ -54,18 +55,14 @@ def convert(document: Document, language: dict[str, Any] | None = None) -> model
         clock=_clock(document, str(data["start_utc"])),
         steps=steps,
         faults=tuple(_fault(document, index, each) for index, each in enumerate(data.get("faults", []))),
-        expectations=tuple(
-            _expectation(document, index, each) for index, each in enumerate(data.get("expect", []))
-        ),
+        expectations=expected,
         plant={"file": plant} if isinstance(plant, str) else plant,
         site=_site(document, data.get("site", {})),
         start_rad={axis: angle / ARCSEC_PER_RAD for axis, angle in data.get("start", {}).items()},
         speed=None if data.get("speed", "max") == "max" else float(data["speed"]),
         **{field: said[word] for word, field in _AS_SAID.items() if word in said},
     )
-    scenario = _with_mount(document, scenario, data)
-    _check_windows(document, scenario)
-    return scenario
+    return _with_mount(document, scenario, data)
 
 
 def in_base_units(value: Any, rule: Mapping[str, Any]) -> Any:
@@ -94,19 +91,16 @@ def _part(rule: Mapping[str, Any], part: str) -> Mapping[str, Any]:
 def _step(document: Document, index: int, data: dict[str, Any]) -> model.Step:
     action = next(key for key in data if key not in _STEP_FIELDS and key != "name")
     arguments = data[action]
-    target = arguments.get("target")
-    name = data.get("name") or (f"{action} {_target_name(target)}" if target else f"{action} {index + 1}")
+    target = arguments.get("target") or index + 1
+    if isinstance(target, dict):
+        target = target.get("name") or f"{target['ra']} {target['dec']}"
     return model.Step(
-        name=name,
+        name=data.get("name") or f"{action} {target}",
         action=action,
         arguments=arguments,
         where=document.where(("steps", index)),
         **{field: data[word] for word, field in _STEP_FIELDS.items() if word in data},
     )
-
-
-def _target_name(target: Any) -> str:
-    return target if isinstance(target, str) else str(target.get("name") or f"{target['ra']} {target['dec']}")
 
 
 def _fault(document: Document, index: int, data: dict[str, Any]) -> model.Fault:
@@ -143,7 +137,9 @@ def _expectation(document: Document, index: int, data: dict[str, Any]) -> model.
     )
 
 
-def _check_names(document: Document, steps: tuple[model.Step, ...]) -> None:
+def _check_names(
+    document: Document, steps: tuple[model.Step, ...], expected: tuple[model.Expectation, ...]
+) -> None:
     known: list[str] = []
     for index, step in enumerate(steps):
         if step.name in known and "name" in document.data["steps"][index]:
@@ -154,16 +150,10 @@ def _check_names(document: Document, steps: tuple[model.Step, ...]) -> None:
                 f"{where}: no earlier step is called {step.after!r}; {nearest(step.after, known)}"
             )
         known.append(step.name)
-
-
-def _check_windows(document: Document, scenario: model.Scenario) -> None:
-    names = [step.name for step in scenario.steps]
-    for expectation in scenario.expectations:
-        during = expectation.arguments.get("during")
-        if during is not None and during not in names:
-            raise ScenarioError(
-                f"{expectation.where}: no step is called {during!r}; {nearest(during, names)}"
-            )
+    for each in expected:
+        during = each.arguments.get("during")
+        if during is not None and during not in known:
+            raise ScenarioError(f"{each.where}: no step is called {during!r}; {nearest(during, known)}")
 
 
 def _clock(document: Document, text: str) -> Clock:
@@ -183,29 +173,15 @@ def _clock(document: Document, text: str) -> Clock:
 
 
 def _site(document: Document, data: dict[str, Any]) -> Site:
-    height = data.get("height", NAINITAL.height_m)
-    temperature = data.get("temperature", NAINITAL.temperature_c)
+    words = {"height": "height_m", "temperature": "temperature_c", "humidity": "humidity"}
+    said = {field: data[word] for word, field in words.items() if word in data}
+    said |= {f"{word}_rad": data[word] / ARCSEC_PER_RAD for word in ("latitude", "longitude") if word in data}
     try:
-        return dataclasses.replace(
-            NAINITAL,
-            latitude_rad=data.get("latitude", NAINITAL.latitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
-            longitude_rad=data.get("longitude", NAINITAL.longitude_rad * ARCSEC_PER_RAD) / ARCSEC_PER_RAD,
-            height_m=height,
-            temperature_c=temperature,
-            pressure_hpa=data.get("pressure", standard_pressure_hpa(height, temperature)),
-            humidity=data.get("humidity", NAINITAL.humidity),
-        )
+        site = dataclasses.replace(NAINITAL, **said)
+        usual = standard_pressure_hpa(site.height_m, site.temperature_c)
+        return dataclasses.replace(site, pressure_hpa=data.get("pressure", usual))
     except (ValueError, ArithmeticError) as error:
         raise ScenarioError(f"{document.where(('site',))}: site: {error}") from None
-
-
-def _model(path: Path) -> pointmodel.PointingModel:
-    try:
-        text = read_text(path)
-    except (OSError, ValueError) as error:
-        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error
-        raise pointmodel.PointingFileError(f"{path}: {reason}") from None
-    return pointmodel.parsed(text, path)
 
 
 def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, Any]) -> model.Scenario:
@@ -213,16 +189,22 @@ def _with_mount(document: Document, scenario: model.Scenario, data: dict[str, An
     given = {key: value / ARCSEC_PER_RAD for key, value in said.items() if key != "pointing_model"}
     low = given.get("declination_low", model.DECLINATION_LOW_RAD)
     high = given.get("declination_high", model.DECLINATION_HIGH_RAD)
-    park = min(max(scenario.site.latitude_rad, low), high)
+    park, where = min(max(scenario.site.latitude_rad, low), high), document.where(("mount",))
     horizon = data.get("site", {}).get("horizon")
+    path, text = Path(said.get("pointing_model", "")), ""
+    if "pointing_model" in said:
+        path = path if path.exists() else document.file.parent / path
+        try:
+            text = read_text(path)
+        except (OSError, ValueError) as error:
+            reason = "there is no such file" if isinstance(error, FileNotFoundError) else error
+            raise ScenarioError(f"{where}: mount: {path}: {reason}") from None
     try:
         mount = limits_mount(given.get("hour_angle_limit", model.HOUR_ANGLE_LIMIT_RAD), low, high, park)
         if "pointing_model" in said:
-            path = Path(said["pointing_model"])
-            beside = document.file.parent / path
-            mount = dataclasses.replace(mount, model=_model(path if path.exists() else beside))
+            mount = dataclasses.replace(mount, model=pointmodel.parsed(text, path))
     except ValueError as error:
-        raise ScenarioError(f"{document.where(('mount',))}: mount: {error}") from None
+        raise ScenarioError(f"{where}: mount: {error}") from None
     for axis, scale in (("hour_angle", mount.ra), ("declination", mount.dec)):
         angle = scenario.start_rad.get(axis)
         if angle is not None and not scale.within(angle):

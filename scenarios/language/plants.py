@@ -24,7 +24,8 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
     try:
         model = plants.load(_source(str(given["file"]), beside))
         for axis in ("ra", "dec"):
-            extra = [_effect(each) for each in given.get("effects", []) if _on(each, axis)]
+            blocks = [{"name": e} if isinstance(e, str) else e for e in given.get("effects", [])]
+            extra = [_effect(each) for each in blocks if each.get("axis", axis) == axis]
             if extra:
                 model = plants.with_effects(model, axis, (*getattr(model.axes, axis).effects, *extra))
         model = plants.with_mount_errors(model, given.get("mount", True))
@@ -74,11 +75,7 @@ def _source(name: str, beside: Path) -> str | Path:
     raise ScenarioError(f"plant: {name!r} is not known; {nearest(bare, own)}")
 
 
-def _on(given: Any, axis: str) -> bool:
-    return isinstance(given, str) or given.get("axis", axis) == axis
-
-
-def _effect(given: Any) -> EffectModel:
+def _effect(given: dict[str, Any]) -> EffectModel:
     """One effect, checked as a plant file's is; numbers without a unit are in the effect's own."""
     import yaml
 
@@ -89,7 +86,6 @@ def _effect(given: Any) -> EffectModel:
         def fail(self, _node: yaml.Node, path: str, what: str) -> ModelError:
             return ModelError(f"{path}: {what}")  # there is no file whose line could be named
 
-    given = {"name": given} if isinstance(given, str) else given
     spec = REGISTRY.get(given["name"])
     units = {} if spec is None else {each.name: each.unit for each in spec.parameters}
     places = ("stage", "harmonic") if spec is not None and spec.staged else ()

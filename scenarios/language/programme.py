@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 from bus.protocol import Device, Opcode
@@ -19,8 +18,7 @@ from host.sky.pointmodel import PointingModel
 from host.sky.track import StarTrack
 from host.sky.visibility import Unreachable, check_reachable
 from scenarios.language import configure
-from scenarios.language.model import Scenario, Step
-from scenarios.language.targets import STARS, target_of
+from scenarios.language.model import STARS, Scenario, Step, target_of
 
 
 @dataclass(frozen=True)
@@ -190,7 +188,10 @@ class Programme:
                 return self.pointing.follow(given["for"])
             case "autoguide":
                 self._note(index, star=self.pointing.track.star if self.pointing.track else None)
-                told = partial(self._guided, index)
+
+                def told(frame: Guided) -> None:
+                    self._note(index, guided=(*self.records[index].guided, frame))
+
                 return autoguide(self.pointing, scenario, self._eye, guiding_of(given), told)
             case "pointing_run":
                 return self._pointing_run(index, given.get("stars", STARS), given.get("fit", True))
@@ -229,9 +230,6 @@ class Programme:
             case "display":
                 return client.ask(_device(client, "DISPLAY"), Opcode.BRIGHTNESS, given["brightness"])
         raise AssertionError(f"the schema knows {step.action!r}, the programme does not")
-
-    def _guided(self, index: int, frame: Guided) -> None:
-        self._note(index, guided=(*self.records[index].guided, frame))
 
     def _pointing_run(self, index: int, count: int, fits: bool) -> Procedure:
         """Look at stars all over the sky; then point by the model that they give."""

@@ -18,13 +18,6 @@ class Quantity(NamedTuple):
     units: Mapping[str, float]
 
 
-class Unit(NamedTuple):
-    """What a unit measures and its size in that quantity's base unit."""
-
-    quantity: str
-    factor: float
-
-
 _UM = 1 / 6.25
 """Half steps: 6.25 µm each (P11)."""
 QUANTITIES = {
@@ -32,9 +25,7 @@ QUANTITIES = {
         "s", 1e7, {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
     ),
     "angle": Quantity(
-        "arcsec",
-        1e10,
-        {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0},
+        "arcsec", 1e10, {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0}
     ),
     "rate": Quantity(
         "arcsec/s", 1e10, {"arcsec/s": 1.0, "″/s": 1.0, "arcmin/s": 60.0, "deg/s": 3600.0, "°/s": 3600.0}
@@ -47,12 +38,6 @@ QUANTITIES = {
     "bitrate": Quantity("bit/s", 1e12, {"kbit/s": 1e3, "Mbit/s": 1e6}),
 }
 BASE = {name: quantity.base for name, quantity in QUANTITIES.items()}
-UNITS = {
-    word: Unit(name, factor)
-    for name, quantity in QUANTITIES.items()
-    for word, factor in quantity.units.items()
-}
-
 _FORM = re.compile(r"^\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?)\s*(\S.*?)?\s*$")
 
 
@@ -74,18 +59,14 @@ def parse(text: object, quantity: str) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{text!r} is too large")
     word = match.group(2)
-    if word is None:
-        if quantity in ("fraction", "focus"):
-            if abs(number) > QUANTITIES[quantity].limit:
-                raise UnitError(f"{text!r} is too large; at most {QUANTITIES[quantity].limit:g}")
-            return number
+    base, limit, units = QUANTITIES[quantity]
+    if word is None and quantity not in ("fraction", "focus"):
         raise UnitError(f"{text!r} has no unit; write it like {example(quantity)}")
-    unit = UNITS.get(word)
-    if unit is None or unit.quantity != quantity:
-        raise UnitError(f"{text!r}: unit {word!r} does not fit; use one of {', '.join(units_of(quantity))}")
-    value = number * unit.factor
-    if abs(value) > QUANTITIES[quantity].limit:
-        raise UnitError(f"{text!r} is too large; at most {QUANTITIES[quantity].limit:g} {BASE[quantity]}")
+    if word is not None and word not in units:
+        raise UnitError(f"{text!r}: unit {word!r} does not fit; use one of {', '.join(units)}")
+    value = number if word is None else number * units[word]
+    if abs(value) > limit:
+        raise UnitError(f"{text!r} is too large; at most {limit:g}{'' if word is None else f' {base}'}")
     return value
 
 
@@ -95,12 +76,7 @@ def unit_of(text: object) -> str:
     return (match.group(2) or "") if match else ""
 
 
-def units_of(quantity: str) -> list[str]:
-    """The unit words of a quantity."""
-    return list(QUANTITIES[quantity].units)
-
-
 def example(quantity: str) -> str:
     """A value of the quantity as one would write it."""
-    words = units_of(quantity)
-    return f"'10 {BASE[quantity] if BASE[quantity] in words else words[0]}'"
+    base, _, units = QUANTITIES[quantity]
+    return f"'10 {base if base in units else next(iter(units))}'"

@@ -11,7 +11,7 @@ from typing import Any
 
 from plant.yamltext import beside
 from scenarios.language.document import Document, Path_, ScenarioError
-from scenarios.language.units import BASE, UNITS, UnitError, parse, unit_of
+from scenarios.language.units import BASE, QUANTITIES, UnitError, parse, unit_of
 
 SCHEMA_FILE = Path(__file__).parents[1] / "scenario.schema.json"
 
@@ -54,7 +54,10 @@ def _validator() -> Any:
         kind = rule.get("x-quantity") or rule["$ref"].rsplit("/", 1)[1]
         with suppress(UnitError):  # which its own rule reports
             if not bounds[0] <= parse(value, kind) <= bounds[1]:
-                yield ValidationError(f"{value} is out of range; {_limits(bounds, value, kind)}")
+                word = unit_of(value)
+                low, high = (bound / (QUANTITIES[kind].units[word] if word else 1.0) for bound in bounds)
+                limits = f"{low:g}..{high:g} {word or BASE[kind]}".removesuffix(" 1")
+                yield ValidationError(f"{value} is out of range; {limits}")
 
     def one_of(_: object, names: list[str], value: object, __: object) -> Iterable[Exception]:
         if isinstance(value, Mapping) and not set(names) & set(value):
@@ -62,14 +65,6 @@ def _validator() -> Any:
 
     rules = {"x-quantity": quantity, "x-range": within, "x-needs": one_of}
     return extend(Draft202012Validator, rules)  # type: ignore[no-untyped-call]
-
-
-def _limits(bounds: Iterable[float], value: object, kind: str) -> str:
-    """Bounds, which are in the base unit, in the unit that the value has: `0..89 deg`."""
-    word = unit_of(value)
-    scale = UNITS[word].factor if word else 1.0
-    low, high = (f"{bound / scale:g}" for bound in bounds)
-    return f"{low}..{high} {word or BASE[kind]}".removesuffix(" 1")
 
 
 def check(document: Document, language: dict[str, Any] | None = None) -> None:

@@ -14,7 +14,6 @@ from pathlib import Path
 
 from scenarios.native import stamp
 from scenarios.native.compile import TRANSLATED
-from scenarios.native.derived import derived_from
 from scenarios.native.modules import PACKAGE, ROOT, selected
 from scenarios.progress import Stage
 
@@ -50,7 +49,9 @@ def build(
     with tempfile.TemporaryDirectory(prefix="schmidt-native-") as folder:
         before = stamp.make(root)  # a file that changes while it is compiled makes the library stale
         made = _compile(Path(folder), say, root, stage)
-        text = json.dumps(before | {"modules": _modules(made)}, indent=1)
+        files = sorted(path.relative_to(made).as_posix() for path in made.rglob(f"*{stamp.suffix()}"))
+        modules = {file.removesuffix(stamp.suffix()).replace("/", "."): file for file in files}
+        text = json.dumps(before | {"modules": modules}, indent=1)
         (made / stamp.STAMP).write_text(text + "\n", encoding="utf-8")
         stage("holding it against Python")
         _check(made, root)
@@ -71,7 +72,7 @@ def compiler() -> bool:
 def _compile(folder: Path, say: Say, root: Path, stage: Stage) -> Path:
     """Compile what can be; returns the folder that holds it."""
     files = selected(root)
-    refused = derived_from(root, files)
+    refused: dict[str, str] = {}
     for _ in range(_ROUNDS):
         for file, why in sorted(refused.items()):
             say(f"{file} stays plain: {why}")
@@ -115,28 +116,16 @@ def _started(
     )
 
 
-def _python(arguments: list[str], root: Path, pure: str) -> tuple[int, str, str]:
-    """Status, output and errors of another Python."""
-    with _started(arguments, root, pure) as process:
-        output, errors = process.communicate()
-    return process.returncode, output, errors
-
-
-def _modules(made: Path) -> dict[str, str]:
-    """Module names and their files in the library; the shared part goes under its own name."""
-    files = sorted(path.relative_to(made).as_posix() for path in made.rglob(f"*{stamp.suffix()}"))
-    return {file.removesuffix(stamp.suffix()).replace("/", "."): file for file in files}
-
-
 def _check(made: Path, root: Path) -> None:
-    """Hold a short run on the library against one without it, where that can be done: same digest or no
-    library."""
+    """Hold a short run on the library against one without it, if that can be: same digest or no library."""
     if any(importlib.util.find_spec(need) is None for need in _PROBED):
         return  # an isolated build has nothing but the compilers
-    plain = _python(["-m", f"{PACKAGE}scenarios.run.probe"], root, pure="1")
-    native = _python(["-m", f"{PACKAGE}scenarios.run.probe", str(made)], root, pure="")
-    status, output, errors = native
-    if status:
+    found = []
+    for pure, library in (("1", ()), ("", (str(made),))):
+        with _started(["-m", f"{PACKAGE}scenarios.run.probe", *library], root, pure) as process:
+            found.append(process.communicate())
+    (plain, _), (native, errors) = found
+    if process.returncode:
         raise BuildError(f"it cannot be used: {(errors.strip().splitlines() or ['?'])[-1]}")
-    if plain[1] != output:
+    if plain != native:
         raise BuildError("its digest is not that of plain Python; please report it")

@@ -1,13 +1,14 @@
-"""Finds the compiled modules, all of them or none: compiled code relies on its own kind."""
+"""Finds our rooms first, and their compiled modules, all or none: compiled code relies on its own kind."""
 
 import os
 import sys
 from collections.abc import Sequence
-from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from importlib.machinery import ExtensionFileLoader, ModuleSpec, PathFinder
 from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
+from scenarios.native.modules import PACKAGE, ROOMS, ROOT
 from scenarios.native.stamp import LIBRARY, difference, read
 
 PURE = "SCHMIDT_PURE"
@@ -51,7 +52,8 @@ def use(library: Path = LIBRARY) -> None:
     if compiled() or wish not in ("", "0"):
         return
     stamp = read(library)
-    files = {} if stamp is None else _files(stamp, library)
+    modules = {} if stamp is None else stamp.get("modules")
+    files = {name: library / file for name, file in modules.items()} if isinstance(modules, dict) else {}
     late = not files.keys().isdisjoint(sys.modules)
     reason = "is not there" if stamp is None else difference(stamp)
     if wish == "0" and (reason or late):
@@ -64,6 +66,20 @@ def use(library: Path = LIBRARY) -> None:
         sys.meta_path.insert(0, Finder(files))
 
 
-def _files(stamp: dict[str, object], library: Path) -> dict[str, Path]:
-    modules = stamp.get("modules")
-    return {name: library / file for name, file in modules.items()} if isinstance(modules, dict) else {}
+class Rooms:
+    """Entry of `sys.meta_path`: the six rooms from where this file lies, not somebody's `plant.py`.
+
+    A wheel needs none of this: its rooms lie below the package `schmidt` (`setup.py`).
+    """
+
+    def find_spec(
+        self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """A room by its name; the modules in it follow."""
+        return PathFinder.find_spec(name, [str(ROOT)]) if name in (*ROOMS, "calibration") else None
+
+
+def ours_first() -> None:
+    """Let the rooms be found here, whatever stands on the path; once."""
+    if not PACKAGE and not any(isinstance(finder, Rooms) for finder in sys.meta_path):
+        sys.meta_path.insert(0, Rooms())

@@ -30,6 +30,7 @@ PLAIN = (
     "boards/c/",
     "boards/avr/",
     "boards/canopen/",
+    "boards/core/parameters.py",
     "boards/auxiliary/firmware.py",
     "boards/dome/firmware.py",
     "boards/power/firmware.py",
@@ -38,8 +39,9 @@ PLAIN = (
 """What takes an `Opcode` as an int and asks for its layout: mypyc unboxes it to a bare number.
 Declarations, which are read once: a frozen record of the library cannot be pickled.
 No night runs on the chips at register level, and mypyc refuses one of them.
-Classes that derive from those of a package that is not compiled stay plain, too. So do classes that inherit
-the constructor of `DeclaredBoard`. There mypyc calls it twice (two ports on the wire), plain Python once."""
+Classes that derive from those of a package that is not compiled stay plain, too. So does one that plain code
+derives from: Python forbids that of a compiled one. So do classes that inherit `DeclaredBoard`'s constructor.
+There mypyc calls it twice (two ports on the wire), plain Python once."""
 _PLACE = "__file__"
 """A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
 
@@ -56,8 +58,3 @@ def selected(root: Path = ROOT) -> list[str]:
         and not path.relative_to(root).as_posix().startswith(PLAIN)
         and _PLACE not in path.read_text(encoding="utf-8")
     )
-
-
-def module_name(path: str) -> str:
-    """`bus/can/wire.py` as `bus.can.wire`, in a wheel as `schmidt.bus.can.wire`."""
-    return PACKAGE + path.removesuffix(".py").replace("/", ".")

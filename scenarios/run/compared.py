@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from plant.model import PlantModel
-from scenarios.language.compensation import Compensation
-from scenarios.language.configure import with_compensation
+from scenarios.language.configure import Compensation, with_compensation
 from scenarios.language.model import Scenario
 from scenarios.run import run as runner
 from scenarios.run.errors import NoData, rate_errors

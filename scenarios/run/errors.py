@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -40,10 +41,7 @@ def pointing_errors(
     outcome: Outcome, star: Star, low_s: float, high_s: float, source: str
 ) -> tuple[Array, Array, Array]:
     """Time and the error of hour angle and declination in ″, star less telescope."""
-    parts = [_pointing_piece(outcome, star, *piece, source) for piece in _pieces(low_s, high_s)]
-    t, ra, dec = (np.concatenate(column) for column in zip(*parts, strict=True))
-    if not len(t):
-        raise NoData("nothing was recorded in the window")
+    t, ra, dec = _joined(_pointing_piece(outcome, star, *each, source) for each in _pieces(low_s, high_s))
     return t, ra, dec
 
 
@@ -66,11 +64,15 @@ def rate_errors(
     outcome: Outcome, record: Record, axis: str, source: str, low_s: float, high_s: float
 ) -> tuple[Array, Array]:
     """Time and rate error in ″/s: `truth`, `counts_5ms` or `mean_1s`."""
-    parts = [_rate_piece(outcome, record, axis, source, *piece) for piece in _pieces(low_s, high_s)]
-    t, error = (np.concatenate(column) for column in zip(*parts, strict=True))
-    if not len(t):
-        raise NoData("nothing was recorded in the window")
+    t, error = _joined(_rate_piece(outcome, record, axis, source, *each) for each in _pieces(low_s, high_s))
     return t, error
+
+
+def _joined(pieces: Iterable[tuple[Array, ...]]) -> list[Array]:
+    columns = [np.concatenate(column) for column in zip(*pieces, strict=True)]
+    if not len(columns[0]):
+        raise NoData("nothing was recorded in the window")
+    return columns
 
 
 def _pieces(low_s: float, high_s: float) -> list[tuple[float, float]]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from host.logs import traces
-from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Evidence
 from scenarios.language.model import Expectation
 from scenarios.language.programme import Record
 from scenarios.language.units import BASE
@@ -18,17 +18,23 @@ from scenarios.run.errors import NoData, looks, pointing_errors, rate_errors
 from scenarios.run.outcome import Array, Outcome
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Verdict:
-    """One line of the report."""
+    """One line of the report. value: None: there is none, and that misses. upper: the limit is one."""
 
     name: str
-    passed: bool
     value: float | None
     limit: float
     unit: str
-    upper: bool
+    upper: bool = False
     reason: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is on the right side of the limit."""
+        if self.value is None:
+            return False
+        return bool(self.value <= self.limit if self.upper else self.value >= self.limit)
 
     def as_json(self) -> dict[str, Any]:
         """The fields of `summary.json`."""
@@ -46,49 +52,24 @@ def judge(outcome: Outcome) -> list[Verdict]:
     total = len(outcome.records)
     if done < total and not reason:
         reason = f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
-    programme = Verdict(
-        name="programme completed",
-        passed=done == total,
-        value=done,
-        limit=total,
-        unit="steps",
-        upper=False,
-        reason=reason,
-    )
+    programme = Verdict("programme completed", done, total, "steps", reason=reason)
     silent = [_silent(each) for each in outcome.faults if each.missing]
     return [programme, *silent, *(_judge_one(outcome, each) for each in outcome.scenario.expectations)]
 
 
 def _silent(fault: Evidence) -> Verdict:
-    return Verdict(
-        name=f"fault {fault.name} from {fault.at_ns * 1e-9:g} s on acted",
-        passed=False,
-        value=0,
-        limit=1,
-        unit="times",
-        upper=False,
-        reason=f"{fault.where}: it met nothing; may_not_act: true beside it allows that",
-    )
+    reason = f"{fault.where}: it met nothing; may_not_act: true beside it allows that"
+    return Verdict(f"fault {fault.name} from {fault.at_ns * 1e-9:g} s on acted", 0, 1, "times", reason=reason)
 
 
 def _judge_one(outcome: Outcome, expectation: Expectation) -> Verdict:
     kind = KINDS[expectation.kind]
-    limit, upper = expectation.limit, expectation.upper
     value, reason = None, ""
     try:
         value = kind.measure(outcome, expectation.arguments)
     except NoData as error:
         reason = str(error)
-    passed = value is not None and bool(value <= limit if upper else value >= limit)
-    return Verdict(
-        name=expectation.name,
-        passed=passed,
-        value=value,
-        limit=limit,
-        unit=kind.unit,
-        upper=upper,
-        reason=reason,
-    )
+    return Verdict(expectation.name, value, expectation.limit, kind.unit, expectation.upper, reason)
 
 
 def pointing_error(outcome: Outcome, given: dict[str, Any]) -> float:
@@ -189,35 +170,19 @@ def _counter(name: str, text: str, limit: str = "") -> Kind:
 
 KINDS: dict[str, Kind] = {
     "pointing_error": Kind(
-        pointing_error,
-        "angle",
-        "telescope less the star's observed place",
-        ("track",),
-        {
-            "axis": {"sky": "the angle between them", "ra": "", "dec": ""},
-            "source": {"truth": "the plant", "encoder": "what the host read"},
-        },
+        pointing_error, "angle", "telescope less the star's observed place", ("track",),
+        {"axis": {"sky": "the angle between them", "ra": "", "dec": ""},
+         "source": {"truth": "the plant", "encoder": "what the host read"}},
     ),
     "tracking_rate_error": Kind(
-        tracking_rate_error,
-        "rate",
-        "rate of an axis less the rate it should have",
-        ("track", "set_rate"),
-        {
-            "axis": {"ra": "", "dec": ""},
-            "source": {
-                "truth": "the plant",
-                "counts_5ms": "velocity counts of single 5 ms samples",
-                "mean_1s": "their means over 1 s",
-            },
-        },
+        tracking_rate_error, "rate", "rate of an axis less the rate it should have", ("track", "set_rate"),
+        {"axis": {"ra": "", "dec": ""},
+         "source": {"truth": "the plant", "counts_5ms": "velocity counts of single 5 ms samples",
+                    "mean_1s": "their means over 1 s"}},
     ),
     "guiding_error": Kind(
-        guiding_error,
-        "angle",
-        "the star less its place in the first exposure, as the guide camera saw it",
-        ("autoguide",),
-        {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
+        guiding_error, "angle", "the star less its place in the first exposure, as the guide camera saw it",
+        ("autoguide",), {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
     ),
     "focus_error": Kind(focus_error, "focus", "true focus position less the commanded one", ("focus",)),
     "bus_load": _counter("bus_load", "mean load of the CAN bus", "fraction"),
@@ -226,4 +191,4 @@ KINDS: dict[str, Kind] = {
     "error_log_entries": _counter("error_log_entries", "lines in `errors.log`"),
     "steps_completed": _counter("steps_completed", "steps that ended as they should"),
     "real_time_factor": _counter("real_time_factor", "simulated over wall time (depends on the machine)"),
-}
+}  # fmt: skip

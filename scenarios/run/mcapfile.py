@@ -1,13 +1,164 @@
 """A run as one MCAP file (mcap.dev) with JSON schemas: Foxglove and PlotJuggler open it as it is."""
 
+from __future__ import annotations
+
+import csv
+import io
 import json
+from collections.abc import Iterator
+from contextlib import suppress
 from datetime import datetime
 from heapq import merge
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TextIO
 
-from scenarios.run.sources import Source, sources, summary_of
+from bus.protocol.page import DBC_PATH
+from plant.yamltext import read_text
+
+_BATCH = 4096
+"""Rows of a Parquet file at a time."""
+_LINE_LOGS = {
+    "commands": ("utc", "t_s", "node", "command", "result"),
+    "errors": ("utc", "t_s", "where", "what"),
+}
+NUMBER = {"type": "number"}
+TEXT = {"type": "string"}
+_FLAG = {"type": "boolean"}
+_OF_SUMMARY: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
+    "steps": (
+        "start_s", {"name": TEXT, "action": TEXT, "start_s": NUMBER, "end_s": NUMBER, "failed": TEXT},
+    ),
+    "faults": (
+        "first_s", {"name": TEXT, "arguments": TEXT, "at_s": NUMBER, "first_s": NUMBER, "on": TEXT,
+                    "may_not_act": _FLAG},
+    ),
+    "expectations": (
+        "", {"name": TEXT, "passed": _FLAG, "value": NUMBER, "limit": NUMBER, "unit": TEXT, "reason": TEXT},
+    ),
+}  # fmt: skip
+"""Lists of summary.json: the field that is their time, if any, and their fields. Foxglove wants one type for
+each, so arguments, which every kind of fault has its own of, are JSON."""
+
+
+class Source(NamedTuple):
+    """Entries of one topic in the order of time. properties: of the JSON schema, by field."""
+
+    topic: str
+    properties: dict[str, dict[str, Any]]
+
+
+class Entry(NamedTuple):
+    """t_ns: simulated, since the start."""
+
+    t_ns: int
+    source: Source
+    values: dict[str, Any]
+
+
+def sources(folder: Path, summary: dict[str, Any]) -> list[Iterator[Entry]]:
+    """All that is there; each one sorted by time."""
+    found = [_frames(path) for path in (folder / "can.log", folder / "can.log.zst") if path.exists()][:1]
+    found += [_axis_log(path) for path in sorted(folder.glob("axis-*.csv"))]
+    found += [_parquet(path) for path in sorted(folder.glob("*.parquet"))]
+    found += [
+        _lines(folder / f"{name}.log", name) for name in _LINE_LOGS if (folder / f"{name}.log").exists()
+    ]
+    return [*found, *_of_summary(summary)]
+
+
+def _frames(path: Path) -> Iterator[Entry]:
+    """Every frame by its name in the DBC; one that is not in it as its bytes."""
+    import can
+    from cantools.database import Database, load_file
+
+    database = load_file(DBC_PATH, strict=True)
+    assert isinstance(database, Database)
+    known: dict[int, tuple[Any, Source]] = {}
+    for message in database.messages:
+        fields = {
+            signal.name: NUMBER | ({"description": f"unit {signal.unit}"} if signal.unit else {})
+            for signal in message.signals
+        }
+        sender, _, what = message.name.rpartition("_")
+        known[message.frame_id] = message, Source(f"/can/{sender}/{what}", fields)
+    raw = Source("/can/other", {"identifier": TEXT, "data": TEXT})
+    with _text(path) as text, can.CanutilsLogReader(text) as reader:
+        for frame in reader:
+            source, values = raw, {"identifier": f"{frame.arbitration_id:X}", "data": bytes(frame.data).hex()}
+            if frame.arbitration_id in known and not frame.is_remote_frame:
+                message, its = known[frame.arbitration_id]
+                with suppress(ValueError, KeyError):  # cantools' errors: too short, an opcode that is none
+                    values, source = message.decode(bytes(frame.data), decode_choices=False), its
+            yield Entry(round(frame.timestamp * 1e6) * 1000, source, values)
+
+
+def _text(path: Path) -> TextIO:
+    if path.suffix != ".zst":
+        return path.open(encoding="ascii")
+    import pyarrow
+
+    return io.TextIOWrapper(pyarrow.input_stream(str(path), compression="zstd"), encoding="ascii")
+
+
+def _axis_log(path: Path) -> Iterator[Entry]:
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(rows.fieldnames or (), NUMBER))
+        for row in rows:
+            values = {name: float(text) if text else None for name, text in row.items()}
+            yield Entry(round((values["t"] or 0.0) * 1e9), source, values)
+
+
+def _parquet(path: Path) -> Iterator[Entry]:
+    """Traces of the plant (truth) and of the host."""
+    from pyarrow import parquet
+
+    file = parquet.ParquetFile(path)
+    source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(file.schema_arrow.names, NUMBER))
+    for batch in file.iter_batches(_BATCH):
+        for row in batch.to_pylist():
+            yield Entry(round(row["t_s"] * 1e9), source, row)
+
+
+def _lines(path: Path, name: str) -> Iterator[Entry]:
+    """A text log of the host: fields behind two blanks."""
+    fields = _LINE_LOGS[name]
+    source = Source(f"/{name}", {field: NUMBER if field == "t_s" else TEXT for field in fields})
+    with path.open(encoding="utf-8") as file:
+        for line in file:
+            if not line.startswith("#"):
+                values: dict[str, Any] = dict(
+                    zip(fields, line.rstrip("\n").split("  ", len(fields) - 1), strict=False)
+                )
+                values["t_s"] = float(values["t_s"])
+                yield Entry(round(values["t_s"] * 1e9), source, values)
+
+
+def _of_summary(summary: dict[str, Any]) -> list[Iterator[Entry]]:
+    """Steps when they begin, faults when they first act (or should have), verdicts at the end."""
+    found = []
+    for name, (when, fields) in _OF_SUMMARY.items():
+        source = Source(f"/{'verdicts' if name == 'expectations' else name}", fields)
+        entries = []
+        for each in summary.get(name, []):
+            times = (each.get(when), each.get("at_s"), summary["simulated_s"])
+            t_s = next(time for time in times if time is not None)
+            arguments = {"arguments": json.dumps(each["arguments"])} if "arguments" in each else {}
+            entries.append(Entry(round(t_s * 1e9), source, each | arguments))
+        found.append(iter(sorted(entries, key=lambda entry: entry.t_ns)))
+    return found
+
+
+def summary_of(folder: Path) -> dict[str, Any]:
+    """summary.json of a run; raises ValueError where there is none."""
+    try:
+        found: dict[str, Any] = json.loads(read_text(folder / "summary.json"))
+    except FileNotFoundError:
+        raise ValueError(f"{folder}: no summary.json: give the output folder of schmidt run") from None
+    except ValueError as error:
+        raise ValueError(f"{folder / 'summary.json'}: {error}") from None
+    return found
 
 
 def export(folder: Path, file: Path) -> int:
@@ -15,33 +166,29 @@ def export(folder: Path, file: Path) -> int:
 
     Raises ValueError for a folder that is none of a run's, OSError with the file's name.
     """
-    summary = summary_of(folder)
-    try:
-        return _write(folder, summary, file)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, error.filename or str(file)) from None
-
-
-def _write(folder: Path, summary: dict[str, Any], file: Path) -> int:
     from mcap.writer import Writer
 
+    summary = summary_of(folder)
     start_ns = round(datetime.fromisoformat(summary["start_utc"]).timestamp() * 1e3) * 1_000_000
     channels: dict[str, int] = {}
     count = 0
-    with file.open("wb") as stream:
-        writer = Writer(stream)
-        writer.start(library="schmidt")
-        writer.add_metadata(
-            "run", {word: str(summary[word]) for word in ("scenario", "seed", "plant", "trace_digest")}
-        )
-        for entry in merge(*sources(folder, summary), key=lambda each: each.t_ns):
-            topic = entry.source.topic
-            if topic not in channels:
-                channels[topic] = _channel(writer, entry.source)
-            at_ns = start_ns + entry.t_ns
-            writer.add_message(channels[topic], at_ns, _json(entry.values), at_ns)
-            count += 1
-        writer.finish()
+    try:
+        with file.open("wb") as stream:
+            writer = Writer(stream)
+            writer.start(library="schmidt")
+            writer.add_metadata(
+                "run", {word: str(summary[word]) for word in ("scenario", "seed", "plant", "trace_digest")}
+            )
+            for entry in merge(*sources(folder, summary), key=lambda each: each.t_ns):
+                topic = entry.source.topic
+                if topic not in channels:
+                    channels[topic] = _channel(writer, entry.source)
+                at_ns = start_ns + entry.t_ns
+                writer.add_message(channels[topic], at_ns, _json(entry.values), at_ns)
+                count += 1
+            writer.finish()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, error.filename or str(file)) from None
     return count
 
 

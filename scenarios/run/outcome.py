@@ -1,6 +1,10 @@
-"""What a finished (or interrupted) run leaves to be judged: the folder, the steps, the counters."""
+"""What a finished (or interrupted) run leaves to be judged: folder, steps, counters; files of its steps."""
 
+import csv
+import io
+import math
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -8,14 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from host.logs import traces
+from host.logs.files import write_file
+from host.logs.guidelog import hysteresis, opening, section
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe_many
 from plant.mount import sky
 from plant.parts import MountErrors
-from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Evidence
 from scenarios.language.model import Scenario
-from scenarios.language.programme import Record
+from scenarios.language.programme import Record, guiding_of
 
 Array = npt.NDArray[np.float64]
 _RAD_PER_STEP = 2 * np.pi / STEPS_PER_TURN
@@ -117,3 +123,51 @@ class Outcome:
                 parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
         t, velocity = np.concatenate(parts, axis=1)
         return {"t": t, "velocity": velocity}
+
+
+COLUMNS = (
+    "step", "t_s", "hour_angle_deg", "declination_deg", "ra_reading_deg", "dec_reading_deg",
+)  # fmt: skip
+"""Of pointing-stars.csv: observed place that the telescope was seen to look at; angles of both encoders."""
+
+
+def write_runs(outcome: Outcome) -> None:
+    """Write pointing-stars.csv and pointing-model.json, where there was a pointing run."""
+    mount = outcome.scenario.mount
+    text = io.StringIO()
+    text.write(f"# latitude_deg: {math.degrees(outcome.scenario.site.latitude_rad):.6f}\n")
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(COLUMNS)
+    for record in outcome.records:
+        for visit in record.visits:
+            seen = visit.sighting
+            angles = (
+                seen.hour_angle_rad,
+                seen.declination_rad,
+                mount.ra.angle_rad(seen.ra_steps),
+                mount.dec.angle_rad(seen.dec_steps),
+            )
+            rows.writerow([record.step.name, f"{visit.t_s:.2f}", *(f"{math.degrees(a):.7f}" for a in angles)])
+        if record.model is not None:
+            record.model.save(outcome.folder / "pointing-model.json")
+    if any(record.visits for record in outcome.records):
+        write_file(outcome.folder / "pointing-stars.csv", text.getvalue())
+
+
+def write_guiding(outcome: Outcome) -> None:
+    """Write guiding.txt, where a step has guided."""
+    clock = outcome.scenario.clock
+    sections = []
+    for each in outcome.records:
+        if each.guided and each.star is not None and each.start_s is not None:
+            how = guiding_of(each.step.arguments)
+            words = hysteresis(how.aggressiveness)
+            sections.append(
+                section(
+                    each.step.name, each.start_s, each.star, clock, each.guided,
+                    exposure_s=how.exposure_s, algorithm=words,
+                )
+            )  # fmt: skip
+    if sections:
+        text = "\n".join([opening(version("schmidt"), clock, 0.0), *sections])
+        write_file(outcome.folder / "guiding.txt", text)

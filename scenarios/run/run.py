@@ -16,13 +16,10 @@ from plant.model import PlantModel
 from scenarios.lab.muted import Feed
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.run import Order, Progress, resume
-from scenarios.language.model import Scenario
-from scenarios.language.targets import STARS
+from scenarios.language.model import STARS, Scenario
 from scenarios.progress import shown
 from scenarios.run.evaluate import Verdict, judge
-from scenarios.run.guiding import write_guiding
-from scenarios.run.outcome import Outcome
-from scenarios.run.pointing import write_runs
+from scenarios.run.outcome import Outcome, write_guiding, write_runs
 from scenarios.run.report import html
 
 _PIECE_NS = 1_000_000_000
@@ -121,19 +118,18 @@ def _loop(session: Session, state: Progress, progress: Show, snapshot: Order | N
     scenario, wire = session.scenario, session.network.wire
     limit_ns = round(scenario.time_limit_s * 1e9)
     start = time.perf_counter()
-    t_ns, bits, end_ns, bus = state.t_ns, state.bits, state.end_ns, state.bus
-    while t_ns < end_ns:
-        before_ns, t_ns = t_ns, min(t_ns + _PIECE_NS, end_ns)
+    while state.t_ns < state.end_ns:
+        t_ns = min(state.t_ns + _PIECE_NS, state.end_ns)
         if snapshot is not None and snapshot.due(t_ns):
             session.advance(snapshot.at_ns)
-            snapshot.take(session, dataclasses.replace(state, t_ns=before_ns, bits=bits, end_ns=end_ns))
+            snapshot.take(session, state)
         session.advance(t_ns)
-        bus.append((t_ns * 1e-9, (wire.bits - bits) * wire.bit_ns / _PIECE_NS, wire.frames))
-        bits = wire.bits
-        if len(bus) % _FLUSH_PIECES == 0:
+        state.bus.append((t_ns * 1e-9, (wire.bits - state.bits) * wire.bit_ns / _PIECE_NS, wire.frames))
+        state.t_ns, state.bits = t_ns, wire.bits
+        if len(state.bus) % _FLUSH_PIECES == 0:
             session.recorder.flush()
-        if session.programme.finished and end_ns == limit_ns:
-            end_ns = min(limit_ns, t_ns + _TAIL_NS)
+        if session.programme.finished and state.end_ns == limit_ns:
+            state.end_ns = min(limit_ns, t_ns + _TAIL_NS)
         wall_s = time.perf_counter() - start
         if scenario.speed is not None and wall_s < t_ns * 1e-9 / scenario.speed:
             time.sleep(t_ns * 1e-9 / scenario.speed - wall_s)

@@ -9,7 +9,7 @@ LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
 
 @dataclass(frozen=True, kw_only=True)
 class PaperOptions:
-    """json_file: where the JSON goes. out: folder for plots (and the JSON, when none is named). plant,
+    """json_file: where the JSON goes. out: folder of the table (and the JSON, when none is named). plant,
     plant_high: plant files for low and high preload instead of the project's own. rows: comma-separated.
 
     quick: two starts only, for a look. every: all 24 combinations of angle and seed. others: so many starts
@@ -20,7 +20,6 @@ class PaperOptions:
     json_file: Path | None = None
     plant: Path | None = None
     plant_high: Path | None = None
-    markdown: Path | None = None
     rows: str | None = None
     quick: bool = False
     every: bool = False

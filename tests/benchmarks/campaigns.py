@@ -19,7 +19,8 @@ from typing import Any
 import click
 
 from scenarios.campaign import table
-from scenarios.campaign.job import Job, Row
+from scenarios.campaign.job import Row
+from scenarios.campaign.plan import Case
 
 ROOT = Path(__file__).parents[2]
 _RUN = """\
@@ -49,7 +50,7 @@ _TRIED_S = 100
 """Simulated seconds that tell how fast this machine is today."""
 
 
-def nothing(job: Job) -> Row:
+def nothing(job: Case) -> Row:
     """A run that does nothing: a row of the usual width, from its inputs alone."""
     from scenarios.run.probe import digest
 
@@ -63,8 +64,7 @@ def nothing(job: Job) -> Row:
 
 def planned(folder: Path, runs: int, jobs: int) -> dict[str, float]:
     """A campaign of `runs` that do nothing, in this process; its peak memory, MiB, and time."""
-    from scenarios.campaign.options import CampaignOptions
-    from scenarios.campaign.run_campaign import campaign
+    from scenarios.campaign.run_campaign import CampaignOptions, campaign
 
     _write(folder, runs, 1)
     begin, cpu = time.perf_counter(), time.process_time()

@@ -36,7 +36,7 @@ except ImportError:  # a checkout of before the rooms
 NIGHT = Path(scenarios.__file__).with_name("observing-night.yaml")  # of that checkout
 name = sys.argv[1]
 if name == "spread":
-    firmware = sys.modules.get("scenarios.language.firmware") or sys.modules["scenarios.firmware"]
+    firmware = sys.modules.get("scenarios.language.configure") or sys.modules["scenarios.firmware"]
     if hasattr(firmware, "FIRMWARES"):  # a checkout of before the bias followed from the power stage
         firmware.FIRMWARES["fine"] = dict(list(firmware.FIRMWARES["fine"].items())[:1])
     else:

@@ -6,7 +6,7 @@ import pytest
 
 from scenarios.campaign import table
 from scenarios.lab.prepare import load
-from scenarios.language.targets import check_targets
+from scenarios.language.model import check_targets
 from tests.benchmarks import campaigns, night
 
 

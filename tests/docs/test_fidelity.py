@@ -32,7 +32,7 @@ from scenarios.lab.chain import DROP_NS, FED_NS
 from scenarios.lab.faults.table import KINDS
 from scenarios.lab.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
 from scenarios.language import model as scenario_model
-from scenarios.studies.paper.published import INERTIA
+from scenarios.studies.paper.scales import INERTIA
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "FIDELITY.md").read_text(encoding="utf-8")

@@ -16,7 +16,7 @@ from bus.protocol.nodes import arguments_of, documented
 from scenarios.lab.network import Network
 from scenarios.lab.networks import config_from, devices_of
 from scenarios.lab.prepare import chosen, load
-from scenarios.lab.snapshot import restore, take
+from scenarios.lab.snapshot.freeze import restore, take
 from scenarios.lab.wiring import wire
 from scenarios.language.document import ScenarioError
 from scenarios.native import compiled
@@ -71,7 +71,7 @@ def test_the_new_board_has_a_data_sheet(folder: Path) -> None:
     from canopen import import_od
 
     from boards.canopen.dictionary import NO_REMOTE
-    from scenarios.commands.datasheets import write_eds
+    from scenarios.commands.describing import write_eds
 
     sheets = {file.stem: file for file in write_eds(folder / "sheets", folder / "mirror.yaml")}
     assert {"axis", "mirror"} <= set(sheets)

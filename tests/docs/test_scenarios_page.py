@@ -10,7 +10,7 @@ import yaml
 from scenarios.language.document import parse
 from scenarios.language.load import convert
 from scenarios.language.plants import plant_model
-from scenarios.language.units import UNITS
+from scenarios.language.units import QUANTITIES
 from scenarios.language.validate import schema
 
 ROOT = Path(__file__).parents[2]
@@ -77,7 +77,7 @@ def test_every_field_has_a_meaning() -> None:
 
 def test_every_unit_is_on_the_page() -> None:
     section = PAGE.split("\n## Values and units\n")[1].split("\n## ")[0]
-    missing = [unit for unit in UNITS if f"`{unit}`" not in section]
+    missing = [unit for each in QUANTITIES.values() for unit in each.units if f"`{unit}`" not in section]
     assert not missing
 
 

@@ -5,8 +5,7 @@ from time import perf_counter, sleep
 
 import pytest
 
-from scenarios.doors.door import Door
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import Door, Keeper
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.lab.prepare import chosen
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenarios.doors.attach import attached, check_ports
+from scenarios.doors.making import attached, check_ports
 from scenarios.doors.options import OptionError
 
 BOARDS = ("AXIS_RA", "POSITION_RA", "FOCUS")

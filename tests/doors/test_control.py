@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from scenarios.doors.address import AddressError, address, is_local
+from scenarios.doors.clients import AddressError, address, is_local
 from scenarios.doors.control import ControlDoor
 from tests.doors.conftest import Bench
 from tests.ports import free_ports

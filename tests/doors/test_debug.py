@@ -8,10 +8,10 @@ import serial
 from boards.core.debug import frame_of, line_of
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command, unpack_reply
-from scenarios.doors.debug_pty import DebugDoor
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.making import make_doors
 from scenarios.doors.options import DoorOptions, OptionError
+from scenarios.doors.serial_pty import DebugDoor
 from scenarios.lab.prepare import chosen
 from tests.doors.conftest import Bench
 

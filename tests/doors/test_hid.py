@@ -9,9 +9,9 @@ import pytest
 
 from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
-from scenarios.doors.hid_report import DESCRIPTOR, out_report
 from scenarios.doors.hid_uhid import UhidDoor, create_event
 from scenarios.doors.hid_unix import UnixDoor
+from scenarios.doors.usb import DESCRIPTOR, out_report
 from tests.doors.conftest import Bench
 
 PING = pack_report([pack_command(Device.FOCUS, Opcode.PING)])

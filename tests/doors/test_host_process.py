@@ -11,13 +11,12 @@ import pytest
 
 from bus.protocol import Device
 from host.console.decoded import words
-from scenarios.doors.busmirror import BusMirror
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
-from scenarios.doors.pipe_messages import Done, Settings, Wish
-from scenarios.doors.piped_host import main
+from scenarios.doors.pipe_messages import Settings, Wish
+from scenarios.doors.piped_host import BusMirror, main
 from scenarios.lab.prepare import chosen
 from tests.doors.process import Serving
 from tests.ports import free_ports
@@ -37,11 +36,8 @@ class Both:
     def carry(self) -> None:
         """A slice: wishes there, answers and a picture back."""
         for wish in self.wishes:
-            self.bus.wish(
-                wish.name, wish.arguments, lambda t, b, n=wish.number: self.mirror.done(Done(n, t, b))
-            )
+            self.mirror.done(self.bus.wish(wish))
         self.wishes.clear()
-        self.bus.poll()
         self.served.run_until(self.served.now_ns + 50_000_000)
         self.mirror.state = self.bus.look()
 

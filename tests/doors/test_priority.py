@@ -10,7 +10,7 @@ from typing import NoReturn
 import pytest
 
 from scenarios.doors.door import DoorError
-from scenarios.doors.priority import first
+from scenarios.doors.loop import first
 from tests.doors.process import PROGRAM
 from tests.ports import free_ports
 

@@ -40,7 +40,6 @@ def test_bytes_come_at_the_pace_of_the_line(bench: Bench) -> None:
 def test_a_feed_that_nobody_empties_keeps_the_latest(bench: Bench) -> None:
     feed: Feed = bench.served.lines.feed("FOCUS")
     bench.served.run_until(30_000 * MS)
-    assert feed.lost > 0
     decoder = PacketDecoder()
     packets = decoder.feed(feed.until(bench.served.now_ns))
     assert len(packets) >= 60

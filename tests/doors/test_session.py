@@ -15,7 +15,7 @@ from bus.can import Frame
 from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command
 from bus.protocol.report import pack_report
 from scenarios.doors.can import CanDoor
-from scenarios.doors.keeper import Keeper
+from scenarios.doors.door import Keeper
 from scenarios.doors.livenetwork import LiveNetwork, pack_frame, unpack_frame
 from scenarios.doors.parking import park
 from scenarios.doors.recording import Recording
@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[2]
 def record(folder: Path, seed: int = 3) -> str:
     """A session with commands over CAN and USB and hostile frames, in slices of odd lengths."""
     scenario, model = chosen()
-    recording = Recording(folder, scenario, model)
+    recording = Recording(folder)
     served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:session", 0, served)
     recording.attach(served)
@@ -145,7 +145,7 @@ def test_a_door_that_breaks_is_reported_and_opened_again_while_the_others_go_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     now_s = 100.0
-    monkeypatch.setattr("scenarios.doors.keeper.monotonic", lambda: now_s)
+    monkeypatch.setattr("scenarios.doors.door.monotonic", lambda: now_s)
     said: list[str] = []
     doors = [Fickle(), Fickle()]
     keepers = [Keeper(door, said.append) for door in doors]

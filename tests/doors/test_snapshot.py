@@ -16,15 +16,14 @@ from bus.protocol.report import pack_report
 from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
-from scenarios.doors.hid_report import out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay, replay_rest
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import Snapshots, standing
+from scenarios.doors.usb import out_report
 from scenarios.lab.prepare import chosen, prepare
-from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.freeze import SnapshotError
 from scenarios.lab.snapshot.run import Order
 from scenarios.native.finder import compiled
 from scenarios.run.run import Way, run
@@ -73,7 +72,7 @@ def _session(folder: Path, seed: int) -> list[Path]:
     """A recorded session with two snapshots on the way, each in the middle of things."""
     random = Random(seed)
     scenario, model = chosen()
-    recording = Recording(folder / "session", scenario, model)
+    recording = Recording(folder / "session")
     served = LiveNetwork(scenario, model, journal=recording)
     door = CanDoor("virtual:snapshot", 0, served)
     recording.attach(served)
@@ -112,7 +111,7 @@ def test_a_session_that_goes_on_is_recorded_and_replayed_like_any(tmp_path: Path
     """And its log of the bus is the end of the first session's."""
     snapshot = _session(tmp_path, 5)[1]
     stood = standing(read(snapshot))
-    recording = Recording(tmp_path / "on", stood.scenario, stood.model, snapshot)
+    recording = Recording(tmp_path / "on", snapshot)
     served = LiveNetwork(stood.scenario, stood.model, journal=recording, begun=stood)
     CanDoor("virtual:on", 0, served)
     recording.attach(served)
@@ -215,7 +214,7 @@ AGAIN = """
 import sys
 from pathlib import Path
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import standing
 from scenarios.lab.snapshot.file import read
 stood = standing(read(Path(sys.argv[1])))
 served = LiveNetwork(stood.scenario, stood.model, begun=stood)

@@ -3,7 +3,7 @@
 import pytest
 
 from scenarios.doors.control import ControlError
-from scenarios.doors.tell import tell
+from scenarios.doors.stepped import tell
 from tests.ports import free_ports
 
 

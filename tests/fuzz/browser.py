@@ -18,9 +18,9 @@ from typing import Any
 from nicegui import Client
 
 from host.console.server import Consoles
-from scenarios.doors.address import listen
-from scenarios.doors.busmirror import BusMirror
+from scenarios.doors.clients import listen
 from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.piped_host import BusMirror
 from scenarios.doors.runs import RecordedRuns
 from scenarios.lab.prepare import chosen
 from tests.fuzz import inputs

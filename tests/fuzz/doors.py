@@ -27,11 +27,11 @@ from bus.outside.door import Door as Fence
 from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
-from scenarios.doors.hid_report import out_report
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
 from scenarios.doors.snapshots import Snapshots
 from scenarios.doors.steps import Steps
+from scenarios.doors.usb import out_report
 from scenarios.lab.prepare import chosen, load
 from scenarios.language.document import ScenarioError
 from scenarios.native.finder import compiled

@@ -8,11 +8,10 @@ from pathlib import Path
 from random import Random
 
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.snapshots import Snapshots
-from scenarios.doors.standing import standing
+from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.lab.prepare import chosen
-from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.freeze import SnapshotError
 from tests.fuzz.inputs import MEMORY, data
 from tests.fuzz.left import counted
 

@@ -13,8 +13,7 @@ from calibration.inputs.logs import read_drive
 from scenarios.campaign.table import Journal
 from scenarios.doors.recording import ENTERED, SESSION
 from scenarios.doors.replay import _entries, replay
-from scenarios.run.mcapfile import export
-from scenarios.run.sources import summary_of
+from scenarios.run.mcapfile import export, summary_of
 from tests.fuzz.documents import KINDS, try_all
 
 COUNT = 300

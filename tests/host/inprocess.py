@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from host.outside import Outside
-from scenarios.doors.cameras import cameras
+from scenarios.doors.busview import Looks
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.looks import Looks
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import TelescopePc
+from scenarios.doors.piped_host import cameras
 
 
 class HostInProcess:

@@ -13,7 +13,7 @@ from plant.gears import ORDERS, RATIO
 from plant.model import Number, load, with_effects
 from plant.parts import EffectModel, PlantModel
 from plant.units import ARCSEC
-from scenarios.language import compensation as read
+from scenarios.language.configure import FORMAT, load_compensation
 from scenarios.language.document import ScenarioError
 
 HEAD = "format: schmidt-compensation 1\naxis: ra\nfriction: {steps: 1, travel_arcsec: 1}\n"
@@ -32,7 +32,7 @@ def per_step(model: PlantModel) -> float:
 
 
 def test_both_sides_agree_on_what_they_cannot_share() -> None:
-    assert written.FORMAT == read.FORMAT
+    assert written.FORMAT == FORMAT
     assert written.LINES == HARMONICS
 
 
@@ -42,7 +42,7 @@ def test_the_board_pushes_against_the_torque(low: PlantModel, tmp_path: Path, ph
     model = with_effects(low, "ra", (EffectModel("gear_mesh", "mesh2", 1, parameters),))
     written.write(tmp_path / "c.yaml", model, "ra")
     board = Compensator()
-    table = read.load(tmp_path / "c.yaml")
+    table = load_compensation(tmp_path / "c.yaml")
     for k, line in enumerate(table.lines):
         board.orders_q16[k] = round(line.order * 65536)
         board.cosines_q8[k], board.sines_q8[k] = round(line.cosine * 256), round(line.sine * 256)
@@ -81,12 +81,12 @@ def test_what_is_no_wave_is_said(low: PlantModel, tmp_path: Path) -> None:
     left = written.write(tmp_path / "c.yaml", model, "ra")
     assert len(left) == 2
     assert left[0].startswith("wind_torque")
-    assert read.load(tmp_path / "c.yaml").lines == ()
+    assert load_compensation(tmp_path / "c.yaml").lines == ()
 
 
 def test_a_wrong_table_is_wrong_by_what_was_asked(low: PlantModel, tmp_path: Path) -> None:
     written.write(tmp_path / "c.yaml", low, "ra")
-    table = read.load(tmp_path / "c.yaml")
+    table = load_compensation(tmp_path / "c.yaml")
     for line, wrong in zip(table.lines, table.wrong(0.8, 0.2).lines, strict=True):
         before, after = complex(line.cosine, -line.sine), complex(wrong.cosine, -wrong.sine)
         assert abs(after / before) == pytest.approx(0.8)
@@ -110,14 +110,14 @@ def test_a_bad_file_is_one_clear_line(tmp_path: Path, text: str, message: str) -
     file = tmp_path / "c.yaml"
     file.write_text(text)
     with pytest.raises(ScenarioError, match=message) as caught:
-        read.load(file)
+        load_compensation(file)
     assert "\n" not in str(caught.value)
     assert str(file) in str(caught.value)
 
 
 def test_a_table_that_is_half_loaded_never_acts(low: PlantModel, tmp_path: Path) -> None:
     written.write(tmp_path / "c.yaml", low, "ra")
-    rows = read.load(tmp_path / "c.yaml").parameters()
+    rows = load_compensation(tmp_path / "c.yaml").parameters()
     assert rows[0] == (13, 0)
     assert rows[-1] == (13, 1)
     assert len(rows) == len(set(rows)) == 28

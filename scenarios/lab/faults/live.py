@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from bus.time import generator
-from scenarios.lab.faults.evidence import Evidence
-from scenarios.lab.faults.kind import Active, Kind
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import Active, FaultError, Kind
+from scenarios.lab.faults.layers import Evidence
 from scenarios.lab.faults.place import Place
 from scenarios.lab.faults.table import BY_NAME, KINDS
 from scenarios.lab.network import Network

@@ -1,27 +1,29 @@
 """Faults of whole boards."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from boards.core import Board, PeriodicBoard
 from boards.core.halt import Halt
 from bus.can import Frame, Port
-from scenarios.lab.faults.evidence import Evidence, words
-from scenarios.lab.faults.layers import Laid, Stacks
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, words
 from scenarios.lab.faults.place import Place
 
 
-class Deaf(Laid):
-    """In the place of a port's receiver: nobody listens."""
+class Hears(Laid):
+    """In the place of a port's receiver: misses some frames, or (None) all."""
 
-    def __init__(self, place: Place, port: Port) -> None:
-        self._evidence = place.evidence
+    def __init__(self, place: Place, port: Port, misses: Callable[[Frame], bool] | None = None) -> None:
+        self._misses, self._evidence = misses, place.evidence
         super().__init__(place.layers, port, "on_receive")
 
     def __call__(self, t_ns: int, frame: Frame) -> None:
-        """Lost."""
-        self._evidence.act(t_ns, words(frame))
+        """Lost, or passed on."""
+        if self._misses is None or self._misses(frame):
+            self._evidence.act(t_ns, words(frame))
+        else:
+            self.below(t_ns, frame)
 
 
 def took_down(board: Board, t_ns: int, evidence: Evidence) -> None:
@@ -58,7 +60,7 @@ class BrownOut(NoSupply):
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         super().__init__(place, given, t_ns)
-        self._deaf = Deaf(place, self.board.port)
+        self._deaf = Hears(place, self.board.port)
 
     def fail(self, t_ns: int) -> None:
         """Held in reset."""
@@ -99,8 +101,7 @@ class Resets:
 
 
 class _Halted(Laid):
-    """A processor that stands still; in the place of its port's receiver: the controller's two buffers, then
-    nothing."""
+    """A processor that stands still; its port is received by the controller's two buffers, then nothing."""
 
     def __init__(self, layers: Stacks, board: PeriodicBoard, t_ns: int, evidence: Evidence) -> None:
         self._halt, self._board, self._evidence = Halt(board, t_ns), board, evidence

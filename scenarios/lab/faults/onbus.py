@@ -11,9 +11,8 @@ from bus.can.sampling import BitTiming
 from bus.can.stuck import StuckDominant
 from bus.can.wire import Disturb
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
-from scenarios.lab.faults.evidence import Errors, words
-from scenarios.lab.faults.layers import Laid
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Errors, Laid, words
 from scenarios.lab.faults.place import Place
 
 _BUS = "the bus"
@@ -121,7 +120,7 @@ class Cut:
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         wire = place.network.wire
-        if not given["nodes"] or len(given["nodes"]) >= len(place.network.boards):
+        if len(given["nodes"]) >= len(place.network.boards):
             raise FaultError("partition: nodes: some boards, not all of them")
         ports = [place.board(name).port for name in given["nodes"]]
         if any(port._wire is not wire for port in ports):
@@ -145,10 +144,8 @@ class WrongRate:
         self._port, self._values = place.board(given["node"]).port, place.values
         self.value = BitTiming(1e9 / given["bitrate"])
         self._values.add(self._port, "timing", self)
-        self._errors = Errors(place.layers, self._port, place.evidence, self._misfits)
-
-    def _misfits(self) -> bool:
-        return self._port.timing is not None
+        port = self._port
+        self._errors = Errors(place.layers, port, place.evidence, lambda: port.timing is not None)
 
     def clear(self, t_ns: int) -> None:
         """Set right."""

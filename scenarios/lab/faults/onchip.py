@@ -1,35 +1,18 @@
 """Faults of single chips and of the lines between them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from bus.can import Frame, Port
+from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE
-from scenarios.lab.faults.evidence import Evidence, words
-from scenarios.lab.faults.layers import Laid, Stacks
-from scenarios.lab.faults.onboard import Deaf
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Laid
+from scenarios.lab.faults.onboard import Hears
 from scenarios.lab.faults.onplant import Staged
-from scenarios.lab.faults.parameter import FaultError
 from scenarios.lab.faults.place import Place
 
 _ENDAT_BITS = 36
 """F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1)."""
-
-
-class _Hears(Laid):
-    """In the place of one port's receiver: misses some frames."""
-
-    def __init__(
-        self, layers: Stacks, port: Port, misses: Callable[[Frame], bool], evidence: Evidence
-    ) -> None:
-        self._misses, self._evidence = misses, evidence
-        super().__init__(layers, port, "on_receive")
-
-    def __call__(self, t_ns: int, frame: Frame) -> None:
-        if self._misses(frame):
-            self._evidence.act(t_ns, words(frame))
-        else:
-            self.below(t_ns, frame)
 
 
 class FrameLoss:
@@ -41,7 +24,7 @@ class FrameLoss:
         self._device = place.board(given["node"]).device_type if "node" in given else None
         self._probability = given["probability"]
         listening = [port for port in place.network.wire.ports if port.on_receive is not None]
-        self._ears = [_Hears(place.layers, port, self._misses, place.evidence) for port in listening]
+        self._ears = [Hears(place, port, self._misses) for port in listening]
 
     def _misses(self, frame: Frame) -> bool:
         identifier = frame.identifier
@@ -57,7 +40,7 @@ class FrameLoss:
             ear.clear(t_ns)
 
 
-class DeafController(Deaf):
+class DeafController(Hears):
     """A controller gives nothing of what it receives to the processor; it still acknowledges and sends."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:

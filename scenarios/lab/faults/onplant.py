@@ -5,9 +5,8 @@ from typing import Any
 
 from bus.units import ARCSEC_PER_RAD
 from plant.kernels import layout as at
-from scenarios.lab.faults.evidence import Watched
-from scenarios.lab.faults.kind import Active
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import Active, FaultError
+from scenarios.lab.faults.layers import Watched
 from scenarios.lab.faults.place import Place
 from scenarios.lab.powerstages import AXES
 

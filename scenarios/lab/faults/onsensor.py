@@ -4,8 +4,8 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
+from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.faults.layers import Laid
-from scenarios.lab.faults.parameter import FaultError
 from scenarios.lab.faults.place import UNITS, Place
 
 

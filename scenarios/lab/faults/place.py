@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 
 from bus.can.stuck import StuckDominant
-from scenarios.lab.faults.evidence import Evidence
-from scenarios.lab.faults.layers import Laid, Stacks, chained, last, turned
-from scenarios.lab.faults.parameter import FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, chained, last, turned
 from scenarios.lab.network import Network
 
 _OF_AN_AXIS = {

@@ -1,4 +1,4 @@
-"""Functions made inside functions, by their place in their module's source.
+"""Functions made inside functions, by their place in their module's source; who stands for somebody outside.
 
 A plant's pin is a closure, a parameter's getter a lambda: pickle finds neither by name. Here a function is
 its module, the number of its code among the module's, and its cells. The source is the same by the digest
@@ -6,7 +6,7 @@ that a snapshot carries.
 """
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -62,3 +62,19 @@ def finish(made: FunctionType, state: tuple[Any, ...]) -> None:
     """Defaults and attributes."""
     made.__defaults__, made.__kwdefaults__, attributes, made.__qualname__ = state
     made.__dict__.update(attributes)
+
+
+def nothing(*_arguments: Any) -> None:
+    """What nobody does with what it is told."""
+
+
+class Nobody:
+    """In the place of a door, a log or a host: whatever it is called by, it does nothing."""
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return nothing
+
+    def __call__(self, *_arguments: Any) -> None:
+        """Nothing."""

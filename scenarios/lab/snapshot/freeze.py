@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.lab.snapshot import admitted, code
-from scenarios.lab.snapshot.outside import Nobody
+from scenarios.lab.snapshot.code import Nobody
 from scenarios.native.finder import compiled
 from scenarios.native.modules import PACKAGE, ROOMS, ROOT
 
@@ -56,12 +56,6 @@ def _array(shape: tuple[int, ...], kind: str, data: bytes) -> np.ndarray[Any, An
     return made
 
 
-def _no_network() -> dict[str, Any]:
-    """What `canopen` puts where no network is yet: it raises whatever it is asked."""
-    canopen = sys.modules.get(_CANOPEN)
-    return {} if canopen is None else {_NO_NETWORK: canopen._UNINITIALIZED_NETWORK}
-
-
 def _method(value: Any, name: str) -> Any:
     """A bound method of an object that may be in a snapshot."""
     if not admitted.has_method(type(value), name):
@@ -79,7 +73,9 @@ def _function(module: str, number: int, cells: tuple[CellType, ...]) -> Function
 class _Pickler(pickle.Pickler):
     def __init__(self, file: io.BytesIO, outside: Mapping[str, Any], outsiders: tuple[type, ...]) -> None:
         super().__init__(file, protocol=5)
-        self._names = {id(value): name for name, value in {**_no_network(), **outside}.items()}
+        self._names = {id(value): name for name, value in outside.items()}
+        if _CANOPEN in sys.modules:  # puts there, where no network is yet, what raises whatever it is asked
+            self._names[id(sys.modules[_CANOPEN]._UNINITIALIZED_NETWORK)] = _NO_NETWORK
         self._outsiders = outsiders
 
     def persistent_id(self, value: Any) -> str | None:

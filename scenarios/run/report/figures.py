@@ -13,8 +13,7 @@ from host.sky.observed import observe_many
 from scenarios.language.programme import Record
 from scenarios.run.errors import NoData, pointing_errors, rate_errors
 from scenarios.run.outcome import Outcome
-from scenarios.run.report.guiding import guiding
-from scenarios.run.report.pointing_run import pointing_run
+from scenarios.run.report.pointing_run import guiding, pointing_run
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 
 if TYPE_CHECKING:

@@ -47,7 +47,8 @@ def write(
         summary=summary,
         pictures=pictures,
         compared=compared[0] if compared is not None else [],
-        versions=_versions(),
+        versions={"schmidt": version("schmidt"), "Python": platform.python_version()}
+        | {name: version(name) for name in _LIBRARIES},
         start=outcome.scenario.clock.iso(0.0),
         files=sorted(path.name for path in outcome.folder.iterdir() if path.is_file()),
     )
@@ -98,8 +99,3 @@ def _timeline(outcome: Outcome) -> list[dict[str, Any]]:
             }
         rows.append(row)
     return rows
-
-
-def _versions() -> dict[str, str]:
-    found = {"schmidt": version("schmidt"), "Python": platform.python_version()}
-    return found | {name: version(name) for name in _LIBRARIES}

@@ -7,28 +7,20 @@ linear around the rate, no firmware with this encoder, tick and motor leaves les
 firmware need not come near.
 """
 
+from math import exp
 from typing import Final, NamedTuple
 
 import numpy as np
+from scipy.linalg import expm, solve_discrete_are, solve_discrete_lyapunov
 
 from plant.compiled import Floats
+from plant.deadzone import ohms, step_torque
 from plant.effects import wind_torque
 from plant.gears import RATIO
 from plant.parts import EffectModel, PlantModel
 from plant.rows import values
 from plant.units import ARCSEC
 from scenarios.studies.objective.bench import SIDEREAL
-from scenarios.studies.objective.linear import (
-    ANGLE,
-    RATE,
-    ROTOR_A,
-    ROTOR_B,
-    SIZE,
-    SPEED_A,
-    SPEED_B,
-    TORQUE_A,
-    continuous,
-)
 
 TICK_S: Final = 0.005
 """Paper, section 3.3."""
@@ -95,14 +87,14 @@ def designed(
             cross += size / PARTS * row.T @ move
             r = r + size / PARTS * move.T @ move
     shift = np.linalg.solve(r, cross.T)  # u = v - shift x leaves no cross term
-    cost = riccati(ad - bd @ shift, bd, weight - cross @ shift, r)
+    cost = solve_discrete_are(ad - bd @ shift, bd, weight - cross @ shift, r)
     gain = np.linalg.solve(r + bd.T @ cost @ bd, bd.T @ cost @ ad + cross.T)
     reads = np.zeros((1, n))
     reads[0, ANGLE] = 1.0
-    before = riccati(ad.T, reads.T, w, np.array([[reading**2]]))
+    before = solve_discrete_are(ad.T, reads.T, w, np.array([[reading**2]]))
     correction: Floats = before @ reads.T / (reads @ before @ reads.T + reading**2)
     after = before - correction @ reads @ before
-    known = lyapunov(ad - bd @ gain, before - after)
+    known = solve_discrete_lyapunov(ad - bd @ gain, before - after)
     rates = []
     for step, push, moved in steps:
         rows = (step - push @ gain)[RATE : RATE + 1]
@@ -113,8 +105,7 @@ def designed(
 
 
 def disturbed(model: PlantModel, wind: EffectModel) -> tuple[Floats, Floats, Floats]:
-    """Matrices of state and effort with the wind's lags behind the plant's states, and the density of what
-    drives them; angles in arcsec."""
+    """Matrices of state and effort, the wind's lags behind the plant's states, and their drive; in arcsec."""
     plant, effort, push = continuous(model, SIDEREAL * ARCSEC)
     given = values(wind)
     time = given["correlation_time"]
@@ -135,10 +126,10 @@ def held(a: Floats, b: Floats, noise: Floats, seconds: float) -> tuple[Floats, F
     n = len(a)
     both = np.zeros((n + b.shape[1], n + b.shape[1]))
     both[:n, :n], both[:n, n:] = a, b
-    step = exponential(both * seconds)
+    step = expm(both * seconds)
     pair = np.block([[-a, noise], [np.zeros((n, n)), a.T]])
     pieces = 64  # the fast winding would overflow in one
-    found = exponential(pair * (seconds / pieces))
+    found = expm(pair * (seconds / pieces))
     part = found[n:, n:].T
     added = part @ found[:n, n:]
     total = np.zeros((n, n))
@@ -147,38 +138,46 @@ def held(a: Floats, b: Floats, noise: Floats, seconds: float) -> tuple[Floats, F
     return step[:n, :n], step[:n, n:], (total + total.T) / 2
 
 
-def exponential(a: Floats) -> Floats:
-    """e to a matrix: Taylor of what has been halved often enough, squared as often."""
-    halvings = max(0, int(np.ceil(np.log2(max(float(np.abs(a).sum(axis=1).max()), 1e-12)))) + 4)
-    small = a / 2.0**halvings
-    found, term = np.eye(len(a)), np.eye(len(a))
-    for k in range(1, 13):
-        term = term @ small / k
-        found = found + term
-    for _ in range(halvings):
-        found = found @ found
-    return found
+# states: axis angle and rate, bristle torque; angle and rate of rotor A, its motor's torque; rotor B, too
+ANGLE, RATE, BRISTLE, ROTOR_A, SPEED_A, TORQUE_A, ROTOR_B, SPEED_B, TORQUE_B, SIZE = range(10)
 
 
-def riccati(a: Floats, b: Floats, weight: Floats, r: Floats) -> Floats:
-    """The discrete algebraic Riccati equation by doubling (Chu, Fan, Lin, Wang 2004)."""
-    g, h, one = b @ np.linalg.solve(r, b.T), weight, np.eye(len(a))
-    for _ in range(60):
-        middle = np.linalg.inv(one + g @ h)
-        added = a.T @ h @ middle @ a
-        a, g = a @ middle @ a, g + a @ middle @ g @ a.T
-        h = h + (added + added.T) / 2
-        if np.abs(added).max() < 1e-13 * np.abs(h).max():
-            return h
-    raise ValueError("objective: the bound in wind does not settle")
+def continuous(model: PlantModel, rate: float) -> tuple[Floats, Floats, Floats]:
+    """Matrices at steady sliding with `rate`, rad/s above 0: state, motor A's duty, a torque on the axis.
 
+    Both trains are in contact. The duty is in PWM steps, the torque in N m. SI units, rotors and motor as
+    seen at the axis.
 
-def lyapunov(a: Floats, added: Floats) -> Floats:
-    """Stationary covariance of x' = a x + noise, by doubling."""
-    total = added
-    for _ in range(60):
-        more = a @ total @ a.T
-        total, a = total + more, a @ a
-        if np.abs(more).max() < 1e-13 * np.abs(total).max():
-            return total
-    raise ValueError("objective: the bound in wind does not settle")
+    A leads: its EMF brakes. So does that of B behind a switching stage, as a bias keeps its current flowing.
+    By the superposition B gives a steady torque (plant/kernels/drive.py).
+    """
+    part = model.axes.ra
+    f, motor, gear = part.friction, part.motor, part.gear
+    x = (rate / f.stribeck_rate.si) ** f.stribeck_exponent.si
+    excess = (f.stiction.si - f.coulomb.si) * exp(-x)
+    level = f.coulomb.si + excess
+    slope = -excess * x * f.stribeck_exponent.si  # rate times dg/drate, N m
+    rotor, load = motor.rotor_inertia.si * RATIO**2, part.inertia.si
+    k, c, sigma0 = gear.stiffness.si / 2, gear.damping.si / 2, f.bristle_stiffness.si
+    ohm = ohms(motor)
+    constant, electric = motor.torque_constant.si * RATIO, motor.inductance.si / ohm
+    per_step = step_torque(model, motor)
+    a, b, push = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1)), np.zeros((SIZE, 1))
+    a[ANGLE, RATE] = 1.0
+    a[BRISTLE, [RATE, BRISTLE]] = sigma0 * slope / level, -sigma0 * rate / level
+    a[RATE, [RATE, BRISTLE]] = -f.viscous.si / load, -1.0 / load
+    a[RATE] -= f.bristle_damping.si / sigma0 / load * a[BRISTLE]
+    push[RATE, 0] = 1.0 / load
+    for angle, speed in ((ROTOR_A, SPEED_A), (ROTOR_B, SPEED_B)):
+        twist = np.zeros(SIZE)
+        twist[[ANGLE, RATE, angle, speed]] = -k, -c, k, c
+        a[RATE] += twist / load
+        a[angle, speed] = 1.0
+        a[speed] -= twist / rotor
+    for speed, torque in ((SPEED_A, TORQUE_A), (SPEED_B, TORQUE_B)):
+        a[speed, torque] = 1.0 / rotor
+        a[torque, torque] = -1.0 / electric
+        if speed == SPEED_A or motor.diode_drop:
+            a[torque, speed] = -(constant**2) / ohm / electric
+    b[TORQUE_A, 0] = per_step / electric
+    return a, b, push

@@ -9,12 +9,11 @@ from rich.console import Console
 from host.logs.files import write_file
 from plant.model import load
 from plant.wind import wind
-from scenarios.language import compensation as compensations
+from scenarios.language.configure import load_compensation
 from scenarios.progress import shown
+from scenarios.studies.objective import cases as table
 from scenarios.studies.objective.bench import MODES
 from scenarios.studies.objective.bound import bound
-from scenarios.studies.objective.cases import PAPER, cases, ladder, starts
-from scenarios.studies.objective.table import HEADINGS, Row, bound_line, line, markdown, measure, over_paper
 from scenarios.studies.options import ObjectiveOptions
 
 
@@ -26,35 +25,35 @@ def objective(options: ObjectiveOptions) -> int:
     Raises ValueError for what cannot be used.
     """
     console, out = Console(), options.out
-    rows_of = ladder() if options.steps else cases(options.compensation is not None)
+    rows_of = table.ladder() if options.steps else table.cases(options.compensation is not None)
     chosen = [case for case in rows_of if options.only is None or options.only in case.name]
     if not chosen:
         names = "; ".join(case.name for case in rows_of)
         raise ValueError(f"--only {options.only}: no row's name contains this; the rows are: {names}")
     plants = load(options.plant), load(options.plant_high)
     given = options.compensation
-    table = [] if given is None else compensations.load(given).parameters()
+    loaded = [] if given is None else load_compensation(given).parameters()
     out.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    console.print(_aligned(HEADINGS), highlight=False, soft_wrap=True)
+    rows: list[table.Row] = []
+    console.print(_aligned(table.HEADINGS), highlight=False, soft_wrap=True)
     with shown("holds", len(chosen) * len(MODES) * options.starts * options.seeds) as show:
         count = itertools.count(1)
-        for row in measure(chosen, plants, table, options, lambda text: show(next(count), text)):
+        for row in table.measure(chosen, plants, loaded, options, lambda text: show(next(count), text)):
             rows.append(row)
-            console.print(_aligned(line(row)), highlight=False, soft_wrap=True)
+            console.print(_aligned(table.line(row)), highlight=False, soft_wrap=True)
     bounds = {
         case.name: bound(case.plant(*plants), wind(case.wind_m_s))
         for case in chosen
         if case.wind_m_s and case.firmware != "paper"
     }
     for each in bounds.items():
-        console.print(_aligned(bound_line(*each)), highlight=False, soft_wrap=True)
-    ratios = over_paper(rows)
+        console.print(_aligned(table.bound_line(*each)), highlight=False, soft_wrap=True)
+    ratios = table.over_paper(rows)
     for name, ratio in ratios.items():
-        console.print(f"{name}: {ratio:.3f} of what {PAPER} leaves", highlight=False, soft_wrap=True)
+        console.print(f"{name}: {ratio:.3f} of what {table.PAPER} leaves", highlight=False, soft_wrap=True)
     command = shlex.join(["schmidt", "objective", *_given(options)])
-    write_file(out / "one-arcsecond.md", markdown(rows, command, bounds))
-    angles = starts(options.shift, options.starts)
+    write_file(out / "one-arcsecond.md", table.markdown(rows, command, bounds))
+    angles = table.starts(options.shift, options.starts)
     data = {
         "command": command, "starts_deg": angles, "rows": [row.as_json() for row in rows],
         "bounds": {name: each._asdict() for name, each in bounds.items()}, "over_paper": ratios,

@@ -1,2 +1,1 @@
-"""The paper's experiments E1 to E10: run on the emulator, measured as the authors measured, set beside their
-figures."""
+"""The paper's experiments E1 to E10: emulated, measured as the authors did, set beside their figures."""

@@ -1,5 +1,4 @@
-"""Torque over velocity from steady runs, and the static LuGre curve through it (paper, Fig. 8 and Table
-2)."""
+"""Torque over velocity from steady runs, the static LuGre curve through it (paper, Fig. 8, Table 2)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from plant.parts import PlantModel
-from scenarios.studies.paper.log import Array, Log
+from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.runs import BROKEN_AWAY
-from scenarios.studies.paper.scales import ADC_A_PER_COUNT, ARCSEC, EFFORT_SCALE, GEAR_RATIO
+from scenarios.studies.paper.scales import ADC_A_PER_COUNT, ARCSEC, EFFORT_SCALE, GEAR_RATIO, Drive
 
 
 @dataclass(frozen=True)
@@ -24,27 +22,7 @@ class MapPoint:
     unrest: float = 0.0
 
 
-@dataclass(frozen=True)
-class DataSheet:
-    """What the authors knew of the drive: torque constant, N m/A; counter split.
-
-    ripple: V / (2 L f), A, V from the diode's drop to the supply.
-    """
-
-    torque_constant: float
-    ripple: float
-    split: float
-
-
-def data_sheet(plant: PlantModel) -> DataSheet:
-    """Return the data sheet of a plant's RA drive."""
-    motor, controller = plant.axes.ra.motor, plant.controller
-    swing = plant.supply.voltage.si + (motor.diode_drop.si if motor.diode_drop else 0.0)
-    ripple = swing / (2.0 * motor.inductance.si * controller.pwm_frequency.si)
-    return DataSheet(motor.torque_constant.si, ripple, controller.counter_split.si)
-
-
-def ripple_free(log: Log, sheet: DataSheet) -> tuple[Array, Array]:
+def ripple_free(log: Log, sheet: Drive) -> tuple[Array, Array]:
     """Return the mean currents of motors A and B, A.
 
     The converter samples at the falling edge of the PWM, "where the motor current peaks" (paper 3.3). Half
@@ -63,7 +41,7 @@ def ripple_free(log: Log, sheet: DataSheet) -> tuple[Array, Array]:
     )
 
 
-def drive_torque(log: Log, sheet: DataSheet) -> Array:
+def drive_torque(log: Log, sheet: Drive) -> Array:
     """Return what the two motors give at the axis, N m, from the measured currents. B pulls against A."""
     a, b = ripple_free(log, sheet)
     return np.asarray((a - b) * sheet.torque_constant * GEAR_RATIO, dtype=np.float64)
@@ -85,7 +63,7 @@ def over_angle(log: Log) -> Array:
     return np.asarray(share, dtype=np.float64)
 
 
-def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
+def steady_point(forward: Log, backward: Log, sheet: Drive) -> MapPoint:
     """Return the mean torque and rate of two steady runs over the angle, there and back. Without acceleration
     half the difference of the drive torques is the friction, whatever the balance of the axis adds to both.
 
@@ -110,7 +88,7 @@ def steady_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
     )
 
 
-def break_away_point(forward: Log, backward: Log, sheet: DataSheet) -> MapPoint:
+def break_away_point(forward: Log, backward: Log, sheet: Drive) -> MapPoint:
     """Return the largest torque before the axis breaks away, and the rate at which it crept then.
 
     forward, backward: effort rising from rest, either way. Both are means over the same WINDOW samples:

@@ -1,4 +1,4 @@
-"""Figures taken from a velocity record, the way the paper states them.
+"""What one run of one axis leaves behind, and figures taken from its velocity, as the paper states them.
 
 The paper gives "peak errors" without saying over which average. Every figure is therefore computed for a
 record the caller chooses: velocity as logged (counts of 5 ms), true velocity, or means of one second.
@@ -8,8 +8,61 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.studies.paper.log import Array
-from scenarios.studies.paper.scales import LOG_PERIOD_S
+from scenarios.studies.paper.scales import ADC_A_PER_COUNT, COUNT_RATE, LOG_PERIOD_S
+from scenarios.studies.paper.scales import Array as Array
+
+
+@dataclass(frozen=True)
+class Log:
+    """Samples every 10 ms, all arrays of shape (n,).
+
+    t_s: s since the bench was switched on. counts: incremental encoder, counts in the last 5 ms. effort:
+    1/3000 of the supply, signed. adc_a, adc_b: ADC counts. true_rate: arcsec/s, what no instrument of the
+    telescope saw.
+    """
+
+    t_s: Array
+    counts: Array
+    effort: Array
+    adc_a: Array
+    adc_b: Array
+    true_rate: Array
+
+    @property
+    def rate(self) -> Array:
+        """Velocity as logged, arcsec/s: multiples of 2.296."""
+        return self.counts * COUNT_RATE
+
+    @property
+    def current_a(self) -> Array:
+        """Current of motor A, A."""
+        return self.adc_a * ADC_A_PER_COUNT
+
+    @property
+    def current_b(self) -> Array:
+        """Current of motor B, A."""
+        return self.adc_b * ADC_A_PER_COUNT
+
+    def after(self, seconds: float) -> "Log":
+        """Return the log without its first `seconds`: start-up discarded."""
+        first = round(seconds / LOG_PERIOD_S)
+        if first >= self.t_s.size:
+            raise ValueError(
+                f"a run of {self.t_s.size * LOG_PERIOD_S:.2f} s has nothing after {seconds:.2f} s"
+            )
+        return Log(*(column[first:] for column in self._columns()))
+
+    def last(self, seconds: float) -> "Log":
+        """Return the last `seconds` of the log."""
+        return self.after(max(0.0, self.t_s.size * LOG_PERIOD_S - seconds))
+
+    def _columns(self) -> tuple[Array, ...]:
+        return self.t_s, self.counts, self.effort, self.adc_a, self.adc_b, self.true_rate
+
+
+def join(logs: list[Log]) -> Log:
+    """Return consecutive logs of one bench as one."""
+    return Log(*(np.concatenate(columns) for columns in zip(*(log._columns() for log in logs), strict=True)))
 
 
 def peak_percent(rate: Array, setpoint: float) -> float:
@@ -27,11 +80,9 @@ def means(rate: Array, seconds: float = 1.0) -> Array:
 
 
 def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
-    """Return how often the velocity went from below to above: below (1 - depth) and then above (1 + depth)
-    set points.
+    """Return how often the velocity went from below (1 - depth) to above (1 + depth) set points.
 
-    A limit cycle does that again and again; quantisation of a steady motion (7 to 8 percent at 15 arcsec/s)
-    never.
+    A limit cycle does so again and again; quantisation of steady motion (7 to 8 % at 15 arcsec/s) never.
     """
     ratio = rate / setpoint
     state, count = 0, 0
@@ -69,27 +120,31 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
     y = record[: count * width].reshape(count, width).mean(axis=1)
     t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
     t = t - t.mean()
-    still = np.column_stack([np.ones_like(t), t / span])
-    rest = y - still @ np.linalg.lstsq(still, y, rcond=None)[0]
-    best, most = Line(low_hz, 0.0), -1.0
+    rest = _detrended(t, y)
+    best, least = Line(low_hz, 0.0), np.inf
     for f in np.arange(low_hz, high_hz, 0.1 / span):
-        swing = np.column_stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t)])
-        coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
-        explained = float(rest @ rest - np.sum((rest - swing @ coefficient) ** 2))
-        if explained > most:
-            best, most = Line(float(f), float(np.hypot(coefficient[0], coefficient[1]))), explained
+        amplitude, left = _sinusoid(t, rest, f)
+        if left < least:
+            best, least = Line(float(f), amplitude), left
     return best
 
 
 def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
-    t = np.arange(record.size) * period_s
-    t = t - t.mean()
-    still = np.column_stack([np.ones_like(t), t])
-    rest = record - still @ np.linalg.lstsq(still, record, rcond=None)[0]
-    swing = np.column_stack([np.cos(2 * np.pi * frequency_hz * t), np.sin(2 * np.pi * frequency_hz * t)])
-    coefficient = np.linalg.lstsq(swing, rest, rcond=None)[0]
-    return float(np.hypot(coefficient[0], coefficient[1]))
+    t: Array = (np.arange(record.size, dtype=np.float64) - (record.size - 1) / 2.0) * period_s
+    return _sinusoid(t, _detrended(t, record), frequency_hz)[0]
+
+
+def _detrended(t: Array, y: Array) -> Array:
+    return np.asarray(y - np.polyval(np.polyfit(t, y, 1), t), dtype=np.float64)
+
+
+def _sinusoid(t: Array, rest: Array, frequency_hz: float) -> tuple[float, float]:
+    """Amplitude of the sinusoid of one frequency that fits best, and the square sum that it leaves."""
+    turn = 2 * np.pi * frequency_hz * t
+    swing = np.column_stack([np.cos(turn), np.sin(turn)])
+    found = np.linalg.lstsq(swing, rest, rcond=None)[0]
+    return float(np.hypot(*found)), float(np.sum((rest - swing @ found) ** 2))
 
 
 def stalled(rate: Array) -> bool:

@@ -1,8 +1,8 @@
-"""A row of the table: what an experiment measured at every start, median and worst, and whether all of it
-holds."""
+"""Rows of the table: what was measured at every start, median, worst, whether all holds; and its page."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from datetime import date
 from statistics import median
 from typing import Any
 
@@ -57,9 +57,8 @@ class Row:
         return sum(not limit.holds(value) for value in self.values(limit.figure)) + len(self.failed)
 
     def _line(self, limit: Limit) -> str:
-        unit = "" if limit.unit == "1" else f" {limit.unit}"
         middle, far = self.median(limit.figure), self.worst(limit)
-        text = f"{limit.words} {_short(middle)}, worst {_short(far)}{unit} ({limit.bounds})"
+        text = f"{limit.words} {_short(middle)}, worst {_short(far, limit.unit)} ({limit.bounds})"
         count = self.misses(limit)
         return f"{text} at {count} of {len(self.found) + len(self.failed)} starts" if count else text
 
@@ -103,16 +102,9 @@ class Row:
             "quote": said.quote,
             "bound": said.bound,
             "limits": [
-                {
-                    "figure": limit.figure,
-                    "unit": limit.unit,
-                    "low": limit.low,
-                    "high": limit.high,
-                    "median": _plain(self.median(limit.figure)),
-                    "worst": _plain(self.worst(limit)),
-                    "missed_at": self.misses(limit),
-                    "met": self.holds(limit),
-                }
+                asdict(limit)
+                | {"median": _plain(self.median(limit.figure)), "worst": _plain(self.worst(limit))}
+                | {"missed_at": self.misses(limit), "met": self.holds(limit)}
                 for limit in self.experiment.limits
             ],
             "starts": [
@@ -127,5 +119,50 @@ def _plain(value: float) -> float | None:
     return round(value, 6) if value == value else None
 
 
-def _short(value: float) -> str:
-    return f"{value:.3g}" if value == value else "none"
+def _short(value: float, unit: str = "1") -> str:
+    return "none" if value != value else f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
+
+
+_HEAD = """# The paper's experiments
+
+    {command}
+
+The command repeats E1 to E10 and five more sentences of the paper on the emulated boards. Made on {day}.
+Plants: {plants}. Each row is measured at {starts} starts, and is met when every limit holds at every start.
+
+**{met} of {rows} rows are met** together, by one drive and one controller. Median and worst are those of the
+figure that is missed by most, or met by least. [Row by row](../reference/paper.md) says what each row is held
+to, and why not all can be met.
+"""
+
+
+def _line(row: Row) -> str:
+    said, limit = row.experiment.said, row.decisive
+    verdict = "met" if row.passed else "**miss**"
+    middle, far = (_short(value, limit.unit) for value in (row.median(limit.figure), row.worst(limit)))
+    decides = f"{limit.words} ({limit.bounds})"
+    title = f"{said.title} ({said.where})"
+    return f"| {row.id} | {title} | {said.figure} | {decides} | {middle} | {far} | {verdict} |"
+
+
+def _figures(row: Row) -> list[str]:
+    """A line for each limit, and for each figure that is only printed beside them."""
+    beside = (f"no limit: {each}" for each in row.beside)
+    pieces = [*row.lines(False), *row.unevaluated, *row.lines(True), *beside]
+    return [f"| {row.id} | {piece} |" for piece in pieces]
+
+
+def markdown(rows: Sequence[Row], plants: Sequence[str], command: str, day: date) -> str:
+    """Return the results as a Markdown page, what is missed first."""
+    head = (
+        "| row | experiment | published | decides (limit) | median | worst | |\n|---|---|---|---|---|---|---|"
+    )
+    missed, met = ([row for row in rows if row.passed is passed] for passed in (False, True))
+    starts = max(len(row.found) + len(row.failed) for row in rows)
+    facts = {"command": command, "day": day.isoformat(), "plants": ", ".join(plants), "starts": starts}
+    lines = [_HEAD.format(**facts, met=len(met), rows=len(rows))]
+    for title, those in (("Missed", missed), ("Met", met)):
+        lines += [f"## {title}", head, *map(_line, those), ""]
+    lines += ["## Every figure", "Median, worst, and the limit in brackets.\n"]
+    lines += ["| row | figure |", "|---|---|", *(line for row in rows for line in _figures(row))]
+    return "\n".join(lines) + "\n"

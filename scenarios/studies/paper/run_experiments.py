@@ -1,9 +1,10 @@
-"""`schmidt paper`: run the rows, print published beside emulated, write JSON, plots and the table."""
+"""`schmidt paper`: run the rows, print published beside emulated, write JSON and the table."""
 
 import itertools
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -13,18 +14,68 @@ from rich.console import Console
 from host.logs.files import write_file
 from plant.model import default_files, load
 from plant.parts import PlantModel
+from scenarios.campaign.executor import each
 from scenarios.progress import shown
 from scenarios.studies.options import HIGH, LOW, PaperOptions
-from scenarios.studies.paper.campaign import rows as run_rows
-from scenarios.studies.paper.emulator import EmulatorBench
-from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment
-from scenarios.studies.paper.figures import draw_all
-from scenarios.studies.paper.record import record
-from scenarios.studies.paper.rows import Row
-from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, Start, others
-from scenarios.studies.paper.table import markdown, show
+from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment, Figures
+from scenarios.studies.paper.rows import Row, markdown
+from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, EmulatorBench, Start, others
 
 DEFAULTS = {"low": LOW, "high": HIGH}
+Outcome = tuple[Figures, str]
+"""Figures, or why there are none."""
+DEAREST = ("E7", "E6", "E8", "E11", "E3", "E5", "E13", "E1")
+"""Begun first, so that no process is left with a long one at the end."""
+
+
+def measure(experiment: Experiment, plants: Mapping[str, PlantModel], start: Start) -> Outcome:
+    """Run one experiment at one start. A plant on which it cannot be evaluated misses the row."""
+    try:
+        return experiment.measure(Benches(EmulatorBench, plants, start)), ""
+    except ValueError as error:
+        return {}, str(error)
+
+
+def _job(plants: Mapping[str, PlantModel], job: tuple[str, Start]) -> Outcome:
+    """What a process does: experiments are found by name, functions of modules travel badly."""
+    name, start = job
+    return measure(next(row for row in EXPERIMENTS if row.id == name), plants, start)
+
+
+def run_rows(
+    plants: Mapping[str, PlantModel],
+    experiments: Sequence[Experiment],
+    starts: Sequence[Start],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[str], None] = lambda text: None,
+) -> list[Row]:
+    """Return the rows: every experiment at every start is a job of its own with its own simulation.
+
+    workers: processes. scheduler: address of a Dask cluster instead. progress: told after every job what it
+    was.
+    """
+    ranks = {name: rank for rank, name in enumerate(DEAREST)}
+    ordered = sorted((row.id for row in experiments), key=lambda name: ranks.get(name, len(ranks)))
+    jobs = {f"{name} {place}": (name, start) for name in ordered for place, start in enumerate(starts)}
+    found: dict[str, dict[Start, Outcome]] = {name: {} for name in ordered}
+    for done in each(partial(_job, plants), jobs.items(), jobs=workers, scheduler=scheduler):
+        if done.value is None:
+            raise RuntimeError(f"{done.key}: {done.error}")
+        name, start = jobs[done.key]
+        found[name][start] = done.value
+        progress(name)
+    return [row_of(row, {start: found[row.id][start] for start in starts}) for row in experiments]
+
+
+def row_of(experiment: Experiment, outcomes: Mapping[Start, Outcome]) -> Row:
+    """Return a row of what was found at its starts."""
+    return Row(
+        experiment,
+        {start: figures for start, (figures, why) in outcomes.items() if not why},
+        {start: why for start, (_, why) in outcomes.items() if why},
+    )
 
 
 def pair(low: Path | None, high: Path | None) -> dict[str, str]:
@@ -42,11 +93,6 @@ def pair(low: Path | None, high: Path | None) -> dict[str, str]:
             given = twin if twin != partner and (twin.exists() or twin.stem in default_files()) else None
         names[preload] = str(given or DEFAULTS[preload])
     return names
-
-
-def names_of(files: Mapping[str, str]) -> list[str]:
-    """Return plant files as a table names them: without the folder they happen to lie in."""
-    return [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
 
 
 def select(names: str | None) -> list[Experiment]:
@@ -92,26 +138,20 @@ def paper(options: PaperOptions) -> int:
         count = itertools.count(1)
         found = run_rows(
             plants,
-            experiments=chosen,
-            starts=starts,
+            chosen,
+            starts,
             workers=options.jobs,
             scheduler=options.scheduler,
             progress=lambda text: tell(next(count), text),
         )
     seconds = monotonic() - begin
-    show(found, console)
     document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
     write_file(options.json_file or out / "paper.json", document)
-    if options.rows is None:
-        with console.status("figures"):
-            drawn = draw_all(record(Benches(EmulatorBench, plants, STARTS[0])), out)
-        for path in drawn:
-            console.print(f"  {path}")
     command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
-    table = markdown(found, names_of(files), command, date.today())
+    names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
+    table = markdown(found, names, command, date.today())
+    console.print(table, markup=False, highlight=False, soft_wrap=True)
     write_file(out / "experiments.md", table)
-    if options.markdown is not None:
-        write_file(options.markdown, table)
     met = sum(row.passed for row in found)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if options.quick else "")
     console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")

@@ -8,8 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
-from scenarios.studies.paper.log import Log, join
-from scenarios.studies.paper.measures import stalled
+from scenarios.studies.paper.measures import Log, join, stalled
 from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
 
 TRACKING = 15.0
@@ -18,8 +17,6 @@ HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
 """arcsec/s, "higher speeds of 600 to 1000 arc sec/s" (paper 4)."""
 OPENED = (600.0, 1000.0)
 """arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a))."""
-OPENED_S = 200.0
-"""s in open loop: 33 and 56 degrees of sky."""
 SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
 LOW = 100.0
@@ -42,39 +39,15 @@ class Bench(Protocol):
 
 
 def tracking(bench: Bench, seconds: float = 60.0, discard: float = 25.0) -> Log:
-    """E1, E2: closed loop at 15 arcsec/s from rest; start-up is discarded (hardware.md 2.4: more than 20
-    s)."""
+    """E1, E2: closed loop at 15 arcsec/s from rest, less start-up (hardware.md 2.4: more than 20 s)."""
     return bench.closed_loop(TRACKING, discard + seconds).after(discard)
 
 
-@dataclass(frozen=True)
-class HighSpeed:
-    """One speed of E3 and E5: closed loop, and open loop at the mean effort the loop had needed; None: not
-    run."""
-
-    setpoint: float
-    closed: Log
-    opened: Log | None
-
-
-def high_speed(
-    bench: Bench, setpoint: float, seconds: float = 12.0, settle: float = 4.0, opened_s: float = 0.0
-) -> HighSpeed:
-    """E3, E5: closed loop at a speed, then for `opened_s` open loop at the effort that had held it.
-
-    The open-loop run is as long as a slew across the sky. Not only the gears throw an open-loop drive off its
-    speed but also the balance, which changes over tens of degrees.
-    """
+def high_speed(bench: Bench, setpoint: float, seconds: float, settle: float) -> tuple[Log, Log]:
+    """E3, E5: closed loop at a speed, then as long in open loop at the mean effort that had held it."""
     closed = bench.closed_loop(setpoint, settle + seconds).after(settle)
-    if not opened_s:
-        return HighSpeed(setpoint, closed, None)
     effort = round(float(closed.effort.mean()))
-    return HighSpeed(setpoint, closed, bench.open_loop(effort, settle + opened_s).after(settle))
-
-
-def slow_slew(bench: Bench, setpoint: float, seconds: float = 6.0, settle: float = 7.0) -> Log:
-    """E4: closed loop at 1 to 3 deg/s, after the acceleration."""
-    return bench.closed_loop(setpoint, settle + seconds).after(settle)
+    return closed, bench.open_loop(effort, settle + seconds).after(settle)
 
 
 @dataclass(frozen=True)
@@ -147,8 +120,7 @@ MAP_SPEEDS = (
     10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0,
     1200.0, 1400.0, 1600.0, 1800.0, 2400.0, 4800.0, 7200.0,
 )  # fmt: skip
-"""arcsec/s, set points of the torque-velocity map (Fig. 8): from below tracking to the slew speed of Table
-1."""
+"""arcsec/s, set points of the torque-velocity map (Fig. 8): below tracking to the slew speed of Table 1."""
 
 
 MAP_AVERAGED_S, MAP_STRETCH_ARCSEC = 30.0, 36_000.0
@@ -163,7 +135,8 @@ def map_run(bench: Bench, setpoint: float) -> Log:
     """
     settle = map_settle(setpoint)
     at_least = max(6.0, min(MAP_AVERAGED_S, MAP_STRETCH_ARCSEC / abs(setpoint)))
-    return bench.closed_loop(setpoint, settle + whole_turns(setpoint, at_least)).after(settle)
+    half_turn = MOTOR_TURN_ARCSEC / abs(setpoint) / 2.0
+    return bench.closed_loop(setpoint, settle + half_turn * ceil(at_least / half_turn)).after(settle)
 
 
 def map_settle(setpoint: float) -> float:
@@ -177,12 +150,6 @@ def map_pair(bench: Bench, setpoint: float) -> tuple[Log, Log]:
     there = map_run(bench, setpoint)
     bench.closed_loop(setpoint, map_settle(setpoint))
     return there, map_run(bench, -setpoint)
-
-
-def whole_turns(arcsec_s: float, at_least: float = 6.0) -> float:
-    """Return the time of the fewest half motor turns that last `at_least` seconds, s."""
-    half_turn = MOTOR_TURN_ARCSEC / abs(arcsec_s) / 2.0
-    return half_turn * ceil(at_least / half_turn)
 
 
 def opened_run(bench: Bench, begin: float, effort: int) -> Log:
@@ -236,8 +203,3 @@ def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
 
 STEP_TO = 600.0
 """arcsec/s, Fig. 11."""
-
-
-def step(bench: Bench, setpoint: float = STEP_TO, seconds: float = 3.0) -> Log:
-    """E9: from rest to 600 arcsec/s, closed loop."""
-    return bench.closed_loop(setpoint, seconds)

@@ -16,7 +16,7 @@ from bus.can import Frame
 from bus.outside.node import OutsideNode
 from bus.protocol import COMMAND_BASE, HEARTBEAT_BASE, MEASUREMENT_BASE, Device, Opcode, pack_command
 from plant.plant import Plant
-from scenarios.lab.faults import Faults
+from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import build
 from scenarios.lab.networks import NetworkConfig, NodeConfig
 from scenarios.lab.prepare import chosen

@@ -21,7 +21,7 @@ from plant.rows import write
 from plant.world import constants
 from scenarios.lab.network import Network
 from scenarios.lab.prepare import Changes, prepare
-from scenarios.lab.snapshot import restore, take
+from scenarios.lab.snapshot.freeze import restore, take
 from scenarios.lab.wiring import wire
 from scenarios.native import compiled
 from scenarios.run.run import Way, run

@@ -8,7 +8,7 @@ import pytest
 from canopen.sdo.exceptions import SdoAbortedError
 
 from bus import protocol as p
-from scenarios.commands.datasheets import write_eds
+from scenarios.commands.describing import write_eds
 from tests.boards.canopen.test_voice import RA, Bench
 
 MASTER = 0x7F

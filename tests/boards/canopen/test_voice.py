@@ -13,7 +13,7 @@ from bus import protocol as p
 from bus.outside.lockstep import LockstepBus
 from plant.model import load
 from plant.plant import Plant
-from scenarios.commands.datasheets import write_eds
+from scenarios.commands.describing import write_eds
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import NetworkConfig
 

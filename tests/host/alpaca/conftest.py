@@ -8,7 +8,7 @@ import pytest
 
 from host.alpaca import discovery
 from host.alpaca.server import Alpaca
-from scenarios.doors.address import listen
+from scenarios.doors.clients import listen
 from tests.host.live import Live
 
 DISCOVERY_PORT = 32227

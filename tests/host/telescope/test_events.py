@@ -10,7 +10,7 @@ from host.console.pages.dome import interlock_text
 from host.console.plots import PANELS, rms_text, series, span
 from host.telescope import Refused
 from host.telescope.alarms import Severity, of_house
-from scenarios.doors.busmirror import BusMirror
+from scenarios.doors.piped_host import BusMirror
 from tests.host.telescope.conftest import Rig
 
 

@@ -7,8 +7,7 @@ import pytest
 import yaml
 
 from scenarios.campaign import table
-from scenarios.campaign.options import CampaignOptions
-from scenarios.campaign.run_campaign import campaign
+from scenarios.campaign.run_campaign import CampaignOptions, campaign
 from tests.calibration.logs import effect, write_logs
 
 FRICTION = "axes.ra.friction.viscous"

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 import yaml
 
-from scenarios.campaign.job import Job, run
+from scenarios.campaign.job import run
+from scenarios.campaign.plan import Case
 from tests.scenarios.conftest import SHORT
 
 ACTS: dict[str, Any] = {"sensor_bias": {"sensor": "focus.lvdt", "offset": 0.01}}
@@ -24,9 +25,8 @@ def test_a_row_counts_faults_that_never_acted(
     document = {**yaml.safe_load(SHORT), "faults": faults}
     document["start_utc"] = "2026-02-10T14:00:00Z"
     values = {"fault": faults[-1]}
-    job = Job(
+    job = Case(
         key="a", index=0, values=values, document=document, beside=str(tmp_path), metrics=("expectations",),
-        keep="nothing", kept=None,
     )  # fmt: skip
     row = run(job)
     assert (row["failure"], row["silent_faults"], row["passed"]) == ("", count, passed)

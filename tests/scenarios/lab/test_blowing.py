@@ -12,7 +12,7 @@ from plant.kernels import layout as at
 from scenarios.lab.network import Network
 from scenarios.lab.networks import NetworkError
 from scenarios.lab.prepare import prepare
-from scenarios.lab.snapshot import restore, take
+from scenarios.lab.snapshot.freeze import restore, take
 from scenarios.lab.wiring import wire
 from scenarios.native import compiled
 

@@ -14,7 +14,7 @@ from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.units import ARCSEC
 from scenarios.lab.chain import DROP_NS, FED_NS
-from scenarios.lab.faults import FaultError
+from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.lab import Lab
 from scenarios.lab.prepare import prepare
 from scenarios.run import run as runner

@@ -11,7 +11,7 @@ import pytest
 
 from bus.units import ARCSEC_PER_RAD
 from host.logs.traces import Trace
-from scenarios.language.compensation import Compensation, Line
+from scenarios.language.configure import Compensation, Line
 from scenarios.language.document import parse
 from scenarios.language.load import convert
 from scenarios.language.model import Scenario

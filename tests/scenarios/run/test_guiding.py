@@ -19,8 +19,8 @@ from scenarios.lab.snapshot.file import read
 from scenarios.lab.snapshot.run import Order
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
+from scenarios.language.model import check_targets
 from scenarios.language.plants import plant_model
-from scenarios.language.targets import check_targets
 from scenarios.native import compiled
 from scenarios.run import run as runner
 

@@ -14,8 +14,8 @@ from bus.protocol import Device
 from host.logs import traces
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
+from scenarios.language.model import check_targets
 from scenarios.language.plants import plant_model
-from scenarios.language.targets import check_targets
 from scenarios.run import run as runner
 from tests.scenarios.conftest import SHORT, Command
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from plant.model import load, with_effects
 from plant.parts import EffectModel, PlantModel
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 from scenarios.studies.objective.bench import hold
 from scenarios.studies.objective.cases import EFFECTS, starts

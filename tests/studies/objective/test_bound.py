@@ -1,8 +1,8 @@
-"""The bound in wind: its solvers against SciPy's, its figure against a run of its own and the firmwares'."""
+"""The bound in wind: its steps against integrals, its figure against a run of its own and the firmwares'."""
 
 import numpy as np
 import pytest
-from scipy.linalg import expm, solve_discrete_are, solve_discrete_lyapunov
+from scipy.linalg import expm
 
 from plant.deadzone import bias_steps
 from plant.kernels import layout as at
@@ -11,25 +11,13 @@ from plant.parts import EffectModel, Number
 from plant.plant import Plant
 from plant.units import ARCSEC, TURN
 from plant.wind import wind
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.studies.objective import bound as best
 from scenarios.studies.objective.bench import SIDEREAL, hold
-from scenarios.studies.objective.linear import ANGLE, RATE
+from scenarios.studies.objective.bound import ANGLE, RATE
 
 LOW = load("low_preload_bridge")
 BIAS = bias_steps(LOW, LOW.axes.ra.motor)
-rng = np.random.default_rng(1)
-
-
-def test_the_solvers_are_scipys() -> None:
-    a, b = rng.standard_normal((6, 6)), rng.standard_normal((6, 2))
-    root = rng.standard_normal((6, 6))
-    weight, r = root @ root.T, np.diag([1.0, 0.3])
-    assert best.exponential(3 * a) == pytest.approx(expm(3 * a), rel=1e-9, abs=1e-9)
-    assert best.riccati(a, b, weight, r) == pytest.approx(solve_discrete_are(a, b, weight, r), rel=1e-7)
-    calm = a / (1.1 * np.abs(np.linalg.eigvals(a)).max())
-    found = best.lyapunov(calm, weight)
-    assert found == pytest.approx(solve_discrete_lyapunov(calm, weight), rel=1e-8, abs=1e-8)
 
 
 def test_noise_of_a_step_is_its_integral() -> None:

@@ -8,11 +8,10 @@ import pytest
 from plant.model import get, load, with_effects, with_value
 from plant.parts import EffectModel, Number, PlantModel
 from plant.wind import wind
-from scenarios.language.firmware import parameters_of
+from scenarios.language.configure import parameters_of
 from scenarios.studies.objective.bench import hold
-from scenarios.studies.objective.cases import cases, starts
+from scenarios.studies.objective.cases import Row, cases, line, starts
 from scenarios.studies.objective.run_holds import objective
-from scenarios.studies.objective.table import Row, line
 from scenarios.studies.options import ObjectiveOptions
 
 LOW = "low_preload_bridge"

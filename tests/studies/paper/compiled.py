@@ -10,7 +10,7 @@ import numpy as np
 from plant.loop import Excitation, simulate
 from plant.model import with_value
 from plant.parts import PlantModel
-from scenarios.studies.paper.log import Array, Log
+from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.scales import ARCSEC, LOG_PERIOD_S
 
 START_STEPS = float(1 << 28)

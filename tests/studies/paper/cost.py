@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment
-from scenarios.studies.paper.published import TABLE_2
+from scenarios.studies.paper.scales import TABLE_2
 from scenarios.studies.paper.starts import Benches
 from tests.studies.paper.statics import stall_current
 

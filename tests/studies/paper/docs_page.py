@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from scenarios.studies.paper.experiments import EXPERIMENTS, Limit
-from scenarios.studies.paper.published import TABLE_2
+from scenarios.studies.paper.scales import TABLE_2
 from scenarios.studies.paper.starts import ANGLES_DEG, SEEDS
 from tests.studies.paper.space import SPACE
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from plant.model import load
 from plant.parts import PlantModel
-from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.starts import Benches, Start
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.cost import Term, cost

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.progress import shown
-from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.starts import STARTS
 from tests.studies.paper.objective import NAME, Enough, Objective
 from tests.studies.paper.plantfile import write

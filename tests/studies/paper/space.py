@@ -7,9 +7,8 @@ from math import exp, log
 import numpy as np
 
 from plant.model import EffectModel, Number, PlantModel, with_effects, with_value
-from scenarios.studies.paper.log import Array
-from scenarios.studies.paper.published import INERTIA, TABLE_2
-from scenarios.studies.paper.scales import GEAR_RATIO
+from scenarios.studies.paper.measures import Array
+from scenarios.studies.paper.scales import GEAR_RATIO, INERTIA, TABLE_2
 
 
 @dataclass(frozen=True)

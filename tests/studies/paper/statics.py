@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.studies.paper.published import TABLE_2
 from scenarios.studies.paper.runs import STEP_TO
-from scenarios.studies.paper.scales import ARCSEC, GEAR_RATIO
+from scenarios.studies.paper.scales import ARCSEC, GEAR_RATIO, TABLE_2
 
 SUPPLY_V = 24.0
 DROP_V = 0.7

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenarios.studies.paper.log import Array, Log
+from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.scales import ADC_A_PER_COUNT, COUNT_RATE, GEAR_RATIO, LOG_PERIOD_S
 
 

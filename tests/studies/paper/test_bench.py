@@ -3,8 +3,8 @@ import pytest
 
 from plant.model import load
 from scenarios.lab.axisbench import BenchError
-from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.runs import TRIALS, low_speed
+from scenarios.studies.paper.starts import EmulatorBench
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.synthetic import log_of
 

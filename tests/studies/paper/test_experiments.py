@@ -7,15 +7,14 @@ import pytest
 from plant.model import load
 from scenarios.studies.paper.experiments import closed as in_loop
 from scenarios.studies.paper.experiments import opened as out_of_loop
-from scenarios.studies.paper.experiments import tracking
-from scenarios.studies.paper.experiments.identify import fit, second_order
-from scenarios.studies.paper.experiments.noise import CONSTANT_ERROR, Noise
-from scenarios.studies.paper.experiments.tracking import stick_slips
+from scenarios.studies.paper.experiments.closed import stick_slips
+from scenarios.studies.paper.experiments.frictionmap import CONSTANT_ERROR, Noise
+from scenarios.studies.paper.experiments.identify import FirstOrder, fit, second_order
+from scenarios.studies.paper.experiments.models import RULES
 from scenarios.studies.paper.rows import Row
 from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.scales import COUNT_RATE
 from scenarios.studies.paper.starts import STARTS, Benches
-from scenarios.studies.paper.tuning import RULES, FirstOrder
 from tests.studies.paper.synthetic import log_of
 
 PLANTS = {preload: load(name) for preload, name in DEFAULTS.items()}
@@ -47,7 +46,7 @@ def met(experiment, make):
 
 @pytest.mark.parametrize(("percent", "passed"), [(9.0, False), (12.0, True), (24.9, True), (26.0, False)])
 def test_E1_between_10_and_25_percent(percent, passed):
-    assert met(tracking.low_preload, lambda: Axis(lambda v: percent)) is passed
+    assert met(in_loop.low_preload, lambda: Axis(lambda v: percent)) is passed
 
 
 @pytest.mark.parametrize(
@@ -114,7 +113,7 @@ def test_E2_a_cycle_needs_a_stick_phase_and_a_leap():
 
 
 def test_E11_a_loop_that_never_sticks_misses_the_row():
-    assert not met(tracking.low_gains, lambda: Axis(lambda v: 20.0))
+    assert not met(in_loop.low_gains, lambda: Axis(lambda v: 20.0))
 
 
 @pytest.mark.parametrize(("gain", "lag", "dead"), [(1.9, 0.066, 0.0085), (3.0, 0.02, 0.03), (0.5, 0.2, 0.01)])

@@ -6,14 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plant.model import load, with_effects, with_value
-from scenarios.studies.paper.coasting import Coasting, Drive, coast, drive
-from scenarios.studies.paper.emulator import EmulatorBench
 from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
-from scenarios.studies.paper.experiments.frictionmap import friction_map
+from scenarios.studies.paper.experiments.frictionmap import Noise, friction_map
 from scenarios.studies.paper.experiments.identify import identify
-from scenarios.studies.paper.experiments.noise import Noise
 from scenarios.studies.paper.friction_map import (
-    DataSheet,
     FrictionFit,
     MapPoint,
     break_away_point,
@@ -22,8 +18,7 @@ from scenarios.studies.paper.friction_map import (
     friction_curve,
     steady_point,
 )
-from scenarios.studies.paper.published import INERTIA, TABLE_2
-from scenarios.studies.paper.rundown import fit_run_downs
+from scenarios.studies.paper.rundown import Coasting, coast, fit_run_downs
 from scenarios.studies.paper.runs import (
     MAP_SPEEDS,
     MOTOR_TURN_ARCSEC,
@@ -32,13 +27,36 @@ from scenarios.studies.paper.runs import (
     opened_pair,
     run_down,
 )
-from scenarios.studies.paper.scales import ADC_A_PER_COUNT, ARCSEC, COUNT_RATE, GEAR_RATIO, LOG_PERIOD_S
-from scenarios.studies.paper.starts import STARTS, Benches, Start, with_inertia
+from scenarios.studies.paper.scales import (
+    ADC_A_PER_COUNT,
+    ARCSEC,
+    COUNT_RATE,
+    GEAR_RATIO,
+    INERTIA,
+    LOG_PERIOD_S,
+    TABLE_2,
+    Drive,
+    drive,
+)
+from scenarios.studies.paper.starts import STARTS, Benches, EmulatorBench, Start, with_inertia
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.synthetic import current_for, log_of
 
 K = 0.8  # N m/A
-SHEET = DataSheet(K, 0.0, 0.1)
+RIGID = Drive(
+    torque_constant=1e-6,
+    winding=0.8,
+    switch=0.2,
+    inductance=1e-4,
+    diode_drop=None,
+    rotor=4.0,
+    stiffness=2e7,
+    voltage=24.0,
+    split=0.1,
+    ripple=0.0,
+)
+"""No motors to speak of, on trains that hardly give."""
+SHEET = dataclasses.replace(RIGID, torque_constant=K)
 RATES = np.array(sorted(MAP_SPEEDS)) * ARCSEC
 
 
@@ -153,20 +171,6 @@ def test_E7_break_away_is_the_largest_torque_before_the_axis_is_gone():
     assert point.rate < 10.0 * ARCSEC
 
 
-RIGID = Drive(
-    torque_constant=1e-6,
-    winding=0.8,
-    switch=0.2,
-    inductance=1e-4,
-    diode_drop=None,
-    rotor=4.0,
-    stiffness=2e7,
-    voltage=24.0,
-    split=0.1,
-)
-"""No motors to speak of, on trains that hardly give."""
-
-
 @pytest.mark.parametrize("inertia", [1200.0, 1760.0, 2200.0])
 def test_E8_without_motors_an_axis_coasts_as_friction_and_inertia_have_it(inertia):
     fit = FrictionFit(*table("low", 1.0))
@@ -239,7 +243,7 @@ def test_E7_half_the_current_ripple_is_taken_off_the_peaks():
         log_of(np.full(n, 600.0), effort=np.full(n, 750.0), current=np.full(n, mean_a + 0.4 * 0.25 * 0.75)),
         adc_b=np.full(n, (mean_b + 0.4 * 0.025 * 0.975) / ADC_A_PER_COUNT),
     )
-    torque = drive_torque(log, DataSheet(K, 0.4, 0.1))
+    torque = drive_torque(log, dataclasses.replace(SHEET, ripple=0.4))
     assert torque == pytest.approx(np.full(n, (mean_a - mean_b) * K * GEAR_RATIO))
 
 

@@ -5,13 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.studies.paper.campaign import rows as run_rows
 from scenarios.studies.paper.experiments import EXPERIMENTS
 from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Limit
-from scenarios.studies.paper.rows import Row
-from scenarios.studies.paper.run_experiments import DEFAULTS, pair, select
+from scenarios.studies.paper.rows import Row, markdown
+from scenarios.studies.paper.run_experiments import DEFAULTS, measure, pair, row_of, select
 from scenarios.studies.paper.starts import ALL, ANGLES_DEG, QUICK, SEEDS, STARTS
-from scenarios.studies.paper.table import markdown
 from tests.studies.paper.docs_page import PAGE, page
 
 BAND = Limit(figure="peak", unit="%", low=10.0, high=25.0, words="peak", scale=5.0)
@@ -87,9 +85,10 @@ def test_an_experiment_that_cannot_be_evaluated_misses_its_row_and_stops_nothing
     def refuse(_benches):
         raise ValueError("the axis did not come to rest")
 
-    found = run_rows({}, experiments=[experiment(refuse)], starts=QUICK, workers=1)
-    assert not found[0].passed
-    assert "did not come to rest" in found[0].reason
+    refusing = experiment(refuse)
+    found = row_of(refusing, {start: measure(refusing, {}, start) for start in QUICK})
+    assert not found.passed
+    assert "did not come to rest" in found.reason
 
 
 def test_rows_can_be_chosen_and_a_wrong_name_is_said():

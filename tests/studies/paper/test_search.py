@@ -8,8 +8,7 @@ from plant.kernels.stage import stage
 from plant.model import load
 from plant.plant import Plant
 from scenarios.studies.paper.experiments import Limit
-from scenarios.studies.paper.published import INERTIA, TABLE_2
-from scenarios.studies.paper.scales import GEAR_RATIO
+from scenarios.studies.paper.scales import GEAR_RATIO, INERTIA, TABLE_2
 from scenarios.studies.paper.starts import QUICK, Benches
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.cost import Term, cost, worst

@@ -1,12 +1,12 @@
 """The rows: E1 to E10 are the paper's experiments, E11 to E15 sentences of its text."""
 
-from scenarios.studies.paper.experiments import closed, friction, models, opened, tracking
+from scenarios.studies.paper.experiments import closed, friction, models, opened
 from scenarios.studies.paper.experiments.experiment import Experiment, Figures, Limit
 
 EXPERIMENTS: tuple[Experiment, ...] = (
-    tracking.low_preload, tracking.high_preload, closed.higher_speeds, closed.slow_slews,
+    closed.low_preload, closed.high_preload, closed.higher_speeds, closed.slow_slews,
     opened.higher_speeds, opened.slowest, friction.table_2, friction.inertia, models.equation_6,
-    models.tuning_rules, tracking.low_gains, friction.viscous_branch, closed.negligible, friction.at_rest,
+    models.tuning_rules, closed.low_gains, friction.viscous_branch, closed.negligible, friction.at_rest,
     closed.both_preloads,
 )  # fmt: skip
 

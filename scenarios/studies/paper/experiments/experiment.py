@@ -1,5 +1,4 @@
-"""What every row is: a sentence of the paper, figures measured at one start, and the bounds they are held
-to."""
+"""What every row is: a sentence of the paper, figures measured at one start, the bounds they are held to."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

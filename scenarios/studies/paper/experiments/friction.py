@@ -2,15 +2,12 @@
 
 import numpy as np
 
-from scenarios.studies.paper.coasting import drive
 from scenarios.studies.paper.experiments.experiment import Figures, row
-from scenarios.studies.paper.experiments.frictionmap import friction_map
-from scenarios.studies.paper.experiments.noise import Noise
-from scenarios.studies.paper.friction_map import data_sheet, ripple_free, steady_point
-from scenarios.studies.paper.published import INERTIA, TABLE_2
+from scenarios.studies.paper.experiments.frictionmap import Noise, friction_map
+from scenarios.studies.paper.friction_map import ripple_free, steady_point
 from scenarios.studies.paper.rundown import fit_run_downs
 from scenarios.studies.paper.runs import BROKEN_AWAY, HIGH, break_away, map_run, run_down
-from scenarios.studies.paper.scales import EFFORT_SCALE
+from scenarios.studies.paper.scales import EFFORT_SCALE, INERTIA, TABLE_2, drive
 from scenarios.studies.paper.starts import Benches, with_inertia
 
 REGION = (0.25, 3.0)
@@ -71,7 +68,7 @@ def inertia(benches: Benches) -> Figures:
 @row("E12")
 def viscous_branch(benches: Benches) -> Figures:
     """Slope of the measured torque over 600 to 1000 arcsec/s, as a share of Table 2's viscous friction."""
-    sheet = data_sheet(benches.plants["low"])
+    sheet = drive(benches.plants["low"])
     points = []
     for speed in HIGH:
         logs = [map_run(benches("low"), way * speed) for way in (1.0, -1.0)]
@@ -88,6 +85,6 @@ def at_rest(benches: Benches) -> Figures:
     gone = np.nonzero(np.abs(log.counts) > BROKEN_AWAY)[0]
     end = max(40, (int(gone[0]) if gone.size else log.t_s.size) - 20)
     held = slice(end - 40, end)
-    current = ripple_free(log, data_sheet(benches.plants["high"]))[0][held]
+    current = ripple_free(log, drive(benches.plants["high"]))[0][held]
     duty = log.effort[held] / EFFORT_SCALE
     return {"stall": float(current @ duty / (duty @ duty)), "break-away current": float(current[-5:].mean())}

@@ -3,34 +3,60 @@
 Steady states in closed loop where the loop holds them. Below the slowest of these the loop may leap instead:
 there the loop is opened (as the authors did for Figs. 6 and 7) and the effort lowered in the smallest steps,
 until the axis no longer keeps its speed. There and back go over the same stretch, because the balance of the
-axis changes along it. Runs whose currents reach the end of the
-converter are left out: what it reads there is not the current.
+axis changes along it. Runs whose currents reach the end of the converter are left out: what it reads there is
+not the current. The logs have noise of the instruments the authors read, which the firmware does not see.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scenarios.studies.paper.experiments.noise import Noise
+from bus.time.randomness import generator
 from scenarios.studies.paper.friction_map import (
-    DataSheet,
     FrictionFit,
     MapPoint,
     break_away_point,
-    data_sheet,
     fit_friction,
     steady_point,
 )
-from scenarios.studies.paper.log import Log
-from scenarios.studies.paper.measures import cycles, stalled
+from scenarios.studies.paper.measures import Array, Log, cycles, stalled
 from scenarios.studies.paper.runs import MAP_SPEEDS, break_away, map_pair, opened_pair
-from scenarios.studies.paper.scales import ARCSEC
+from scenarios.studies.paper.scales import ARCSEC, Drive, drive
 from scenarios.studies.paper.starts import Benches
 
+ADC_NOISE = 1.0
+"""Counts rms on every current sample: 6.1 mA of 6 A. ASSUMPTION: one count of ten bits beside a PWM."""
+GAIN_NOISE = 0.01
+"""Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION."""
+CONSTANT_ERROR = 0.05
+"""Share by which a motor's torque constant may be off its data sheet, either way."""
+
+
+class Noise:
+    """Sensor noise by a seed, and one error of the torque constant, up to a share, for all its logs."""
+
+    def __init__(self, seed: int, name: str, constant_error: float = CONSTANT_ERROR) -> None:
+        self._random = generator(seed, f"paper.noise.{name}")
+        self.constant = 1.0 + constant_error * (2.0 * float(self._random.random()) - 1.0)
+
+    def log(self, log: Log) -> Log:
+        """Return the log with noise on both currents, in whole counts."""
+
+        def noisy(counts: Array) -> Array:
+            drawn = self._random.standard_normal((2, counts.size))
+            read = counts * (1.0 + GAIN_NOISE * drawn[0]) + ADC_NOISE * drawn[1]
+            return np.asarray(np.clip(np.rint(read), 0, 1023), dtype=np.float64)
+
+        return replace(log, adc_a=noisy(log.adc_a), adc_b=noisy(log.adc_b))
+
+    def sheet(self, sheet: Drive) -> Drive:
+        """Return a data sheet whose torque constant is not quite the motor's."""
+        return replace(sheet, torque_constant=sheet.torque_constant * self.constant)
+
+
 STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
-"""Shares: how far the mean velocity may be off the set point, and how uncertain the mean torque may be, for a
-steady state."""
+"""Shares, of a steady state: mean velocity off the set point, and uncertainty of the mean torque, at most."""
 ADC_FULL = 1023.0
 """Largest count of the 10-bit converter: 6.24 A."""
 BREAK_AWAYS = (0.15, 0.2, 0.3)
@@ -63,9 +89,8 @@ class Map:
 
 
 def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
-    """Measure the map: steady states in both directions, and the break-away torques as its points near
-    rest."""
-    sheet = noise.sheet(data_sheet(benches.plants[preload]))
+    """Measure the map: steady states both ways, and the break-away torques as its points near rest."""
+    sheet = noise.sheet(drive(benches.plants[preload]))
     points = []
     for step_s in BREAK_AWAYS:
         ways = [noise.log(break_away(benches(preload), way, step_s)) for way in (1, -1)]
@@ -90,7 +115,7 @@ def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
 
 
 def opened(
-    benches: Benches, preload: str, noise: Noise, sheet: DataSheet, begin: tuple[Log, Log]
+    benches: Benches, preload: str, noise: Noise, sheet: Drive, begin: tuple[Log, Log]
 ) -> Iterator[MapPoint]:
     """Yield the steady states with the loop opened, one for every step of the effort, until one is none.
 

@@ -22,10 +22,9 @@ from math import floor
 import numpy as np
 from scipy.optimize import least_squares
 
-from scenarios.studies.paper.log import Array
+from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC, Bench
 from scenarios.studies.paper.scales import CONTROL_PERIOD_S, EFFORT_SCALE, LOG_PERIOD_S
-from scenarios.studies.paper.tuning import FirstOrder
 
 ABOUT = 600.0
 """arcsec/s: the viscous branch."""
@@ -44,6 +43,15 @@ APART_ARCSEC = MOTOR_TURN_ARCSEC / 2.0 * (1.0 + 1.0 / PHASES) / 2.0
 HALF_ROW_S = LOG_PERIOD_S / 2.0
 HOLD_S = CONTROL_PERIOD_S / 2.0
 """Dead time that a held effort adds in the loop (paper 3.3: dt/2), and that a single step does not show."""
+
+
+@dataclass(frozen=True)
+class FirstOrder:
+    """Gain (counts in 5 ms per PWM step), lag (s), dead time (s)."""
+
+    gain: float
+    lag_s: float
+    dead_s: float
 
 
 @dataclass(frozen=True)

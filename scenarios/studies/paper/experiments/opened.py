@@ -4,8 +4,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from scenarios.studies.paper.experiments.experiment import Figures, row
-from scenarios.studies.paper.log import Array, Log
-from scenarios.studies.paper.measures import line_amplitude, peak_percent, stalled, strongest_line
+from scenarios.studies.paper.measures import Array, Log, line_amplitude, peak_percent, stalled, strongest_line
 from scenarios.studies.paper.runs import LOW, MOTOR_TURN_ARCSEC, OPENED, high_speed, low_speed
 from scenarios.studies.paper.scales import LOG_PERIOD_S
 from scenarios.studies.paper.starts import Benches
@@ -30,9 +29,8 @@ def higher_speeds(benches: Benches) -> Figures:
     found: Figures = {}
     open_peak = closed_peak = 0.0
     for speed in OPENED:
-        run = high_speed(benches("low"), speed, SECONDS + 2 * EDGE, SETTLE, SECONDS + 2 * EDGE)
-        assert run.opened is not None
-        opened, closed = (fast_peak(log.rate, speed) for log in (run.opened, run.closed))
+        logs = high_speed(benches("low"), speed, SECONDS + 2 * EDGE, SETTLE)
+        closed, opened = (fast_peak(log.rate, speed) for log in logs)
         found[f"peak {speed:g}"] = opened
         open_peak, closed_peak = max(open_peak, opened), max(closed_peak, closed)
     return found | {"closed": closed_peak, "ratio": open_peak / closed_peak}

@@ -10,7 +10,8 @@ import yaml
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 from scenarios.doors.replay import replay
-from scenarios.lab.faults import KINDS, FaultError
+from scenarios.lab.faults.kind import FaultError
+from scenarios.lab.faults.table import KINDS
 from scenarios.lab.prepare import chosen
 from scenarios.language.document import ScenarioError, parse
 from scenarios.language.load import convert
@@ -92,7 +93,7 @@ def test_clearing_what_is_not_on_says_what_is() -> None:
 
 def test_a_session_with_live_faults_replays_to_the_same_digest(tmp_path: Path) -> None:
     scenario, model = chosen()
-    recording = Recording(tmp_path / "one", scenario, model)
+    recording = Recording(tmp_path / "one")
     served = LiveNetwork(scenario, dataclasses.replace(model), journal=recording)
     recording.attach(served)
     served.run_until(50_000_000)

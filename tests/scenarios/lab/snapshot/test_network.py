@@ -19,10 +19,10 @@ from bus.outside.node import OutsideNode
 from bus.protocol import Device, Opcode
 from plant.model import load
 from plant.plant import Plant
-from scenarios.lab.faults import KINDS
+from scenarios.lab.faults.table import KINDS
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import NetworkConfig
-from scenarios.lab.snapshot import SnapshotError, restore, take
+from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 from tests.bus.can.test_wire import network as bare
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenarios.lab.snapshot import SnapshotError
 from scenarios.lab.snapshot.file import read
+from scenarios.lab.snapshot.freeze import SnapshotError
 from scenarios.lab.snapshot.run import Order
 from scenarios.language.document import parse
 from scenarios.language.load import convert

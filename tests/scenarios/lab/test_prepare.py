@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from scenarios.campaign import plan
-from scenarios.lab.prepare import load
+from scenarios.lab.prepare import CAMPAIGNS, SCENARIOS, load, located
 from scenarios.language.document import ScenarioError
-from scenarios.language.own import CAMPAIGNS, SCENARIOS, located
 
 
 @pytest.mark.parametrize("file", sorted(SCENARIOS.glob("*.yaml")), ids=lambda file: file.stem)

@@ -6,13 +6,16 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
 
-from scenarios.native.modules import ROOT
-from scenarios.native.relocate import ROOMS, RelocationError, entry_point, rewritten
-
+ROOT = Path(__file__).parents[1]
+SPEC = spec_from_file_location("build_of_schmidt", ROOT / "setup.py")
+assert SPEC is not None and SPEC.loader is not None
+BUILD = module_from_spec(SPEC)
+SPEC.loader.exec_module(BUILD)
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
@@ -30,25 +33,25 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
     ],
 )  # fmt: skip
 def test_import_statements_are_rewritten_and_nothing_else(before: str, after: str) -> None:
-    assert rewritten(before) == after
+    assert BUILD.rewritten(before) == after
 
 
 @pytest.mark.parametrize("source", ["import plant.model\n", "import os, bus\n"])
 def test_what_would_bind_another_name_is_refused(source: str) -> None:
-    with pytest.raises(RelocationError, match=r"x\.py:1"):
-        rewritten(source, "x.py")
+    with pytest.raises(BUILD.RelocationError, match=r"x\.py:1"):
+        BUILD.rewritten(source, "x.py")
 
 
 @pytest.mark.slow
 def test_every_file_of_the_rooms_can_be_rewritten() -> None:
-    for room in ROOMS:
+    for room in BUILD.OURS:
         for file in (ROOT / room).rglob("*.py"):
-            compile(rewritten(file.read_text(encoding="utf-8"), str(file)), str(file), "exec")
+            compile(BUILD.rewritten(file.read_text(encoding="utf-8"), str(file)), str(file), "exec")
 
 
 def test_entry_points_follow() -> None:
-    assert entry_point("scenarios.cli:main") == "schmidt.scenarios.cli:main"
-    assert entry_point("other.cli:main") == "other.cli:main"
+    assert BUILD.entry_point("scenarios.cli:main") == "schmidt.scenarios.cli:main"
+    assert BUILD.entry_point("other.cli:main") == "other.cli:main"
 
 
 def user(folder: Path) -> Path:
@@ -89,7 +92,7 @@ def test_the_checkouts_command_takes_its_own_rooms(tmp_path: Path) -> None:
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A wheel, built of a copy of the sources and unpacked."""
     source = tmp_path_factory.mktemp("source")
-    for room in ROOMS:
+    for room in BUILD.OURS:
         ignored = shutil.ignore_patterns("__pycache__", "library", "*.png")
         shutil.copytree(ROOT / room, source / room, ignore=ignored)
     for name in ("pyproject.toml", "setup.py", "schmidt.py", "README.md", "LICENSE"):
