@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.axis.compensator import Compensator
+from boards.axis.config import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
 from boards.axis.counter import CounterTorque
-from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.core import InterruptController

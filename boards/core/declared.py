@@ -19,7 +19,6 @@ from boards.core.packets import PacketLine
 from boards.core.parameters import Parameter
 from boards.core.periodic import PeriodicBoard
 from boards.core.place import Place
-from boards.core.resources import COMMANDS, PIC18F4480, Ledger, line
 from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK
 from boards.silicon.uart import Uart
@@ -152,17 +151,6 @@ class DeclaredBoard(PeriodicBoard):
         self.commands = self.common_commands() | own_commands
         self._heartbeat_ticks = _SECOND_NS // tick_ns
         self.reset()
-
-    def ledger(self) -> Ledger:
-        """The board's chip, ASSUMPTION: that of the position board, with on-chip CAN."""
-        buffers = COMMANDS | line(self.device_type) | {"parameters": 4 * len(self.values)}
-        return Ledger(
-            chip=PIC18F4480,
-            buffers=buffers,
-            table=self.TABLE,
-            fcy_hz=self.FCY_HZ,
-            window_ns=self.codecs[0].period_ns,
-        )
 
     def measure(self, t_ns: int) -> Mapping[str, float]:
         """The routine's work: read the pins at `t_ns`, return the frames' signals in their units."""

@@ -5,11 +5,8 @@ from typing import Final
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PacketLine, PeriodicBoard, Place
 from boards.core.commands import commands
 from boards.core.widths import wrap
-from boards.focus.config import FocusConfig
-from boards.focus.interrupts import FCY_HZ, TABLE
-from boards.focus.pins import FocusPins
-from boards.focus.reference import Reference
-from boards.focus.stepping import Stepping
+from boards.focus.config import FCY_HZ, TABLE, FocusConfig, FocusPins
+from boards.focus.stepping import Reference, Stepping
 from boards.silicon.adc import VoltageAdc
 from boards.silicon.qei import Qei, difference
 from boards.silicon.stepper import StepperDriver

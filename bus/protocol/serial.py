@@ -131,11 +131,6 @@ def packet_bytes(device: int) -> int:
     return len(SYNC) + _head.size + SAMPLES * _known(device)[0].size + _crc.size
 
 
-def sample_bytes(device: int) -> int:
-    """Length of a sample in a packet of `device`; raises SerialError for one without a line."""
-    return _known(device)[0].size
-
-
 def fields(device: int) -> list[tuple[str, str, int]]:
     """Name, type (`i16`) and first byte of what a sample of `device` holds; SerialError as above."""
     layout, kind = _known(device)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from boards.axis import AxisBoard, AxisPeers, AxisPins
-from boards.axis.settings import settings as programmed
+from boards.axis.config import settings as programmed
 from boards.c.board import Chips, FirmwareBoard
 from boards.c.isolated import IsolatedMemory
 from boards.c.library import FirmwareError, Memory

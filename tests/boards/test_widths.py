@@ -3,8 +3,7 @@
 import pytest
 
 from boards.focus import FocusConfig
-from boards.focus.reference import Reference
-from boards.focus.stepping import Stepping
+from boards.focus.stepping import Reference, Stepping
 from boards.motor_velocity import MotorVelocityBoard
 from bus.protocol.serial import PacketDecoder
 from tests.boards.checked import Checked, checked

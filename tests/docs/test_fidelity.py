@@ -5,17 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from boards.axis import interrupts as axis
+from boards.axis import config as axis
 from boards.axis.config import AxisConfig
 from boards.core.board import BOOT_NS
 from boards.core.interrupts import InterruptController, Line, Source
-from boards.display import interrupts as display
-from boards.focus import interrupts as focus
+from boards.display import firmware as display
+from boards.focus import config as focus
 from boards.focus.config import FocusConfig
-from boards.gateway import interrupts as gateway
+from boards.gateway import firmware as gateway
 from boards.gateway.firmware import HOLD_NS
-from boards.motor_velocity import interrupts as motor
-from boards.position import interrupts as position
+from boards.motor_velocity import firmware as motor
+from boards.position import firmware as position
 from boards.silicon.endat import EndatEncoder, EndatMaster
 from boards.silicon.pwm import FCY_HZ, PWM_HZ, steps_for
 from boards.silicon.uart import BAUD, Uart

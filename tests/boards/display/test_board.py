@@ -1,5 +1,5 @@
 from boards.display import DisplayBoard
-from boards.display.text import angle
+from boards.display.firmware import angle
 from bus.can import Frame, Wire
 from bus.protocol import (
     Device,
