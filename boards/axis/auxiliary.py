@@ -22,8 +22,6 @@ _UNIT: Final = _FRAME_NS << _RATE_SHIFT
 class RemoteAuxiliary:
     """Keeps the last ENCODER frame of one axis. Times are those of the board's own clock, ns."""
 
-    __slots__ = ("_frame_ns", "_latch_ns", "_position", "_rate_q8")
-
     def __init__(self, frame_ns: int) -> None:
         self._frame_ns = frame_ns
         self._latch_ns = -MISSING_NS

@@ -19,8 +19,6 @@ class CounterTorque:
     """split: share of the effort, percent. register: PWM steps. fade: speed, counts/5 ms, at which the share
     has fallen to nothing; 0: never."""
 
-    __slots__ = ("_share_q16", "fade", "register", "split")
-
     def __init__(self, split: int, fade: int) -> None:
         self.split = split
         self.fade = fade

@@ -47,12 +47,6 @@ _POWERED, _MOVING, _LIMIT, _FAULT = (
 class AxisBoard(PeriodicBoard):
     """dsPIC30F3011 + MCP2515, one per axis."""
 
-    __slots__ = (
-        "_identifier", "adc", "auxiliary", "config", "counter", "effort", "effort_command",
-        "fault", "fine", "limits", "motion", "output", "packets", "pi", "poscnt", "pwm", "qei",
-        "tach_a", "tach_b", "uart", "velocity", "watch",
-    )  # fmt: skip
-
     def __init__(self, place: Place, pins: AxisPins, config: AxisConfig, peers: AxisPeers) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.config = config

@@ -23,8 +23,6 @@ _QUIET: Final = 9175 * _WINDOW_TICKS
 class Gusts:
     """blowing: whether the last two windows were loud; then, until two were quiet."""
 
-    __slots__ = ("_fast_q16", "_slow_q16", "_sum", "_ticks", "_turned", "blowing")
-
     def __init__(self) -> None:
         self.start()
 

@@ -25,8 +25,6 @@ would be paid back with a swing. ASSUMPTION."""
 class RateLock:
     """gain_q16: correction per count of position error, counts/tick."""
 
-    __slots__ = ("_error_q16", "_gain_q16")
-
     def __init__(self, gain_q16: int) -> None:
         self._gain_q16 = gain_q16
         self._error_q16 = 0
@@ -49,8 +47,6 @@ class Blend:
     The position is kept, not a sum of counts, so nothing grows with the night. It has 64 bits and is never
     farther from the absolute encoder than 2**shift ticks of counts (2^15 ticks of 2^33: 2^48).
     """
-
-    __slots__ = ("_begun", "_position_q18", "shift")
 
     def __init__(self, shift: int) -> None:
         self.shift = shift

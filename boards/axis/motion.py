@@ -36,13 +36,6 @@ class Motion:
     Times are those of the board's own clock (`Board.clock_ns`).
     """
 
-    __slots__ = (
-        "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_gust", "_ki_pointing",
-        "_kp_gust", "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "ends",
-        "good_ns", "gusts", "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks",
-        "position", "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
-    )  # fmt: skip
-
     def __init__(self, config: AxisConfig, pi: IncrementalPi) -> None:
         self._pi = pi
         self._creep_rate = config.creep_rate << _RATE_TO_UNIT

@@ -26,10 +26,6 @@ class FineOutput:
         cogging.
     """
 
-    __slots__ = (
-        "_counter", "_cpu", "_motion", "_pi", "_pwm", "bias_q8", "changed", "compensator", "spread",
-    )  # fmt: skip
-
     def __init__(
         self,
         cpu: InterruptController,

@@ -21,8 +21,6 @@ _HALF: Final = 1 << (RATE_SHIFT - 1)
 class IncrementalPi:
     """kp_q12: PWM steps per count/5 ms. ki_q12: PWM steps per count. limit: largest effort, PWM steps."""
 
-    __slots__ = ("_error", "_limit", "effort_q16", "ki_q12", "kp_q12")
-
     def __init__(self, kp_q12: int, ki_q12: int, limit: int) -> None:
         self.kp_q12 = kp_q12
         self.ki_q12 = ki_q12

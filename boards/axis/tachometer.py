@@ -21,8 +21,6 @@ _UNIT: Final = _TACH_NS << _RATE_SHIFT
 class RemoteTachometer:
     """Keeps the last TACH frame of one motor. Times are those of the board's own clock."""
 
-    __slots__ = ("_age_ns", "_count", "_last", "_latch_ns", "_rate_q8")
-
     def __init__(self, frame_ns: int) -> None:
         self._age_ns = _ROUTINE_NS + frame_ns
         self._latch_ns = -MISSING_NS

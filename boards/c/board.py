@@ -233,8 +233,6 @@ class FirmwareBoard(PeriodicBoard):
 class _Asked(ParameterTable):
     """The parameters as the firmware's own commands tell them."""
 
-    __slots__ = ("_board",)
-
     def __init__(self, board: FirmwareBoard) -> None:
         super().__init__()
         self._board = board

@@ -52,35 +52,6 @@ class Board:
     between.
     """
 
-    __slots__ = (
-        "_before",
-        "_boot_ns",
-        "_clipped_ns",
-        "_command",
-        "_dropped_ns",
-        "_foreign_ns",
-        "_last",
-        "_late",
-        "boots",
-        "can",
-        "clipped",
-        "commands",
-        "cpu",
-        "device_type",
-        "dropped",
-        "epoch_ns",
-        "foreign",
-        "inbox",
-        "mail",
-        "name",
-        "on",
-        "oscillator",
-        "parameters",
-        "port",
-        "queue",
-        "send",
-    )
-
     def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...]) -> None:
         self.name = place.name
         self.device_type = device_type = place.device_type

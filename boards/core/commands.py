@@ -30,8 +30,6 @@ class Command:
     bounds: (low, high) of each argument, beyond which the answer is "out of range"; none: the method looks.
     """
 
-    __slots__ = ("bounds", "method", "opcode")
-
     def __init__(
         self, opcode: Opcode, method: Callable[..., Answer | None], bounds: Sequence[tuple[int, int]] = ()
     ) -> None:

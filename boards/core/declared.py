@@ -49,8 +49,6 @@ class Pin(NamedTuple):
 class Cell:
     """A parameter's value in the board's memory."""
 
-    __slots__ = ("value",)
-
     def __init__(self, value: int) -> None:
         self.value = value
 
@@ -89,8 +87,6 @@ def _unusable(values: Any) -> str:
 
 class Own:
     """A command's method as a board's author wrote it; its errors name the board."""
-
-    __slots__ = ("board", "method")
 
     def __init__(self, board: "DeclaredBoard", method: Callable[..., Answer | None]) -> None:
         self.board = board

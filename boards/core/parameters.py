@@ -44,8 +44,6 @@ def kept(
 class ParameterTable:
     """Answers GET_PARAMETER and SET_PARAMETER."""
 
-    __slots__ = ("_rows",)
-
     def __init__(self, rows: Iterable[Parameter] = ()) -> None:
         self._rows = {row.number: row for row in rows}
 

@@ -16,8 +16,6 @@ class PeriodicBoard(Board):
     """Subclasses write `routine(t_ns)`, whose first statement is `end = self.enter(t_ns)` followed by a
     return when 0."""
 
-    __slots__ = ("_routine", "cost_ns", "period_ns", "ticks", "timer")
-
     def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...], period_ns: int) -> None:
         super().__init__(place, fcy_hz, table)
         self.period_ns = period_ns

@@ -19,8 +19,6 @@ class Timer:
     offset_ns: local time of the first fire modulo the period.
     """
 
-    __slots__ = ("_local_ns", "_oscillator", "_true_ns", "latency_ns", "period_ns", "times")
-
     def __init__(self, oscillator: Oscillator, period_ns: int, latency_ns: int, offset_ns: int = 0) -> None:
         if period_ns <= 0:
             raise ValueError(f"timer period is {period_ns} ns, must be positive")

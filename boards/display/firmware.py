@@ -42,8 +42,6 @@ _HEARTBEAT_TICKS = 4
 class DisplayBoard(PeriodicBoard):
     """position_types: device types of the RA and Dec encoder boards; focus_type: of the focus board."""
 
-    __slots__ = ("_dec", "_focus", "_ra", "_shown", "brightness")
-
     def __init__(self, place: Place, position_types: tuple[int, int], focus_type: int) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.brightness = 100

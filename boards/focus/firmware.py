@@ -24,12 +24,6 @@ _LOST: Final = 2
 class FocusBoard(PeriodicBoard):
     """Counts half steps; the encoder checks them, the index and the LVDT give them an origin."""
 
-    __slots__ = (
-        "_encoder_zero", "_identifier", "_index", "_last_move_ns", "_timer_ns", "adc", "config", "driver",
-        "encoder", "free", "index_pin", "lvdt", "packets", "poscnt", "qei", "reference", "referenced",
-        "stepping", "uart",
-    )  # fmt: skip
-
     def __init__(self, place: Place, pins: FocusPins, config: FocusConfig) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.config = config

@@ -12,8 +12,6 @@ from boards.focus.config import FocusConfig
 class Stepping:
     """position, target: half steps. `next()` says what the step timer does."""
 
-    __slots__ = ("_intervals", "_ramp", "direction", "moving", "position", "target")
-
     def __init__(self, config: FocusConfig) -> None:
         self._intervals = config.intervals_ns
         self._ramp = 0
@@ -61,8 +59,6 @@ _HALF_RANGE: Final = 512
 
 class Reference:
     """The search: towards the middle until the index input rises."""
-
-    __slots__ = ("_config", "_index", "_start", "active", "failed")
 
     def __init__(self, config: FocusConfig) -> None:
         self._config = config

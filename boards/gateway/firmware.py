@@ -48,17 +48,6 @@ _NEVER: Final = 1 << 61
 class GatewayBoard(PeriodicBoard):
     """hid: the USB endpoint. ring: slots waiting for the PC. lost: slots dropped from a full ring."""
 
-    __slots__ = (
-        "_commands",
-        "_flush_ns",
-        "_own_command",
-        "_reports",
-        "hid",
-        "hold_ns",
-        "lost",
-        "ring",
-    )
-
     def __init__(self, place: Place) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.hid = HidEndpoint()

@@ -32,8 +32,6 @@ class MotorVelocityBoard(PeriodicBoard):
     encoder: quadrature inputs, (t_ns) -> counts, 4096 a motor turn (1024 lines, ASSUMPTION).
     """
 
-    __slots__ = ("_identifier", "count", "poscnt", "qei")
-
     def __init__(self, place: Place, encoder: Callable[[int], int]) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.qei = Qei(encoder)

@@ -46,18 +46,6 @@ class PositionBoard(PeriodicBoard):
     A reading whose CRC fails is not used: the frame repeats the last good position and says so.
     """
 
-    __slots__ = (
-        "_age",
-        "_identifier",
-        "endat",
-        "flags",
-        "high",
-        "low",
-        "packets",
-        "position",
-        "uart",
-    )
-
     def __init__(
         self, place: Place, encoder: Callable[[int], int], low: int = 0, high: int = _LAST_STEP
     ) -> None:

@@ -21,8 +21,6 @@ class CanController:
     send: the port's own `send(frame, ready_ns) -> bool`, False when all three transmit buffers are full.
     """
 
-    __slots__ = ("port", "send")
-
     def __init__(self, port: Port, on_receive: Callable[[int, Frame], None]) -> None:
         self.port = port
         self.send: Callable[[Frame, int], bool] = port.send

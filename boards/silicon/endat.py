@@ -52,8 +52,6 @@ class EndatEncoder:
     """The RCN 829's end. pin: (t_ns) -> position, any int; wraps to 29 bits. alarm: the encoder reports an
     error."""
 
-    __slots__ = ("alarm", "pin")
-
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin
         self.alarm = False
@@ -71,8 +69,6 @@ class EndatMaster:
     line: what the cable does to a frame (int -> int), None for nothing.
     latch_to_data_ns: from the first clock edge, where the position is latched, to the last CRC bit.
     """
-
-    __slots__ = ("encoder", "latch_to_data_ns", "line")
 
     def __init__(self, encoder: EndatEncoder, clock_hz: int = CLOCK_HZ) -> None:
         self.encoder = encoder

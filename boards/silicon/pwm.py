@@ -37,11 +37,6 @@ STEPS: Final = steps_for(FCY_HZ, PWM_HZ)
 class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
-    __slots__ = (
-        "_loads_ns", "_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "spread_a", "spread_b", "spreading",
-        "steps",
-    )  # fmt: skip
-
     def __init__(
         self,
         drive: Callable[[int, float, float], None],

@@ -14,8 +14,6 @@ _MASK = ONE - 1
 class Spreader:
     """One channel. `value_q16`: the wanted register value, PWM steps in Q16. `accumulator`: 16 bit."""
 
-    __slots__ = ("accumulator", "value_q16")
-
     def __init__(self) -> None:
         self.value_q16 = 0
         self.accumulator = 0

@@ -28,8 +28,6 @@ class Ecan(Mcp2515):
     """Registers by name. What differs from the stand-alone chip: a receive buffer is freed by RXFUL, and the
     flags of PIR3 are latched beside it."""
 
-    __slots__ = ("_enabled", "_latched")
-
     def __init__(self, queue: EventQueue, port: Port, fosc_hz: int = FOSC_HZ) -> None:
         self._latched = 0
         self._enabled = 0

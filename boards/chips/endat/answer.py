@@ -17,11 +17,6 @@ class Answers:
     temperature: 0.1 K, content 4Ch. silent_until_ns: no answer before (after a reset).
     """
 
-    __slots__ = (
-        "_info_1", "_info_2", "_parameter", "_position_bits", "_test_port", "busy_until_ns", "memory",
-        "silent_until_ns", "temperature", "test_values",
-    )  # fmt: skip
-
     def __init__(self, position_bits: int) -> None:
         self._position_bits = position_bits
         self.memory = Memory(position_bits)

@@ -29,11 +29,6 @@ class ClockedEncoder:
     published).
     """
 
-    __slots__ = (
-        "_bits", "_clock", "_count", "_edge_ns", "_in", "_latched", "_mode", "_phase", "_ready_ns", "_sent",
-        "answers", "output", "pin",
-    )  # fmt: skip
-
     def __init__(self, pin: Callable[[int], int], position_bits: int = POSITION_BITS) -> None:
         self.pin = pin
         self.answers = Answers(position_bits)

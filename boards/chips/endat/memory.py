@@ -16,8 +16,6 @@ _OPERATING_START = int(Area.MANUFACTURER_0)
 class Memory:
     """area: selected by the last MRS (after a reset the first, ASSUMPTION)."""
 
-    __slots__ = ("_words", "area")
-
     def __init__(self, position_bits: int) -> None:
         self._words = words(position_bits)
         self.area = _OPERATING_START

@@ -25,11 +25,6 @@ class Mcp2515:
     still selected when its frame is through sends the frame twice (DS80179G).
     """
 
-    __slots__ = (
-        "_asserted", "_errata", "_flags", "_loops", "_memory", "_queue", "_requested", "_rts_pins",
-        "interrupt", "mode", "port", "receiver", "spi", "times", "transmitter",
-    )  # fmt: skip
-
     def __init__(
         self, queue: EventQueue, port: Port, fosc_hz: int = FOSC_HZ, *, errata: bool = False
     ) -> None:

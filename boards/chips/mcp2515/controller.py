@@ -21,8 +21,6 @@ _BUFFERS = 3
 class Mcp2515Controller:
     """The chip on `port`, brought up for 1 Mbit/s; `on_receive(t_ns, frame)` for every frame it accepts."""
 
-    __slots__ = ("_loaded", "_on_receive", "_orders", "_queue", "chip", "port")
-
     def __init__(self, queue: EventQueue, port: Port, on_receive: Callable[[int, Frame], None]) -> None:
         self.port = port
         self.chip = Mcp2515(queue, port)

@@ -22,8 +22,6 @@ _ROLLED = 6
 class Receiver:
     """Puts messages into the two buffers of `memory`; `full` has bits RX0IF and RX1IF of CANINTF."""
 
-    __slots__ = ("_memory", "acceptance")
-
     def __init__(self, memory: bytearray) -> None:
         self._memory = memory
         self.acceptance = Acceptance()

@@ -21,8 +21,6 @@ class Transmitter:
     offer: puts a frame on the bus when it is free. withdraw: takes it back, False when it has begun.
     """
 
-    __slots__ = ("_memory", "_offer", "_withdraw", "current", "on_bus")
-
     def __init__(
         self, memory: bytearray, offer: Callable[[Frame], None], withdraw: Callable[[Frame], bool]
     ) -> None:

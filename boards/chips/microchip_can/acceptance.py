@@ -23,8 +23,6 @@ class Hit(NamedTuple):
 class Acceptance:
     """Masks and filters as their registers have them: 4 bytes each (SIDH, SIDL, EID8, EID0)."""
 
-    __slots__ = ("filters", "masks")
-
     def __init__(self) -> None:
         self.masks = [bytes(4), bytes(4)]
         self.filters = [bytes(4)] * 6

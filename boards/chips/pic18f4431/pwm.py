@@ -36,11 +36,6 @@ class Pwm4431:
     special_event: called with the Q clock when PTMR meets SEVTCMP, every SEVOPS + 1 times.
     """
 
-    __slots__ = (
-        "_events", "_loaded", "_matches", "_period", "_registers", "_start", "outputs", "pir3",
-        "special_event",
-    )  # fmt: skip
-
     def __init__(self) -> None:
         self._registers = dict(AT_RESET)
         self.pir3 = 0

@@ -17,8 +17,6 @@ from boards.chips.quadrature import Decoder
 class Qei4431:
     """qeicon, poscnt, maxcnt (16 bits), pir3: IC2QEIF and IC3DRIF, for firmware to clear."""
 
-    __slots__ = ("_decoder", "_index", "maxcnt", "pir3", "poscnt", "qeicon")
-
     def __init__(self) -> None:
         self.qeicon = UP_DOWN
         self.poscnt = 0

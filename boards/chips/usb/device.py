@@ -23,8 +23,6 @@ class HidDevice:
     from_host: called as (t_ns, report) for every output report. Reports go to the host when it polls.
     """
 
-    __slots__ = ("_in", "_last_frame", "address", "configuration", "from_host")
-
     def __init__(self) -> None:
         self.address = 0
         self.configuration = 0
