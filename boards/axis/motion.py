@@ -4,8 +4,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.axis.config import TICK_NS, AxisConfig
-from boards.axis.gusts import Gusts
-from boards.axis.hold import Blend, RateLock
+from boards.axis.hold import Blend, Gusts, RateLock
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag

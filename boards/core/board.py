@@ -6,11 +6,9 @@ from typing import Final
 
 from mypy_extensions import mypyc_attr
 
-from boards.core.commands import Handler, answer, commands
+from boards.core.commands import Answer, Handler, Parameter, ParameterTable, answer, commands
 from boards.core.interrupts import InterruptController, Source
-from boards.core.parameters import Parameter, ParameterTable
 from boards.core.place import Place
-from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK, CanController
 from bus.can import Frame
 from bus.protocol import (

@@ -13,13 +13,11 @@ from typing import Any, ClassVar, NamedTuple
 from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
-from boards.core.commands import Command, Handler
+from boards.core.commands import Answer, Command, Handler, Parameter
 from boards.core.interrupts import Source
 from boards.core.packets import PacketLine
-from boards.core.parameters import Parameter
 from boards.core.periodic import PeriodicBoard
 from boards.core.place import Place
-from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK
 from boards.silicon.uart import Uart
 from bus.protocol import COMMAND_BASE, SUMMARY_BASE, pack_reply

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.core import PacketLine, PeriodicBoard, Place, Source
-from boards.core.parameters import kept
+from boards.core.commands import kept
 from boards.silicon.endat import POSITION_BITS, EndatEncoder, EndatMaster
 from bus.can import Frame
 from bus.protocol import (

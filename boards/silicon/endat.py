@@ -8,7 +8,22 @@ the CRC sits on top as the number its five bits spell.
 from collections.abc import Callable
 from typing import Final
 
-from boards.silicon.crc5 import crc5
+_POLYNOMIAL = 0x0B
+"""CRC-5: x^5 + x^3 + x + 1, without its top bit; start value and result inverted (hardware.md 3.1)."""
+_INVERT = 0x1F
+
+
+def crc5(bits: int, count: int) -> int:
+    """CRC of the `count` lowest bits of `bits`, taken lowest first. The published vectors hold it to
+    account."""
+    crc = _INVERT
+    for k in range(count):
+        top = (crc >> 4) ^ (bits >> k & 1)
+        crc = (crc << 1) & _INVERT
+        if top:
+            crc ^= _POLYNOMIAL
+    return crc ^ _INVERT
+
 
 POSITION_BITS: Final = 29
 CLOCK_HZ: Final = 1_000_000

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 
 from boards.chips.mcp2515 import registers as at
-from boards.chips.mcp2515.errorflags import error_flags
+from boards.chips.mcp2515.bittiming import BitTimes, decode
 from boards.chips.mcp2515.receive import Receiver
-from boards.chips.mcp2515.registers import Interrupt, Mode
+from boards.chips.mcp2515.registers import Interrupt, Mode, error_flags
 from boards.chips.mcp2515.spi import SpiPort
 from boards.chips.mcp2515.transmit import Transmitter
-from boards.chips.microchip_can.bittiming import BitTimes, decode
 from bus.can import Frame, Port
 from bus.can.length import frame_bits
 from bus.time import EventQueue

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+from boards.chips.mcp2515.message import BUFFER_BYTES, frame_of
 from boards.chips.mcp2515.registers import ABAT, ABTF, CANCTRL, MLOA, OSM, TXBCTRL, TXERR, TXP, TXREQ
-from boards.chips.microchip_can.message import BUFFER_BYTES, frame_of
 from bus.can import Frame
 
 

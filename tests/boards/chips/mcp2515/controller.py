@@ -7,8 +7,8 @@ compare the two frame by frame.
 from collections.abc import Callable, Sequence
 
 from boards.chips.mcp2515.chip import Mcp2515
+from boards.chips.mcp2515.message import BUFFER_BYTES, frame_of, identifier_image, image_of
 from boards.chips.mcp2515.registers import FILTER_ADDRESSES, MASK_ADDRESSES, TXBCTRL, Mode
-from boards.chips.microchip_can.message import BUFFER_BYTES, frame_of, identifier_image, image_of
 from bus.can import Frame, Port
 from bus.can.frame import arbitration_key
 from bus.time import EventQueue
