@@ -7,7 +7,7 @@ through a low-pass of four frames (ASSUMPTION). Nothing here steers the axis.
 
 from typing import Final
 
-from bus.protocol.tach import tach_fields
+from bus.protocol.motion import tach_fields
 
 _FRAME_NS: Final = 10_000_000
 """Period of a TACH or ENCODER frame, ns (final.dbc)."""

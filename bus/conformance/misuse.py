@@ -1,4 +1,7 @@
-"""What boards make of frames that are wrong: an answer that says so, or none where nobody is meant."""
+"""What boards make of frames that are wrong, and of commands in a state that does not allow them.
+
+An answer that says so, whatever the arguments, or none where nobody is meant.
+"""
 
 import struct
 from collections.abc import Iterator
@@ -7,7 +10,7 @@ from bus.conformance.boards import Board
 from bus.conformance.commands import judge
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, layout_of, pack_command
+from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, SpeedClass, layout_of, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
@@ -116,3 +119,39 @@ def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
     start = link.now()
     replies = link.ask(board.device, Opcode.PING)
     yield judge("still there", board.name, replies, board.device, (Result.OK,), link.now() - start)
+
+
+_PREPARE: dict[str, tuple[Opcode, tuple[int, ...]]] = {
+    "AXIS": (Opcode.POWER, (0,)),
+    "FOCUS": (Opcode.FOCUS_FREE, ()),
+}
+_REFUSED: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
+    # Off. Arguments at rest: a board that does not look at its state does not move either.
+    "AXIS": (
+        (Opcode.SET_RATE, (0,)),
+        (Opcode.SET_CLASS, (SpeedClass.FINE, 0)),
+        (Opcode.TRACK_RATE, (0,)),
+        (Opcode.OPEN_LOOP, (0,)),
+        (Opcode.NUDGE, (0,)),
+    ),
+    # The shaft is free: nothing may be stepped.
+    "FOCUS": ((Opcode.FOCUS_STEP, (0,)), (Opcode.FOCUS_REFERENCE, ())),
+}
+_AFTERWARDS: dict[str, Opcode] = {"FOCUS": Opcode.FOCUS_HOLD}
+_LOSES_ORIGIN = {"FOCUS"}
+"""Freed, the board no longer knows where it is: only with --motion."""
+
+
+def check_states(link: Link, board: Board) -> Iterator[CheckResult]:
+    """What `board` says to commands it cannot carry out now."""
+    if board.family not in _PREPARE or (board.family in _LOSES_ORIGIN and not link.settings.motion):
+        return
+    opcode, arguments = _PREPARE[board.family]
+    link.ask(board.device, opcode, *arguments)
+    for each, values in _REFUSED[board.family]:
+        start = link.now()
+        replies = link.ask(board.device, each, *values)
+        subject = f"{board.name} {each.name} after {opcode.name}"
+        yield judge("wrong state", subject, replies, board.device, (Result.NOT_ALLOWED,), link.now() - start)
+    if board.family in _AFTERWARDS:
+        link.ask(board.device, _AFTERWARDS[board.family])

@@ -17,7 +17,7 @@ import secrets
 from collections.abc import Callable
 from functools import partial
 
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Punctuality
 from scenarios.doors.address import address, is_local, listen
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.door import counted

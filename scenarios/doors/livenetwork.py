@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
-from bus.outside.pacer import Pacer
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Pacer, Punctuality
 from plant.model import PlantModel
 from scenarios.doors.entry import Entry, Journal
 from scenarios.doors.lines import Lines

@@ -7,8 +7,7 @@ from typing import Any
 from bus.can.candump import CandumpWriter
 from bus.outside.door import Door as Fence
 from bus.outside.errorframes import ErrorFrames
-from bus.outside.pacer import Pacer
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Pacer, Punctuality
 from host.serial_link import SerialLink
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.debug_pty import DebugFeed

@@ -19,8 +19,8 @@ from bus.protocol import (
     unpack_target,
 )
 from bus.protocol.motion import pack_motion
+from bus.protocol.position import pack_target
 from bus.protocol.serial import SAMPLES, PacketDecoder, pack_packet
-from bus.protocol.target import pack_target
 from tests.boards.lab import Lab
 
 PEERS = (0x221, 0x231, 0x232)

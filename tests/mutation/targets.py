@@ -46,19 +46,14 @@ TARGETS: dict[str, tuple[str, ...]] = {
         *_RECOVERY,
     ),
     "bus/protocol/command_layouts.py": _PROTOCOL,
-    "bus/protocol/focus.py": _PROTOCOL,
-    "bus/protocol/heartbeat.py": _PROTOCOL,
     "bus/protocol/motion.py": _PROTOCOL,
+    "bus/protocol/heartbeat.py": _PROTOCOL,
     "bus/protocol/nodes/codec.py": (f"{_CODECS}/test_nodes.py",),
-    "bus/protocol/nodes/opcodes.py": (f"{_CODECS}/test_node_commands.py",),
+    "bus/protocol/nodes/messages.py": (f"{_CODECS}/test_node_commands.py",),
     "bus/protocol/position.py": _PROTOCOL,
-    "bus/protocol/reply.py": _PROTOCOL,
     "bus/protocol/report.py": (f"{_CODECS}/test_report.py",),
     "bus/protocol/saturate.py": _PROTOCOL,
     "bus/protocol/serial.py": (f"{_CODECS}/test_edges.py", f"{_CODECS}/test_serial.py"),
-    "bus/protocol/signed.py": _PROTOCOL,
-    "bus/protocol/tach.py": _PROTOCOL,
-    "bus/protocol/target.py": _PROTOCOL,
 }
 
 

@@ -17,9 +17,9 @@ from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
 from bus.protocol import HARMONICS, AxisMode, AxisParameter, PositionFlag
+from bus.protocol.motion import pack_tach
 from bus.protocol.position import pack_position
 from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
-from bus.protocol.tach import pack_tach
 from bus.units import ARCSEC_PER_TURN
 from tests.boards.checked import Checked, checked
 from tests.boards.lab import Lab
