@@ -8,19 +8,6 @@ from boards.core.periodic import PeriodicBoard, Timer
 from boards.core.place import Place
 
 __all__ = [
-    "NOT_ALLOWED",
-    "OK",
-    "OUT_OF_RANGE",
-    "Answer",
-    "Board",
-    "InterruptController",
-    "Line",
-    "PacketLine",
-    "Parameter",
-    "ParameterTable",
-    "PeriodicBoard",
-    "Place",
-    "Source",
-    "Timer",
-    "answer",
-]
+    "NOT_ALLOWED", "OK", "OUT_OF_RANGE", "Answer", "Board", "InterruptController", "Line", "PacketLine",
+    "Parameter", "ParameterTable", "PeriodicBoard", "Place", "Source", "Timer", "answer",
+]  # fmt: skip

@@ -8,7 +8,7 @@ import can
 
 from bus.conformance.boards import Board, board_of
 from bus.conformance.canopen import check_canopen
-from bus.conformance.commands import check_answers, check_commands
+from bus.conformance.commands import Command, check_answers, check_commands
 from bus.conformance.flood import check_flood
 from bus.conformance.limits import check_limits
 from bus.conformance.link import Link
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cantools.database import Database
 
 
-_HALT: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
+_HALT: dict[str, tuple[Command, ...]] = {
     "AXIS": ((Opcode.STOP, ()), (Opcode.POWER, (0,))),
     "FOCUS": ((Opcode.FOCUS_HOLD, ()),),
 }
@@ -35,7 +35,7 @@ _SETTLE_S = 0.05
 """Until the boards have taken the last one, and their answers are through."""
 
 
-def declared_halt(board: Board) -> tuple[tuple[Opcode, tuple[int, ...]], ...]:
+def declared_halt(board: Board) -> tuple[Command, ...]:
     """Of a declared board: opcodes without arguments whose name ends in _STOP."""
     kind = kind_of(board.model)
     own = arguments_of(kind) if kind is not None else {}

@@ -17,21 +17,7 @@ from bus.protocol.nodes.kind import (
 from bus.protocol.nodes.messages import Argument, arguments_of, documented, messages_of, own_messages
 
 __all__ = [
-    "AUXILIARY",
-    "DEVICES",
-    "DOME",
-    "KINDS",
-    "POWER",
-    "WEATHER",
-    "Argument",
-    "FrameCodec",
-    "Kind",
-    "KindError",
-    "ParameterRow",
-    "arguments_of",
-    "check_kind",
-    "documented",
-    "kind_of",
-    "messages_of",
+    "AUXILIARY", "DEVICES", "DOME", "KINDS", "POWER", "WEATHER", "Argument", "FrameCodec", "Kind",
+    "KindError", "ParameterRow", "arguments_of", "check_kind", "documented", "kind_of", "messages_of",
     "own_messages",
-]
+]  # fmt: skip
