@@ -7,7 +7,7 @@ import erfa
 import numpy as np
 import numpy.typing as npt
 
-from host.camera.look import Look
+from host.camera.models import Look
 from host.camera.stars import Array, Stars
 from host.sky.observed import Clock, seen_from
 from host.sky.site import Site

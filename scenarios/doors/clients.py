@@ -4,7 +4,7 @@ import contextlib
 import select
 import socket
 
-from host.browser import HEAD_BYTES, is_http
+from host.guard import HEAD_BYTES, is_http
 
 LIMIT = 64
 """Clients of one listener; more are turned away."""

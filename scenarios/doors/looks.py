@@ -1,6 +1,6 @@
 """The truth on its one way out: where the telescope looks, for cameras whose shutter is open."""
 
-from host.camera.look import Look
+from host.camera.models import Look
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.lab.eye import look
 

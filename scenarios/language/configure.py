@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from host.client import Client, Procedure
-from host.procedures import parameters
+from host.procedures import manual
 from host.procedures.manual import AXES
 from plant.parts import PlantModel
 from scenarios.language import compensation
@@ -20,12 +20,12 @@ _COMMAND_LINE = "command line"
 def firmware(client: Client, of_axes: Mapping[str, Mapping[int, int]]) -> Procedure:
     """Set the parameters of a firmware on both axis boards."""
     for axis, device in AXES.items():
-        yield from parameters.load(client, device, of_axes[axis].items())
+        yield from manual.load(client, device, of_axes[axis].items())
 
 
 def compensate(client: Client, wanted: compensation.Compensation) -> Procedure:
     """Load a compensation into its axis board."""
-    yield from parameters.load(client, AXES[wanted.axis], wanted.parameters())
+    yield from manual.load(client, AXES[wanted.axis], wanted.parameters())
 
 
 def with_firmware(scenario: Scenario, name: str) -> Scenario:
