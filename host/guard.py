@@ -1,7 +1,8 @@
 """Who may look: this machine always, others only with the token, once in the address, then by a cookie.
 
 A request that names a foreign host, or comes from a page of one, is refused. A name server can point any name
-at this machine, and a browser lets any page open a websocket or send a request to a port that speaks no HTTP.
+at this machine, and a browser lets any page open a websocket. Any page may also send a request to a port that
+speaks no HTTP.
 """
 
 import hmac

@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis import AxisConfig
+from boards.axis.config import AxisConfig
 from bus.protocol import (
     AxisMode,
     Device,

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis import AxisConfig
+from boards.axis.config import AxisConfig
 from boards.axis.pi import CounterTorque
 from bus.protocol import Opcode, Result
 from bus.protocol.scales import rate_q16

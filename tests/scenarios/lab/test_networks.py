@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from boards.core.declared import DeclaredBoard
-from boards.dome import DomeBoard
+from boards.dome.firmware import DomeBoard
 from bus.can import Frame
 from bus.conformance import Settings, run
 from bus.outside.pythoncan import SchmidtBus
