@@ -1,16 +1,19 @@
 """Who may look: this machine always, others only with the token, once in the address, then by a cookie.
 
 A request that names a foreign host, or comes from a page of one, is refused. A name server can point any name
-at this machine, and a browser lets any page open a websocket.
+at this machine, and a browser lets any page open a websocket. Any page may also send a request to a port that
+speaks no HTTP.
 """
 
 import hmac
-from collections.abc import Awaitable, Callable, MutableMapping, Sequence
+import os
+import re
+import socket
+from collections.abc import Awaitable, Callable, Collection, MutableMapping, Sequence
 from http.cookies import SimpleCookie
+from ipaddress import ip_address
 from typing import Any
-from urllib.parse import parse_qs
-
-from host.browser import HOSTS_VARIABLE, is_own, is_same, more_names, own_names
+from urllib.parse import parse_qs, urlsplit
 
 Scope = MutableMapping[str, Any]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
@@ -80,3 +83,54 @@ async def _refuse(scope: Scope, send: Send, why: str) -> None:
         return
     await send({"type": "http.response.start", "status": 403, "headers": [(b"content-type", b"text/plain")]})
     await send({"type": "http.response.body", "body": why.encode()})
+
+
+HEAD_BYTES = 8
+"""The longest method word and the space behind it."""
+HOSTS_VARIABLE = "SCHMIDT_HOSTS"
+_METHOD = re.compile(rb"(GET|HEAD|POST|PUT|DELETE|CONNECT|OPTIONS|TRACE|PATCH) ")
+
+
+def is_http(head: bytes) -> bool:
+    """Whether a stream that begins with `head` is an HTTP request. `head`: its first `HEAD_BYTES`."""
+    return _METHOD.match(head) is not None
+
+
+def more_names() -> frozenset[str]:
+    """Names in SCHMIDT_HOSTS, by commas."""
+    return frozenset(
+        name.strip().lower() for name in os.environ.get(HOSTS_VARIABLE, "").split(",") if name.strip()
+    )
+
+
+def own_names() -> frozenset[str]:
+    """Names that a browser may call this server by: this machine's, and those in SCHMIDT_HOSTS."""
+    return frozenset(("localhost", socket.gethostname().lower())) | more_names()
+
+
+def is_own(host: str, names: Collection[str]) -> bool:
+    """Whether the `Host` of a request is ours: an address, which no foreign name server can redirect, or one
+    of `names`."""
+    name = _name(host)
+    try:
+        ip_address(name)
+    except ValueError:
+        return name in names
+    return True
+
+
+def is_same(origin: str, host: str, more: Collection[str]) -> bool:
+    """Whether a page of `origin` may talk to `host`: it came from there, or from one of `more` hosts."""
+    try:
+        where = urlsplit(origin).netloc.lower()
+    except ValueError:
+        return False
+    return bool(where) and (where == host.lower() or _name(where) in more)
+
+
+def _name(host: str) -> str:
+    """Without port and brackets."""
+    try:
+        return (urlsplit("//" + host).hostname or "").lower()
+    except ValueError:
+        return ""

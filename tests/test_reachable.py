@@ -21,7 +21,7 @@ LOADED_BY_FOLDER = ("plant.effects.", "calibration.names.", "boards.", "scenario
 """Found where they stand (plant/effects/__init__.py, calibration/names, a board's package, paper's rows)."""
 
 
-FOR_FOREIGN_FIRMWARE = {"Mcp2515Controller", "CarrierLvdt"}
+FOR_FOREIGN_FIRMWARE = {"CarrierLvdt"}
 """Put in the place of a shipped part in Python, as FIDELITY.md says of the chips."""
 
 

@@ -51,7 +51,7 @@ enum { /* parameters by number */
     SPLIT = 1, KP, KI, LOW, HIGH, ACCELERATION, CLASSES, SPREAD = 12, COMPENSATION, LEVEL, TRAVEL, LINES,
     BIAS = 40, LOCK, BLEND, PARAMETERS
 };
-enum { /* settings by place: boards/axis/settings.py */
+enum { /* settings by place: boards/axis/config.py */
     KP_POINTING = 11, KI_POINTING, KI_CREEP, KP_GUST, KI_GUST, FADE, PWM_STEPS, GAIN, CORRECTION, CREEP_RATE, LAG,
     SETTLE, FRAME_NS, PEERS, SETTINGS = PEERS + 4
 };

@@ -2,12 +2,11 @@
 
 from typing import Final, Protocol
 
-from boards.axis.counter import CounterTorque
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import POINTING, Motion
+from boards.axis.pi import CounterTorque
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, Parameter
-from boards.core.commands import Handler, commands
-from boards.core.parameters import kept
+from boards.core.commands import Handler, commands, kept
 from boards.silicon.pwm import MotorPwm
 from bus.protocol import AxisMode, Opcode, SpeedClass
 from bus.protocol.scales import STEPS_PER_TURN, rate_q16

@@ -29,11 +29,6 @@ ASSUMPTION."""
 class Compensator:
     """on: parameter 13. orders_q16, cosines_q8, sines_q8: the table, PWM steps."""
 
-    __slots__ = (
-        "_friction_q16", "_level_q16", "_lines", "_reciprocal_q32", "_travel", "cosines_q8", "on",
-        "orders_q16", "sines_q8",
-    )  # fmt: skip
-
     def __init__(self) -> None:
         self.on = 0
         self.orders_q16 = [0] * HARMONICS

@@ -1,14 +1,51 @@
-"""What is set when the axis board is programmed: gains, rates, limits. All integers as the firmware keeps
-them."""
+"""The axis board (dsPIC30F3011 at 30 MIPS) before it runs: interrupt table, pins, what it is programmed with.
 
+Gains, rates and limits are integers as the firmware keeps them.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
+from boards.axis.pi import GAIN_SHIFT
+from boards.core import Source
 from bus.protocol.scales import STEPS_PER_TURN, TICKS_PER_S, rate_q16
 from bus.units import ARCSEC_PER_TURN
 
+FCY_HZ: Final = 30_000_000
 TICK_NS: Final = 5_000_000
 """Sampling time of the controller (paper, section 3.3)."""
+TABLE: Final = (
+    Source(
+        "control", priority=6, latency_cycles=9, cost_cycles=1200
+    ),  # 40 us: QEI, PI (32-bit errors, 64-bit products), PWM, SPI load of a frame
+    Source(
+        "can", priority=4, latency_cycles=9, cost_cycles=900, level=True
+    ),  # 30 us: SPI read, dispatch, SPI load
+)
+"""Cycles are ASSUMPTIONS, estimated from instruction counts. The PWM-triggered ADC and the UART FIFO take
+theirs inside these figures: 20 000 ADC interrupts a second would add nothing to the last conversion."""
+PWM_ROUTINE: Final = Source("pwm", priority=7, latency_cycles=5, cost_cycles=20)
+"""Only with the spread duty: per channel load, add, load, add with carry, store (10 cycles for two), flag,
+shadow registers, return. Every PWM period, 1.7 % of the processor's time."""
+HARMONIC_CYCLES: Final = 120
+"""Per line of the compensation: 32 x 29 bit product for the phase (45), table with two interpolations (30),
+two products and sums (35)."""
+FRICTION_CYCLES: Final = 60
+"""The friction model: two 32-bit products, sums."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisPins:
+    """encoder: quadrature inputs, (t_ns) -> counts. drive: gates of the two MOSFETs, (t_ns, duty_a,
+    duty_b).
+
+    current: ADC inputs behind the sense amplifiers, (t_ns, motor 0 or 1) -> A.
+    """
+
+    encoder: Callable[[int], int]
+    drive: Callable[[int, float, float], None]
+    current: Callable[[int, int], float]
 
 
 def steps(arcsec: float) -> int:
@@ -18,8 +55,7 @@ def steps(arcsec: float) -> int:
 
 def _classes() -> tuple[int, ...]:
     # Slew: Table 1, 12.583 rad/s at the motor. Track: sidereal. Set, guide and fine have no figures in the
-    # paper:
-    # ASSUMPTION, the speeds at which it shows results (600, 100 and 15 arcsec/s).
+    # paper: ASSUMPTION, the speeds at which it shows results (600, 100 and 15 arcsec/s).
     return tuple(rate_q16(rate) for rate in (7200.0, 600.0, 100.0, 15.0, 15.041))
 
 
@@ -80,3 +116,24 @@ class AxisConfig:
     high: int = STEPS_PER_TURN - 1
     settle_steps: int = steps(5.0)
     frame_ns: int = 120_000
+
+
+def settings(config: AxisConfig, peers: AxisPeers) -> tuple[int, ...]:
+    """Parameters 1 to 11 first, then what no command changes; gains in Q12, the position loop's in Q16."""
+    gains = (config.kp, config.ki, config.kp_pointing, config.ki_pointing, config.ki_creep)
+    gusts = (config.kp_gust, config.ki_gust)
+    kp, ki, *pointing = (round(gain * (1 << GAIN_SHIFT)) for gain in (*gains, *gusts))
+    parameters = (config.counter_split, kp, ki, config.low, config.high, config.acceleration, *config.classes)
+    return (
+        *parameters,
+        *pointing,
+        config.split_fade_counts,
+        config.pwm_steps,
+        round(config.position_gain / TICKS_PER_S * 65536),
+        config.correction,
+        config.creep_rate,
+        config.lag_steps,
+        config.settle_steps,
+        config.frame_ns,
+        *(peers.position, peers.motor_a, peers.motor_b, peers.auxiliary or 0),
+    )

@@ -2,19 +2,14 @@
 
 from typing import Final
 
-from boards.axis.auxiliary import RemoteAuxiliary
 from boards.axis.commands import axis_commands, axis_parameters
-from boards.axis.config import TICK_NS, AxisConfig, AxisPeers
-from boards.axis.counter import CounterTorque
-from boards.axis.fineparameters import fine_parameters
-from boards.axis.interrupts import FCY_HZ, TABLE
+from boards.axis.config import FCY_HZ, TABLE, TICK_NS, AxisConfig, AxisPeers, AxisPins
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import POINTING, STALE_NS, Motion
-from boards.axis.output import FineOutput
-from boards.axis.pi import IncrementalPi
-from boards.axis.pins import AxisPins
+from boards.axis.output import FineOutput, fine_parameters
+from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
-from boards.axis.tachometer import RemoteTachometer
+from boards.axis.tachometer import RemoteAuxiliary, RemoteTachometer
 from boards.axis.watch import EncoderWatch
 from boards.core import PacketLine, PeriodicBoard, Place
 from boards.silicon.adc import CurrentAdc
@@ -48,12 +43,6 @@ _POWERED, _MOVING, _LIMIT, _FAULT = (
 
 class AxisBoard(PeriodicBoard):
     """dsPIC30F3011 + MCP2515, one per axis."""
-
-    __slots__ = (
-        "_identifier", "adc", "auxiliary", "config", "counter", "effort", "effort_command",
-        "fault", "fine", "limits", "motion", "output", "packets", "pi", "poscnt", "pwm", "qei",
-        "tach_a", "tach_b", "uart", "velocity", "watch",
-    )  # fmt: skip
 
     def __init__(self, place: Place, pins: AxisPins, config: AxisConfig, peers: AxisPeers) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)

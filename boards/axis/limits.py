@@ -18,8 +18,6 @@ there."""
 class SoftLimits:
     """Looks at position and speed every 10 ms."""
 
-    __slots__ = ("_motion", "_near_high", "_near_low", "reached")
-
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
         self.reached = False

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.axis.config import TICK_NS, AxisConfig
-from boards.axis.gusts import Gusts
-from boards.axis.hold import Blend, RateLock
+from boards.axis.hold import Blend, Gusts, RateLock
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
@@ -35,13 +34,6 @@ class Motion:
 
     Times are those of the board's own clock (`Board.clock_ns`).
     """
-
-    __slots__ = (
-        "_correction", "_creep_rate", "_frame_ns", "_gain", "_ki_creep", "_ki_gust", "_ki_pointing",
-        "_kp_gust", "_kp_pointing", "_lag", "_pi", "_settle", "acceleration", "blend", "classes", "ends",
-        "good_ns", "gusts", "high", "ki_q12", "kp_q12", "latch_ns", "lock", "low", "mode", "near_ticks",
-        "position", "profile", "rate", "selected", "setpoint", "setpoint_q16", "wanted_q16",
-    )  # fmt: skip
 
     def __init__(self, config: AxisConfig, pi: IncrementalPi) -> None:
         self._pi = pi

@@ -1,19 +1,21 @@
 """From the loop's effort to the duty registers when they are finer than a PWM step.
 
 The paper's firmware rounds effort and counter torque to whole steps (firmware.py, `routine`); this is what
-parameters 12 and 13 put in its place.
+parameters 12 and 13 put in its place. Here are the rows of parameters 12 to 42, too.
 """
 
 from collections.abc import Callable
 from typing import Final
 
 from boards.axis.compensator import Compensator
-from boards.axis.counter import CounterTorque
-from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
+from boards.axis.config import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
 from boards.axis.motion import Motion
-from boards.axis.pi import IncrementalPi
-from boards.core import InterruptController
+from boards.axis.pi import CounterTorque, IncrementalPi
+from boards.core import InterruptController, Parameter
+from boards.core.commands import kept
 from boards.silicon.pwm import MotorPwm
+from bus.protocol import HARMONICS, AxisParameter
+from bus.protocol.scales import COUNTS_PER_TURN
 
 _HALF: Final = 1 << 15
 
@@ -25,10 +27,6 @@ class FineOutput:
         motor's teeth together where that motor's share of a small effort would drown in dead band and
         cogging.
     """
-
-    __slots__ = (
-        "_counter", "_cpu", "_motion", "_pi", "_pwm", "bias_q8", "changed", "compensator", "spread",
-    )  # fmt: skip
 
     def __init__(
         self,
@@ -108,3 +106,65 @@ class FineOutput:
 
 def _nobody() -> None:
     """Nobody is told."""
+
+
+_EFFORT_Q8: Final = 3000 << 8
+"""All of the supply."""
+_BIAS_Q8: Final = 300 << 8
+"""A tenth of the supply."""
+_ORDER_Q16: Final = (1 << 31) - 1
+"""32767 cycles per turn of the axis: motor orders up to 90."""
+
+
+def fine_parameters(output: FineOutput, motion: Motion) -> list[Parameter]:
+    """Rows of the parameter table; the interrupt table is booked again when one changes."""
+    compensator = output.compensator
+
+    def cell(number: int, name: str, bound: int, column: list[int], line: int) -> Parameter:
+        def write(value: int) -> None:
+            column[line] = value
+            output.refresh()
+
+        low = 0 if column is compensator.orders_q16 else -bound
+        return Parameter(number, f"{name}_{line}", low, bound, lambda: column[line], write)
+
+    columns: tuple[tuple[str, int, list[int]], ...] = (
+        ("harmonic_order_q16", _ORDER_Q16, compensator.orders_q16),
+        ("harmonic_cosine_q8", _EFFORT_Q8, compensator.cosines_q8),
+        ("harmonic_sine_q8", _EFFORT_Q8, compensator.sines_q8),
+    )
+    first = AxisParameter.HARMONIC_FIRST
+    return [
+        Parameter(
+            AxisParameter.DUTY_FRACTION, "duty_fraction", 0, 1,
+            lambda: output.spread, output.set_spread,
+        ),
+        Parameter(
+            AxisParameter.COMPENSATION, "compensation", 0, 1,
+            lambda: compensator.on, output.set_compensation,
+        ),
+        kept(
+            AxisParameter.FRICTION_LEVEL_Q8, "friction_level_q8", (0, _EFFORT_Q8), compensator, "level_q8",
+        ),
+        kept(
+            AxisParameter.FRICTION_TRAVEL_COUNTS, "friction_travel_counts", (1, COUNTS_PER_TURN), compensator,
+            "travel",
+        ),
+        *(
+            cell(first + 3 * line + place, name, bound, column, line)
+            for line in range(HARMONICS)
+            for place, (name, bound, column) in enumerate(columns)
+        ),
+        Parameter(
+            AxisParameter.COUNTER_BIAS_Q8, "counter_bias_q8", 0, _BIAS_Q8,
+            lambda: output.bias_q8, output.set_bias,
+        ),
+        Parameter(
+            AxisParameter.RATE_LOCK, "rate_lock", 0, 1,
+            lambda: int(motion.lock is not None), motion.set_lock,
+        ),
+        Parameter(
+            AxisParameter.POSITION_BLEND, "position_blend", 0, 15,
+            lambda: motion.blend.shift if motion.blend else 0, motion.set_blend,
+        ),
+    ]  # fmt: skip

@@ -27,8 +27,6 @@ class Profile:
         (per tick).
     """
 
-    __slots__ = ("acceleration", "rate", "remaining", "speed", "target", "top")
-
     def __init__(self, acceleration: int) -> None:
         self.acceleration = acceleration
         self.target = 0

@@ -19,8 +19,6 @@ class EncoderWatch:
     counts: 32 bit; 50 ticks of 16 bits are less.
     """
 
-    __slots__ = ("_before", "counts")
-
     def __init__(self) -> None:
         self.counts = 0
         self._before: int | None = None

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Final, NoReturn
 
 from boards.c.library import CALLS, DUTIES_FROM, ROUTINES, FirmwareError, Memory, told
+from boards.core.commands import Answer, ParameterTable
 from boards.core.declared import BoardError
 from boards.core.interrupts import Source
-from boards.core.parameters import ParameterTable
 from boards.core.periodic import PeriodicBoard
 from boards.core.place import Place
-from boards.core.results import Answer
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.endat import EndatMaster
 from boards.silicon.pwm import MotorPwm
@@ -232,8 +231,6 @@ class FirmwareBoard(PeriodicBoard):
 
 class _Asked(ParameterTable):
     """The parameters as the firmware's own commands tell them."""
-
-    __slots__ = ("_board",)
 
     def __init__(self, board: FirmwareBoard) -> None:
         super().__init__()

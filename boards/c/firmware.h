@@ -35,7 +35,7 @@ struct frame {
     uint8_t data[8];
 };
 
-/* Once, when the board is made: filters, and what was set when it was programmed (boards/axis/settings.py).
+/* Once, when the board is made: filters, and what was set when it was programmed (boards/axis/config.py).
  * device: its device type. */
 void board_init(struct board *, uint8_t device, const int32_t *settings);
 

@@ -14,8 +14,6 @@ def levels(count: int) -> tuple[int, int]:
 class Filter:
     """Digital filter of one input: takes a level after three equal samples."""
 
-    __slots__ = ("_candidate", "_seen", "level")
-
     def __init__(self) -> None:
         self.level = 0
         self._candidate = 0
@@ -34,8 +32,6 @@ class Filter:
 
 class Decoder:
     """Counts edges: all of them (x4), or those of channel A (x2). lost: both channels changed at once."""
-
-    __slots__ = ("_a", "_b", "lost")
 
     def __init__(self, a: int = 0, b: int = 0) -> None:
         self._a, self._b = a, b

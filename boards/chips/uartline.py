@@ -47,8 +47,6 @@ class UartLine:
     `clear_overrun`.
     """
 
-    __slots__ = ("_busy_ns", "_depth", "_fifo", "_queue", "baud", "interrupt", "overrun", "peer")
-
     def __init__(self, queue: EventQueue, baud: int, depth: int = FIFO_DSPIC) -> None:
         self._queue = queue
         self._depth = depth

@@ -6,11 +6,9 @@ from typing import Final
 
 from mypy_extensions import mypyc_attr
 
-from boards.core.commands import Handler, answer, commands
+from boards.core.commands import Answer, Handler, Parameter, ParameterTable, answer, commands
 from boards.core.interrupts import InterruptController, Source
-from boards.core.parameters import Parameter, ParameterTable
 from boards.core.place import Place
-from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK, CanController
 from bus.can import Frame
 from bus.protocol import (
@@ -51,35 +49,6 @@ class Board:
     board's own clock, `clock_ns(t_ns)`, called now_ns: the timer's interrupts counted, and the timer read in
     between.
     """
-
-    __slots__ = (
-        "_before",
-        "_boot_ns",
-        "_clipped_ns",
-        "_command",
-        "_dropped_ns",
-        "_foreign_ns",
-        "_last",
-        "_late",
-        "boots",
-        "can",
-        "clipped",
-        "commands",
-        "cpu",
-        "device_type",
-        "dropped",
-        "epoch_ns",
-        "foreign",
-        "inbox",
-        "mail",
-        "name",
-        "on",
-        "oscillator",
-        "parameters",
-        "port",
-        "queue",
-        "send",
-    )
 
     def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...]) -> None:
         self.name = place.name

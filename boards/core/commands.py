@@ -1,9 +1,24 @@
-"""Command dispatch: opcode to handler, and exactly one reply for each command, whatever is wrong with it."""
+"""Commands and parameters: opcode to handler, exactly one reply for each, and what a change sets off."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from boards.core.results import OK, OUT_OF_RANGE, Answer
 from bus.protocol import FRAME_BYTES, Opcode, Result, layout_of
+
+
+class Answer(NamedTuple):
+    """Result, the parameter it is about (0: none) and a value (i32): what goes into the REPLY frame."""
+
+    result: Result
+    parameter: int = 0
+    value: int = 0
+
+
+OK = Answer(Result.OK)
+OUT_OF_RANGE = Answer(Result.OUT_OF_RANGE)
+NOT_ALLOWED = Answer(Result.NOT_ALLOWED)
+
 
 Handler = Callable[[int, bytes], Answer]
 """(t_ns, the six bytes after device type and opcode) -> reply."""
@@ -30,8 +45,6 @@ class Command:
     bounds: (low, high) of each argument, beyond which the answer is "out of range"; none: the method looks.
     """
 
-    __slots__ = ("bounds", "method", "opcode")
-
     def __init__(
         self, opcode: Opcode, method: Callable[..., Answer | None], bounds: Sequence[tuple[int, int]] = ()
     ) -> None:
@@ -49,3 +62,66 @@ class Command:
 def commands(methods: Mapping[Opcode, Callable[..., Answer | None]]) -> dict[int, Handler]:
     """A table of commands whose methods look at their arguments themselves."""
     return {opcode: Command(opcode, method) for opcode, method in methods.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One row: number on the wire, name, bounds (inclusive, integers in the unit the name says),
+    accessors."""
+
+    number: int
+    name: str
+    low: int
+    high: int
+    read: Callable[[], int]
+    write: Callable[[int], None]
+
+
+def _nothing() -> None:
+    """Nothing follows from a change."""
+
+
+def kept(
+    number: int,
+    name: str,
+    bounds: tuple[int, int],
+    owner: object,
+    attribute: str,
+    changed: Callable[[], None] = _nothing,
+) -> Parameter:
+    """A parameter whose value is an attribute of `owner`; `changed` is called after it is set."""
+
+    def write(value: int) -> None:
+        setattr(owner, attribute, value)
+        changed()
+
+    return Parameter(number, name, *bounds, lambda: int(getattr(owner, attribute)), write)
+
+
+class ParameterTable:
+    """Answers GET_PARAMETER and SET_PARAMETER."""
+
+    def __init__(self, rows: Iterable[Parameter] = ()) -> None:
+        self._rows = {row.number: row for row in rows}
+
+    def rows(self) -> tuple[Parameter, ...]:
+        """All of them, by number."""
+        return tuple(self._rows[number] for number in sorted(self._rows))
+
+    def get(self, number: int) -> Answer:
+        """The value, or out of range when there is no such parameter."""
+        row = self._rows.get(number)
+        return (
+            OUT_OF_RANGE._replace(parameter=number) if row is None else Answer(Result.OK, number, row.read())
+        )
+
+    def set(self, number: int, value: int) -> Answer:
+        """Change it when it exists and the value is inside its bounds; the reply carries the value in
+        force."""
+        row = self._rows.get(number)
+        if row is None:
+            return Answer(Result.OUT_OF_RANGE, number, value)
+        if not row.low <= value <= row.high:
+            return Answer(Result.OUT_OF_RANGE, number, row.read())
+        row.write(value)
+        return Answer(Result.OK, number, row.read())

@@ -13,14 +13,11 @@ from typing import Any, ClassVar, NamedTuple
 from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
-from boards.core.commands import Command, Handler
+from boards.core.commands import Answer, Command, Handler, Parameter
 from boards.core.interrupts import Source
 from boards.core.packets import PacketLine
-from boards.core.parameters import Parameter
 from boards.core.periodic import PeriodicBoard
 from boards.core.place import Place
-from boards.core.resources import COMMANDS, PIC18F4480, Ledger, line
-from boards.core.results import Answer
 from boards.silicon.can import FULL_MASK
 from boards.silicon.uart import Uart
 from bus.protocol import COMMAND_BASE, SUMMARY_BASE, pack_reply
@@ -49,8 +46,6 @@ class Pin(NamedTuple):
 
 class Cell:
     """A parameter's value in the board's memory."""
-
-    __slots__ = ("value",)
 
     def __init__(self, value: int) -> None:
         self.value = value
@@ -90,8 +85,6 @@ def _unusable(values: Any) -> str:
 
 class Own:
     """A command's method as a board's author wrote it; its errors name the board."""
-
-    __slots__ = ("board", "method")
 
     def __init__(self, board: "DeclaredBoard", method: Callable[..., Answer | None]) -> None:
         self.board = board
@@ -152,17 +145,6 @@ class DeclaredBoard(PeriodicBoard):
         self.commands = self.common_commands() | own_commands
         self._heartbeat_ticks = _SECOND_NS // tick_ns
         self.reset()
-
-    def ledger(self) -> Ledger:
-        """The board's chip, ASSUMPTION: that of the position board, with on-chip CAN."""
-        buffers = COMMANDS | line(self.device_type) | {"parameters": 4 * len(self.values)}
-        return Ledger(
-            chip=PIC18F4480,
-            buffers=buffers,
-            table=self.TABLE,
-            fcy_hz=self.FCY_HZ,
-            window_ns=self.codecs[0].period_ns,
-        )
 
     def measure(self, t_ns: int) -> Mapping[str, float]:
         """The routine's work: read the pins at `t_ns`, return the frames' signals in their units."""

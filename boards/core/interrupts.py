@@ -32,20 +32,6 @@ class Source:
 class Line:
     """A source at run time. `body(t_end_ns)` is called when the routine ends."""
 
-    __slots__ = (
-        "_controller",
-        "body",
-        "cost_ns",
-        "end_ns",
-        "latency_ns",
-        "overruns",
-        "own_ns",
-        "pending",
-        "priority",
-        "runs",
-        "source",
-    )
-
     def __init__(self, controller: "InterruptController", source: Source) -> None:
         self._controller = controller
         self.source = source
@@ -85,8 +71,6 @@ class InterruptController:
     queue: simulation time. fcy_hz: instruction rate. table: the sources; the first row is the
         uninterruptible one.
     """
-
-    __slots__ = ("_running", "busy", "fcy_hz", "lines", "queue", "top", "top_end_ns")
 
     def __init__(self, queue: EventQueue, fcy_hz: int, table: tuple[Source, ...]) -> None:
         if any(row.priority >= table[0].priority for row in table[1:]):

@@ -11,8 +11,6 @@ from bus.protocol.serial import SAMPLES, STAMP_UNIT_NS, pack_packet
 class PacketLine:
     """clip: told when a sample did not fit its field. sequence: of the next packet."""
 
-    __slots__ = ("_clip", "_device_type", "_oscillator", "_samples", "_stamp", "sequence", "uart")
-
     def __init__(self, place: Place, clip: Clip) -> None:
         self.uart = Uart(place.queue)
         self.sequence = 0

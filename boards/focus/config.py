@@ -1,7 +1,36 @@
-"""What is set when the focus board is programmed."""
+"""The focus board (PIC18F4431 at 10 MIPS) before it runs: interrupt table, pins, what it is programmed with.
 
+Cycles are ASSUMPTIONS. The PWM channel that makes the LVDT's 2 kHz carrier runs by itself, without a routine.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
+from typing import Final
+
+from boards.core import Source
+
+FCY_HZ: Final = 10_000_000
+
+TABLE: Final = (
+    Source("sample", priority=3, latency_cycles=12, cost_cycles=500),  # 50 us: QEI, ADC, SPI load
+    Source("step", priority=2, latency_cycles=12, cost_cycles=150),  # 15 us: table look-up, ramp, port
+    Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FocusPins:
+    """coils: the H-bridges, (t_ns, phase 0..7, energised, hold).
+
+    encoder: quadrature inputs, (t_ns) -> counts.
+    index: the encoder's index input, (t_ns) -> bool. lvdt: ADC input, (t_ns) -> V.
+    """
+
+    coils: Callable[[int, int, bool, bool], None]
+    encoder: Callable[[int], int]
+    index: Callable[[int], bool]
+    lvdt: Callable[[int], float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

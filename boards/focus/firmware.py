@@ -5,11 +5,8 @@ from typing import Final
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PacketLine, PeriodicBoard, Place
 from boards.core.commands import commands
 from boards.core.widths import wrap
-from boards.focus.config import FocusConfig
-from boards.focus.interrupts import FCY_HZ, TABLE
-from boards.focus.pins import FocusPins
-from boards.focus.reference import Reference
-from boards.focus.stepping import Stepping
+from boards.focus.config import FCY_HZ, TABLE, FocusConfig, FocusPins
+from boards.focus.stepping import Reference, Stepping
 from boards.silicon.adc import VoltageAdc
 from boards.silicon.qei import Qei, difference
 from boards.silicon.stepper import StepperDriver
@@ -26,12 +23,6 @@ _LOST: Final = 2
 
 class FocusBoard(PeriodicBoard):
     """Counts half steps; the encoder checks them, the index and the LVDT give them an origin."""
-
-    __slots__ = (
-        "_encoder_zero", "_identifier", "_index", "_last_move_ns", "_timer_ns", "adc", "config", "driver",
-        "encoder", "free", "index_pin", "lvdt", "packets", "poscnt", "qei", "reference", "referenced",
-        "stepping", "uart",
-    )  # fmt: skip
 
     def __init__(self, place: Place, pins: FocusPins, config: FocusConfig) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)

@@ -1,17 +1,18 @@
-"""Firmware of the gateway: a ring of frames towards the PC, a queue of commands towards the bus."""
+"""Firmware of the gateway, PIC18F4550 at 12 MIPS: a ring of frames towards the PC, commands towards the bus.
+
+Cycles are ASSUMPTIONS. Copying a received frame into the ring costs some 25 us; it changes memory only, so
+it is no row of the interrupt table.
+"""
 
 from collections import deque
 from typing import Final
 
-from boards.core import PeriodicBoard, Place, answer
-from boards.core.resources import COMMANDS, PIC18F4550, Ledger
-from boards.gateway.interrupts import FCY_HZ, TABLE
+from boards.core import PeriodicBoard, Place, Source, answer
 from boards.silicon.can import FULL_MASK
 from boards.silicon.hid import FRAME_NS, HidEndpoint, next_frame_ns
 from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
-    FRAME_BYTES,
     HEARTBEAT_BASE,
     MEASUREMENT_BASE,
     REPLY_BASE,
@@ -20,25 +21,24 @@ from bus.protocol import (
 )
 from bus.protocol.report import SLOTS, ReportError, place, slot, unpack_commands
 
+FCY_HZ: Final = 12_000_000
+
+TABLE: Final = (
+    Source("second", priority=3, latency_cycles=12, cost_cycles=300),
+    Source("can", priority=2, latency_cycles=12, cost_cycles=600, level=True),
+    Source("usb", priority=1, latency_cycles=12, cost_cycles=1200, level=True),  # 100 us: unpack a report
+)
+
+
 TICK_NS: Final = 1_000_000_000
 HOLD_NS: Final = 4_000_000
 """A frame waits no longer than this for its report to fill. ASSUMPTION: four USB frames."""
 RING_SLOTS: Final = 64
 """512 bytes of the PIC's 2 KB. ASSUMPTION."""
-_REPORTS: Final = 16
+REPORTS_MOST: Final = 16
 """Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
-_COMMANDS: Final = 64
+COMMANDS_MOST: Final = 64
 """Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
-LEDGER: Final = Ledger(
-    chip=PIC18F4550,
-    buffers=COMMANDS
-    | {"ring": RING_SLOTS * FRAME_BYTES, "to the bus": _COMMANDS * FRAME_BYTES, "reports": _REPORTS * 64},
-    table=TABLE,
-    fcy_hz=FCY_HZ,
-    window_ns=FRAME_NS,
-)
-"""More RAM than the chip has, by the reports: a chip would hold two, and USB repeat the others (FIDELITY.md,
-B7)."""
 _BASE_MASK: Final = 0x700
 _END: Final = MEASUREMENT_BASE + 0x80
 """Beyond the last measurement: a device type has seven bits."""
@@ -47,17 +47,6 @@ _NEVER: Final = 1 << 61
 
 class GatewayBoard(PeriodicBoard):
     """hid: the USB endpoint. ring: slots waiting for the PC. lost: slots dropped from a full ring."""
-
-    __slots__ = (
-        "_commands",
-        "_flush_ns",
-        "_own_command",
-        "_reports",
-        "hid",
-        "hold_ns",
-        "lost",
-        "ring",
-    )
 
     def __init__(self, place: Place) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
@@ -143,12 +132,12 @@ class GatewayBoard(PeriodicBoard):
     # --- PC to bus
     def _ready(self) -> bool:
         """Whether the endpoint takes a report: there is room for it and for the commands before it."""
-        return len(self._reports) < _REPORTS and len(self._commands) < _COMMANDS
+        return len(self._reports) < REPORTS_MOST and len(self._commands) < COMMANDS_MOST
 
     def _take_report(self, t_ns: int, report: bytes) -> None:
         if not self.on:
             return
-        if len(self._reports) >= _REPORTS:
+        if len(self._reports) >= REPORTS_MOST:
             self.drop()
             return
         self._reports.append(report)

@@ -1,5 +1,1 @@
 """Motor velocity board (B4): a CP-850 encoder on a motor shaft as digital tachometer."""
-
-from boards.motor_velocity.firmware import MotorVelocityBoard
-
-__all__ = ["MotorVelocityBoard"]

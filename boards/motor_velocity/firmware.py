@@ -1,13 +1,26 @@
-"""Firmware of the motor velocity board: one TACH frame every 10 ms."""
+"""Firmware of the motor velocity board: one TACH frame every 10 ms.
+
+ASSUMPTION: a PIC18F4431 at 10 MIPS like the focus board, since the paper names no part and this one has a
+QEI. Cycles are estimated from instruction counts.
+"""
 
 from collections.abc import Callable
 from typing import Final
 
-from boards.core import PeriodicBoard, Place
-from boards.motor_velocity.interrupts import FCY_HZ, TABLE
+from boards.core import PeriodicBoard, Place, Source
 from boards.silicon.qei import Qei
 from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, pack_tach
+
+FCY_HZ: Final = 10_000_000
+
+TABLE: Final = (
+    # 40 us: QEI, difference, SPI load of a frame
+    Source("sample", priority=2, latency_cycles=12, cost_cycles=400),
+    # 60 us: SPI read, dispatch, SPI load
+    Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
+)
+
 
 TICK_NS: Final = 10_000_000
 _HEARTBEAT_TICKS: Final = 100
@@ -18,8 +31,6 @@ class MotorVelocityBoard(PeriodicBoard):
 
     encoder: quadrature inputs, (t_ns) -> counts, 4096 a motor turn (1024 lines, ASSUMPTION).
     """
-
-    __slots__ = ("_identifier", "count", "poscnt", "qei")
 
     def __init__(self, place: Place, encoder: Callable[[int], int]) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)

@@ -1,5 +1,1 @@
 """EnDat position reader (B3): PIC18F4480 with on-chip CAN, one per axis."""
-
-from boards.position.firmware import PositionBoard
-
-__all__ = ["PositionBoard"]

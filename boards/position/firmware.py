@@ -1,11 +1,14 @@
-"""Firmware of the position board: an EnDat poll and a POSITION frame every 5 ms."""
+"""Firmware of the position board, PIC18F4480 at 10 MIPS: an EnDat poll and a POSITION frame every 5 ms.
+
+Cycles are ASSUMPTIONS. The sample routine waits for the EnDat transfer (some 55 us at 1 MHz), checks the CRC
+and loads the ECAN.
+"""
 
 from collections.abc import Callable
 from typing import Final
 
-from boards.core import PacketLine, PeriodicBoard, Place
-from boards.core.parameters import kept
-from boards.position.interrupts import FCY_HZ, TABLE
+from boards.core import PacketLine, PeriodicBoard, Place, Source
+from boards.core.commands import kept
 from boards.silicon.endat import POSITION_BITS, EndatEncoder, EndatMaster
 from bus.can import Frame
 from bus.protocol import (
@@ -17,6 +20,14 @@ from bus.protocol import (
     pack_position,
     pack_summary,
 )
+
+FCY_HZ: Final = 10_000_000
+
+TABLE: Final = (
+    Source("sample", priority=2, latency_cycles=12, cost_cycles=1200),  # 120 us
+    Source("can", priority=1, latency_cycles=12, cost_cycles=400, level=True),  # 40 us, no SPI
+)
+
 
 TICK_NS: Final = 5_000_000
 _SUMMARY_TICKS: Final = 50
@@ -34,18 +45,6 @@ class PositionBoard(PeriodicBoard):
 
     A reading whose CRC fails is not used: the frame repeats the last good position and says so.
     """
-
-    __slots__ = (
-        "_age",
-        "_identifier",
-        "endat",
-        "flags",
-        "high",
-        "low",
-        "packets",
-        "position",
-        "uart",
-    )
 
     def __init__(
         self, place: Place, encoder: Callable[[int], int], low: int = 0, high: int = _LAST_STEP

@@ -26,8 +26,6 @@ class CurrentAdc:
     pin: (t_ns, motor) -> A as the sense chain sees it. Motors 0 (A) and 1 (B).
     """
 
-    __slots__ = ("_counts_per_a", "pin")
-
     def __init__(
         self, pin: Callable[[int, int], float], shunt_ohm: float = SHUNT_OHM, gain: float = SENSE_GAIN
     ) -> None:
@@ -42,8 +40,6 @@ class CurrentAdc:
 
 class VoltageAdc:
     """One channel on a voltage. pin: (t_ns) -> V."""
-
-    __slots__ = ("pin",)
 
     def __init__(self, pin: Callable[[int], float]) -> None:
         self.pin = pin

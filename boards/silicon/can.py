@@ -1,8 +1,8 @@
 """The CAN controller as the firmware sees it: filters, three transmit buffers, receive interrupt.
 
 Two masks and six filters as in the MCP2515 (the PIC18F4480's ECAN in legacy mode has the same set). Filters 0
-and 1 go with mask 0, filters 2..5 with mask 1 (hardware.md 3.2). The register level comes
-later and replaces this file.
+and 1 go with mask 0, filters 2..5 with mask 1 (hardware.md 3.2). The chips to the register are in
+`boards/chips`.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,8 +20,6 @@ class CanController:
 
     send: the port's own `send(frame, ready_ns) -> bool`, False when all three transmit buffers are full.
     """
-
-    __slots__ = ("port", "send")
 
     def __init__(self, port: Port, on_receive: Callable[[int, Frame], None]) -> None:
         self.port = port

@@ -8,7 +8,22 @@ the CRC sits on top as the number its five bits spell.
 from collections.abc import Callable
 from typing import Final
 
-from boards.silicon.crc5 import crc5
+_POLYNOMIAL = 0x0B
+"""CRC-5: x^5 + x^3 + x + 1, without its top bit; start value and result inverted (hardware.md 3.1)."""
+_INVERT = 0x1F
+
+
+def crc5(bits: int, count: int) -> int:
+    """CRC of the `count` lowest bits of `bits`, taken lowest first. The published vectors hold it to
+    account."""
+    crc = _INVERT
+    for k in range(count):
+        top = (crc >> 4) ^ (bits >> k & 1)
+        crc = (crc << 1) & _INVERT
+        if top:
+            crc ^= _POLYNOMIAL
+    return crc ^ _INVERT
+
 
 POSITION_BITS: Final = 29
 CLOCK_HZ: Final = 1_000_000
@@ -52,8 +67,6 @@ class EndatEncoder:
     """The RCN 829's end. pin: (t_ns) -> position, any int; wraps to 29 bits. alarm: the encoder reports an
     error."""
 
-    __slots__ = ("alarm", "pin")
-
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin
         self.alarm = False
@@ -71,8 +84,6 @@ class EndatMaster:
     line: what the cable does to a frame (int -> int), None for nothing.
     latch_to_data_ns: from the first clock edge, where the position is latched, to the last CRC bit.
     """
-
-    __slots__ = ("encoder", "latch_to_data_ns", "line")
 
     def __init__(self, encoder: EndatEncoder, clock_hz: int = CLOCK_HZ) -> None:
         self.encoder = encoder

@@ -17,8 +17,6 @@ class HidEndpoint:
     ready: whether the firmware takes a report now, or lets the endpoint NAK; set by the firmware.
     """
 
-    __slots__ = ("from_host", "ready", "to_host")
-
     def __init__(self) -> None:
         self.to_host: Callable[[int, bytes], None] | None = None
         self.from_host: Callable[[int, bytes], None] = _nobody

@@ -5,13 +5,41 @@ Edge aligned, duty = PDC / (2 (PTPER + 1)): bit 0 of PDC is half an instruction 
 A new PDC is taken at the end of the running period.
 
 `write` is what firmware does once a control tick. `write_spread` adds the PWM interrupt that changes the
-registers every period (spread.py).
+registers every period (`Spreader`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Final
 
-from boards.silicon.spread import ONE, Spreader
+ONE = 1 << 16
+_MASK = ONE - 1
+
+
+class Spreader:
+    """One channel of a duty finer than a PWM step: the fraction is spread over successive periods
+    (first-order delta-sigma).
+
+    Once a period the PWM interrupt adds the fraction to a 16-bit accumulator and loads the whole steps plus
+    the carry. Over n periods the registers sum up to n times the wanted value, to within one step.
+    `value_q16`: the wanted register value, PWM steps in Q16. `accumulator`: 16 bit.
+    """
+
+    def __init__(self) -> None:
+        self.value_q16 = 0
+        self.accumulator = 0
+
+    def registers(self, periods: int) -> Iterator[int]:
+        """The values the interrupt loads in the next `periods` PWM periods, one by one."""
+        whole, fraction = divmod(self.value_q16, ONE)
+        for _ in range(periods):
+            total = self.accumulator + fraction
+            self.accumulator = total & _MASK
+            yield whole + (total >> 16)
+
+    def skip(self, periods: int) -> None:
+        """Go on by `periods` without looking at the values: the same accumulator, in one multiplication."""
+        self.accumulator = (self.accumulator + periods * self.value_q16) & _MASK
+
 
 FCY_HZ: Final = 30_000_000
 """dsPIC30F at its fastest. ASSUMPTION: the paper does not say."""
@@ -36,11 +64,6 @@ STEPS: Final = steps_for(FCY_HZ, PWM_HZ)
 
 class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
-
-    __slots__ = (
-        "_loads_ns", "_phase_ns", "drive", "pdc_a", "pdc_b", "period_ns", "spread_a", "spread_b", "spreading",
-        "steps",
-    )  # fmt: skip
 
     def __init__(
         self,

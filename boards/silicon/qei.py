@@ -14,8 +14,6 @@ class Qei:
     """pin: the encoder, (t_ns) -> counts after quadrature, any int. A stuck sensor is another callable put
     here."""
 
-    __slots__ = ("pin",)
-
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin
 

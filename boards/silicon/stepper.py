@@ -12,8 +12,6 @@ HALF_STEPS: tuple[tuple[int, int], ...] = (
 class StepperDriver:
     """coils: the bridge's outputs, (t_ns, phase 0..7, energised, hold)."""
 
-    __slots__ = ("coils", "energised", "hold", "phase")
-
     def __init__(self, coils: Callable[[int, int, bool, bool], None]) -> None:
         self.coils = coils
         self.phase = 0

@@ -25,8 +25,6 @@ class Uart:
     of every byte. The byte numbered i is through `duration_ns(i + 1)` after that.
     """
 
-    __slots__ = ("_free_ns", "_packets", "_queue", "baud", "dropped", "line", "sink")
-
     def __init__(self, queue: EventQueue, baud: int = BAUD, sink: Sink | None = None) -> None:
         self._queue = queue
         self.baud = baud

@@ -20,8 +20,6 @@ class Frame:
     several readers each.
     """
 
-    __slots__ = ("data", "extended", "identifier", "remote")
-
     def __init__(self, identifier: int, data: bytes, extended: bool = False, remote: bool = False) -> None:
         self.identifier: Final = identifier
         self.data: Final = data

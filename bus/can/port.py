@@ -72,26 +72,6 @@ class Port:
     it returns.
     """
 
-    __slots__ = (
-        "_asleep",
-        "_bus_off",
-        "_filters",
-        "_free",
-        "_listen_only",
-        "_on_receive",
-        "_online",
-        "_quiet_ns",
-        "_routes",
-        "_timing",
-        "_watcher",
-        "_wire",
-        "name",
-        "on_error",
-        "on_sent",
-        "rec",
-        "tec",
-    )
-
     def __init__(self, wire: "Wire", name: str) -> None:
         self.name = name
         self.tec = 0

@@ -7,9 +7,11 @@ from typing import NamedTuple
 from bus.conformance.boards import Board
 from bus.conformance.link import Answers, Link
 from bus.conformance.result import CheckResult, doubted, judged, told
-from bus.protocol import Device, Health, Opcode, Reply, Result, SpeedClass
+from bus.protocol import Device, Health, Opcode, Reply, Result, SpeedClass, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
+Command = tuple[Opcode, tuple[int, ...]]
+"""An opcode and its arguments."""
 _OK = (Result.OK,)
 _REFUSED_TOO = (Result.OK, Result.NOT_ALLOWED)
 """What changes nothing may still be refused while the axis is off."""
@@ -79,6 +81,15 @@ def judge(
     return judged(check, subject, passed, expected, observed, duration_s)
 
 
+def asked(
+    link: Link, board: Board, check: str, subject: str, data: bytes, results: Sequence[int]
+) -> CheckResult:
+    """Send any bytes as a command and judge the answer, which says opcode 0 to what has no byte 1."""
+    start = link.now()
+    replies = link.ask_raw(board.device, data, data[1] if len(data) > 1 else 0)
+    return judge(check, subject, replies, board.device, results, link.now() - start)
+
+
 def _text(reply: Reply, device: int, parameter: int | None) -> str:
     name = Result(reply.result).name if reply.result in set(Result) else f"result {reply.result}"
     value = f" value {reply.value}" if reply.value else ""
@@ -103,11 +114,9 @@ def check_commands(link: Link, board: Board) -> Iterator[CheckResult]:
     for case in cases:
         if case.moves and not link.settings.motion:
             continue
-        start = link.now()
-        replies = link.ask(device, case.opcode, *case.arguments)
         arguments = "".join(f" {argument}" for argument in case.arguments)
-        subject = f"{name} {case.opcode.name}{arguments}"
-        yield judge("command", subject, replies, device, case.results, link.now() - start)
+        data = pack_command(device, case.opcode, *case.arguments)
+        yield asked(link, board, "command", f"{name} {case.opcode.name}{arguments}", data, case.results)
     left = 0 if link.settings.motion else sum(case.moves for case in cases)
     if left:
         yield told("motion", name, f"{left} commands that may move something not sent; --motion sends them")
@@ -138,7 +147,5 @@ def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
     subject = f"{name} GET_PARAMETER {_PARAMETER}"
     yield judge("command", subject, replies, device, results, link.now() - start)
     value = replies[0].value if replies else 0
-    start = link.now()
-    replies = link.ask(device, Opcode.SET_PARAMETER, _PARAMETER, value)
-    subject = f"{name} SET_PARAMETER {_PARAMETER}"
-    yield judge("command", subject, replies, device, results, link.now() - start)
+    data = pack_command(device, Opcode.SET_PARAMETER, _PARAMETER, value)
+    yield asked(link, board, "command", f"{name} SET_PARAMETER {_PARAMETER}", data, results)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from bus.conformance.boards import Board
-from bus.conformance.commands import judge
+from bus.conformance.commands import asked
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, doubted, judged, told
 from bus.protocol import COMMAND_BASE, Health, Opcode, Result, pack_command
@@ -30,11 +30,8 @@ def check_flood(link: Link, board: Board) -> Iterator[CheckResult]:
     )  # fmt: skip
     if link.settings.flood:
         yield from _full(link, board)
-    start = link.now()
-    replies = link.ask(board.device, Opcode.PING)
-    yield judge(
-        "still there", f"{board.name}, flooded", replies, board.device, (Result.OK,), link.now() - start
-    )
+    ping = pack_command(board.device, Opcode.PING)
+    yield asked(link, board, "still there", f"{board.name}, flooded", ping, (Result.OK,))
 
 
 def _stream(link: Link, board: Board) -> int:

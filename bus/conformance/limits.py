@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from bus.conformance.boards import Board
-from bus.conformance.commands import judge
+from bus.conformance.commands import Command, asked
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
 from bus.protocol import HARMONICS, AxisParameter, Opcode, Reply, Result, pack_command
@@ -44,7 +44,7 @@ PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
 """Type of board -> parameter -> lowest and highest value, in the parameter's own unit. A test compares them
 with the firmware's."""
 
-_AT: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
+_AT: dict[str, tuple[Command, ...]] = {
     "AXIS": (
         (Opcode.SET_RATE, (_FASTEST,)),
         (Opcode.SET_RATE, (-_FASTEST,)),
@@ -57,7 +57,7 @@ _AT: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
 }
 """At the limit. An axis is off meanwhile, so it says so; they are sent with --motion only: one that does not
 look at its state would move."""
-_BEYOND: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
+_BEYOND: dict[str, tuple[Command, ...]] = {
     "AXIS": (
         (Opcode.SET_RATE, (_FASTEST + 1,)),
         (Opcode.SET_RATE, (-_FASTEST - 1,)),
@@ -84,10 +84,9 @@ def check_limits(link: Link, board: Board) -> Iterator[CheckResult]:
     if link.settings.motion or board.family != "AXIS":
         wanted += [(each, _RIGHT[board.family]) for each in _AT.get(board.family, ())]
     for (opcode, arguments), result in wanted:
-        start = link.now()
-        replies = link.ask_raw(board.device, pack_command(board.device, opcode, *arguments), opcode)
         subject = f"{board.name} {opcode.name} {' '.join(map(str, arguments))}"
-        yield judge("limits", subject, replies, board.device, (result,), link.now() - start)
+        data = pack_command(board.device, opcode, *arguments)
+        yield asked(link, board, "limits", subject, data, (result,))
 
 
 def parameters_of(board: Board) -> dict[int, tuple[int, int]]:
@@ -98,11 +97,11 @@ def parameters_of(board: Board) -> dict[int, tuple[int, int]]:
     return {row.number: (row.low, row.high) for row in kind.parameters}
 
 
-def _around(link: Link, board: Board) -> list[tuple[Opcode, tuple[int, ...]]]:
+def _around(link: Link, board: Board) -> list[Command]:
     """Targets one step outside the soft limits that are in force."""
     if board.family != "AXIS":
         return []
-    found: list[tuple[Opcode, tuple[int, ...]]] = []
+    found: list[Command] = []
     for number, outwards in ((AxisParameter.LIMIT_LOW_STEPS, -1), (AxisParameter.LIMIT_HIGH_STEPS, 1)):
         reply = link.first(board.device, Opcode.GET_PARAMETER, number)
         if reply is not None and reply.result == Result.OK and reply.value + outwards >= 0:

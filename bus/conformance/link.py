@@ -6,7 +6,7 @@ from time import monotonic
 import can
 
 from bus.conformance.settings import Settings
-from bus.outside.overflow import kernel_drops
+from bus.outside.errorframes import kernel_drops
 from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import COMMAND_BASE, FRAME_BYTES, REPLY_BASE, Opcode, Reply, pack_command, unpack_reply
 

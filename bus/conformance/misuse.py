@@ -1,18 +1,21 @@
-"""What boards make of frames that are wrong: an answer that says so, or none where nobody is meant."""
+"""What boards make of frames that are wrong, and of commands in a state that does not allow them.
+
+An answer that says so, whatever the arguments, or none where nobody is meant.
+"""
 
 import struct
 from collections.abc import Iterator
 
 from bus.conformance.boards import Board
-from bus.conformance.commands import judge
+from bus.conformance.commands import Command, asked
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, layout_of, pack_command
+from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, SpeedClass, layout_of, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
 _UNKNOWN_PARAMETER = 200
-_OUT_OF_RANGE: dict[str, tuple[tuple[Opcode, tuple[int, ...]], ...]] = {
+_OUT_OF_RANGE: dict[str, tuple[Command, ...]] = {
     "AXIS": (
         (Opcode.SET_PARAMETER, (1, 99)),  # the counter split goes to 25 %
         (Opcode.POWER, (2,)),
@@ -37,15 +40,15 @@ def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
     other = next(each for each in Device if each != device)
     for length in (0, 1, 2, 7):
         subject = f"{name} PING of {length} bytes"
-        yield _one(link, device, "wrong length", subject, ping[:length], Result.WRONG_LENGTH)
+        yield asked(link, board, "wrong length", subject, ping[:length], (Result.WRONG_LENGTH,))
     data = pack_command(other, Opcode.PING)
     subject = f"{name} PING for {other.name}"
-    yield _one(link, device, "wrong device type", subject, data, Result.WRONG_DEVICE_TYPE)
+    yield asked(link, board, "wrong device type", subject, data, (Result.WRONG_DEVICE_TYPE,))
     for opcode in _UNKNOWN_OPCODES:
         data = bytes([device, opcode, 0, 0, 0, 0, 0, 0])
         subject = f"{name} opcode {opcode:#04x}"
-        yield _one(link, device, "unknown opcode", subject, data, Result.UNKNOWN_OPCODE)
-    wrong: list[tuple[Opcode, tuple[int, ...]]] = [
+        yield asked(link, board, "unknown opcode", subject, data, (Result.UNKNOWN_OPCODE,))
+    wrong: list[Command] = [
         (Opcode.GET_PARAMETER, (_UNKNOWN_PARAMETER,)),
         (Opcode.SET_PARAMETER, (_UNKNOWN_PARAMETER, 0)),
     ]
@@ -53,15 +56,15 @@ def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
     for known, arguments in wrong:
         data = pack_command(device, known, *arguments)
         subject = f"{name} {known.name} {' '.join(map(str, arguments))}"
-        yield _one(link, device, "out of range", subject, data, Result.OUT_OF_RANGE)
+        yield asked(link, board, "out of range", subject, data, (Result.OUT_OF_RANGE,))
 
 
-def declared_misuse(device: Device) -> list[tuple[Opcode, tuple[int, ...]]]:
+def declared_misuse(device: Device) -> list[Command]:
     """Every parameter, and every argument of an opcode of its own, beyond each limit its bytes can pass."""
     kind = kind_of(device)
     if kind is None:
         return []
-    wrong: list[tuple[Opcode, tuple[int, ...]]] = [
+    wrong: list[Command] = [
         (Opcode.SET_PARAMETER, (row.number, value))
         for row in kind.parameters
         for value in (row.low - 1, row.high + 1)
@@ -82,13 +85,6 @@ def _fits(opcode: Opcode, arguments: tuple[int, ...]) -> bool:
     except struct.error:
         return False
     return True
-
-
-def _one(link: Link, device: int, check: str, subject: str, data: bytes, result: Result) -> CheckResult:
-    opcode = data[1] if len(data) > 1 else 0  # without byte 1 the answer cannot name one: it says 0
-    start = link.now()
-    replies = link.ask_raw(device, data, opcode)
-    return judge(check, subject, replies, device, (result,), link.now() - start)
 
 
 def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
@@ -113,6 +109,39 @@ def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
         observed = "no reply" if silent else "a reply"
         check = "remote frame" if remote else "extended frame" if extended else "unknown identifier"
         yield judged(check, f"{board.name}, {subject}", silent, "no reply", observed, took)
-    start = link.now()
-    replies = link.ask(board.device, Opcode.PING)
-    yield judge("still there", board.name, replies, board.device, (Result.OK,), link.now() - start)
+    yield asked(link, board, "still there", board.name, ping, (Result.OK,))
+
+
+_PREPARE: dict[str, Command] = {
+    "AXIS": (Opcode.POWER, (0,)),
+    "FOCUS": (Opcode.FOCUS_FREE, ()),
+}
+_REFUSED: dict[str, tuple[Command, ...]] = {
+    # Off. Arguments at rest: a board that does not look at its state does not move either.
+    "AXIS": (
+        (Opcode.SET_RATE, (0,)),
+        (Opcode.SET_CLASS, (SpeedClass.FINE, 0)),
+        (Opcode.TRACK_RATE, (0,)),
+        (Opcode.OPEN_LOOP, (0,)),
+        (Opcode.NUDGE, (0,)),
+    ),
+    # The shaft is free: nothing may be stepped.
+    "FOCUS": ((Opcode.FOCUS_STEP, (0,)), (Opcode.FOCUS_REFERENCE, ())),
+}
+_AFTERWARDS: dict[str, Opcode] = {"FOCUS": Opcode.FOCUS_HOLD}
+_LOSES_ORIGIN = {"FOCUS"}
+"""Freed, the board no longer knows where it is: only with --motion."""
+
+
+def check_states(link: Link, board: Board) -> Iterator[CheckResult]:
+    """What `board` says to commands it cannot carry out now."""
+    if board.family not in _PREPARE or (board.family in _LOSES_ORIGIN and not link.settings.motion):
+        return
+    opcode, arguments = _PREPARE[board.family]
+    link.ask(board.device, opcode, *arguments)
+    for each, values in _REFUSED[board.family]:
+        data = pack_command(board.device, each, *values)
+        subject = f"{board.name} {each.name} after {opcode.name}"
+        yield asked(link, board, "wrong state", subject, data, (Result.NOT_ALLOWED,))
+    if board.family in _AFTERWARDS:
+        link.ask(board.device, _AFTERWARDS[board.family])

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import can
 
 from bus.conformance.boards import Board
-from bus.conformance.course import Row, check_course
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, doubted, judged, told
-from bus.conformance.timing import check_timing, queueing_s
+from bus.conformance.timing import Row, check_course, check_timing, queueing_s
 
 if TYPE_CHECKING:
     from cantools.database import Database

@@ -8,10 +8,9 @@ import can
 
 from bus.can.frame import Frame, FrameError, check
 from bus.can.wire import Wire
-from bus.outside.errorframes import ErrorFrames
+from bus.outside.errorframes import ErrorFrames, kernel_drops, overflow_message
 from bus.outside.messages import to_frame, to_message
 from bus.outside.node import OutsideNode
-from bus.outside.overflow import kernel_drops, overflow_message
 from bus.time import EventQueue
 
 _FRAMES_PER_POLL = 64

@@ -1,10 +1,13 @@
-"""MOTION: an axis board's measurement frame, every 10 ms."""
+"""MOTION of an axis and TACH of a motor, every 10 ms; FOCUS, every 50 ms: measurement frames."""
 
 from enum import IntFlag
-from typing import NamedTuple
+from struct import Struct, error
+from typing import Final, NamedTuple
 
-from bus.protocol.saturate import Clip, nobody
-from bus.protocol.signed import SIGN_13, SIGN_15
+from bus.protocol.saturate import Clip, fitted, nobody
+
+SIGN_13: Final = 1 << 12
+SIGN_15: Final = 1 << 14
 
 
 class MotionFlag(IntFlag):
@@ -63,3 +66,66 @@ def unpack_motion(data: bytes) -> Motion:
         word >> 44 & 0x3FF,
         word >> 54,
     )
+
+
+_tach: Final = Struct("<BBih")
+tach_fields: Final = _tach.unpack
+"""The signals of eight bytes as a plain tuple, for receivers that take thousands."""
+
+
+class Tach(NamedTuple):
+    """counts: free running, 4096 per motor turn, wraps at 32 bit; delta: counts in 10 ms; flags: none
+    defined yet."""
+
+    device: int
+    flags: int
+    counts: int
+    delta: int
+
+
+def pack_tach(device: int, flags: int, counts: int, delta: int) -> bytes:
+    """Eight bytes; `counts` wraps at 32 bits (it runs free), `delta` is of a 16-bit counter."""
+    word = device | flags << 8 | (counts & 0xFFFF_FFFF) << 16 | (delta & 0xFFFF) << 48
+    return word.to_bytes(8, "little")
+
+
+def unpack_tach(data: bytes) -> Tach:
+    """The signals of eight bytes."""
+    return Tach._make(_tach.unpack(data))
+
+
+_focus: Final = Struct("<BBhhH")
+
+
+class FocusFlag(IntFlag):
+    """Flag byte of FOCUS."""
+
+    MOVING = 1
+    REFERENCED = 2
+    HOLD = 4
+    FREE = 8
+    INDEX_SEEN = 16
+
+
+class Focus(NamedTuple):
+    """position: half steps; encoder: counts; lvdt: 10-bit counts."""
+
+    device: int
+    flags: int
+    position: int
+    encoder: int
+    lvdt: int
+
+
+def pack_focus(device: int, flags: int, position: int, encoder: int, lvdt: int, clip: Clip = nobody) -> bytes:
+    """Eight bytes of FOCUS; what does not fit is cut, and `clip` told."""
+    try:
+        return _focus.pack(device, flags, position, encoder, lvdt)
+    except error:
+        clip()
+        return _focus.pack(*fitted(_focus, (device, flags, position, encoder, lvdt)))
+
+
+def unpack_focus(data: bytes) -> Focus:
+    """The signals of eight bytes of FOCUS."""
+    return Focus._make(_focus.unpack(data))

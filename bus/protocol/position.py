@@ -1,10 +1,11 @@
-"""POSITION (5 ms) and SUMMARY (250 ms): what a position board measures."""
+"""POSITION (5 ms), SUMMARY (250 ms) of a position board; TARGET (250 ms): what an axis is heading for."""
 
 from enum import IntFlag
-from struct import Struct
+from struct import Struct, error
 from typing import Final, NamedTuple
 
 from bus.protocol.names import SUMMARY_KIND
+from bus.protocol.saturate import Clip, fitted, nobody
 
 _position: Final = Struct("<BBIBB")
 _summary: Final = Struct("<BBBIx")
@@ -60,3 +61,30 @@ def unpack_summary(data: bytes) -> Summary:
     """The signals of eight bytes of SUMMARY."""
     device, _, flags, position = _summary.unpack(data)
     return Summary(device, flags, position)
+
+
+_target: Final = Struct("<BBBix")
+
+
+class Target(NamedTuple):
+    """speed_class: SpeedClass; settled: 0 or 1; distance: to go, steps of the position encoder."""
+
+    device: int
+    speed_class: int
+    settled: int
+    distance: int
+
+
+def pack_target(device: int, speed_class: int, settled: int, distance: int, clip: Clip = nobody) -> bytes:
+    """Eight bytes of TARGET; a distance that does not fit is cut, and `clip` told."""
+    try:
+        return _target.pack(device, SUMMARY_KIND, speed_class | settled << 4, distance)
+    except error:
+        clip()
+        return _target.pack(*fitted(_target, (device, SUMMARY_KIND, speed_class | settled << 4, distance)))
+
+
+def unpack_target(data: bytes) -> Target:
+    """The signals of eight bytes of TARGET."""
+    device, _, packed, distance = _target.unpack(data)
+    return Target(device, packed & 0xF, packed >> 4, distance)

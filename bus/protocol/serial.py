@@ -13,7 +13,7 @@ from binascii import crc_hqx
 from collections.abc import Collection, Sequence
 from itertools import starmap
 from struct import Struct, calcsize, error
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from bus.protocol.names import Device
 from bus.protocol.saturate import Clip, fitted, nobody
@@ -45,32 +45,6 @@ class AxisSample(NamedTuple):
     setpoint: int
 
 
-class PositionSample(NamedTuple):
-    """What the encoder said."""
-
-    position: int
-
-
-class FocusSample(NamedTuple):
-    """Where the focus is: commanded, counted, measured."""
-
-    half_steps: int
-    encoder: int
-    lvdt: int
-
-
-class FrameSample(NamedTuple):
-    """A declared board's measurement frame: its bytes 1..7, to be read by the board's DBC."""
-
-    byte1: int
-    byte2: int
-    byte3: int
-    byte4: int
-    byte5: int
-    byte6: int
-    byte7: int
-
-
 MEANINGS: Final = {
     "effort": "1/3000 of the supply",
     "position": "steps of the absolute encoder, 29 bit",
@@ -88,20 +62,20 @@ MEANINGS: Final = {
 }
 """Field of a sample -> unit and meaning, for the protocol's page."""
 
-Sample = AxisSample | PositionSample | FocusSample | FrameSample
-_AXIS: Final = (Struct("<hIhHHhhIi"), AxisSample)
-_POSITION: Final = (Struct("<I"), PositionSample)
-_LAYOUTS: Final[dict[int, tuple[Struct, type[Sample]]]] = {
+_Layout = tuple[Struct, tuple[str, ...]]
+"""Of a sample, and the names of its fields."""
+_AXIS: Final[_Layout] = (Struct("<hIhHHhhIi"), AxisSample._fields)
+_POSITION: Final[_Layout] = (Struct("<I"), ("position",))
+_LAYOUTS: Final[dict[int, _Layout]] = {
     Device.AXIS_RA: _AXIS,
     Device.AXIS_DEC: _AXIS,
     Device.POSITION_RA: _POSITION,
     Device.POSITION_DEC: _POSITION,
-    Device.FOCUS: (Struct("<hhH"), FocusSample),
+    Device.FOCUS: (Struct("<hhH"), ("half_steps", "encoder", "lvdt")),
 }
 """The five boards with a serial line (L3)."""
-_FRAME: Final[tuple[Struct, type[Sample]]] = (Struct("<7B"), FrameSample)
-
-
+_FRAME: Final[_Layout] = (Struct("<7B"), tuple(f"byte{k}" for k in range(1, 8)))
+"""A declared board's measurement frame: its bytes 1..7, to be read by the board's DBC."""
 _WRITTEN: Final = frozenset(Device)
 """Every other device type is a declared board's."""
 
@@ -119,36 +93,25 @@ class Packet(NamedTuple):
     stamp: int
     rows: tuple[tuple[int, ...], ...]
 
-    @property
-    def samples(self) -> tuple[Sample, ...]:
-        """The same with names."""
-        kind: Any = _known(self.device)[1]
-        return tuple(kind(*row) for row in self.rows)
-
 
 def packet_bytes(device: int) -> int:
     """Length of a packet of `device`, sync and CRC included; raises SerialError for one without a line."""
     return len(SYNC) + _head.size + SAMPLES * _known(device)[0].size + _crc.size
 
 
-def sample_bytes(device: int) -> int:
-    """Length of a sample in a packet of `device`; raises SerialError for one without a line."""
-    return _known(device)[0].size
-
-
 def fields(device: int) -> list[tuple[str, str, int]]:
     """Name, type (`i16`) and first byte of what a sample of `device` holds; SerialError as above."""
-    layout, kind = _known(device)
+    layout, names = _known(device)
     codes = [code for count, code in _CODES.findall(layout.format) for _ in range(int(count or 1))]
     at, found = 0, []
-    for name, code in zip(kind._fields, codes, strict=True):
+    for name, code in zip(names, codes, strict=True):
         size = calcsize(f"<{code}")
         found.append((name, f"{'i' if code.islower() else 'u'}{8 * size}", at))
         at += size
     return found
 
 
-def _known(device: int) -> tuple[Struct, type[Sample]]:
+def _known(device: int) -> _Layout:
     if device in _WRITTEN and device not in _LAYOUTS:
         raise SerialError(f"device type {device:#04x} has no serial line")
     return _LAYOUTS.get(device, _FRAME)

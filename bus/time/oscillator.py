@@ -27,8 +27,6 @@ class Oscillator:
     is set for a local time fires at the first true nanosecond at which the local clock has reached it.
     """
 
-    __slots__ = ("_drift", "_rate", "phase_ns")
-
     def __init__(self, ppm: float, phase_ns: int, drift_ppm_per_hour: float = 0.0) -> None:
         if not abs(ppm) <= _LIMIT_PPM:
             raise OscillatorError(f"oscillator: {ppm} ppm is outside ±{_LIMIT_PPM:g} ppm")

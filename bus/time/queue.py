@@ -30,8 +30,6 @@ class EventQueue:
     Times are integer nanoseconds since the start of the simulation.
     """
 
-    __slots__ = ("_before", "_calls", "now_ns")
-
     def __init__(self) -> None:
         self.now_ns: int = 0
         # Sorted, the earliest event last, times negated: for an event or two per node quicker than a heap.

@@ -1,8 +1,12 @@
-"""Alpaca over HTTP: requests to members, answers as Alpaca's JSON; management and the devices' list."""
+"""Alpaca over HTTP: requests to members, answers as Alpaca's JSON; management and the devices' list.
+
+A picture goes as ImageBytes where the client takes it, else as JSON (Alpaca API Reference, version 9).
+"""
 
 import importlib.metadata
 import itertools
 import socket
+import struct
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,11 +21,11 @@ from host.alpaca.device import Device
 from host.alpaca.dome import DomeDevice
 from host.alpaca.errors import AlpacaError, Malformed
 from host.alpaca.focuser import FocuserDevice
-from host.alpaca.imagebytes import picture
 from host.alpaca.observing import ObservingConditionsDevice, SafetyMonitorDevice
 from host.alpaca.parameters import Parameters
 from host.alpaca.telescope import TelescopeDevice
 from host.camera.camera import Camera
+from host.camera.readout import Counts
 from host.guard import Guard
 from host.telescope import AsyncDesk, Telescope
 from host.web import answer
@@ -154,3 +158,26 @@ def _text(said: bytes) -> str:
         return said.decode()
     except UnicodeDecodeError:
         raise Malformed("parameters are no UTF-8") from None
+
+
+MEDIA_TYPE = "application/imagebytes"
+_INT32, _UINT16 = 2, 8
+"""ImageArrayElementTypes: what the client holds in the end, and what is sent."""
+_HEADER = struct.Struct("<iiIIiiiiiii")
+
+
+def picture(counts: Counts, accepted: str, client: int, server: int) -> Response:
+    """counts: rows from the top; on the wire x is the first index. client, server: transaction numbers."""
+    columns = counts.T
+    if MEDIA_TYPE in accepted.lower():
+        width, height = columns.shape
+        head = _HEADER.pack(
+            1, 0, client, server % (1 << 32), _HEADER.size, _INT32, _UINT16, 2, width, height, 0
+        )
+        pixels = np.ascontiguousarray(columns, dtype="<u2").tobytes()
+        return Response(head + pixels, media_type=MEDIA_TYPE)
+    body = {
+        "Type": _INT32, "Rank": 2, "Value": columns.tolist(), "ClientTransactionID": client,
+        "ServerTransactionID": server % (1 << 32), "ErrorNumber": 0, "ErrorMessage": "",
+    }  # fmt: skip
+    return JSONResponse(body)

@@ -8,6 +8,7 @@ from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_N
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, star_of_apparent
 from host.sky.catalogue import Star
+from host.telescope import Job, Telescope
 from host.telescope.paddle import FASTEST_ARCSEC_S
 
 FASTEST_DEG_S = FASTEST_ARCSEC_S / 3600
@@ -25,6 +26,8 @@ class SlewingDevice(Device):
 
 
 Where = Callable[[SlewingDevice, Parameters], Star]
+Goto = Callable[[Telescope], Job[None]]
+Way = Callable[[SlewingDevice, Parameters], Goto]
 
 
 def right_ascension_h(value: float) -> float:
@@ -63,38 +66,35 @@ def _must_track(device: SlewingDevice, on: bool) -> None:
         raise AlpacaError(INVALID_OPERATION, f"tracking has to be {'on' if on else 'off'} for this")
 
 
-def _slew(where: Where, wait: bool) -> Put:
-    """To a place in the sky; wait: answered when the telescope is there."""
+def _sky(where: Where) -> Way:
+    """To a place in the sky."""
 
-    async def put(device: SlewingDevice, given: Parameters) -> None:
+    def way(device: SlewingDevice, given: Parameters) -> Goto:
         star = where(device, given)
         _must_track(device, True)
-        if wait:
-            await device.run(lambda t: t.drive.goto(star))
-        else:
-            await device.do(lambda t: t.drive.goto(star))
+        return lambda t: t.drive.goto(star)
 
-    return put
+    return way
 
 
-def _ground(given: Parameters) -> tuple[float, float]:
-    azimuth = within("Azimuth", given.number("Azimuth"), 0, 360)
-    altitude = within("Altitude", given.number("Altitude"), -90, 90)
-    return math.radians(azimuth), math.radians(altitude)
-
-
-def _slew_ground(wait: bool) -> Put:
+def _ground(device: SlewingDevice, given: Parameters) -> Goto:
     """To a place over the ground."""
+    azimuth_rad = math.radians(within("Azimuth", given.number("Azimuth"), 0, 360))
+    altitude_rad = math.radians(within("Altitude", given.number("Altitude"), -90, 90))
+    _must_track(device, False)
+    return lambda t: t.drive.goto_altaz(azimuth_rad, altitude_rad)
 
-    async def put(device: SlewingDevice, given: Parameters) -> None:
-        azimuth, altitude = _ground(given)
-        _must_track(device, False)
-        if wait:
-            await device.run(lambda t: t.drive.goto_altaz(azimuth, altitude))
-        else:
-            await device.do(lambda t: t.drive.goto_altaz(azimuth, altitude))
 
-    return put
+def _slew(name: str, way: Way) -> tuple[Member, Member]:
+    """The two methods that take the telescope there: one answers when it has arrived, the other at once."""
+
+    async def arrive(device: SlewingDevice, given: Parameters) -> None:
+        await device.run(way(device, given))
+
+    async def begin(device: SlewingDevice, given: Parameters) -> None:
+        await device.do(way(device, given))
+
+    return Member(name, put=arrive), Member(f"{name}Async", put=begin)
 
 
 def _sync(where: Where) -> Put:
@@ -155,12 +155,9 @@ MEMBERS = (
     Member("Park", put=_park),
     Member("PulseGuide", put=pulse),
     Member("SetPark", put=_set_park),
-    Member("SlewToAltAz", put=_slew_ground(wait=True)),
-    Member("SlewToAltAzAsync", put=_slew_ground(wait=False)),
-    Member("SlewToCoordinates", put=_slew(_coordinates, wait=True)),
-    Member("SlewToCoordinatesAsync", put=_slew(_coordinates, wait=False)),
-    Member("SlewToTarget", put=_slew(_target, wait=True)),
-    Member("SlewToTargetAsync", put=_slew(_target, wait=False)),
+    *_slew("SlewToAltAz", _ground),
+    *_slew("SlewToCoordinates", _sky(_coordinates)),
+    *_slew("SlewToTarget", _sky(_target)),
     Member("SyncToAltAz", put=missing_put("SyncToAltAz")),
     Member("SyncToCoordinates", put=_sync(_coordinates)),
     Member("SyncToTarget", put=_sync(_target)),

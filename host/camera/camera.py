@@ -11,8 +11,7 @@ import numpy as np
 from bus.time import generator
 from host.camera.flat import flat
 from host.camera.light import Window, light
-from host.camera.look import Look
-from host.camera.models import CameraModel
+from host.camera.models import CameraModel, Look
 from host.camera.readout import Counts, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import Sky

@@ -8,8 +8,7 @@ import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
 from host.camera.flat import cosines
-from host.camera.look import Look
-from host.camera.models import CameraModel
+from host.camera.models import CameraModel, Look
 from host.camera.place import catalogued, observed, plane, turning
 from host.camera.seeing import Wander, sigma_arcsec
 from host.camera.stars import Array, Sky, Stars

@@ -1,9 +1,25 @@
-"""The two cameras: optics and detectors."""
+"""The two cameras, optics and detectors, and where the telescope truly looks at one moment."""
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from bus.units import ARCSEC_PER_RAD
+
+
+class Look(NamedTuple):
+    """One sample of the truth. Angles are observed ones, rad, hour angle positive west.
+
+    t_ns: simulated time. roll_rad: from north to the camera's upper edge, positive through west. focus_m: of
+    the focus from the middle of its travel.
+    """
+
+    t_ns: int
+    hour_angle_rad: float
+    declination_rad: float
+    roll_rad: float = 0.0
+    focus_m: float = 0.0
+
 
 PHOTONS_M2_S = 8.8e9
 """Photons of a star of V = 0 above the air in the V band, per m² and s.

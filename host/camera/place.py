@@ -1,15 +1,14 @@
 """Stars on the plane of a detector, and the place in the catalogue that its middle sees."""
 
 import math
-import warnings
 
 import erfa
 import numpy as np
 import numpy.typing as npt
 
-from host.camera.look import Look
+from host.camera.models import Look
 from host.camera.stars import Array, Stars
-from host.sky.observed import Clock, seen_from
+from host.sky.observed import Clock, quietly, seen_from
 from host.sky.site import Site
 
 
@@ -61,11 +60,5 @@ def turning(look: Look, step_rad: float, site: Site, clock: Clock) -> npt.NDArra
 def _catalogued(
     hour_angle: float, declination: float, site: Site, clock: Clock, t_s: float
 ) -> tuple[float, float]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        ra, dec = erfa.atoc13(
-            "H", hour_angle, declination, *clock.julian(t_s), site.ut1_minus_utc_s, site.longitude_rad,
-            site.latitude_rad, site.height_m, site.polar_motion_x_rad, site.polar_motion_y_rad,
-            site.pressure_hpa, site.temperature_c, site.humidity, site.wavelength_um,
-        )  # fmt: skip
+    ra, dec = quietly(erfa.atoc13, "H", hour_angle, declination, *clock.julian(t_s), *site.erfa)
     return float(ra), float(dec)

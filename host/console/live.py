@@ -10,8 +10,7 @@ from host.console.figures import Clocks, clocks
 from host.console.skymap import Chart
 from host.console.views import BusView
 from host.telescope import Snapshot, Telescope
-from host.telescope.alarms import SILENCE_S, Alarms, of_bus, of_house
-from host.telescope.events import Events
+from host.telescope.alarms import SILENCE_S, Alarms, Events, of_bus, of_house
 from host.telescope.jobs import Activity
 
 PERIOD_S = 0.25

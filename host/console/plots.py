@@ -8,7 +8,7 @@ from nicegui import ui
 
 from host.console.live import Sample
 from host.console.shell import Shell, box
-from host.console.theme import INK, LINE, SOFT
+from host.console.views import INK, LINE, SOFT
 
 _EVERY = 4
 """A plot is sent once in so many ticks, once a second."""

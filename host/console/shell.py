@@ -9,7 +9,7 @@ from nicegui.events import GenericEventArguments, KeyEventArguments
 
 from host.console.figures import summary
 from host.console.live import PERIOD_S, Live
-from host.console.theme import CSS
+from host.console.views import CSS
 from host.procedures.pointing import ENCODERS
 from host.telescope import AsyncDesk, Refused, Telescope
 from host.telescope.alarms import Alarm

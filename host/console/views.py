@@ -1,8 +1,17 @@
-"""What the consoles are shown beyond the telescope: whoever serves them fills these in."""
+"""What the consoles are shown beyond the telescope: whoever serves them fills these in.
+
+How they look: red on black for a dark observatory floor, dark on light by day (theme.css).
+"""
 
 from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple, Protocol
+
+CSS = Path(__file__).with_name("theme.css").read_text(encoding="utf-8")
+INK = {"night": "#ff6a5a", "day": "#0b5cad"}
+SOFT = {"night": "#b3463b", "day": "#a85a00"}
+LINE = {"night": "#5a1f1a", "day": "#c3cad2"}
+
 
 KEPT = 25
 """Frames that a page shows."""
@@ -86,3 +95,15 @@ class Runs(Protocol):
 
     def command(self, axis: str, out: Path) -> list[str]:
         """The command line that calibrates on them and writes its report to `out`."""
+
+
+def words(identifier: int, data: bytes) -> str:
+    """Signals of a frame; its device is the sender's column already."""
+    from bus.protocol.database import database
+
+    try:
+        said = database().decode_message(identifier, data)
+    except Exception:  # whatever anybody put on the bus is shown as it is
+        return "not in the protocol"
+    pairs = said.items() if isinstance(said, dict) else ()
+    return ", ".join(f"{name} {value}" for name, value in pairs if name != "Device")

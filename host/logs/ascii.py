@@ -1,20 +1,24 @@
-"""The four ASCII logs (H6): user commands, device status, sensor data, errors."""
+"""The four ASCII logs (H6): user commands, device status, sensor data, errors.
+
+They do not grow for ever where they rotate: a full file is put aside under a number, the oldest is dropped.
+"""
 
 from collections.abc import Callable
 from pathlib import Path
 
 from host.logs.files import LineFile
+from host.logs.journal import Logs
 
-NAMES = ("commands", "status", "sensors", "errors")
-_HEADERS = {
-    "commands": "# utc  t_s  node  command  result",
-    "status": "# utc  t_s  device  status",
-    "sensors": "# utc  t_s  sensor=value …",
-    "errors": "# utc  t_s  where  what",
+_FILES = {
+    "command": ("commands", "# utc  t_s  node  command  result"),
+    "status": ("status", "# utc  t_s  device  status"),
+    "sensors": ("sensors", "# utc  t_s  sensor=value …"),
+    "error": ("errors", "# utc  t_s  where  what"),
 }
+"""Name and first line by what is kept."""
 
 
-class AsciiLogs:
+class AsciiLogs(Logs):
     """Four files in one folder; every line starts with UTC and the simulated time in seconds."""
 
     def __init__(
@@ -24,30 +28,14 @@ class AsciiLogs:
         grows."""
         self._utc = utc
         make = make or _growing
-        self._files = {name: make(folder / f"{name}.log") for name in NAMES}
-        for name, file in self._files.items():
-            file.write(_HEADERS[name] + "\n")
-
-    def command(self, t_ns: int, node: str, text: str, result: str) -> None:
-        """A command of the user and what came of it."""
-        self._write("commands", t_ns, f"{node}  {text}  {result}")
-
-    def status(self, t_ns: int, device: str, text: str) -> None:
-        """What a device says about itself, or what the programme is doing."""
-        self._write("status", t_ns, f"{device}  {text}")
-
-    def sensors(self, t_ns: int, text: str) -> None:
-        """A line of readings."""
-        self._write("sensors", t_ns, text)
-
-    def error(self, t_ns: int, where: str, text: str) -> None:
-        """Something that went wrong."""
-        self._write("errors", t_ns, f"{where}  {text}")
+        self._files = {kind: make(folder / f"{name}.log") for kind, (name, _) in _FILES.items()}
+        for kind, file in self._files.items():
+            file.write(_FILES[kind][1] + "\n")
 
     @property
     def error_entries(self) -> int:
         """Lines in the error log so far, without its header."""
-        return self._files["errors"].lines - 1
+        return self._files["error"].lines - 1
 
     def files(self) -> list[LineFile]:
         """The four files."""
@@ -63,10 +51,58 @@ class AsciiLogs:
         for file in self._files.values():
             file.flush()
 
-    def _write(self, name: str, t_ns: int, text: str) -> None:
+    def _keep(self, kind: str, t_ns: int, *words: str) -> None:
         t_s = t_ns / 1e9
-        self._files[name].write(f"{self._utc(t_s)}  {t_s:.3f}  {text}\n")
+        self._files[kind].write(f"{self._utc(t_s)}  {t_s:.3f}  {'  '.join(words)}\n")
 
 
 def _growing(path: Path) -> LineFile:
     return LineFile(path, buffer_bytes=1 << 13)
+
+
+FULL_BYTES = 10_000_000
+"""Size at which a log is put aside: about six hours of the sensor log at four lines a second. ASSUMPTION."""
+KEPT = 9
+"""Files put aside per log, `NAME.log.1` being the youngest. ASSUMPTION."""
+_BUFFER_BYTES = 1 << 13
+
+
+class RotatingFile(LineFile):
+    """A `LineFile` that starts afresh, with its header, when it is full or when it finds one of an earlier
+    session. Whole lines only ever stand in one file."""
+
+    def __init__(self, path: Path, full_bytes: int = FULL_BYTES, kept: int = KEPT) -> None:
+        self._full_bytes = full_bytes
+        self._kept = kept
+        self._bytes = 0
+        self._header = ""
+        if path.exists() and path.stat().st_size:
+            put_aside(path, kept)
+        super().__init__(path, _BUFFER_BYTES)
+
+    def write(self, text: str) -> None:
+        """Append whole lines; the first one is the header every further file begins with."""
+        if not self._header:
+            self._header = text
+        size = len(text.encode())
+        if self._bytes and self._bytes + size > self._full_bytes:
+            self.close()
+            put_aside(self.path, self._kept)
+            self.reopen()
+            self._bytes = len(self._header.encode())
+            super().write(self._header)
+        self._bytes += size
+        super().write(text)
+
+
+def rotating(path: Path) -> LineFile:
+    """A rotating file of the usual size; give it to `AsciiLogs`."""
+    return RotatingFile(path)
+
+
+def put_aside(path: Path, kept: int) -> None:
+    """Give a file the number 1, and those that have one the next; the last of `kept` is gone."""
+    names = [path.with_name(f"{path.name}.{number}") for number in range(1, kept + 1)]
+    for younger, older in zip(reversed([path, *names][:-1]), reversed(names), strict=True):
+        if younger.exists():
+            younger.replace(older)

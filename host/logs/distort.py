@@ -3,11 +3,10 @@
 A function is called as its effect, and takes a generator and the effect's parameters by name, SI units.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from bus.protocol.serial import AxisSample
 from host.logs.axis import Distortion, Row
 
 WRAPPED = (("effort",), ("position",), ("velocity",), ("adc_a", "adc_b"), ("tach_a", "tach_b"))
@@ -43,10 +42,17 @@ def clock_jitter(random: np.random.Generator, *, deviation: float) -> Distortion
 
 def log_wrap(random: np.random.Generator, *, column: float, bits: float, mode: float) -> Distortion:
     """Keep only `bits` bits of a column: wrapped (mode 0), or clipped to what they hold (1)."""
-    names = WRAPPED[int(column)]
+    names, size = WRAPPED[int(column)], 1 << int(bits)
+
+    def kept(name: str, value: int) -> int:
+        low = 0 if name in _UNSIGNED else -size // 2
+        return min(max(value, low), low + size - 1) if mode >= 0.5 else (value - low) % size + low
 
     def distort(rows: list[Row]) -> list[Row]:
-        return [(t, _cut(sample, names, int(bits), mode >= 0.5)) for t, sample in rows]
+        return [
+            (t, sample._replace(**{name: kept(name, getattr(sample, name)) for name in names}))
+            for t, sample in rows
+        ]
 
     return distort
 
@@ -62,25 +68,6 @@ def chain(distortions: Sequence[Distortion]) -> Distortion | None:
         return rows
 
     return distort
-
-
-def _cut(sample: AxisSample, names: tuple[str, ...], bits: int, saturate: bool) -> AxisSample:
-    keep: Callable[[int, bool], int] = _clip(bits) if saturate else _wrap(bits)
-    return sample._replace(**{name: keep(getattr(sample, name), name in _UNSIGNED) for name in names})
-
-
-def _wrap(bits: int) -> Callable[[int, bool], int]:
-    size, half = 1 << bits, 1 << (bits - 1)
-    return lambda value, unsigned: value % size if unsigned else (value + half) % size - half
-
-
-def _clip(bits: int) -> Callable[[int, bool], int]:
-    size, half = 1 << bits, 1 << (bits - 1)
-
-    def clip(value: int, unsigned: bool) -> int:
-        return min(max(value, 0), size - 1) if unsigned else min(max(value, -half), half - 1)
-
-    return clip
 
 
 def channel_delay(random: np.random.Generator, *, column: float, delay: float) -> Distortion:

@@ -2,26 +2,33 @@
 
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 KEPT = 1000
 """Entries kept for status windows; the files keep all. ASSUMPTION: an hour of a quiet night."""
 
 
-class Logs(Protocol):
-    """Where commands, status, readings and errors go."""
+class Logs:
+    """Where commands, status, readings and errors go; whoever keeps them writes `_keep`."""
 
     def command(self, t_ns: int, node: str, text: str, result: str) -> None:
         """A command of the user and what came of it."""
+        self._keep("command", t_ns, node, text, result)
 
     def status(self, t_ns: int, device: str, text: str) -> None:
-        """What a device says about itself."""
+        """What a device says about itself, or what the programme is doing."""
+        self._keep("status", t_ns, device, text)
 
     def sensors(self, t_ns: int, text: str) -> None:
         """A line of readings."""
+        self._keep("sensors", t_ns, text)
 
     def error(self, t_ns: int, where: str, text: str) -> None:
         """Something that went wrong."""
+        self._keep("error", t_ns, where, text)
+
+    def _keep(self, kind: str, t_ns: int, *words: str) -> None:
+        raise NotImplementedError
 
 
 class Entry(NamedTuple):
@@ -34,8 +41,8 @@ class Entry(NamedTuple):
     text: str
 
 
-class Journal:
-    """Keeps the last entries and hands every one on: to files, and to listeners on the ticking thread."""
+class Journal(Logs):
+    """Keeps the last entries but readings; hands all on, to files and to listeners on the ticking thread."""
 
     def __init__(self, files: Logs | None = None) -> None:
         self.entries: deque[Entry] = deque(maxlen=KEPT)
@@ -44,37 +51,18 @@ class Journal:
         self._number = 0
         self._files = files
 
-    def command(self, t_ns: int, node: str, text: str, result: str) -> None:
-        """A command of the user and what came of it."""
-        if self._files is not None:
-            self._files.command(t_ns, node, text, result)
-        self._keep(t_ns, "command", node, f"{text}: {result}")
-
-    def status(self, t_ns: int, device: str, text: str) -> None:
-        """What a device says about itself."""
-        if self._files is not None:
-            self._files.status(t_ns, device, text)
-        self._keep(t_ns, "status", device, text)
-
-    def sensors(self, t_ns: int, text: str) -> None:
-        """A line of readings: to the files only."""
-        if self._files is not None:
-            self._files.sensors(t_ns, text)
-
-    def error(self, t_ns: int, where: str, text: str) -> None:
-        """Something that went wrong."""
-        self.errors += 1
-        if self._files is not None:
-            self._files.error(t_ns, where, text)
-        self._keep(t_ns, "error", where, text)
-
     def since(self, number: int) -> list[Entry]:
         """Entries after `number` that are still kept; safe from any thread."""
         return [entry for entry in self.entries.copy() if entry.number > number]
 
-    def _keep(self, t_ns: int, kind: str, where: str, text: str) -> None:
+    def _keep(self, kind: str, t_ns: int, *words: str) -> None:
+        if self._files is not None:
+            self._files._keep(kind, t_ns, *words)
+        if kind == "sensors":
+            return
+        self.errors += kind == "error"
         self._number += 1
-        entry = Entry(self._number, t_ns * 1e-9, kind, where, text)
+        entry = Entry(self._number, t_ns * 1e-9, kind, words[0], ": ".join(words[1:]))
         self.entries.append(entry)
         for listener in self.listeners:
             listener(entry)

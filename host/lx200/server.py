@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from time import monotonic
 
-from host.browser import HEAD_BYTES, is_http
+from host.guard import HEAD_BYTES, is_http
 from host.lx200.handbox import Handbox
 from host.lx200.moving import MOVING, TAKING
 from host.lx200.reading import READING

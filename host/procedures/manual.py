@@ -1,8 +1,10 @@
-"""Buttons of the main console: speed classes, rates, open loop, stop (H2, B2)."""
+"""Buttons of the main console: speed classes, rates, open loop, stop, parameters (H2, B2)."""
+
+from collections.abc import Iterable
 
 from bus.protocol import Device, Opcode, SpeedClass
 from bus.protocol.scales import rate_q16
-from host.client import Client, Procedure
+from host.client import Client, ClientError, Procedure
 from host.rates import EFFORT_FULL
 
 AXES = {"ra": Device.AXIS_RA, "dec": Device.AXIS_DEC}
@@ -33,3 +35,14 @@ def stop(client: Client, axis: str) -> Procedure:
     for name, device in AXES.items():
         if axis in (name, "both"):
             yield from client.ask(device, Opcode.STOP)
+
+
+def load(client: Client, device: Device, rows: Iterable[tuple[int, int]]) -> Procedure:
+    """Set parameters (number, value) in their order; raises `ClientError` if a board keeps another one."""
+    count = 0
+    for number, value in rows:
+        reply = yield from client.ask(device, Opcode.SET_PARAMETER, number, value)
+        if reply.value != value:
+            raise ClientError(f"{device.name}: parameter {number} is {reply.value}, not {value}")
+        count += 1
+    client.logs.status(client.now_ns, "HOST", f"{device.name}: {count} parameters loaded")

@@ -6,13 +6,12 @@ equatorial system 1 mean. ERFA's `atci13`, `atic13` and `atoi13` do all of it.
 """
 
 import math
-import warnings
 from typing import NamedTuple
 
 import erfa
 
 from host.sky.catalogue import Star
-from host.sky.observed import Clock, Observed
+from host.sky.observed import Clock, Observed, quietly
 from host.sky.site import Site
 
 
@@ -35,13 +34,7 @@ def apparent_of_observed(
     hour_angle_rad: float, declination_rad: float, site: Site, clock: Clock, t_s: float
 ) -> Place:
     """Apparent place of date that is seen, through the air, at an observed hour angle and declination."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        ra, dec = erfa.atoi13(
-            "H", hour_angle_rad, declination_rad, *clock.julian(t_s), site.ut1_minus_utc_s,
-            site.longitude_rad, site.latitude_rad, site.height_m, site.polar_motion_x_rad,
-            site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c, site.humidity, site.wavelength_um,
-        )  # fmt: skip
+    ra, dec = quietly(erfa.atoi13, "H", hour_angle_rad, declination_rad, *clock.julian(t_s), *site.erfa)
     return Place(float(erfa.anp(ra - erfa.eo06a(*terrestrial(clock, t_s)))), float(dec))
 
 
@@ -61,16 +54,12 @@ def equatorial(azimuth_rad: float, altitude_rad: float, site: Site) -> Observed:
 def sidereal_time_rad(site: Site, clock: Clock, t_s: float) -> float:
     """Local apparent sidereal time, 0..2π."""
     day, fraction = clock.julian(t_s)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        universal = erfa.utcut1(day, fraction, site.ut1_minus_utc_s)
+    universal = quietly(erfa.utcut1, day, fraction, site.ut1_minus_utc_s)
     greenwich = erfa.gst06a(*universal, *terrestrial(clock, t_s))
     return float(erfa.anp(greenwich + site.longitude_rad))
 
 
 def terrestrial(clock: Clock, t_s: float) -> tuple[float, float]:
     """Terrestrial time as ERFA's two-part Julian date."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        day, fraction = erfa.taitt(*erfa.utctai(*clock.julian(t_s)))
+    day, fraction = erfa.taitt(*quietly(erfa.utctai, *clock.julian(t_s)))
     return float(day), float(fraction)

@@ -7,7 +7,7 @@ rotation and refraction in one go. So none of it is written here.
 import datetime as dt
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,6 +24,14 @@ _MAS_PER_RAD = ARCSEC_PER_RAD * 1000
 _SECONDS_PER_DAY = 86400.0
 _RATE_STEP_S = 1.0
 """Rates are central differences over ±1 s: what the third derivative adds is below 1e-9 ″/s."""
+
+
+def quietly(call: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a function of ERFA. To it, dates past the leap-second table are "dubious": no leap second has been
+    announced for them."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", erfa.ErfaWarning)
+        return call(*arguments)
 
 
 class Observed(NamedTuple):
@@ -55,13 +63,9 @@ class Clock:
     def julian(self, t_s: float) -> tuple[float, float]:
         """UTC as ERFA's two-part quasi Julian date."""
         start = self.start_utc.astimezone(dt.UTC)
-        with warnings.catch_warnings():
-            # Dates past the leap-second table are only "dubious": no leap second has been announced for them.
-            warnings.simplefilter("ignore", erfa.ErfaWarning)
-            day, fraction = erfa.dtf2d(
-                "UTC", start.year, start.month, start.day, start.hour, start.minute,
-                start.second + start.microsecond / 1e6,
-            )  # fmt: skip
+        seconds = start.second + start.microsecond / 1e6
+        date = start.year, start.month, start.day, start.hour, start.minute, seconds
+        day, fraction = quietly(erfa.dtf2d, "UTC", *date)
         return float(day), float(fraction) + t_s / _SECONDS_PER_DAY
 
     def iso(self, t_s: float) -> str:
@@ -81,28 +85,18 @@ def observe_many(
 ) -> tuple[npt.NDArray[np.float64], ...]:
     """Observed places for an array of times: hour angle (−π..π), declination, altitude and azimuth."""
     day, fraction = clock.julian(0.0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        azimuth, zenith, hour_angle, declination, _, _ = erfa.atco13(
-            star.right_ascension_rad,
-            star.declination_rad,
-            star.pm_ra_mas_yr / _MAS_PER_RAD / math.cos(star.declination_rad),
-            star.pm_dec_mas_yr / _MAS_PER_RAD,
-            star.parallax_mas / 1000,
-            0.0,  # radial velocity: perspective acceleration is below 0.01″ per century for all stars listed
-            day,
-            fraction + np.asarray(t_s) / _SECONDS_PER_DAY,
-            site.ut1_minus_utc_s,
-            site.longitude_rad,
-            site.latitude_rad,
-            site.height_m,
-            site.polar_motion_x_rad,
-            site.polar_motion_y_rad,
-            site.pressure_hpa,
-            site.temperature_c,
-            site.humidity,
-            site.wavelength_um,
-        )
+    azimuth, zenith, hour_angle, declination, _, _ = quietly(
+        erfa.atco13,
+        star.right_ascension_rad,
+        star.declination_rad,
+        star.pm_ra_mas_yr / _MAS_PER_RAD / math.cos(star.declination_rad),
+        star.pm_dec_mas_yr / _MAS_PER_RAD,
+        star.parallax_mas / 1000,
+        0.0,  # radial velocity: perspective acceleration is below 0.01″ per century for all stars listed
+        day,
+        fraction + np.asarray(t_s) / _SECONDS_PER_DAY,
+        *site.erfa,
+    )
     return (
         np.remainder(hour_angle + np.pi, 2 * np.pi) - np.pi,
         np.asarray(declination),
@@ -113,14 +107,7 @@ def observe_many(
 
 def seen_from(site: Site, clock: Clock, t_s: float) -> Any:
     """ERFA's parameters of a place at one time, which are the same for all stars (`erfa.apco13`)."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", erfa.ErfaWarning)
-        air, _ = erfa.apco13(
-            *clock.julian(t_s), site.ut1_minus_utc_s, site.longitude_rad, site.latitude_rad, site.height_m,
-            site.polar_motion_x_rad, site.polar_motion_y_rad, site.pressure_hpa, site.temperature_c,
-            site.humidity, site.wavelength_um,
-        )  # fmt: skip
-    return air
+    return quietly(erfa.apco13, *clock.julian(t_s), *site.erfa)[0]
 
 
 def observe_all(

@@ -33,6 +33,15 @@ class Site:
         if not 0.0 <= self.humidity <= 1.0:
             raise ValueError(f"relative humidity {self.humidity} is outside 0..1")
 
+    @property
+    def erfa(self) -> tuple[float, ...]:
+        """What ERFA's functions of observed places take, in their order: from UT1 − UTC to the wavelength."""
+        return (
+            self.ut1_minus_utc_s, self.longitude_rad, self.latitude_rad, self.height_m,
+            self.polar_motion_x_rad, self.polar_motion_y_rad, self.pressure_hpa, self.temperature_c,
+            self.humidity, self.wavelength_um,
+        )  # fmt: skip
+
 
 def standard_pressure_hpa(height_m: float, temperature_c: float = 10.0) -> float:
     """Pressure of a standard atmosphere at a height (the estimate that ERFA's `apco13` documents)."""

@@ -2,9 +2,8 @@
 
 from host.sky.tracks import DriveRate
 from host.telescope.desk import AsyncDesk, PlainDesk
-from host.telescope.jobs import Activity, Job
+from host.telescope.jobs import Activity, Job, Reason, Refused
 from host.telescope.observatory import Observatory
-from host.telescope.refused import Reason, Refused
 from host.telescope.state import AxisState, BoardState, FocusState, Snapshot
 from host.telescope.telescope import Telescope
 

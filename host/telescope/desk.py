@@ -13,8 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeout
 from typing import TypeVar
 
-from host.telescope.jobs import Job
-from host.telescope.refused import Reason, Refused
+from host.telescope.jobs import Job, Reason, Refused
 from host.telescope.state import Snapshot
 from host.telescope.telescope import Telescope
 

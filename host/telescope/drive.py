@@ -20,9 +20,8 @@ from host.sky.pointstars import Sighting
 from host.sky.track import StarTrack
 from host.sky.tracks import DriveRate, GroundTrack, SkyTrack
 from host.sky.visibility import BelowHorizon, Unreachable
-from host.telescope.jobs import Activity, Job
+from host.telescope.jobs import Activity, Job, Reason, Refused
 from host.telescope.observatory import Observatory
-from host.telescope.refused import Reason, Refused
 
 _FOREVER_S = 1e6
 _REST_COUNTS = 2

@@ -5,8 +5,7 @@ from host.client import Client, Procedure
 from host.logs.journal import Logs
 from host.procedures import focus
 from host.procedures.focus import TRAVEL_HALF_STEPS
-from host.telescope.jobs import Activity, Job
-from host.telescope.refused import Reason, Refused
+from host.telescope.jobs import Activity, Job, Reason, Refused
 
 _CREEP_S = 0.1
 """Pause between two half steps of the slow key: 10 half steps/s. ASSUMPTION."""

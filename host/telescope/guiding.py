@@ -10,8 +10,7 @@ from host.procedures.power import AXES
 from host.procedures.shifting import TICK_S, Shifting
 from host.sky.tracks import Pulse, SkyTrack
 from host.telescope.drive import Drive
-from host.telescope.jobs import Activity, Job, Side
-from host.telescope.refused import Reason, Refused
+from host.telescope.jobs import Activity, Job, Reason, Refused, Side
 
 _LONGEST_S: Final = 60.0
 """Pulses of an axis that may wait, together. ASSUMPTION: as long as the longest one."""

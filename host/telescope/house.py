@@ -5,13 +5,12 @@ from collections.abc import Callable, Generator
 from typing import Final
 
 from bus.protocol import Device
-from bus.protocol.nodes import DOME, POWER, WEATHER, Kind
+from bus.protocol.nodes import DOME, WEATHER, Kind
 from host.client import TICK_NS, Client
 from host.procedures.dome import BOARD as DOME_BOARD
 from host.procedures.dome import centidegrees, codecs, opcode, reading
 from host.sky.observed import Observed
-from host.telescope.jobs import Activity, Job, Side
-from host.telescope.refused import Reason, Refused
+from host.telescope.jobs import Activity, Job, Reason, Refused, Side
 from host.telescope.state import MISSED
 
 _FOLLOW_NS: Final = 1_000_000_000
@@ -115,12 +114,6 @@ class House:
         self.slaved = False
         self._client.forget(DOME_BOARD)
         return self._tell(DOME, DOME_BOARD, "DOME_STOP")
-
-    def relay(self, board: str, channel: int, on: bool) -> Job[None]:
-        """Switch a relay, 1 to 8, of a power board."""
-        if board not in POWER.nodes or not 1 <= channel <= 8:
-            raise Refused(Reason.VALUE, f"{board} has no relay {channel}")
-        return self._tell(POWER, POWER.device(board), "RELAY", channel, int(on))
 
     def _tell(self, kind: Kind, device: Device, name: str, *arguments: int) -> Job[None]:
         self._there(device)

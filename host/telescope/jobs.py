@@ -1,4 +1,7 @@
-"""Procedures with a handle: what runs, how it ended, and who may wait for it from another thread."""
+"""Procedures with a handle: what runs, how it ended, and who may wait for it from another thread.
+
+Why the telescope does not do something has a form that each door can translate into its own numbers.
+"""
 
 from collections.abc import Generator
 from concurrent.futures import Future
@@ -7,7 +10,29 @@ from enum import Enum
 from typing import Generic, TypeVar
 
 from host.client import ClientError, CommandRefused
-from host.telescope.refused import Reason, Refused
+
+
+class Reason(Enum):
+    """What stands in the way."""
+
+    BELOW_HORIZON = "below the horizon limit"
+    LIMIT = "beyond a soft limit"
+    PARKED = "parked"
+    STATE = "not possible in this state"
+    SLAVED = "the dome follows the telescope"
+    VALUE = "out of range"
+    LOCKED = "the console is locked"
+    SILENT = "no answer"
+    CANCELLED = "cancelled"
+
+
+class Refused(ValueError):
+    """A command that was not carried out; `reason` for programs, the text for people."""
+
+    def __init__(self, reason: Reason, text: str) -> None:
+        super().__init__(text)
+        self.reason = reason
+
 
 T = TypeVar("T")
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from host.sky.apparent import Place, apparent_of_observed, horizontal
 from host.sky.catalogue import Star
-from host.sky.mount import AxisScale, Mount
+from host.sky.mount import Mount
 from host.sky.observed import Clock, Observed
 from host.sky.pointfit import fit
 from host.sky.pointmodel import PointingModel
@@ -44,13 +44,6 @@ class Observatory:
         self.mount = replace(
             mount, ra=mount.ra.aligned(ra_offset_steps), dec=mount.dec.aligned(dec_offset_steps)
         )
-
-    def limit(self, axis: str, low_steps: int, high_steps: int) -> None:
-        """Keep an axis' soft limits as its boards have taken them."""
-        scale: AxisScale = getattr(self.mount, axis)
-        changed = AxisScale(scale.zero_steps, low_steps, high_steps)
-        mount = self.mount
-        self.mount = replace(mount, ra=changed) if axis == "ra" else replace(mount, dec=changed)
 
     def fit(self) -> PointingModel:
         """The pointing model of the stars so far; raises TooFewStars."""

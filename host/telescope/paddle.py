@@ -9,8 +9,7 @@ from host.procedures.manual import AXES
 from host.sky.tracks import GUIDE_ARCSEC_S, SIDEREAL_ARCSEC_S
 from host.telescope.drive import Drive
 from host.telescope.guiding import Guider
-from host.telescope.jobs import Activity, Side
-from host.telescope.refused import Reason, Refused
+from host.telescope.jobs import Activity, Reason, Refused, Side
 
 CLASS_ARCSEC_S = {
     SpeedClass.SLEW: 7200.0,

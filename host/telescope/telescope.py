@@ -22,10 +22,9 @@ from host.telescope.boards import Boards
 from host.telescope.drive import Drive
 from host.telescope.focuser import Focuser
 from host.telescope.house import House
-from host.telescope.jobs import Activity, Job, Side
+from host.telescope.jobs import Activity, Job, Reason, Refused, Side
 from host.telescope.observatory import Observatory
 from host.telescope.paddle import Paddle
-from host.telescope.refused import Reason, Refused
 from host.telescope.state import Snapshot, axis_state, board_states, focus_state, stale_boards
 
 T = TypeVar("T")
@@ -46,7 +45,7 @@ class Telescope:
         self.drive = Drive(client, observatory, journal)
         self.paddle = Paddle(self.drive, self.side)
         self.focuser = Focuser(client, journal)
-        self.boards = Boards(client, observatory, self.side)
+        self.boards = Boards(client, self.side)
         self.house = House(client, self.side, self.aim)
         self.locked = False
         self.urgent = False

@@ -6,7 +6,7 @@ from typing import Any
 
 from bus.can.frame import Frame
 from bus.can.length import frame_bits
-from host.camera.look import Look
+from host.camera.models import Look
 from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.pipe_messages import Done, Wish

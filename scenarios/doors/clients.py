@@ -4,7 +4,7 @@ import contextlib
 import select
 import socket
 
-from host.browser import HEAD_BYTES, is_http
+from host.guard import HEAD_BYTES, is_http
 
 LOCAL = "127.0.0.1"
 

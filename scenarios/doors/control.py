@@ -15,7 +15,7 @@ import json
 import os
 import secrets
 
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Punctuality
 from scenarios.doors.clients import Client, Clients, address, is_local, listen
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork

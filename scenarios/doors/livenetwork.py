@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
-from bus.outside.pacer import Pacer
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Pacer, Punctuality
 from bus.time import EventQueue
 from plant.model import PlantModel
 from scenarios.doors.lines import Lines

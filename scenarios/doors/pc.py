@@ -11,10 +11,9 @@ from host.camera.camera import Camera
 from host.client import TICK_NS, Client
 from host.console.views import BusView
 from host.link import HidLink
-from host.logs.ascii import AsciiLogs
+from host.logs.ascii import AsciiLogs, rotating
 from host.logs.clientguiding import ClientGuiding
 from host.logs.journal import Journal
-from host.logs.rotation import rotating
 from host.logs.sensors import readings
 from host.lx200.server import Lx200
 from host.outside import Outside, Service

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bus.protocol import Device
-from host.camera.look import Look
+from host.camera.models import Look
 from host.console.views import BusState, FaultKind
 from scenarios.doors.options import DoorOptions
 from scenarios.language.model import Scenario

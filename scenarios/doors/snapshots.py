@@ -14,8 +14,7 @@ from bus.can.candump import CandumpWriter
 from bus.outside.door import Door as Fence
 from bus.outside.errorframes import ErrorFrames
 from bus.outside.node import OutsideNode
-from bus.outside.pacer import Pacer
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Pacer, Punctuality
 from host.serial_link import SerialLink
 from plant.model import PlantModel
 from scenarios.doors.busview import EmulatedBus

@@ -2,8 +2,7 @@
 
 from math import pi
 
-from boards.axis import AxisConfig
-from boards.axis.config import TICK_NS
+from boards.axis.config import TICK_NS, AxisConfig
 from bus.protocol.scales import COUNTS_PER_TURN
 from plant.deadzone import step_torque
 from plant.gears import RATIO

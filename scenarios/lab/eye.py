@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
-from host.camera.look import Look
+from host.camera.models import Look
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe

@@ -4,19 +4,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from boards.axis import AxisBoard, AxisPeers, AxisPins
-from boards.axis.settings import settings as programmed
+from boards.axis.config import AxisPeers, AxisPins
+from boards.axis.config import settings as programmed
+from boards.axis.firmware import AxisBoard
 from boards.c.board import Chips, FirmwareBoard
 from boards.c.isolated import IsolatedMemory
 from boards.c.library import FirmwareError, Memory
 from boards.core import Board, Place
 from boards.core.debug import DebugPort
 from boards.core.declared import board_error, uart_of
-from boards.display import DisplayBoard
-from boards.focus import FocusBoard, FocusConfig, FocusPins
-from boards.gateway import GatewayBoard
-from boards.motor_velocity import MotorVelocityBoard
-from boards.position import PositionBoard
+from boards.display.firmware import DisplayBoard
+from boards.focus.config import FocusConfig, FocusPins
+from boards.focus.firmware import FocusBoard
+from boards.gateway.firmware import GatewayBoard
+from boards.motor_velocity.firmware import MotorVelocityBoard
+from boards.position.firmware import PositionBoard
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.endat import EndatEncoder, EndatMaster
 from boards.silicon.hid import HidEndpoint

@@ -10,12 +10,12 @@ from types import ModuleType
 from typing import Any
 
 from boards import __file__ as package
-from boards.auxiliary import AuxiliaryBoard
+from boards.auxiliary.firmware import AuxiliaryBoard
 from boards.core import Board
 from boards.core.declared import DeclaredBoard, Pin
-from boards.dome import DomeBoard
-from boards.power import PowerBoard
-from boards.weather import WeatherBoard
+from boards.dome.firmware import DomeBoard
+from boards.power.firmware import PowerBoard
+from boards.weather.firmware import WeatherBoard
 from bus.protocol.nodes import KINDS, KindError, arguments_of, check_kind, messages_of
 from plant.dome import DomePort
 from plant.plant import Plant

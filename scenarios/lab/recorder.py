@@ -14,9 +14,7 @@ from bus.time import generator
 from host.logs import distort
 from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog, Distortion
-from host.logs.compressed import ZstdFile
-from host.logs.files import BlockFile, LogError
-from host.logs.space import check as check_space
+from host.logs.files import BlockFile, LogError, ZstdFile, check_space
 from host.logs.traces import Trace
 from host.procedures.manual import AXES
 from host.serial_link import SerialLink

@@ -12,7 +12,7 @@ from bus.protocol import HARMONICS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
 from host.client import Client, Procedure
-from host.procedures import parameters
+from host.procedures import manual
 from host.procedures.manual import AXES
 from plant.deadzone import bias_steps
 from plant.parts import AxisModel, PlantModel
@@ -136,12 +136,12 @@ _COMMAND_LINE = "command line"
 def firmware(client: Client, of_axes: Mapping[str, Mapping[int, int]]) -> Procedure:
     """Set the parameters of a firmware on both axis boards."""
     for axis, device in AXES.items():
-        yield from parameters.load(client, device, of_axes[axis].items())
+        yield from manual.load(client, device, of_axes[axis].items())
 
 
 def compensate(client: Client, wanted: Compensation) -> Procedure:
     """Load a compensation into its axis board."""
-    yield from parameters.load(client, AXES[wanted.axis], wanted.parameters())
+    yield from manual.load(client, AXES[wanted.axis], wanted.parameters())
 
 
 def with_firmware(scenario: Scenario, name: str) -> Scenario:

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from boards.axis import AxisBoard, AxisConfig, AxisPeers, AxisPins
-from boards.motor_velocity import MotorVelocityBoard
-from boards.position import PositionBoard
+from boards.axis.config import AxisConfig, AxisPeers, AxisPins
+from boards.axis.firmware import AxisBoard
+from boards.motor_velocity.firmware import MotorVelocityBoard
+from boards.position.firmware import PositionBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, Reply, pack_command, unpack_reply
 from bus.time import EventQueue, Oscillator

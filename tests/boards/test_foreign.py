@@ -19,8 +19,8 @@ from bus.protocol import (
     unpack_target,
 )
 from bus.protocol.motion import pack_motion
-from bus.protocol.serial import SAMPLES, PacketDecoder, pack_packet
-from bus.protocol.target import pack_target
+from bus.protocol.position import pack_target
+from bus.protocol.serial import SAMPLES, AxisSample, PacketDecoder, pack_packet
 from tests.boards.lab import Lab
 
 PEERS = (0x221, 0x231, 0x232)
@@ -79,9 +79,9 @@ def test_a_forged_tach_whose_count_jumps_costs_no_packet(phase_ms: int) -> None:
     lab.run(1.0)
     assert len(lab.packets) >= before + 3
     decoder = PacketDecoder()
-    samples = [s for _, data in lab.packets for packet in decoder.feed(data) for s in packet.samples]
+    rows = [row for _, data in lab.packets for packet in decoder.feed(data) for row in packet.rows]
     assert decoder.crc_errors == 0
-    seen = {sample.tach_a for sample in samples}  # type: ignore[union-attr]
+    seen = {AxisSample(*row).tach_a for row in rows}
     assert seen <= set(range(-32768, 32768))
     if lab.axis.clipped:
         assert 32767 in seen or -32768 in seen
@@ -95,7 +95,7 @@ def test_a_packet_takes_samples_beyond_its_fields() -> None:
     told: list[int] = []
     data = pack_packet(Device.AXIS_RA, 0, 0, [sample] * SAMPLES, lambda: told.append(1))
     (packet,) = PacketDecoder().feed(data)
-    assert {(s.tach_a, s.tach_b) for s in packet.samples} == {(32767, -32768)}  # type: ignore[union-attr]
+    assert {row[5:7] for row in packet.rows} == {(32767, -32768)}
     assert told == [1]
 
 

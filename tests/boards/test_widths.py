@@ -2,10 +2,9 @@
 
 import pytest
 
-from boards.focus import FocusConfig
-from boards.focus.reference import Reference
-from boards.focus.stepping import Stepping
-from boards.motor_velocity import MotorVelocityBoard
+from boards.focus.config import FocusConfig
+from boards.focus.stepping import Reference, Stepping
+from boards.motor_velocity.firmware import MotorVelocityBoard
 from bus.protocol.serial import PacketDecoder
 from tests.boards.checked import Checked, checked
 from tests.boards.lab import Lab

@@ -5,17 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from boards.axis import interrupts as axis
+from boards.axis import config as axis
 from boards.axis.config import AxisConfig
 from boards.core.board import BOOT_NS
 from boards.core.interrupts import InterruptController, Line, Source
-from boards.display import interrupts as display
-from boards.focus import interrupts as focus
+from boards.display import firmware as display
+from boards.focus import config as focus
 from boards.focus.config import FocusConfig
-from boards.gateway import interrupts as gateway
+from boards.gateway import firmware as gateway
 from boards.gateway.firmware import HOLD_NS
-from boards.motor_velocity import interrupts as motor
-from boards.position import interrupts as position
+from boards.motor_velocity import firmware as motor
+from boards.position import firmware as position
 from boards.silicon.endat import EndatEncoder, EndatMaster
 from boards.silicon.pwm import FCY_HZ, PWM_HZ, steps_for
 from boards.silicon.uart import BAUD, Uart
@@ -146,7 +146,6 @@ def test_every_test_it_names_exists() -> None:
 CHIPS = {
     "adc": ("| B1 | axis: ADC |",),
     "can": ("| B9 | all: CAN controller |",),
-    "crc5": ("| EnDat 2.1/2.2 |",),
     "dspic30f": ("| dsPIC30F QEI |", "| dsPIC30F PWM |", "| dsPIC30F ADC |"),
     "ecan": ("| ECAN |",),
     "endat": ("| EnDat 2.1/2.2 |", "| B3 | position: EnDat |"),
@@ -154,13 +153,12 @@ CHIPS = {
     "mcp2515": (
         "| MCP2515 | SPI", "| MCP2515 | register map", "| MCP2515 | three transmit",
         "| MCP2515 | two receive", "| MCP2515 | modes", "| MCP2515 | TEC", "| MCP2515 | errata",
+        "| MCP2515 | CNF1", "| MCP2515 | a wrong bit rate",
     ),
-    "microchip_can": ("| MCP2515 | CNF1", "| MCP2515 | a wrong bit rate"),
     "pic18f4431": ("| PIC18F4431 QEI |", "| PIC18F4431 power PWM |"),
-    "pwm": ("| B1 | axis: PWM |",),
+    "pwm": ("| B1 | axis: PWM |", "| B1 | axis: spread duty"),
     "qei": ("| B1 | axis: QEI |",),
     "quadrature": ("| dsPIC30F QEI |", "| PIC18F4431 QEI |"),
-    "spread": ("| B1 | axis: spread duty",),
     "stepper": ("| B5 | focus: stepper |", "| stepper |"),
     "uart": ("| B9 | five: RS232 |",),
     "uartline": ("| UART |",),

@@ -19,7 +19,7 @@ from random import Random
 from threading import Thread
 
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE, Device, Opcode, Result
-from bus.protocol.reply import Reply, unpack_reply
+from bus.protocol.heartbeat import Reply, unpack_reply
 from bus.protocol.report import SLOTS, pack_report
 from tests.doors.process import Serving
 from tests.ports import free_ports

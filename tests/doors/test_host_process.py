@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from bus.protocol import Device
-from host.console.decoded import words
+from host.console.views import words
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions

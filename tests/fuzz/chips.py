@@ -4,12 +4,11 @@ from random import Random
 
 from boards.chips.endat import ClockedEncoder, ClockedMaster, EndatError
 from boards.chips.endat import registers as at
+from boards.chips.endat.answer import crc_bits, value_of
 from boards.chips.endat.encoder import Phase
 from boards.chips.endat.master import checked
 from boards.chips.endat.registers import MODES
 from boards.chips.mcp2515 import Mcp2515
-from boards.silicon.crc5 import crc_bits
-from boards.silicon.crc5 import number as as_number
 from boards.silicon.endat import check
 from bus.can import Wire
 from bus.time import EventQueue
@@ -128,12 +127,12 @@ def bits(count: int, random: Random) -> dict[str, int]:
     for _ in counted(count):
         line = [random.randrange(2) for _ in range(36)]
         crc = line[31:]
-        position, alarm, good = check(as_number(line[:31]) | int("".join(map(str, crc)), 2) << 31)
+        position, alarm, good = check(value_of(line[30::-1]) | int("".join(map(str, crc)), 2) << 31)
         try:
             data = checked(line)
         except EndatError:
             data = []
-        told = (as_number(data[2:]), data[:2] != [0, 1]) if data else None
+        told = (value_of(data[:1:-1]), data[:2] != [0, 1]) if data else None
         if (told == (position, alarm)) != good or good != (crc_bits(line[:31]) == crc):
             raise AssertionError(f"{line}: one check takes it, the other does not")
         found["accepted" if good else "refused"] += 1

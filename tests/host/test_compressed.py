@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.logs.compressed import ZstdFile
-from host.logs.files import LogError
+from host.logs.files import LogError, ZstdFile
 
 
 def unpacked(data: bytes) -> bytes:

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from bus.protocol import Device
 from bus.protocol.serial import NO_SETPOINT, AxisSample, Packet
-from host.logs import distort, space, traces
-from host.logs.ascii import NAMES, AsciiLogs
+from host.logs import distort, traces
+from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog
-from host.logs.files import LineFile, LogError
+from host.logs.files import LineFile, LogError, check_space
 
 HEADER = {"axis": "ra", "session": "night", "loop": "closed", "start_utc": "2026-02-10T14:00:00Z"}
 RANDOM = np.random.default_rng(1)
@@ -82,7 +82,8 @@ def test_H6_four_ascii_logs_with_utc_and_time(tmp_path: Path) -> None:
     assert logs.error_entries == 1
     for file in logs.files():
         file.close()
-    texts = {name: (tmp_path / f"{name}.log").read_text() for name in NAMES}
+    names = ("commands", "status", "sensors", "errors")
+    texts = {name: (tmp_path / f"{name}.log").read_text() for name in names}
     assert texts["commands"].splitlines()[1] == "2026-02-10T14:00:01.500Z  1.500  AXIS_RA  POWER 1  ok 0"
     for text in texts.values():
         assert text.isascii() or "…" in text
@@ -132,9 +133,9 @@ def test_a_disk_that_fills_up_leaves_whole_lines(
 
 
 def test_room_is_asked_for_before_it_is_needed(tmp_path: Path) -> None:
-    space.check(tmp_path, 1)
+    check_space(tmp_path, 1)
     with pytest.raises(LogError, match="no space left"):
-        space.check(tmp_path, 1 << 60)
+        check_space(tmp_path, 1 << 60)
 
 
 def test_traces_stream_and_read_back_by_window(tmp_path: Path) -> None:

@@ -5,8 +5,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.logs.ascii import AsciiLogs
-from host.logs.rotation import RotatingFile, rotating
+from host.logs.ascii import AsciiLogs, RotatingFile, rotating
 
 
 @settings(max_examples=30, deadline=None)

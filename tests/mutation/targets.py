@@ -24,16 +24,14 @@ _CODECS = "tests/bus/protocol"
 _PROTOCOL = tuple(f"{_CODECS}/test_{name}.py" for name in ("edges", "flags", "codecs"))
 
 TARGETS: dict[str, tuple[str, ...]] = {
-    "boards/silicon/crc5.py": _ENDAT,
+    "boards/silicon/endat.py": _ENDAT,
     "boards/chips/mcp2515/chip.py": _CHIP,
-    "boards/chips/mcp2515/errorflags.py": (*_MODES, *_TIMING, *_REGISTERS),
     "boards/chips/mcp2515/receive.py": _RECEIVE,
     "boards/chips/mcp2515/registers.py": _CHIP,
     "boards/chips/mcp2515/spi.py": (*_TRANSMIT, *_REGISTERS),
     "boards/chips/mcp2515/transmit.py": _TRANSMIT,
-    "boards/chips/microchip_can/acceptance.py": _RECEIVE,
-    "boards/chips/microchip_can/bittiming.py": _TIMING,
-    "boards/chips/microchip_can/message.py": (*_TRANSMIT, *_RECEIVE),
+    "boards/chips/mcp2515/bittiming.py": _TIMING,
+    "boards/chips/mcp2515/message.py": (*_TRANSMIT, *_RECEIVE),
     "bus/can/bits.py": _BITS,
     "bus/can/confinement.py": ("tests/bus/can/test_confinement.py", *_ERRORS, *_MODES),
     "bus/can/disturbance.py": _ERRORS,
@@ -48,19 +46,14 @@ TARGETS: dict[str, tuple[str, ...]] = {
         *_RECOVERY,
     ),
     "bus/protocol/command_layouts.py": _PROTOCOL,
-    "bus/protocol/focus.py": _PROTOCOL,
-    "bus/protocol/heartbeat.py": _PROTOCOL,
     "bus/protocol/motion.py": _PROTOCOL,
+    "bus/protocol/heartbeat.py": _PROTOCOL,
     "bus/protocol/nodes/codec.py": (f"{_CODECS}/test_nodes.py",),
-    "bus/protocol/nodes/opcodes.py": (f"{_CODECS}/test_node_commands.py",),
+    "bus/protocol/nodes/messages.py": (f"{_CODECS}/test_node_commands.py",),
     "bus/protocol/position.py": _PROTOCOL,
-    "bus/protocol/reply.py": _PROTOCOL,
     "bus/protocol/report.py": (f"{_CODECS}/test_report.py",),
     "bus/protocol/saturate.py": _PROTOCOL,
     "bus/protocol/serial.py": (f"{_CODECS}/test_edges.py", f"{_CODECS}/test_serial.py"),
-    "bus/protocol/signed.py": _PROTOCOL,
-    "bus/protocol/tach.py": _PROTOCOL,
-    "bus/protocol/target.py": _PROTOCOL,
 }
 
 

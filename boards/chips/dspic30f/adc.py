@@ -15,8 +15,6 @@ class Adc:
     tcy_ns: an instruction cycle; TAD = Tcy (ADCS + 1) / 2. All channels are held at the trigger (SIMSAM).
     """
 
-    __slots__ = ("_fill", "_ready_ns", "_samples", "_tcy_ns", "buffers", "interrupt", "pin", "registers")
-
     def __init__(self, pin: Callable[[int, int], float], tcy_ns: float) -> None:
         self.pin = pin
         self.registers = Registers(ADCON1=0, ADCON2=0, ADCON3=0)

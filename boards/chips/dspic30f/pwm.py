@@ -26,8 +26,6 @@ class MotorControlPwm:
     the time in half cycles when PTMR meets SEVTCMP, every SEVOPS + 1 times.
     """
 
-    __slots__ = ("_events", "_loaded", "_period", "_start", "registers", "special_event")
-
     def __init__(self) -> None:
         self.registers = Registers(
             PTCON=0, PTPER=0x7FFF, SEVTCMP=0, PDC1=0, PDC2=0, PDC3=0, DTCON1=0, PWMCON2=0

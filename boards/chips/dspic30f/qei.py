@@ -10,8 +10,6 @@ _BY_INDEX = (Qeim.X2_INDEX, Qeim.X4_INDEX)
 class QeiModule:
     """registers: QEICON, DFLTCON, POSCNT, MAXCNT. interrupt: QEIIF, for firmware to clear."""
 
-    __slots__ = ("_decoder", "_filters", "_index", "interrupt", "registers")
-
     def __init__(self) -> None:
         self.registers = Registers(QEICON=0, DFLTCON=0, POSCNT=0, MAXCNT=0xFFFF)
         self.interrupt = False

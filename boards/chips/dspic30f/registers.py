@@ -49,8 +49,6 @@ class Ssrc(IntEnum):
 class Registers:
     """A peripheral's 16-bit registers by name, with their fields."""
 
-    __slots__ = ("_values",)
-
     def __init__(self, **values: int) -> None:
         self._values = dict(values)
 

@@ -1,9 +1,75 @@
-"""What the encoder says to each mode command, and what the command does to it."""
+"""What the encoder says to each mode command, what the command does to it, and its memory."""
 
 from boards.chips.endat import registers as at
-from boards.chips.endat.memory import Memory
-from boards.chips.endat.registers import Alarm, Info, Mode, Reply
-from boards.silicon.crc5 import crc_bits
+from boards.chips.endat.registers import (
+    ALARM_WORD,
+    RECOVERY_WORD,
+    WARNING_WORD,
+    WRITABLE_AREAS,
+    Alarm,
+    Area,
+    Info,
+    Mode,
+    Reply,
+    words,
+)
+from boards.silicon.endat import crc5
+
+_STATUS = int(Area.STATUS)
+_OPERATING_START = int(Area.MANUFACTURER_0)
+
+
+class Memory:
+    """area: selected by the last MRS (after a reset the first, ASSUMPTION)."""
+
+    def __init__(self, position_bits: int) -> None:
+        self._words = words(position_bits)
+        self.area = _OPERATING_START
+
+    def power_up(self, alarms: int) -> None:
+        """Status as after switching on; parameters stay."""
+        self.area = _OPERATING_START
+        self._words[_STATUS, ALARM_WORD] = alarms
+        self._words[_STATUS, WARNING_WORD] = 0
+        self._words[_STATUS, RECOVERY_WORD] = 0
+
+    @property
+    def alarms(self) -> int:
+        """Alarm word."""
+        return self._words.get((_STATUS, ALARM_WORD), 0)
+
+    @property
+    def warnings(self) -> int:
+        """Warning word."""
+        return self._words.get((_STATUS, WARNING_WORD), 0)
+
+    @property
+    def short_recovery(self) -> bool:
+        """Whether the short t_m is selected."""
+        return self._words.get((_STATUS, RECOVERY_WORD), 0) & 3 == 1
+
+    def raise_alarm(self, bits: int) -> None:
+        """The encoder finds something wrong."""
+        self._words[_STATUS, ALARM_WORD] = self.alarms | bits
+
+    def raise_warning(self, bits: int) -> None:
+        """The encoder finds something about to go wrong."""
+        self._words[_STATUS, WARNING_WORD] = self.warnings | bits
+
+    def clear_errors(self) -> None:
+        """Alarms and warnings off."""
+        self._words[_STATUS, ALARM_WORD] = self._words[_STATUS, WARNING_WORD] = 0
+
+    def read(self, address: int) -> int:
+        """Word of the selected area; 0 where there is none."""
+        return self._words.get((self.area, address), 0)
+
+    def write(self, address: int, value: int) -> None:
+        """Write where writing is allowed; alarms and warnings can only be cleared, whole."""
+        if self.area in WRITABLE_AREAS or (self.area == _STATUS and address == RECOVERY_WORD):
+            self._words[self.area, address] = value
+        elif self.area == _STATUS and address in (ALARM_WORD, WARNING_WORD) and not value:
+            self._words[_STATUS, address] = 0
 
 
 def bits_of(value: int, count: int) -> list[int]:
@@ -11,16 +77,24 @@ def bits_of(value: int, count: int) -> list[int]:
     return [value >> shift & 1 for shift in range(count - 1, -1, -1)]
 
 
+def value_of(bits: list[int]) -> int:
+    """Number that bits spell, most significant first."""
+    value = 0
+    for bit in bits:
+        value = value << 1 | bit
+    return value
+
+
+def crc_bits(bits: list[int]) -> list[int]:
+    """The five bits that follow `bits` on the line, most significant first."""
+    return bits_of(crc5(value_of(bits[::-1]), len(bits)), 5)
+
+
 class Answers:
     """Memory, additional information and test values of an encoder of `position_bits`.
 
     temperature: 0.1 K, content 4Ch. silent_until_ns: no answer before (after a reset).
     """
-
-    __slots__ = (
-        "_info_1", "_info_2", "_parameter", "_position_bits", "_test_port", "busy_until_ns", "memory",
-        "silent_until_ns", "temperature", "test_values",
-    )  # fmt: skip
 
     def __init__(self, position_bits: int) -> None:
         self._position_bits = position_bits

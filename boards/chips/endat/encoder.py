@@ -4,7 +4,7 @@ from collections.abc import Callable
 from enum import IntEnum
 
 from boards.chips.endat import registers as at
-from boards.chips.endat.answer import Answers
+from boards.chips.endat.answer import Answers, value_of
 from boards.chips.endat.registers import MODES, Mode, Reply
 from boards.silicon.endat import CALCULATION_NS, POSITION_BITS, RECOVERY_NS
 
@@ -28,11 +28,6 @@ class ClockedEncoder:
     does not exist gets no start bit (ASSUMPTION: error type I of the manuals, whose line level is not
     published).
     """
-
-    __slots__ = (
-        "_bits", "_clock", "_count", "_edge_ns", "_in", "_latched", "_mode", "_phase", "_ready_ns", "_sent",
-        "answers", "output", "pin",
-    )  # fmt: skip
 
     def __init__(self, pin: Callable[[int], int], position_bits: int = POSITION_BITS) -> None:
         self.pin = pin
@@ -113,7 +108,7 @@ class ClockedEncoder:
         if 0 < bits <= needed:
             self._in.append(data)
         if bits == at.MODE_BITS:
-            self._mode = MODES.get(_value(self._in))
+            self._mode = MODES.get(value_of(self._in))
             if self._mode is None:
                 self._phase, self.output = Phase.DONE, 0
         elif bits == needed + at.TURN_CLOCKS:
@@ -125,9 +120,9 @@ class ClockedEncoder:
         self.output = 0
         self._phase = Phase.WAIT
         self._sent = 0
-        code = _value(self._in[: at.MODE_BITS])
+        code = value_of(self._in[: at.MODE_BITS])
         argument = self._in[at.MODE_BITS :]
-        self._bits = self.answers.bits(t_ns, code, mode, self._latched, _value(argument))
+        self._bits = self.answers.bits(t_ns, code, mode, self._latched, value_of(argument))
         busy = mode.reply is Reply.PARAMETER
         self._ready_ns = t_ns + (at.ACCESS_NS if busy else CALCULATION_NS)
 
@@ -146,14 +141,6 @@ class ClockedEncoder:
             return
         self._in.append(data)
         if len(self._in) == at.MODE_BITS + 1 + at.ARGUMENT_BITS:
-            code = _value(self._in[: at.MODE_BITS])
-            self.answers.supplement(t_ns, code, _value(self._in[at.MODE_BITS + 1 :]))
+            code = value_of(self._in[: at.MODE_BITS])
+            self.answers.supplement(t_ns, code, value_of(self._in[at.MODE_BITS + 1 :]))
             self._phase, self.output = Phase.DONE, 0
-
-
-def _value(bits: list[int]) -> int:
-    """Number that bits spell, most significant first."""
-    value = 0
-    for bit in bits:
-        value = value << 1 | bit
-    return value

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from boards.chips.endat import registers as at
+from boards.chips.endat.answer import bits_of, crc_bits, value_of
 from boards.chips.endat.encoder import ClockedEncoder
 from boards.chips.endat.registers import MODES, Reply
-from boards.silicon.crc5 import crc_bits, number
 from boards.silicon.endat import CLOCK_HZ, POSITION_BITS
 
 _NS_PER_S = 1_000_000_000
@@ -75,9 +75,9 @@ class ClockedMaster:
         """
         self._t_ns = t_ns
         self._levels = []
-        out = [code >> shift & 1 for shift in range(at.MODE_BITS - 1, -1, -1)]
+        out = bits_of(code, at.MODE_BITS)
         if argument is not None:
-            out += [argument >> shift & 1 for shift in range(at.ARGUMENT_BITS - 1, -1, -1)]
+            out += bits_of(argument, at.ARGUMENT_BITS)
         for bit in (*[0] * at.DUMMY_CLOCKS, *out, *[0] * at.TURN_CLOCKS):
             self._clock(bit)
         limit_ns = self._t_ns + START_TIMEOUT_NS
@@ -95,8 +95,8 @@ class ClockedMaster:
         if supplement is None:
             return self._seen(self._t_ns)
         last = self._clock(1)
-        for shift in range(at.ARGUMENT_BITS - 1, -1, -1):
-            self._clock(supplement >> shift & 1)
+        for bit in bits_of(supplement, at.ARGUMENT_BITS):
+            self._clock(bit)
         return last
 
     # --- transfers -----------------------------------------------------------------------------------
@@ -112,11 +112,9 @@ class ClockedMaster:
         bits = self.exchange(t_ns, code, None, head + CRC_BITS + infos * INFO_BITS, supplement)
         data = checked(bits[: head + CRC_BITS])
         alarm = data[0] == 1 if flags == 1 else data[:2] != [0, 1]
-        words = []
-        for number_ in range(infos):
-            start = head + CRC_BITS + number_ * INFO_BITS
-            words.append(spelled(checked(bits[start + 1 : start + INFO_BITS])))
-        return Position(number(data[flags:]), alarm, tuple(words), self._t_ns)
+        starts = (head + CRC_BITS + number * INFO_BITS for number in range(infos))
+        words = tuple(value_of(checked(bits[start + 1 : start + INFO_BITS])) for start in starts)
+        return Position(value_of(data[flags:][::-1]), alarm, words, self._t_ns)
 
     def parameter(self, t_ns: int, code: int, head: int, data: int = 0) -> tuple[int, int]:
         """Any command with an argument: the eight and sixteen bits that come back.
@@ -124,13 +122,13 @@ class ClockedMaster:
         Raises EndatError on a missing start bit or a wrong CRC.
         """
         bits = checked(self.exchange(t_ns, code, head << 16 | data, at.ARGUMENT_BITS + CRC_BITS))
-        value = spelled(bits)
+        value = value_of(bits)
         return value >> 16, value & 0xFFFF
 
     def test_values(self, t_ns: int) -> tuple[bool, int]:
         """F1 and the 40 bits of test values; raises EndatError as the others do."""
         bits = checked(self.exchange(t_ns, at.SEND_TEST_VALUES, None, 1 + 40 + CRC_BITS))
-        return bool(bits[0]), spelled(bits[1:])
+        return bool(bits[0]), value_of(bits[1:])
 
     @property
     def t_ns(self) -> int:
@@ -144,8 +142,3 @@ def checked(bits: list[int]) -> list[int]:
     if crc_bits(data) != crc:
         raise EndatError(f"EnDat CRC of {len(data)} bits is wrong")
     return data
-
-
-def spelled(bits: list[int]) -> int:
-    """Number that bits spell, most significant first."""
-    return int("".join(map(str, bits)), 2)

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 
 from boards.chips.mcp2515 import registers as at
-from boards.chips.mcp2515.errorflags import error_flags
+from boards.chips.mcp2515.bittiming import BitTimes, decode
 from boards.chips.mcp2515.receive import Receiver
-from boards.chips.mcp2515.registers import Interrupt, Mode
+from boards.chips.mcp2515.registers import Interrupt, Mode, error_flags
 from boards.chips.mcp2515.spi import SpiPort
 from boards.chips.mcp2515.transmit import Transmitter
-from boards.chips.microchip_can.bittiming import BitTimes, decode
 from bus.can import Frame, Port
 from bus.can.length import frame_bits
 from bus.time import EventQueue
@@ -24,11 +23,6 @@ class Mcp2515:
     interrupt: called with (t_ns, asserted) when the INT pin changes. errata: the transmit request that is
     still selected when its frame is through sends the frame twice (DS80179G).
     """
-
-    __slots__ = (
-        "_asserted", "_errata", "_flags", "_loops", "_memory", "_queue", "_requested", "_rts_pins",
-        "interrupt", "mode", "port", "receiver", "spi", "times", "transmitter",
-    )  # fmt: skip
 
     def __init__(
         self, queue: EventQueue, port: Port, fosc_hz: int = FOSC_HZ, *, errata: bool = False

@@ -101,3 +101,19 @@ def canonical(address: int) -> int:
     """Where a mirrored register really is."""
     address &= SIZE - 1
     return address & 0x0F if address & 0x0E == 0x0E else address
+
+
+def error_flags(tec: int, rec: int, *, bus_off: bool) -> int:
+    """Bits 0..5 of EFLG."""
+    flags = 0
+    if rec >= WARNING_AT:
+        flags |= RXWAR | EWARN
+    if tec >= WARNING_AT:
+        flags |= TXWAR | EWARN
+    if rec > PASSIVE_ABOVE:
+        flags |= RXEP
+    if tec > PASSIVE_ABOVE:
+        flags |= TXEP
+    if bus_off:
+        flags |= TXBO
+    return flags

@@ -57,19 +57,6 @@ class SpiPort:
     """Shift register and instruction decoder. An instruction the chip does not have is ignored until chip
     select rises."""
 
-    __slots__ = (
-        "_address",
-        "_bits",
-        "_count",
-        "_in",
-        "_mask",
-        "_out",
-        "_rx",
-        "_what",
-        "registers",
-        "selected",
-    )
-
     def __init__(self, registers: Registers) -> None:
         self.registers = registers
         self.selected = False

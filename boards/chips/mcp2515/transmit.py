@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+from boards.chips.mcp2515.message import BUFFER_BYTES, frame_of
 from boards.chips.mcp2515.registers import ABAT, ABTF, CANCTRL, MLOA, OSM, TXBCTRL, TXERR, TXP, TXREQ
-from boards.chips.microchip_can.message import BUFFER_BYTES, frame_of
 from bus.can import Frame
 
 
@@ -20,8 +20,6 @@ class Transmitter:
 
     offer: puts a frame on the bus when it is free. withdraw: takes it back, False when it has begun.
     """
-
-    __slots__ = ("_memory", "_offer", "_withdraw", "current", "on_bus")
 
     def __init__(
         self, memory: bytearray, offer: Callable[[Frame], None], withdraw: Callable[[Frame], bool]

@@ -2,23 +2,40 @@
 
 One PDC step is one Q clock (1/Fosc) without prescaler: the upper 12 bits meet PTMR, the lower two name the Q
 clock (DS39616D 18.6). With a prescaler the match is at Q1, the lower two do nothing. Times: Q clocks.
+Registers are tables (DS39616D section 18; field positions K): field -> (register, shift, bits).
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
-from boards.chips.pic18f4431.pwmregisters import (
-    AT_RESET,
-    CHANNELS,
-    DTPS,
-    ENABLED,
-    FIELDS,
-    FREE_RUNNING,
-    PAIRS,
-    PTCKPS,
-    PTMIF,
-    WIDTHS,
-)
+FIELDS: dict[str, tuple[str, int, int]] = {
+    "PTOPS": ("PTCON0", 4, 4), "PTCKPS": ("PTCON0", 2, 2), "PTMOD": ("PTCON0", 0, 2),
+    "PTEN": ("PTCON1", 7, 1), "PTDIR": ("PTCON1", 6, 1),
+    "PWMEN": ("PWMCON0", 4, 3), "PMOD": ("PWMCON0", 0, 4),
+    "SEVOPS": ("PWMCON1", 4, 4), "SEVTDIR": ("PWMCON1", 3, 1), "UDIS": ("PWMCON1", 1, 1),
+    "OSYNC": ("PWMCON1", 0, 1),
+    "DTPS": ("DTCON", 6, 2), "DT": ("DTCON", 0, 6),
+}  # fmt: skip
+WIDTHS: dict[str, int] = {
+    "PTCON0": 8, "PTCON1": 8, "PWMCON0": 8, "PWMCON1": 8, "DTCON": 8, "OVDCOND": 8, "OVDCONS": 8,
+    "PTPER": 12, "SEVTCMP": 12, "PDC0": 14, "PDC1": 14, "PDC2": 14, "PDC3": 14,
+}  # fmt: skip
+"""Bits of each; the pairs H and L of the 12 and 14 bit ones are written as one here."""
+AT_RESET: dict[str, int] = dict.fromkeys(WIDTHS, 0) | {"PTPER": 0xFFF, "OVDCOND": 0xFF, "PWMCON0": 0x50}
+"""PWMPIN not programmed: the outputs are enabled."""
+PTCKPS = (1, 4, 16, 64)
+"""Prescaler of the time base; its clock is Fosc/4."""
+DTPS = (2, 4, 8, 16)
+"""Dead time clock: Fosc over this."""
+PAIRS, CHANNELS = 4, 8
+ENABLED: tuple[tuple[int, ...], ...] = (
+    (), (1,), (1, 3), (0, 1, 2, 3), (0, 1, 2, 3, 4, 5), (0, 1, 2, 3, 4, 5, 6, 7), (1, 3, 5), (1, 3, 5, 7),
+)  # fmt: skip
+"""Channels that PWMEN makes PWM outputs; the others are ordinary pins."""
+FREE_RUNNING = 0
+"""PTMOD; single shot and up/down counting are not built."""
+PTMIF = 1
+"""PIR3 bit of the time base's interrupt. K."""
 
 
 class Edge(NamedTuple):
@@ -35,11 +52,6 @@ class Pwm4431:
 
     special_event: called with the Q clock when PTMR meets SEVTCMP, every SEVOPS + 1 times.
     """
-
-    __slots__ = (
-        "_events", "_loaded", "_matches", "_period", "_registers", "_start", "outputs", "pir3",
-        "special_event",
-    )  # fmt: skip
 
     def __init__(self) -> None:
         self._registers = dict(AT_RESET)

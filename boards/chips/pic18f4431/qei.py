@@ -1,23 +1,32 @@
-"""Quadrature encoder interface of the PIC18F4431."""
+"""Quadrature encoder interface of the PIC18F4431 (DS39616D p. 165 f., hardware.md 3.5; mode numbers K)."""
 
-from boards.chips.pic18f4431.registers import (
-    BY_INDEX,
-    IC2QEIF,
-    IC3DRIF,
-    QEIM_MASK,
-    QEIM_SHIFT,
-    QERR,
-    UP_DOWN,
-    X2,
-    Mode,
-)  # fmt: skip
+from enum import IntEnum
+
 from boards.chips.quadrature import Decoder
+
+QERR, UP_DOWN = 0x40, 0x20
+"""QEICON: a count was lost, direction."""
+QEIM_SHIFT, QEIM_MASK = 2, 7
+IC2QEIF, IC3DRIF = 0x04, 0x08
+"""PIR3: position match, direction change."""
+
+
+class Mode(IntEnum):
+    """QEIM."""
+
+    OFF = 0b000
+    X2_INDEX = 0b001
+    X2_MATCH = 0b010
+    X4_INDEX = 0b101
+    X4_MATCH = 0b110
+
+
+X2 = (Mode.X2_INDEX, Mode.X2_MATCH)
+BY_INDEX = (Mode.X2_INDEX, Mode.X4_INDEX)
 
 
 class Qei4431:
     """qeicon, poscnt, maxcnt (16 bits), pir3: IC2QEIF and IC3DRIF, for firmware to clear."""
-
-    __slots__ = ("_decoder", "_index", "maxcnt", "pir3", "poscnt", "qeicon")
 
     def __init__(self) -> None:
         self.qeicon = UP_DOWN

@@ -5,9 +5,8 @@ from concurrent.futures import Future
 
 from nicegui import ui
 
-from host.console.decoded import words
 from host.console.shell import Shell, box, button, log_of, table
-from host.console.views import BusView
+from host.console.views import BusView, words
 from host.logs.journal import Entry
 
 LINES = 14

@@ -24,7 +24,7 @@ _LIBRARIES: Final = ("canopen.", "numpy.random.", "cantools.")
 _HELPERS: Final = {
     "boards.c.isolated": {"unbuilt"},
     "boards.core.interrupts": {"_no_routine"},
-    "boards.core.parameters": {"_nothing"},
+    "boards.core.commands": {"_nothing"},
     "boards.silicon.hid": {"_nobody", "_always"},
     "bus.protocol.saturate": {"nobody"},
     "scenarios.lab.faults.layers": {"chained", "last", "turned"},

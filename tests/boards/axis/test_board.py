@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis import AxisConfig
+from boards.axis.config import AxisConfig
 from bus.protocol import (
     AxisMode,
     Device,
@@ -15,7 +15,7 @@ from bus.protocol import (
     unpack_target,
 )
 from bus.protocol.scales import rate_q16
-from bus.protocol.serial import NO_SETPOINT, PacketDecoder
+from bus.protocol.serial import NO_SETPOINT, AxisSample, PacketDecoder
 from tests.boards.lab import CENTRE, RA, STEP_ARCSEC, Lab
 
 
@@ -233,7 +233,7 @@ def test_L3_packets_hold_25_samples_at_10_ms(lab: Lab) -> None:
     assert decoder.crc_errors == decoder.skipped_bytes == 0
     stamps = [packet.stamp for packet in packets]
     assert {after - before for before, after in pairwise(stamps)} <= {2499, 2500, 2501}
-    last = packets[-1].samples
+    last = [AxisSample(*row) for row in packets[-1].rows]
     assert len(last) == 25
     # 1000 arcsec/s: 435.6 counts in 5 ms, 4142.5 steps and 11.378 tachometer counts in 10 ms
     moved = (last[-1].position - last[0].position) / 24
@@ -243,7 +243,7 @@ def test_L3_packets_hold_25_samples_at_10_ms(lab: Lab) -> None:
     assert all(10 <= sample.tach_a <= 13 for sample in last)
     lab.command(Opcode.OPEN_LOOP, 0)
     lab.run(1.0)
-    assert decoder.feed(lab.packets[-1][1])[0].samples[-1].setpoint == NO_SETPOINT
+    assert AxisSample(*decoder.feed(lab.packets[-1][1])[0].rows[-1]).setpoint == NO_SETPOINT
 
 
 def test_every_command_is_answered_exactly_once(lab: Lab) -> None:

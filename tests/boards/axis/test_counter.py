@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis import AxisConfig
-from boards.axis.counter import CounterTorque
+from boards.axis.config import AxisConfig
+from boards.axis.pi import CounterTorque
 from bus.protocol import Opcode, Result
 from bus.protocol.scales import rate_q16
 from tests.boards.lab import Lab

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.axis.compensator import Compensator
-from boards.axis.counter import CounterTorque
+from boards.axis.config import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE, TABLE
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
-from boards.axis.interrupts import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE, TABLE
+from boards.axis.pi import CounterTorque
 from boards.core.interrupts import InterruptController
 from bus.protocol import AxisParameter, Opcode, Result
 from bus.protocol.scales import rate_q16

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from boards.axis.gusts import Gusts
+from boards.axis.hold import Gusts
 from bus.protocol import AxisParameter, Opcode
 from bus.protocol.scales import rate_q16
 from scenarios.native import compiled

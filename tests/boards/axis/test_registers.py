@@ -9,18 +9,17 @@ from hypothesis import strategies as st
 from boards.axis.commands import RATE_LIMIT
 from boards.axis.compensator import Compensator
 from boards.axis.config import AxisConfig
-from boards.axis.counter import CounterTorque
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
-from boards.axis.pi import GAIN_SHIFT, IncrementalPi
+from boards.axis.pi import GAIN_SHIFT, CounterTorque, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
 from boards.axis.tachometer import RemoteTachometer
 from boards.axis.watch import EncoderWatch
 from bus.protocol import HARMONICS, AxisMode, AxisParameter, PositionFlag
+from bus.protocol.motion import pack_tach
 from bus.protocol.position import pack_position
 from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
-from bus.protocol.tach import pack_tach
 from bus.units import ARCSEC_PER_TURN
 from tests.boards.checked import Checked, checked
 from tests.boards.lab import Lab

@@ -76,13 +76,11 @@ class Side:
 
 def _numbers(owner: Any, depth: int, path: str = "") -> list[tuple[str, Any]]:
     found = []
-    for kind in type(owner).__mro__:
-        for name in getattr(kind, "__slots__", ()):
-            value = getattr(owner, name, None)
-            if isinstance(value, (int, list)) or value is None:
-                found.append((path + name, value))
-            elif depth and type(value).__module__.startswith("boards.axis"):
-                found += _numbers(value, depth - 1, f"{path}{name}.")
+    for name, value in getattr(owner, "__dict__", {}).items():
+        if isinstance(value, (int, list)) or value is None:
+            found.append((path + name, value))
+        elif depth and type(value).__module__.startswith("boards.axis"):
+            found += _numbers(value, depth - 1, f"{path}{name}.")
     return found
 
 

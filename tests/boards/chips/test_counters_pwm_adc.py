@@ -8,7 +8,7 @@ from boards.chips.dspic30f import Adc, MotorControlPwm, QeiModule
 from boards.chips.dspic30f.pwm import Edge
 from boards.chips.dspic30f.registers import Qeim, Ssrc
 from boards.chips.pic18f4431 import Qei4431
-from boards.chips.pic18f4431.registers import IC2QEIF, IC3DRIF, QERR, Mode
+from boards.chips.pic18f4431.qei import IC2QEIF, IC3DRIF, QERR, Mode
 from boards.chips.quadrature import levels
 from boards.silicon.pwm import MotorPwm
 from boards.silicon.qei import Qei

@@ -1,7 +1,7 @@
 import pytest
 
 from boards.chips.ecan import Ecan, EcanError
-from boards.chips.ecan.registers import LIKE, OWN
+from boards.chips.ecan.chip import LIKE, OWN
 from bus.can import Frame, Wire
 from bus.time import EventQueue
 

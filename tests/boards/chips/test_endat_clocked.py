@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from boards.chips.endat import ClockedEncoder, ClockedMaster, EndatError
 from boards.chips.endat import registers as at
+from boards.chips.endat.answer import crc_bits
 from boards.chips.endat.encoder import Phase
 from boards.chips.endat.registers import Alarm, Info
-from boards.silicon.crc5 import crc_bits
 from boards.silicon.endat import EndatEncoder, EndatMaster, check
 
 MS = 1_000_000

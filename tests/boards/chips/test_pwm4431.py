@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.chips.pic18f4431 import Pwm4431
-from boards.chips.pic18f4431.pwmregisters import ENABLED, PTMIF
+from boards.chips.pic18f4431.pwm import ENABLED, PTMIF
 
 
 def running(period: int = 99, **registers: int) -> Pwm4431:

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from boards.chips.uartline import FIFO_PIC18, Received, UartLine
 from boards.chips.usb import HidDevice, Stall
-from boards.chips.usb import descriptors as usb
+from boards.chips.usb import device as usb
 from boards.silicon.uart import Uart
 from bus.time import EventQueue
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.core.debug import BUFFER_BYTES, DebugPort, frame_of, line_of
-from boards.display import DisplayBoard
+from boards.display.firmware import DisplayBoard
 from bus.can import Frame, Wire
 from bus.protocol import COMMAND_BASE, Device, Opcode, Result, pack_command, unpack_reply
 from bus.time import EventQueue, Oscillator

@@ -1,5 +1,4 @@
-from boards.display import DisplayBoard
-from boards.display.text import angle
+from boards.display.firmware import DisplayBoard, angle
 from bus.can import Frame, Wire
 from bus.protocol import (
     Device,

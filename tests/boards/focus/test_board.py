@@ -1,6 +1,7 @@
 import pytest
 
-from boards.focus import FocusBoard, FocusConfig, FocusPins
+from boards.focus.config import FocusConfig, FocusPins
+from boards.focus.firmware import FocusBoard
 from boards.focus.stepping import Stepping
 from bus.can import Frame, Wire
 from bus.protocol import (

@@ -1,5 +1,4 @@
-from boards.gateway import GatewayBoard
-from boards.gateway.firmware import RING_SLOTS
+from boards.gateway.firmware import RING_SLOTS, GatewayBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, Opcode, pack_command, pack_reply, pack_tach
 from bus.protocol.report import PLACES, pack_report, unpack_report

@@ -1,7 +1,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boards.motor_velocity import MotorVelocityBoard
+from boards.motor_velocity.firmware import MotorVelocityBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, unpack_tach
 from bus.time import EventQueue, Oscillator

@@ -66,4 +66,4 @@ def test_L3_packets() -> None:
     lab.run(1.2)
     decoded = PacketDecoder().feed(b"".join(packets))
     assert len(decoded) == 4
-    assert all(sample.position == CENTRE for packet in decoded for sample in packet.samples)
+    assert all(row == (CENTRE,) for packet in decoded for row in packet.rows)

@@ -2,8 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.silicon.crc5 import crc5
-from boards.silicon.endat import EndatEncoder, EndatMaster, check
+from boards.silicon.endat import EndatEncoder, EndatMaster, check, crc5
 
 positions = st.integers(0, (1 << 29) - 1)
 

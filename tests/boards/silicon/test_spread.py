@@ -5,8 +5,7 @@ from itertools import accumulate, islice
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.silicon.pwm import MotorPwm
-from boards.silicon.spread import ONE, Spreader
+from boards.silicon.pwm import ONE, MotorPwm, Spreader
 
 duties = st.integers(0, 3000 * ONE)
 

@@ -2,8 +2,7 @@ from time import perf_counter, sleep
 
 import pytest
 
-from bus.outside.pacer import Pacer, SpeedError
-from bus.outside.punctual import Punctuality
+from bus.outside.pacer import Pacer, Punctuality, SpeedError
 from bus.time import EventQueue
 
 
@@ -96,7 +95,7 @@ def test_a_lateness_is_told_to_its_bin(late_s: float, monkeypatch: pytest.Monkey
     queue = EventQueue()
     pacer = Pacer(queue)
     probe = Punctuality(pacer)
-    monkeypatch.setattr("bus.outside.punctual.perf_counter", lambda: pacer.due_s(queue.now_ns) + late_s)
+    monkeypatch.setattr("bus.outside.pacer.perf_counter", lambda: pacer.due_s(queue.now_ns) + late_s)
     queue.run_until(100_000_000)
     told = probe.quantile_s(0.999)
     assert probe.worst_s == pytest.approx(late_s, abs=1e-9)

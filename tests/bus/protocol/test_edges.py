@@ -13,7 +13,6 @@ from bus.protocol.serial import (
     SAMPLE_NS,
     SAMPLES,
     STAMP_UNIT_NS,
-    FrameSample,
     PacketDecoder,
     pack_packet,
     packet_bytes,
@@ -148,7 +147,7 @@ def test_samples_that_do_not_fit_are_cut_and_told_of_once() -> None:
     clip = Told()
     samples = [(40_000, -40_000, 70_000), *[(1, 2, 3)] * 24]
     (packet,) = PacketDecoder().feed(pack_packet(p.Device.FOCUS, 1, 2, samples, clip))
-    assert [tuple(each) for each in packet.samples] == [(32_767, -32_768, 65_535), *samples[1:]]
+    assert [tuple(each) for each in packet.rows] == [(32_767, -32_768, 65_535), *samples[1:]]
     assert clip.times == 1
     pack_packet(p.Device.FOCUS, 1, 2, samples[1:2] * 25, clip)
     assert clip.times == 1
@@ -158,7 +157,7 @@ def test_a_declared_boards_packet_carries_its_frames() -> None:
     dome = DOME.nodes["DOME"]
     assert packet_bytes(dome) == 2 + 6 + 25 * 7 + 2
     (packet,) = PacketDecoder({dome}).feed(pack_packet(dome, 0, 0, [tuple(range(249, 256))] * 25))
-    assert packet.samples == (FrameSample(*range(249, 256)),) * 25
+    assert packet.rows == (tuple(range(249, 256)),) * 25
 
 
 GOOD = pack_packet(p.Device.POSITION_DEC, 1, 2, [(3,)] * 25)

@@ -7,7 +7,7 @@ from cantools.database import load_string
 
 from bus.protocol import layout_of
 from bus.protocol.nodes import DOME, Kind, KindError
-from bus.protocol.nodes.opcodes import Argument, arguments_of
+from bus.protocol.nodes.messages import Argument, arguments_of
 
 HEAD = 'VERSION ""\nBU_: GATEWAY NODE\n'
 COMMAND = HEAD + 'BO_ 128 COMMAND: 8 GATEWAY\n SG_ Opcode M : 8|8@1+ (1,0) [0|255] "" NODE\n'

@@ -42,7 +42,7 @@ def test_L3_however_the_stream_is_cut_the_packets_are_the_same(
         noise += b"\0"
     stream = b"".join(noise + pack_packet(*packet) for packet in batch)
     at_once = PacketDecoder().feed(stream)
-    assert [(p.device, p.sequence, p.stamp, [tuple(s) for s in p.samples]) for p in at_once] == batch
+    assert [(p.device, p.sequence, p.stamp, [tuple(s) for s in p.rows]) for p in at_once] == batch
     bytewise, pieces = PacketDecoder(), PacketDecoder()
     assert [p for byte in stream for p in bytewise.feed(bytes([byte]))] == at_once
     found, start = [], 0

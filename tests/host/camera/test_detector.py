@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from bus.time import generator
-from host.camera.bloom import bloom
 from host.camera.flat import PIXEL_RESPONSE, flat
 from host.camera.light import Window, light
 from host.camera.models import CAMERAS, GUIDE, MAIN, CameraModel
-from host.camera.readout import read_out
+from host.camera.readout import bloom, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import stars
 from host.sky.site import NAINITAL

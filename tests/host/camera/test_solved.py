@@ -10,8 +10,7 @@ import pytest
 from bus.units import ARCSEC_PER_RAD
 from host.camera.camera import Order, expose
 from host.camera.light import Window
-from host.camera.look import Look
-from host.camera.models import GUIDE, MAIN, CameraModel
+from host.camera.models import GUIDE, MAIN, CameraModel, Look
 from host.camera.place import catalogued
 from host.camera.seeing import Wander
 from host.camera.stars import SyntheticSky, separation

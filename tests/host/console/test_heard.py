@@ -15,8 +15,8 @@ import pytest
 from bus.protocol import Device, pack_heartbeat
 from bus.protocol.report import pack_report
 from host.client import SILENCE_NS, Client
-from host.console.decoded import words
 from host.console.heard import HeardBus
+from host.console.views import words
 from host.link import HidLink
 from host.logs.journal import Journal
 from scenarios.doors.busview import EmulatedBus

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from host.lx200.parser import Parser
+from host.lx200.session import Parser
 
 COMMANDS = st.sampled_from(["GR", "Sr12:34:56", "Sd+12\xdf34:56", "MS", "Q", "Mgn2000", "\x06", "SG-5.5"])
 

@@ -9,7 +9,7 @@ from host.procedures.pointing import ENCODERS
 from host.sky.mount import STEP_ARCSEC
 from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
 from host.telescope import Refused
-from host.telescope.refused import Reason
+from host.telescope.jobs import Reason
 from tests.host.telescope.conftest import Rig
 
 OVERSHOOT_ARCSEC = 0.5

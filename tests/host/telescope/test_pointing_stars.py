@@ -9,7 +9,7 @@ from bus.units import ARCSEC_PER_RAD
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe
 from host.sky.tracks import SIDEREAL_ARCSEC_S
-from host.telescope.refused import Refused
+from host.telescope.jobs import Refused
 from plant.model import MountErrors
 from plant.mount import sky
 from tests.host.sky.seen import LATITUDE, sightings

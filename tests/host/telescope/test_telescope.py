@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bus.protocol import AxisMode, AxisParameter, Device, Health, SpeedClass
+from bus.protocol import AxisMode, Device, Health, SpeedClass
 from bus.units import ARCSEC_PER_RAD
 from host.telescope import DriveRate, Reason, Refused
 from tests.host.inprocess import HostInProcess
@@ -165,17 +165,6 @@ def test_tracking_ends_at_the_horizon_limit(rig: Rig) -> None:
     rig.advance(20.0)
     assert not rig.telescope.snapshot.tracking
     assert any("horizon" in entry.text for entry in rig.pc.journal.entries if entry.kind == "error")
-
-
-def test_soft_limits_are_set_on_both_boards_and_kept(rig: Rig) -> None:
-    low, high = math.radians(-30.0), math.radians(80.0)
-    rig.run(lambda t: t.boards.set_soft_limits("dec", low, high))
-    scale = rig.pc.observatory.mount.dec
-    for device in (Device.AXIS_DEC, Device.POSITION_DEC):
-        got = rig.run(lambda t, d=device: t.boards.get(d, AxisParameter.LIMIT_HIGH_STEPS))
-        assert got == scale.high_steps == scale.steps(high)
-    with pytest.raises(Refused):
-        rig.do(lambda t: t.drive.goto(rig.up(dec_deg=85.0), wake=True))
 
 
 def test_health_names_every_board_and_a_dead_one(rig: Rig) -> None:

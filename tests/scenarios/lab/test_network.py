@@ -5,8 +5,8 @@ from hashlib import sha256
 
 import pytest
 
-from boards.axis import AxisBoard
-from boards.display import DisplayBoard
+from boards.axis.firmware import AxisBoard
+from boards.display.firmware import DisplayBoard
 from bus.can import Frame
 from bus.protocol import Device, Opcode, Reply, Result, pack_command, unpack_reply
 from bus.protocol.report import pack_report, unpack_report

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from boards.core.declared import DeclaredBoard
-from boards.dome import DomeBoard
+from boards.dome.firmware import DomeBoard
 from bus.can import Frame
 from bus.conformance import Settings, run
 from bus.outside.pythoncan import SchmidtBus
 from bus.protocol import Device, Health, Opcode, Result, State, pack_command, unpack_heartbeat, unpack_reply
 from bus.protocol.nodes import DOME, POWER, FrameCodec, arguments_of, documented
-from bus.protocol.serial import PacketDecoder
+from bus.protocol.serial import AxisSample, PacketDecoder
 from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.network import Network, build
@@ -172,7 +172,7 @@ def test_P10_the_axis_log_has_the_auxiliary_encoder_at_the_moment_of_the_shafts(
     assert site.ask(axis, Opcode.POWER, 1) is Result.OK
     assert site.ask(axis, Opcode.SET_RATE, round(arcsec_s * 0.005 / 0.0114827 * 65536)) is Result.OK
     site.run(4.0)
-    samples = [sample for p in PacketDecoder().feed(b"".join(packets)) for sample in p.samples][-100:]
+    samples = [AxisSample(*row) for p in PacketDecoder().feed(b"".join(packets)) for row in p.rows][-100:]
     wrong = []
     for sample in samples:
         counts = sample.position * 1296000 / 2**29 / (1296000 / 10.8 / 2**17)
@@ -188,7 +188,7 @@ def test_P10_without_auxiliary_boards_the_column_is_zero() -> None:
     packets: list[bytes] = []
     site.network.uarts["AXIS_DEC"].sink = lambda _t, packet: packets.append(packet)
     site.run(1.1)
-    found = [sample for p in PacketDecoder().feed(b"".join(packets)) for sample in p.samples]
+    found = [AxisSample(*row) for p in PacketDecoder().feed(b"".join(packets)) for row in p.rows]
     assert found and not any(sample.aux for sample in found)
 
 
@@ -200,7 +200,7 @@ def test_B9_declared_boards_send_rs232_packets() -> None:
     site.run(1.1)
     found = PacketDecoder({0x23}).feed(b"".join(packets))
     assert [packet.sequence for packet in found] == [0, 1, 2, 3]
-    sequences = [sample[6] for packet in found for sample in packet.samples]
+    sequences = [sample[6] for packet in found for sample in packet.rows]
     assert sequences == list(range(1, 101))  # byte 7 of ENCODER counts the frames
 
 

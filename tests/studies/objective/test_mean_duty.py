@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from boards.silicon.spread import ONE, Spreader
+from boards.silicon.pwm import ONE, Spreader
 from plant.model import load
 from plant.plant import Plant
 from plant.units import ARCSEC

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from boards.chips.mcp2515.controller import Mcp2515Controller
 from boards.core import board as core
 from boards.silicon.can import CanController
 from bus.can import Frame, Port, Wire
 from bus.can.length import frame_bits
 from bus.time import EventQueue
+from tests.boards.chips.mcp2515.controller import Mcp2515Controller
 from tests.boards.lab import RA, Lab
 
 Received = Callable[[int, Frame], None]

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from boards.chips.mcp2515.errorflags import error_flags
+from boards.chips.mcp2515.registers import error_flags
 from bus.can import Flip, Frame
 from tests.boards.chips.mcp2515.bench import CONFIG, LISTEN, LOOPBACK, NORMAL, SLEEP, Bench
 

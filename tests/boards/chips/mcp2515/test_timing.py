@@ -3,7 +3,7 @@
 import adafruit_mcp2515
 import pytest
 
-from boards.chips.microchip_can import decode
+from boards.chips.mcp2515.bittiming import decode
 from bus.can import Frame
 from tests.boards.chips.mcp2515.bench import LISTEN, MS, Bench
 

@@ -7,8 +7,8 @@ compare the two frame by frame.
 from collections.abc import Callable, Sequence
 
 from boards.chips.mcp2515.chip import Mcp2515
+from boards.chips.mcp2515.message import BUFFER_BYTES, frame_of, identifier_image, image_of
 from boards.chips.mcp2515.registers import FILTER_ADDRESSES, MASK_ADDRESSES, TXBCTRL, Mode
-from boards.chips.microchip_can.message import BUFFER_BYTES, frame_of, identifier_image, image_of
 from bus.can import Frame, Port
 from bus.can.frame import arbitration_key
 from bus.time import EventQueue
@@ -20,8 +20,6 @@ _BUFFERS = 3
 
 class Mcp2515Controller:
     """The chip on `port`, brought up for 1 Mbit/s; `on_receive(t_ns, frame)` for every frame it accepts."""
-
-    __slots__ = ("_loaded", "_on_receive", "_orders", "_queue", "chip", "port")
 
     def __init__(self, queue: EventQueue, port: Port, on_receive: Callable[[int, Frame], None]) -> None:
         self.port = port

@@ -59,7 +59,7 @@ def decode(fosc_hz: int, cnf1: int, cnf2: int, cnf3: int) -> BitTimes:
 
 def _problems(times: BitTimes) -> list[str]:
     found = []
-    if propagation_and_phase1(times) < times.phase2:
+    if times.propagation + times.phase1 < times.phase2:
         found.append("PropSeg + PS1 is shorter than PS2")
     if times.phase2 <= times.jump:
         found.append("PS2 is not longer than SJW")
@@ -70,8 +70,3 @@ def _problems(times: BitTimes) -> list[str]:
     if times.bitrate > MAX_BITRATE:
         found.append(f"{times.bitrate:.0f} bit/s, CAN has at most {MAX_BITRATE}")
     return found
-
-
-def propagation_and_phase1(times: BitTimes) -> int:
-    """TQ between the synchronisation segment and the sample point."""
-    return times.propagation + times.phase1
