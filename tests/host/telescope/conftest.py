@@ -33,8 +33,10 @@ class Rig:
         network: str = "lab",
         plant: str = DEFAULT_PLANT,
     ) -> None:
-        self.scenario = Scenario(file=Path("rig"), name="rig", clock=Clock(start), network={"name": network})
-        self.served = LiveNetwork(self.scenario, plant_model({"file": plant}, Path()))
+        self.scenario = Scenario(
+            file=Path("rig"), name="rig", clock=Clock(start), network={"name": network}, plant={"file": plant}
+        )
+        self.served = LiveNetwork(self.scenario, plant_model(self.scenario.plant, Path()))
         self.network = self.served.network
         self.host = HostInProcess(self.served, logs)
         self.pc = self.host.pc
