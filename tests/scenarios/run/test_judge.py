@@ -16,6 +16,7 @@ from host.procedures.pointing_run import Visit
 from host.sky.catalogue import star
 from host.sky.observed import observe_many
 from host.sky.pointstars import Sighting
+from plant.parts import MountErrors, Number
 from scenarios.lab.faults.evidence import Evidence
 from scenarios.language.document import parse
 from scenarios.language.load import convert
@@ -38,6 +39,7 @@ steps:
         Path("hand.yaml"),
     )
 )
+INDEX_ARCSEC = {"hour_angle": 50.0, "declination": 100.0}
 Made = Callable[..., Outcome]
 
 
@@ -241,6 +243,15 @@ def aside(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
 ])  # fmt: skip
 def test_pointing_is_judged_by_axis_and_source(aside: Outcome, given: dict[str, Any], value: float) -> None:
     assert evaluate.pointing_error(aside, given) == pytest.approx(value, abs=0.002)
+
+
+def test_pointing_is_of_the_sky_and_not_of_the_axes(aside: Outcome) -> None:
+    """An index error is what the axes read less where the telescope looks (Wallace)."""
+    zeros = {each.name: Number(0.0, "arcsec", "by hand") for each in dataclasses.fields(MountErrors)}
+    index = {f"{name}_index": Number(value, "arcsec", "by hand") for name, value in INDEX_ARCSEC.items()}
+    outcome = dataclasses.replace(aside, errors=MountErrors(**zeros | index))
+    assert evaluate.pointing_error(outcome, {"axis": "ra"}) == pytest.approx(6.0 + 50.0, abs=0.002)
+    assert evaluate.pointing_error(outcome, {"axis": "dec"}) == pytest.approx(4.0 + 100.0, abs=0.002)
 
 
 def test_a_rate_is_judged_against_the_star_or_the_rate_that_was_set(aside: Outcome) -> None:
