@@ -8,11 +8,14 @@ import pytest
 from bus.protocol import AxisParameter
 from host.procedures.manual import AXES
 from host.procedures.pointing import ENCODERS
-from host.sky.mount import STEP_ARCSEC
+from host.sky.catalogue import STARS
+from host.sky.mount import STEP_ARCSEC, limits_mount
+from host.sky.observed import Clock
+from host.sky.site import NAINITAL
 from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
 from host.telescope import Refused
 from host.telescope.refused import Reason
-from tests.host.telescope.conftest import Rig
+from tests.host.telescope.conftest import START, Rig
 
 OVERSHOOT_ARCSEC = 0.5
 SETTLED_S = 1.0
@@ -114,3 +117,14 @@ def test_a_pulse_has_the_area_of_its_rate_and_time() -> None:
     assert pulse.arcsec(99.0) == 0.0
     assert pulse.arcsec(100.2) == pytest.approx(0.35)  # its middle: half of it
     assert pulse.arcsec(200.0) == pytest.approx(0.7)
+
+
+def test_pulses_that_are_over_stay_and_those_that_last_go_on() -> None:
+    """7″/s for 5 s are 35″, less half the ramp's 0.3 s on the way, whatever comes on the other axis."""
+    track = SkyTrack(STARS["Pollux"], NAINITAL, Clock(START), limits_mount(1.0, -1.0, 1.0, 0.5))
+    track.guide(Pulse(0, 7.0, 0.0, 5.0))
+    track.guide(Pulse(1, -2.0, 2.0, 1.0))
+    assert track.shifted(2.5) == pytest.approx([7.0 * (2.5 - 0.15), -2.0 * (0.5 - 0.15)])
+    track.guide(Pulse(0, -7.0, 60.0, 2.0))
+    track.guide(Pulse(0, 1.0, 200.0, 1.0))
+    assert track.shifted(300.0) == pytest.approx([35.0 - 14.0 + 1.0, -2.0])
