@@ -6,8 +6,10 @@ from boards.axis.config import AxisConfig
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
+from boards.axis.tachometer import RemoteTachometer
 from bus.protocol import pack_position
 from bus.protocol.scales import rate_q16
+from bus.protocol.tach import pack_tach
 
 FRAME_NS, TICK_NS = 120_000, 5_000_000
 COUNT = 1 << 18  # units of a count
@@ -42,3 +44,14 @@ def test_B2_a_position_is_carried_on_for_a_tenth_of_a_second_and_no_further() ->
         axis.move(0, 0, 5_000_000, rate_q16(100.0))
         setpoints.append(axis.setpoint(later_ns, 1))
     assert setpoints[0] == setpoints[1] < 0  # it thinks it has gone 20 counts too far
+
+
+def test_B4_a_motor_board_that_falls_silent_is_not_carried_on() -> None:
+    """100 counts a frame; two frames missed, 25 ms, and the sample is zero instead of a guess."""
+    tachometer = RemoteTachometer(FRAME_NS)
+    for frame in range(40):
+        tachometer.take(frame * 10_000_000, pack_tach(0x31, 0, frame * 100, 100))
+        tachometer.sample(frame * 10_000_000 + 1_000_000)
+    last_ns = 390_000_000 - FRAME_NS - 40_000  # latched before the frame was made and sent
+    assert tachometer.sample(last_ns + 11_000_000) == pytest.approx(100, abs=2)
+    assert tachometer.sample(last_ns + 25_100_000) == 0

@@ -54,3 +54,16 @@ def test_B2_creeping_below_200_arcsec_a_second_has_its_own_integral_gain(
     for _ in range(100):  # until the profile has reached the rate
         axis.setpoint(0, 0)
     assert pi.ki_q12 == ki * 4096
+
+
+@pytest.mark.parametrize("after_arcsec_s", [0.0, -600.0, 900.0])
+def test_B2_another_tracking_rate_is_reached_with_the_acceleration(after_arcsec_s: float) -> None:
+    """2°/s² are 36″/s in a tick. The axis stands 300″ behind, so the correction stays at its 1500″/s."""
+    axis = at(PLACE)
+    axis.track(0, 0, rate_q16(600.0))
+    before = [axis.setpoint(0, 0) for _ in range(100)][-1]
+    axis.track(0, 0, rate_q16(after_arcsec_s))
+    for _ in range(10):
+        setpoint = axis.setpoint(0, 0)
+        assert abs(setpoint - before) <= rate_q16(36.1)
+        before = setpoint
