@@ -39,6 +39,9 @@ SILENCE_NS: Final = 3_500_000_000
 WATCH_NS: Final = 500_000_000
 """How often heartbeats are looked at; they come once a second."""
 
+_MOVE_NOTHING: Final = (Opcode.PING, Opcode.GET_PARAMETER, Opcode.SET_PARAMETER)
+"""Whoever asked for these wants the answer whatever the axes begin meanwhile. A stop overtakes them."""
+
 Procedure = Generator[None, None, Any]
 
 
@@ -93,7 +96,11 @@ class Client:
     def ask(self, device: Device, opcode: Opcode, *arguments: int) -> Generator[None, None, Reply]:
         """Send a command and wait for its reply, with retries; `ClientError` when it is refused or lost."""
         pending = _Pending(device, opcode, arguments)
-        self._waiting.setdefault(device, []).append(pending)
+        queue = self._waiting.setdefault(device, [])
+        place = len(queue)
+        while opcode == Opcode.STOP and place and queue[place - 1].opcode in _MOVE_NOTHING:
+            place -= 1
+        queue.insert(place, pending)
         while pending.reply is None and not pending.failed:
             yield
         if pending.failed:
@@ -105,10 +112,12 @@ class Client:
         return pending.reply
 
     def forget(self, device: Device) -> None:
-        """Give up what is waiting for a device, so that a stop is not queued behind it."""
-        for pending in self._waiting.get(device, ()):
-            pending.failed = "given up"
-        self._waiting[device] = []
+        """Give up what is waiting for a device and would move it, so that none of it comes after a stop."""
+        waiting = self._waiting.get(device, [])
+        for pending in waiting:
+            if pending.opcode not in _MOVE_NOTHING:
+                pending.failed = "given up"
+        self._waiting[device] = [pending for pending in waiting if not pending.failed]
 
     def wait(self, seconds: float) -> Procedure:
         """Do nothing for a while."""
@@ -179,13 +188,14 @@ class Client:
 
     def _take_reply(self, t_ns: int, data: bytes) -> None:
         reply = unpack_reply(data)
-        queue = self._waiting.get(reply.device)
-        if not queue or queue[0].opcode != reply.opcode:
+        queue = self._waiting.get(reply.device, [])
+        pending = next((each for each in queue if each.sent_ns >= 0 and each.opcode == reply.opcode), None)
+        if pending is None:
             self.logs.status(
                 t_ns, f"device {reply.device:#04x}", f"late answer to opcode {reply.opcode:#04x}"
             )
             return
-        pending = queue.pop(0)
+        queue.remove(pending)
         pending.reply = reply
         if reply.opcode == Opcode.PING and reply.result == Result.OK:
             self.health[pending.device] = Health(reply.value)

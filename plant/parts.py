@@ -34,9 +34,13 @@ class Numerics:
 
 @dataclass(frozen=True)
 class Supply:
-    """The motors' supply."""
+    """The motors' supply, one for both axes. resistance: of the supply and what both share of its cables."""
 
     voltage: Number = field(metadata=bounds("V", 1.0, 100.0))
+    resistance: Number = field(
+        default=Number(0.0, "ohm", "ASSUMPTION: stiff, as nothing is published"),
+        metadata=bounds("ohm", 0.0, 1.0),
+    )
 
 
 @dataclass(frozen=True)

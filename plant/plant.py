@@ -54,6 +54,12 @@ class Plant(Grid):
         self.focus = FocusPort(model.focus, start.get("focus", 0.0))
         advance(self.world, 0)  # fill the readings
 
+    def rail(self, t_ns: int) -> float:
+        """Return the voltage of the motors' supply, V."""
+        self.advance(t_ns)
+        supply = self.model.supply
+        return supply.voltage.si - supply.resistance.si * float(self.world[:, at.SUPPLY_CURRENT].sum())
+
     def log_effects(self, axis: str) -> list[tuple[str, dict[str, float]]]:
         """Return the effects of `axis` that the log writer has to apply, with parameters in SI units.
 

@@ -47,6 +47,7 @@ def grid_ns(model: PlantModel) -> int:
 def build(model: PlantModel, seed: int, start_angles: Mapping[str, float]) -> NDArray[np.float64]:
     """Return the world at rest at the start angles (rad), one row per axis, teeth in contact."""
     world = np.zeros((len(AXES), at.WIDTH))
+    world[:, at.SUPPLY_RESISTANCE] = model.supply.resistance.si
     for row, name in zip(world, AXES, strict=True):
         axis: AxisModel = getattr(model.axes, name)
         prepare(row, numbers_of(model, name, seed, start_angles.get(name, 0.0)))

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from bus.protocol import Device, Health, MotionFlag, Opcode
+from bus.protocol import AxisParameter, Device, Health, MotionFlag, Opcode
 from host.client import Client, ClientError, Procedure
 
 AXES = (Device.AXIS_RA, Device.AXIS_DEC)
@@ -28,10 +28,17 @@ def health_check(client: Client) -> Procedure:
     client.logs.status(client.now_ns, "HOST", f"health check passed, {len(client.devices)} boards")
 
 
-def power_on(client: Client, check: bool = True) -> Procedure:
-    """Health check, then switch both axes on and wait until they say so."""
+def power_on(client: Client, check: bool = True, dec_bias_q8: int = 0) -> Procedure:
+    """Health check, then switch both axes on and wait until they say so.
+
+    dec_bias_q8: duty that both motors of declination then always get, PWM steps in Q8; 0: as the board has
+    it. Switched on later, it would throw the axis by the lagging motor's play.
+    """
     if check:
         yield from health_check(client)
+    if dec_bias_q8:
+        bias = AxisParameter.COUNTER_BIAS_Q8, dec_bias_q8
+        yield from client.ask(Device.AXIS_DEC, Opcode.SET_PARAMETER, *bias)
     for axis in AXES:
         yield from client.ask(axis, Opcode.POWER, 1)
     for axis in AXES:

@@ -47,6 +47,8 @@ class Drive:
 
     tracking: whether the axes follow the sky when nothing else moves them.
     parked: None until the first readings have come in.
+    dec_bias_q8: PWM steps in Q8 that take declination's motors across the dead zone of their power stage. It
+        stands, so a guider's pulse turns its effort over; from −85 to 85 steps of 3000 nothing would move.
     """
 
     def __init__(self, client: Client, observatory: Observatory, logs: Logs) -> None:
@@ -59,6 +61,7 @@ class Drive:
         self.parked: bool | None = None
         self.drive_rate = DriveRate.SIDEREAL
         self.drift_arcsec_s = (0.0, 0.0)
+        self.dec_bias_q8 = 0
         self._guard_ns = 0
         self._altitude_rad = math.pi
 
@@ -326,7 +329,7 @@ class Drive:
     def power(self, check: bool = True) -> Procedure:
         """Power up unless it is done; the first part of every move."""
         if not self.powered:
-            yield from power.power_on(self.client, check)
+            yield from power.power_on(self.client, check, self.dec_bias_q8)
         self.parked = False
 
     def _ready(self) -> Procedure:

@@ -14,14 +14,6 @@ from host.telescope.jobs import Activity, Job, Reason, Refused, Side
 
 _LONGEST_S: Final = 60.0
 """Pulses of an axis that may wait, together. ASSUMPTION: as long as the longest one."""
-_LEAD: Final = (0.0, 2.0)
-"""How far the board's target is led beyond the place wanted, per ″ still missing, by axis. Declination turns
-through its friction, a spring that the board's loop winds in 0.6 s; with this, in half that. ASSUMPTION:
-held on the plant `low_preload`; behind a power stage Dec may still be 1.5″ off for seconds."""
-_MOST_LEAD_ARCSEC: Final = 8.0
-"""About the bristles' travel there. ASSUMPTION."""
-_SETTLE_S: Final = 1.0
-"""The lead is kept up for this long after a pulse. ASSUMPTION."""
 
 
 class Guider:
@@ -70,21 +62,14 @@ class Guider:
         try:
             while self._follows(track):
                 now_s = self._now_s
-                over = now_s > self._ends_s[axis] + _SETTLE_S
-                wanted = track.shifted(now_s + TICK_S)[axis] + (0.0 if over else self._lead(axis))
-                rate = shifting.rate(wanted, now_s)
+                rate = shifting.rate(track.shifted(now_s + TICK_S)[axis], now_s)
                 base = track.rates(now_s)[axis] + pointing.trims[axis]
                 device = AXES[axis]
                 yield from client.ask(device, Opcode.TRACK_RATE, rate_q16(base + rate))
-                if over and not rate_q16(rate):
+                if now_s > self._ends_s[axis] and not rate_q16(rate):
                     return
         finally:
             pointing.guided -= 1
-
-    def _lead(self, axis: int) -> float:
-        errors = self._drive.pointing.errors_arcsec()
-        lead = _LEAD[axis] * errors[axis] if errors is not None else 0.0
-        return min(max(lead, -_MOST_LEAD_ARCSEC), _MOST_LEAD_ARCSEC)
 
     def _busy(self, axis: int) -> bool:
         job = self._jobs[axis]

@@ -31,6 +31,8 @@ OUT_TACH_A, OUT_TACH_B = 6, 8  # counts
 OUT_ANGLE = 10  # rad, truth
 OUT_CURRENT_A, OUT_CURRENT_B = 12, 13  # A
 OUT_SIZE = 14
+SUPPLY_RESISTANCE = 42  # ohm, shared with the other axis
+OTHERS_SAG = 43  # V that the other axis takes in it
 
 # --- parameters
 INERTIA = 44  # axis without rotors and without the second mass, kg m2

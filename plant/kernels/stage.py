@@ -18,6 +18,12 @@ its driver, which is 12 of 3000 PWM steps at 20 kHz."""
 
 
 @inner
+def rail(w: Floats) -> float:
+    """Return the supply's voltage, V: what both axes drew in the last step flows through its resistance."""
+    return w[at.VOLTAGE] - w[at.SUPPLY_RESISTANCE] * w[at.SUPPLY_CURRENT] - w[at.OTHERS_SAG]
+
+
+@inner
 def closed_share(w: Floats, duty: float) -> float:
     """Return the share of a period in which the switch conducts; a pulse below one edge is a triangle."""
     period = w[at.PULSE] * w[at.INDUCTANCE]
@@ -71,5 +77,5 @@ def stage(
 def peak_current(w: Floats, m: int, emf: float) -> float:
     """Return the current of motor `m` as its switch opens, A, for the duty in force and a back-EMF, V."""
     valley = w[at.VALLEY + m]
-    net = w[at.VOLTAGE] - emf - w[at.RESISTANCE] * valley
+    net = rail(w) - emf - w[at.RESISTANCE] * valley
     return valley + rise(w, net, closed_share(w, w[at.DUTY + m]))

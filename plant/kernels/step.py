@@ -12,6 +12,7 @@ from plant.kernels.drive import train
 from plant.kernels.friction import relax, stribeck, torque
 from plant.kernels.hooks import evaluate
 from plant.kernels.motor import motor_step
+from plant.kernels.stage import rail
 
 TRANSMISSION = at.SUMS + int(Hook.TRANSMISSION)
 AXIS_TORQUE = at.SUMS + int(Hook.AXIS_TORQUE)
@@ -44,7 +45,7 @@ def axis_step(w: Floats, t: float, h: float) -> None:
     rate = w[at.RATE]
     middle = 1.5 * rate - 0.5 * w[at.RATE_BEFORE]
     friction = at.DECLARED_FRICTION
-    voltage = w[at.VOLTAGE]
+    voltage = rail(w)
     effects = w[at.ROWS_ALL] > 0.0
     if effects:
         evaluate(w, t + 0.5 * h, h)

@@ -19,6 +19,7 @@ from host.lx200.server import Lx200
 from host.outside import Outside, Service
 from host.sky.observed import Clock
 from host.telescope import Observatory, Telescope
+from plant.deadzone import bias_steps
 from scenarios.doors.door import Keeper
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.runs import RecordedRuns
@@ -26,6 +27,7 @@ from scenarios.doors.table import ON_HOST, doors_on
 from scenarios.lab.networks import in_order
 from scenarios.lab.prepare import UNDATED
 from scenarios.language.model import Scenario
+from scenarios.language.plants import plant_model
 
 
 def dated(scenario: Scenario) -> Scenario:
@@ -59,6 +61,8 @@ class TelescopePc:
         self.link = HidLink(send)
         client = Client(self.link, self.journal, in_order(devices))
         self.telescope = Telescope(client, self.observatory, self.journal)
+        model = plant_model(scenario.plant, scenario.file.parent)
+        self.telescope.drive.dec_bias_q8 = bias_steps(model, model.axes.dec.motor) << 8
         self.guiding = None if logs is None else ClientGuiding(logs / "guiding.txt", self.telescope)
         """Of clients that guide by an emulated camera."""
         self.cameras: tuple[Camera, ...] = ()

@@ -45,14 +45,17 @@ class Supply:
         self._plant = plant
         self._boards = boards
         self._channels = channels
+        self._names = [name for channel in channels for name in channel]
 
-    def voltage(self, _t_ns: int) -> float:
-        """V; stiff."""
+    def voltage(self, t_ns: int) -> float:
+        """V; stiff where no axis is on it."""
+        if "AXIS_RA" in self._names:
+            return self._plant.rail(t_ns)
         return float(self._plant.model.supply.voltage.si)
 
     def current(self, t_ns: int) -> float:
         """A: the motors of the axes on this supply, and its boards."""
-        names = [name for channel in self._channels for name in channel]
+        names = self._names
         on = sum(self._boards[name].on for name in names if name in self._boards)
         motors = [
             port

@@ -157,6 +157,11 @@ def chosen(
         return prepare(scenario_file, Changes(seed=seed, plant=plant, network=network_name))
     name = network_name or "lab"
     scenario = Scenario(
-        file=Path(name), name=name, clock=UNDATED, network={"name": name}, seed=1 if seed is None else seed
+        file=Path(name),
+        name=name,
+        clock=UNDATED,
+        network={"name": name},
+        plant={"file": plant or DEFAULT_PLANT},
+        seed=1 if seed is None else seed,
     )
-    return scenario, plant_model({"file": plant or DEFAULT_PLANT}, Path())
+    return scenario, plant_model(scenario.plant, Path())

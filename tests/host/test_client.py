@@ -96,6 +96,28 @@ def test_a_lost_reply_is_asked_for_again(tmp_path: Path) -> None:
     assert desk.logs.error_entries == 1
 
 
+def test_an_answer_that_comes_twice_answers_nobody_who_has_not_been_sent(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, lambda t_ns, frame: 2 * ok(t_ns, frame))
+    first, second = (desk.client.ask(Device.AXIS_RA, Opcode.GET_PARAMETER, number) for number in (1, 2))
+    next(first)
+    next(second)
+    desk.run(first)
+    desk.run(second)
+    assert [frame.data[2] for frame in desk.sent] == [1, 2]
+
+
+def test_a_stop_passes_what_moves_nothing_and_stays_behind_what_moves(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, silent)
+    ask = desk.client.ask
+    for opcode, values in ((Opcode.SET_RATE, (7,)), (Opcode.GET_PARAMETER, (1,)), (Opcode.PING, ())):
+        next(ask(Device.AXIS_RA, opcode, *values))
+    stop = ask(Device.AXIS_RA, Opcode.STOP)
+    with pytest.raises(ClientError, match="no answer"):
+        desk.run(stop)
+    sent = [frame.data[1] for frame in desk.sent]
+    assert sent[:6] == [Opcode.SET_RATE] * 3 + [Opcode.STOP] * 3
+
+
 def test_a_refusal_names_device_command_and_reason(tmp_path: Path) -> None:
     def refuse(_t_ns: int, frame: Frame) -> list[Frame]:
         device, opcode = frame.data[0], frame.data[1]

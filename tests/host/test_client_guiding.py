@@ -22,7 +22,7 @@ def exposed(rig: Rig, number: int = 1, lit: bool = True) -> None:
 def test_a_session_is_a_star_and_what_a_client_sent_meanwhile(tmp_path: Path) -> None:
     log = tmp_path / "guiding.txt"
     log.write_text("of an earlier evening")
-    rig = Rig(tmp_path, plant="low-preload")  # without a power stage declination settles between frames
+    rig = Rig(tmp_path)
     rig.host.open_cameras(DoorOptions(asked=ALPACA))
     rig.run(lambda t: t.drive.power_on())
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=-0.5)))

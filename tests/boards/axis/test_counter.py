@@ -34,6 +34,13 @@ def test_B2_the_register_waits_until_it_is_a_whole_step_off(split: int, sign: in
             assert counter.register == before
 
 
+@pytest.mark.parametrize(("effort", "register"), [(24, 2), (26, 3), (-24, 2), (-26, 3), (3000, 300)])
+def test_B2_a_jump_takes_the_register_to_the_nearest_step(effort: int, register: int) -> None:
+    counter = CounterTorque(10, 0)
+    counter.follow(effort, 0)
+    assert counter.register == register
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_B2_the_effort_goes_on_evenly_when_the_register_moves(
     sign: int, monkeypatch: pytest.MonkeyPatch

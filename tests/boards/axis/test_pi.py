@@ -39,3 +39,24 @@ def test_B1_bumpless_start(effort: int, setpoint: int, velocity: int) -> None:
     pi = IncrementalPi(KP, 0, 3000)
     pi.start(effort, setpoint, velocity)
     assert pi.step(setpoint, velocity) == effort
+
+
+def test_B1_the_papers_law_by_hand() -> None:
+    """u += Kp (e - e before) + Ki e with Kp 2, Ki 0.5: 25, 25 - 12 + 2, 15 + 2, 17 - 20 - 3."""
+    pi = IncrementalPi(2 * 4096, 2048, 3000)
+    velocities = (90, 96, 96, 106)
+    assert [pi.step(100 << 16, velocity) for velocity in velocities] == [25, 15, 17, -6]
+
+
+def test_B1_the_effort_is_rounded_to_the_nearest_step() -> None:
+    for tenths, steps in ((14, 1), (16, 2), (-14, -1), (-16, -2)):
+        pi = IncrementalPi(0, 4096, 3000)
+        assert pi.step(tenths * 65536 // 10, 0) == steps
+
+
+def test_B1_errors_beyond_32_bits_stay_at_the_top() -> None:
+    """2^31 - 1 Q16 counts are 32768 counts; an integrating loop of 1/16 makes 2048 steps of them."""
+    pi = IncrementalPi(0, 256, 3000)
+    assert pi.step(0x7FFF_FFFF, -30_000) == 2048
+    pi = IncrementalPi(0, 256, 3000)
+    assert pi.step(-0x7FFF_FFFF, 30_000) == -2048

@@ -54,3 +54,12 @@ def test_taking_over_is_continuous() -> None:
     profile.take_over(1000, 50 << UNIT_SHIFT)
     assert profile.target - profile.remaining == 1000
     assert abs(profile.step() - (50 << UNIT_SHIFT)) <= A
+
+
+def test_taking_over_aims_where_braking_ends_either_way() -> None:
+    """v² / 2a beyond where it is, the way it goes: 50² / 32 counts; to a rate, from the speed above it."""
+    for speed, rate, way in ((50, 0, 78.1), (-50, 0, -78.1), (50, 20, 28.1), (-50, 20, -153.1)):
+        profile = Profile(A)
+        profile.rate = rate << UNIT_SHIFT
+        profile.take_over(1000 << UNIT_SHIFT, speed << UNIT_SHIFT)
+        assert abs(profile.target / (1 << UNIT_SHIFT) - 1000 - way) < 0.1

@@ -1,5 +1,7 @@
 """The wire tells arbitrations in advance: whatever comes before the first bit is over still counts."""
 
+import pytest
+
 from bus.can import Frame, Wire
 from bus.can.length import frame_bits
 from bus.time import EventQueue
@@ -33,6 +35,18 @@ def test_L1_a_lower_identifier_within_the_first_bit_wins() -> None:
     queue.run_until(1_000_000)
     first = end_ns(50_000, 0x100)
     assert log == [(first, 0x100), (end_ns(first + 3 * BIT_NS, 0x200), 0x200)]
+
+
+@pytest.mark.parametrize(("ready_ns", "first"), [(51_000, 0x100), (51_001, 0x200)])
+def test_L1_the_first_bit_counts_to_its_end(ready_ns: int, first: int) -> None:
+    """Told in advance or seen when it comes: ready with the bit's last nanosecond is in, one later is out."""
+    for seen_ns in (40_000, 50_999, 51_000):
+        queue, wire, log = network(3)
+        wire.ports[0].send(Frame(0x200, DATA), 50_000)
+        queue.run_until(seen_ns)
+        wire.ports[1].send(Frame(0x100, DATA), ready_ns)
+        queue.run_until(1_000_000)
+        assert log[0] == (end_ns(50_000, first), first)
 
 
 def test_L1_an_earlier_start_wins_whatever_its_identifier() -> None:

@@ -59,9 +59,10 @@ def assert_back_at(queue: EventQueue, wire: Wire, due_ns: int) -> None:
 def test_L1_on_a_quiet_bus_it_is_exactly_1408_bits(start_ns: int) -> None:
     queue, wire = network(2)
     queue.run_until(start_ns)
+    wire.ports[0].rec = 40
     due = off_in_one(queue, wire) + RUNS_NS
     queue.run_until(due - 1)
-    assert wire.ports[0].state == "bus_off"
+    assert (wire.ports[0].state, wire.ports[0].rec) == ("bus_off", 40)
     queue.run_until(due)
     assert (wire.ports[0].state, wire.ports[0].tec, wire.ports[0].rec) == ("active", 0, 0)
     queue.run_until(due + LENGTH * BIT_NS)  # its frame was kept, and goes at once

@@ -26,15 +26,10 @@ START = dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC)
 class Rig:
     """Boards, plant and telescope client on one queue."""
 
-    def __init__(
-        self,
-        logs: Path | None = None,
-        start: dt.datetime = START,
-        network: str = "lab",
-        plant: str = DEFAULT_PLANT,
-    ) -> None:
-        self.scenario = Scenario(file=Path("rig"), name="rig", clock=Clock(start), network={"name": network})
-        self.served = LiveNetwork(self.scenario, plant_model({"file": plant}, Path()))
+    def __init__(self, logs: Path | None = None, start: dt.datetime = START, network: str = "lab") -> None:
+        place, plant = {"name": network}, {"file": DEFAULT_PLANT}
+        self.scenario = Scenario(file=Path("rig"), name="rig", clock=Clock(start), network=place, plant=plant)
+        self.served = LiveNetwork(self.scenario, plant_model(self.scenario.plant, Path()))
         self.network = self.served.network
         self.host = HostInProcess(self.served, logs)
         self.pc = self.host.pc

@@ -55,6 +55,31 @@ def test_the_async_desk_awaits(rig: Rig) -> None:
     assert desk.now.tracking
 
 
+def test_what_one_asks_survives_what_another_begins_on_any_tick(rig: Rig) -> None:
+    """Tracking begins some ticks after its command, and a stop ends it; answers asked for then come."""
+    axis = rig.telescope.client.devices[0]
+    rig.run(lambda t: t.drive.power_on())
+    for ticks in range(8):
+        for begin in (lambda t: t.drive.track(True), lambda t: t.drive.stop()):
+            rig.do(begin)
+            rig.advance(0.05 * ticks)
+            asked = [rig.telescope.call(lambda t: t.boards.get(axis, 1)) for _ in range(3)]
+            rig.advance(1.0)
+            assert [each.result(0).finished.result(0) for each in asked] == [10, 10, 10], ticks
+
+
+def test_a_stop_overtakes_what_moves_nothing(rig: Rig) -> None:
+    rig.run(lambda t: t.drive.power_on())
+    axis = rig.telescope.client.devices[0]
+    gains = [rig.telescope.call(lambda t: t.boards.get(axis, 1)) for _ in range(40)]
+    stop = rig.do(lambda t: t.emergency_stop())
+    rig.advance(0.5)
+    assert stop.finished.done() and not all(each.result(0).finished.done() for each in gains)
+    rig.advance(3.0)
+    assert {each.result(0).finished.result(0) for each in gains} == {10}
+    assert not rig.telescope.journal.errors
+
+
 def test_H2_the_lock_holds_consoles_but_not_the_stop_nor_programs(rig: Rig) -> None:
     console, program = PlainDesk(rig.telescope, console=True), PlainDesk(rig.telescope)
     beside(rig, lambda: console.lock(True))
