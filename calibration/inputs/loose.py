@@ -112,10 +112,11 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
     time, value = (second, first) if found.stamp == second else (first, second)
     long = {"name": name, "value": str(value)}
     stamps = {str(time): ISO} if found.stamp == time else {}
-    got = [read_long(path, text, [s, time], long, str(time), stamps, True) for s in signals]
+    timed = {**long, "time": str(time)}
+    got = [read_long(path, text, [s, time], timed, stamps, True) for s in signals]
     most = max(got, key=lambda one: len(one[str(time)]))
     wanted = sorted(signals, key=lambda s: s not in most)
-    columns = read_long(path, text, [*wanted, time], long, str(time), stamps, True)
+    columns = read_long(path, text, [*wanted, time], timed, stamps, True)
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 

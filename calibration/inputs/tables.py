@@ -40,7 +40,7 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
         text = load_utf8(path) if text is None else text
         if rig.long and stamp is not None:
             two = not all(r.is_force for r in rig.responses)
-            found = [read_long(path, text, wanted, rig.long, str(stamp.column), stamps, two)]
+            found = [read_long(path, text, wanted, {**rig.long, "time": str(stamp.column)}, stamps, two)]
         else:
             found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]

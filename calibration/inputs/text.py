@@ -144,12 +144,12 @@ def read_long(
     text: str,
     wanted: list[str | int],
     long: Mapping[str, str],
-    time: str,
     stamps: Mapping[str, str],
     on_first: bool,
 ) -> dict[str, Array]:
     """The wanted signals of a long table on the stamps of one of them, as `wide` has it. Its rows hold a
-    name, a stamp and a value (`long`: the columns of name and value)."""
+    name, a stamp and a value (`long`: the columns of `name`, `time` and `value`)."""
+    time = long["time"]
     got = read_columns(path, text, [time, long["value"]], (), None, stamps)
     lines, fields, first, mark, at = heading(path, text)
     place = _place(path, long["name"], fields, True, at + 1)

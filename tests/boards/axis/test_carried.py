@@ -1,6 +1,7 @@
 """A position on its way: latched, aged on the encoder board, sent, and carried on at the velocity of now."""
 
 import pytest
+from bus.protocol.tach import pack_tach
 
 from boards.axis.config import AxisConfig
 from boards.axis.motion import Motion
@@ -9,7 +10,6 @@ from boards.axis.profile import UNITS_PER_STEP
 from boards.axis.tachometer import RemoteTachometer
 from bus.protocol import pack_position
 from bus.protocol.scales import rate_q16
-from bus.protocol.tach import pack_tach
 
 FRAME_NS, TICK_NS = 120_000, 5_000_000
 COUNT = 1 << 18  # units of a count
