@@ -13,7 +13,7 @@ from calibration.names.unknown import smooth_functions
 def by_one_column(
     s: Selection, together: Selection, findings: list[Finding], scene: Scene
 ) -> tuple[Selection, Selection, list[Finding]]:
-    """What `beyond_names` gives, with one smooth function instead of several, of which one has no name.
+    """The answer of `beyond_names` with one smooth function instead of several, of which one has no name.
 
     A load follows the place and the direction of the motion. What hangs on the load then looks like a sum of
     functions of both, none of which explains it.

@@ -107,16 +107,13 @@ def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose
 
 
 def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str]) -> Loose:
-    """Of a table with a row per reading, on the stamps of the signal that has most."""
+    """Of a table with a row per reading, on the stamps of a signal that has most."""
     first, second = found.columns
     time, value = (second, first) if found.stamp == second else (first, second)
     long = {"name": name, "value": str(value)}
     stamps = {str(time): ISO} if found.stamp == time else {}
     timed = {**long, "time": str(time)}
-    got = [read_long(path, text, [s, time], timed, stamps, True) for s in signals]
-    most = max(got, key=lambda one: len(one[str(time)]))
-    wanted = sorted(signals, key=lambda s: s not in most)
-    columns = read_long(path, text, [*wanted, time], timed, stamps, True)
+    columns = read_long(path, text, [*signals, time], timed, stamps, on_first=False)
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 
