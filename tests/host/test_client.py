@@ -154,9 +154,12 @@ def test_measurements_are_kept_per_device(tmp_path: Path) -> None:
 
 def test_a_board_without_heartbeat_is_reported_once_and_welcomed_back(tmp_path: Path) -> None:
     desk = Desk(tmp_path, ok)
+    desk.run(desk.client.ask(Device.AXIS_RA, Opcode.PING))
+    assert desk.client.health == {Device.AXIS_RA: 0}
     for t_s in range(1, 8):
         desk.client.tick(t_s * 10**9)
     assert desk.logs.error_entries == 1
+    assert not desk.client.health  # who comes back may be another
     beat = Frame(HEARTBEAT_BASE + Device.AXIS_RA, pack_heartbeat(Device.AXIS_RA, 1, 3, 0, 0))
     desk.link.receive(8 * 10**9, pack_report([slot(beat)]))
     desk.client.tick(8 * 10**9)

@@ -8,7 +8,7 @@ import pytest
 from bus.can.frame import Frame
 from bus.protocol import MEASUREMENT_BASE, Device, Opcode, pack_position
 from bus.protocol.report import pack_report, slot
-from bus.protocol.scales import STEPS_PER_TURN
+from bus.protocol.scales import STEPS_PER_TURN, rate_q16
 from host.client import Client, ClientError
 from host.link import HidLink
 from host.logs.journal import Journal
@@ -58,8 +58,8 @@ class Standing(StarTrack):
         return Rates(0.0, 0.0)
 
 
-def followed(folder: Path, off_arcsec: float) -> Desk:
-    """Four seconds on that place by an axis of right ascension that is so far behind."""
+def followed(folder: Path, off_arcsec: float, seconds: float = 4.0) -> Desk:
+    """Some time on that place by an axis of right ascension that is so far behind."""
     desk = Desk(folder, ok)
     pointing = Pointing(desk.client, cast("Mount", None))
     pointing.track = Standing()
@@ -67,7 +67,7 @@ def followed(folder: Path, off_arcsec: float) -> Desk:
     for device, steps in ((Device.POSITION_RA, 100_000 - off), (Device.POSITION_DEC, 100_000)):
         frame = Frame(MEASUREMENT_BASE + device, pack_position(device, 0, steps, 0, 1))
         desk.link.receive(0, pack_report([slot(frame)]))
-    desk.run(pointing.follow(4.0))
+    desk.run(pointing.follow(seconds))
     return desk
 
 
@@ -85,3 +85,15 @@ def test_beyond_five_arcsec_the_target_is_nudged_by_what_is_missing(
 def test_an_axis_a_minute_of_arc_away_does_not_follow(tmp_path: Path, off_arcsec: float) -> None:
     with pytest.raises(ClientError, match=f"AXIS_RA: does not follow nowhere, {off_arcsec:.0f}″ off"):
         followed(tmp_path, off_arcsec)
+
+
+@pytest.mark.parametrize(
+    ("off_arcsec", "trim_arcsec_s"), [(1.0, 0.05), (-1.0, -0.05), (4.0, 0.1), (-4.0, -0.1)]
+)
+def test_a_mean_error_is_taken_out_over_twenty_seconds_by_the_rate(
+    tmp_path: Path, off_arcsec: float, trim_arcsec_s: float
+) -> None:
+    desk = followed(tmp_path, off_arcsec, seconds=6.0)
+    told = [frame.data for frame in desk.sent if frame.data[:2] == bytes([0x11, Opcode.TRACK_RATE])]
+    rates = [int.from_bytes(each[2:6], "little", signed=True) for each in told]
+    assert rates == [0, pytest.approx(rate_q16(trim_arcsec_s), rel=1e-3)]

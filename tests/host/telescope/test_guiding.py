@@ -6,6 +6,7 @@ from random import Random
 import pytest
 
 from bus.protocol import AxisParameter
+from bus.protocol.scales import rate_q16
 from host.procedures.manual import AXES
 from host.procedures.pointing import ENCODERS
 from host.sky.catalogue import STARS
@@ -94,6 +95,17 @@ def test_pulses_of_an_axis_follow_one_another_and_make_the_sum(tracking: Rig) ->
     assert made == pytest.approx([2 * GUIDE_ARCSEC_S, -GUIDE_ARCSEC_S])
     boards = tracking.telescope.drive.pointing.errors_arcsec()
     assert boards is not None and max(map(abs, boards)) < OVERSHOOT_ARCSEC
+
+
+def test_a_trim_of_the_rate_goes_on_under_a_pulse(tracking: Rig) -> None:
+    board, rates = tracking.network.board("AXIS_DEC"), []
+    for trim in (0.0, 0.1):
+        tracking.do(lambda t: t.paddle.pulse("n", 2.0))
+        tracking.telescope.drive.pointing.trims[1] = trim
+        tracking.advance(1.0)
+        rates.append(board.motion.rate)
+        tracking.advance(4.0)
+    assert rates[1] - rates[0] == pytest.approx(rate_q16(0.1), rel=0.05)
 
 
 def test_more_than_a_minute_of_pulses_does_not_wait_and_a_stop_ends_those_that_do(tracking: Rig) -> None:

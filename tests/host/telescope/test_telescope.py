@@ -167,6 +167,14 @@ def test_tracking_ends_at_the_horizon_limit(rig: Rig) -> None:
     assert any("horizon" in entry.text for entry in rig.pc.journal.entries if entry.kind == "error")
 
 
+def test_what_rises_below_the_horizon_limit_goes_on(rig: Rig) -> None:
+    rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=-3.0), wake=True))
+    rig.advance(2.0)
+    rig.do(lambda t: t.set_horizon(math.radians(85.0)))
+    rig.advance(4.0)
+    assert rig.telescope.snapshot.tracking and rig.telescope.snapshot.activity == "tracking"
+
+
 def test_health_names_every_board_and_a_dead_one(rig: Rig) -> None:
     health = rig.run(lambda t: t.boards.check())
     assert len(health) == 11 and set(health.values()) == {Health(0)}
