@@ -1,5 +1,6 @@
 """How far off a telescope is, by an encoder's frame and the moment it was latched."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import cast
 
@@ -9,7 +10,7 @@ from bus.can.frame import Frame
 from bus.protocol import MEASUREMENT_BASE, Device, Opcode, pack_position
 from bus.protocol.report import pack_report, slot
 from bus.protocol.scales import STEPS_PER_TURN, rate_q16
-from host.client import Client, ClientError
+from host.client import TICK_NS, Client, ClientError
 from host.link import HidLink
 from host.logs.journal import Journal
 from host.procedures.pointing import Pointing
@@ -58,15 +59,20 @@ class Standing(StarTrack):
         return Rates(0.0, 0.0)
 
 
+def stands(desk: Desk, off_arcsec: float) -> None:
+    """Frames of both encoders, right ascension that far behind the place."""
+    off = round(off_arcsec / STEP_ARCSEC)
+    for device, steps in ((Device.POSITION_RA, 100_000 - off), (Device.POSITION_DEC, 100_000)):
+        frame = Frame(MEASUREMENT_BASE + device, pack_position(device, 0, steps, 0, 1))
+        desk.link.receive(desk.t_ns, pack_report([slot(frame)]))
+
+
 def followed(folder: Path, off_arcsec: float, seconds: float = 4.0) -> Desk:
     """Some time on that place by an axis of right ascension that is so far behind."""
     desk = Desk(folder, ok)
     pointing = Pointing(desk.client, cast("Mount", None))
     pointing.track = Standing()
-    off = round(off_arcsec / STEP_ARCSEC)
-    for device, steps in ((Device.POSITION_RA, 100_000 - off), (Device.POSITION_DEC, 100_000)):
-        frame = Frame(MEASUREMENT_BASE + device, pack_position(device, 0, steps, 0, 1))
-        desk.link.receive(0, pack_report([slot(frame)]))
+    stands(desk, off_arcsec)
     desk.run(pointing.follow(seconds))
     return desk
 
@@ -97,3 +103,42 @@ def test_a_mean_error_is_taken_out_over_twenty_seconds_by_the_rate(
     told = [frame.data for frame in desk.sent if frame.data[:2] == bytes([0x11, Opcode.TRACK_RATE])]
     rates = [int.from_bytes(each[2:6], "little", signed=True) for each in told]
     assert rates == [0, pytest.approx(rate_q16(trim_arcsec_s), rel=1e-3)]
+
+
+def test_on_target_is_a_second_without_a_break(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, ok)
+    pointing = Pointing(desk.client, cast("Mount", None))
+    going = pointing.goto(Standing(), ("fine",))
+    came_s = 0.0
+    while not pointing.on_target:
+        now_s = desk.t_ns * 1e-9
+        inside = 1.0 <= now_s < 1.8 or now_s >= 2.0
+        stands(desk, 2.0 if inside else 4.0)  # 3″ is what the fine class has to reach
+        with suppress(StopIteration):
+            next(going)
+        desk.t_ns += TICK_NS
+        desk.client.tick(desk.t_ns)
+        came_s = now_s
+        assert came_s < 10.0
+    assert 3.0 <= came_s < 3.2
+
+
+def test_rates_wait_while_a_pulse_has_them(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, ok)
+    pointing = Pointing(desk.client, cast("Mount", None))
+    pointing.track = Standing()
+    stands(desk, 0.0)
+    following = pointing.follow(60.0)
+
+    def told(seconds: float) -> int:
+        for _ in range(round(seconds * 1e9 / TICK_NS)):
+            next(following)
+            desk.t_ns += TICK_NS
+            desk.client.tick(desk.t_ns)
+        return sum(frame.data[1] == Opcode.TRACK_RATE for frame in desk.sent)
+
+    assert told(1.0) == 2  # both axes
+    pointing.guided = 1
+    assert told(12.0) == 2
+    pointing.guided = 0
+    assert told(1.0) == 4
