@@ -48,7 +48,9 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
         return "no held-out rows to test it on"
     if held.share < -limits.ROUNDING:
         return f"makes the held-out mean square worse by {-100 * held.share:.1f} %"
-    least = contender.candidate.least or needed(tried)
+    c = contender.candidate
+    free = c.kind == "line" and c.stage is None  # the best of a spectrum
+    least = c.least or needed(max(tried, limits.SPECTRUM) if free else tried)
     if contender.evidence >= least:
         return ""
     times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)

@@ -3,7 +3,7 @@
 from calibration.decide.parameters import finding_of
 from calibration.decide.rules import OTHER_COLUMNS
 from calibration.decide.select import select
-from calibration.decide.selection import Selection
+from calibration.decide.selection import Refusal, Selection
 from calibration.decide.thresholds import AS_MUCH
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.scene import Scene
@@ -19,9 +19,13 @@ def by_one_column(
     functions of both, none of which explains it.
     """
     if len(together.chosen) > 1 and any(c.name == UNKNOWN for c in together.candidates):
-        scene.model = None
+        model, scene.model = scene.model, None
         columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
         alone = select(s.problem, columns, most=1, before=s.looked_at)
+        scene.model = model
         if alone.chosen and alone.held.taken > AS_MUCH * together.held.taken:
+            why = f"{alone.candidates[0].say()} over {alone.candidates[0].domain} alone takes as much"
+            instead = [Refusal(c.say(), why) for c in together.candidates]
+            alone.refused = [*s.refused, *instead, *alone.refused]
             return s.keep([]), alone, [finding_of(alone, 0)]
     return s, together, findings

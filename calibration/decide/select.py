@@ -91,6 +91,7 @@ class _Search:
             self.picks.refused.append(Refusal("every effect that no declared stage has", why))
             left = [c for c in left if c.stage]
         left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
+        # where the log has too few rows for any, its power is told as if all had been looked at
         self.picks = replace(self.picks, looked_at=self.before + (len(left) or len(self.candidates)))
         while len(self.picks.chosen) < most and left:
             found = self.accepted(self.picks, left, limits.TRIED)[: most - len(self.picks.chosen)]

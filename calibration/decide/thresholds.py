@@ -20,9 +20,11 @@ HANDICAP = 0.12
 # -log10 p of the best of all candidates: by luck in one of 1e4 logs (arithmetic). Of 1e3 candidates, each
 # needs 7; of two, as a mount with its worm declared has, 4.3
 LEAST_EVIDENCE = 4.0
+# lines among which a line of no stage is the best: those that a spectrum's peaks stand out of. ASSUMPTION
+SPECTRUM = 1000
 # times its length, that a log is said to be too short by at most. ASSUMPTION
 MOST_TIMES = 4
-# of what several effects take off the held-out mean square, that one in their place takes. ASSUMPTION
+# of what one explanation takes off the held-out mean square, that another takes in its place. ASSUMPTION
 AS_MUCH = 0.9
 # share of a value, standard error: the declared model's own, ten times noise's (seeds 1000 to 1999)
 MODEL_ERROR = 0.03

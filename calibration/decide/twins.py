@@ -8,6 +8,7 @@ from itertools import product
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, sine_columns
 from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender, fit_with
@@ -16,6 +17,7 @@ from calibration.decide.thresholds import LUCK_Z
 from calibration.names import gravity_imbalance
 from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
+from calibration.statistics.regression import solve
 
 # frequencies within a resolution cell, by which the clock's is found. ASSUMPTION: a tenth of a cell apart
 TRIED = 21
@@ -57,19 +59,24 @@ def _clocked(s: Selection, k: int, scene: Scene) -> Selection:
     It is looked for twice, finer about the first. On rows that are held out a tenth of a cell is a third of a
     radian, by which the clock would lose.
     """
-    c, v, best = s.candidates[k], scene.view, 0.0
+    c, v, p, best = s.candidates[k], scene.view, s.problem, 0.0
     t, files = v.t[v.rows], scene.problem.session
     waves = range(1, 2 if c.harmonic or c.stage is None else c.width // 2 + 1)
     hertz = [abs(_rate(scene, c) * h * scene.one_speed[0]) for h in waves]
     cell = 1.0 / (float(np.ptp(t)) * hertz[0])
 
-    def moved(shift: float) -> Selection:
-        columns = np.hstack([sine_columns(t * f * (1 + shift * cell), files) for f in hertz])
-        return s.put(k, replace(s.chosen[k], candidate=replace(c, columns=columns)))
+    others = s.without(k).columns[p.train]
+
+    def waves_at(shift: float) -> Array:
+        return np.hstack([sine_columns(t * f * (1 + shift * cell), files) for f in hertz])
+
+    def left(shift: float) -> float:
+        x = np.hstack([others, waves_at(shift)[p.train]])
+        return float(np.sum((p.y[p.train] - x @ solve(x, p.y[p.train])) ** 2))
 
     for half in (1.0, 2.0 / (TRIED - 1)):
-        best = min(best + np.linspace(-half, half, TRIED), key=lambda shift: moved(shift).fitted_square)
-    return moved(best)
+        best = min(best + np.linspace(-half, half, TRIED), key=left)
+    return s.put(k, replace(s.chosen[k], candidate=replace(c, columns=waves_at(best))))
 
 
 def one_line(s: Selection, scene: Scene) -> Selection:

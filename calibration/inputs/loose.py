@@ -113,7 +113,7 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
     long = {"name": name, "value": str(value)}
     stamps = {str(time): ISO} if found.stamp == time else {}
     timed = {**long, "time": str(time)}
-    columns = read_long(path, text, [*signals, time], timed, stamps, on_first=False)
+    columns = read_long(path, text, [*signals, time], timed, stamps, len(signals))
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 

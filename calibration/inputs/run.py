@@ -129,6 +129,6 @@ def _as_multiples(steps: Array, least: float) -> float | None:
     multiple = steps / q
     small = multiple < limits.MOST_MULTIPLE  # beyond, q's own error adds up
     fits = np.abs(multiple - np.round(multiple)) < limits.WHOLE_STEPS
-    # the chance that all but the one that `q` is are whole by luck, somewhere among so many steps
+    # how often so many would all be whole by luck, the one that `q` is aside, among so many steps
     luck = (2 * limits.WHOLE_STEPS) ** (small.sum() - 1) * len(steps)
     return q if luck < 1 and np.mean(fits[small]) >= limits.STEPS_SHARE else None

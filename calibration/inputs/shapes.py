@@ -95,10 +95,11 @@ def with_seconds(
 
 
 def wide(
-    path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str], on_first: bool
+    path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str], compete: int
 ) -> dict[str, Array]:
     """Columns of a long table on the stamps of one signal, which are key ""; NaN beyond a signal's own stamps
-    and in its gaps. The one is the first of `wanted`, or unless `on_first` a later one with more readings."""
+    and in its gaps. The one is the first of `wanted` that is logged as often as any of the first that
+    `compete`."""
     which = np.array(names)
     known = np.isfinite(stamps) & np.isfinite(values)
     rows = {name: np.flatnonzero((which == name) & known) for name in wanted}
@@ -106,7 +107,7 @@ def wide(
         if len(mine := rows[name]) < limits.FEWEST_VALUES:
             have = ", ".join(dict.fromkeys(names))
             raise CalibrationInputError(path, f"has {len(mine)} rows; the table has {have}", None, name)
-    most = 0 if on_first else max(map(len, rows.values()))
+    most = max(len(rows[name]) for name in wanted[:compete])
     base = np.sort(stamps[next(mine for mine in rows.values() if len(mine) >= limits.SAME_RATE * most)])
     out = {"": base}
     for name, mine in rows.items():

@@ -27,8 +27,9 @@ READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
 def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     """The file's runs: one, or one per cell of a .mat file; `text` is its content if it was read."""
     # of a long table the stamps of what is explained are kept: its noise stays white, its steps are steps
-    told = [r.channel for r in rig.responses] if rig.long else []
-    channels = sorted(rig.columns, key=lambda c: c not in told)
+    told = [r.channel for r in rig.responses]
+    first = sorted(rig.columns, key=lambda c: (c not in told, c != "position"))
+    channels = first if rig.long else list(rig.columns)
     wanted: list[str | int] = [rig.columns[c].column for c in channels if rig.columns[c].column != ""]
     if "column" in rig.runs:
         wanted.append(rig.runs["column"])
@@ -39,8 +40,8 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     else:
         text = load_utf8(path) if text is None else text
         if rig.long and stamp is not None:
-            two = not all(r.is_force for r in rig.responses)
-            found = [read_long(path, text, wanted, {**rig.long, "time": str(stamp.column)}, stamps, two)]
+            compete = 2 if any(r.is_force for r in rig.responses) else 1  # a force and its position
+            found = [read_long(path, text, wanted, {**rig.long, "time": str(stamp.column)}, stamps, compete)]
         else:
             found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]

@@ -145,7 +145,7 @@ def read_long(
     wanted: list[str | int],
     long: Mapping[str, str],
     stamps: Mapping[str, str],
-    on_first: bool,
+    compete: int,
 ) -> dict[str, Array]:
     """The wanted signals of a long table on the stamps of one of them, as `wide` has it. Its rows hold a
     name, a stamp and a value (`long`: the columns of `name`, `time` and `value`)."""
@@ -155,7 +155,7 @@ def read_long(
     place = _place(path, long["name"], fields, True, at + 1)
     names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[time])]
     signals = [str(c) for c in wanted if str(c) != time]
-    found = wide(path, names, got[time], got[long["value"]], signals, on_first)
+    found = wide(path, names, got[time], got[long["value"]], signals, compete)
     return {time: found.pop(""), **found}
 
 

@@ -37,7 +37,7 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
     p, places = s.problem, jumps_of(s)
     if not places:
         return s, []
-    steps, sizes = np.column_stack(steps_at(p, places)), [("size", p.unit)] * len(places)
+    steps, sizes = np.column_stack(_steps_at(p, places)), [("size", p.unit)] * len(places)
     one = fit_with(p, s.columns, candidate(UNKNOWN, steps, *sizes, domain="time"))
     if one is None:
         return s, []
@@ -52,7 +52,7 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
     return again, [replace(finding_of(again, k), parameters={}, note=f"jumps: {', '.join(told)}")]
 
 
-def steps_at(p: Problem, places: list[int]) -> list[Array]:
+def _steps_at(p: Problem, places: list[int]) -> list[Array]:
     """A step (n,) of its run from each place, a row, on."""
     rows = np.arange(len(p.y))
     return [((rows >= at) & (p.run == p.run[at])).astype(float) for at in places]
@@ -63,7 +63,7 @@ def jumps_of(s: Selection) -> list[int]:
     than MOST."""
     p, places = s.problem, list[int]()
     while len(places) <= MOST:
-        x = np.column_stack([s.columns, *steps_at(p, places)])
+        x = np.column_stack([s.columns, *_steps_at(p, places)])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)

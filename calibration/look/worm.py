@@ -189,9 +189,9 @@ def _harmonic_leads(s: Selection, k: int) -> bool:
 
 def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Selection:
     """Select; what takes too little off the held-out frames is left out and the selection made again."""
-    refused: list[Refusal] = []
+    refused, tried = list[Refusal](), len(candidates)
     while True:
-        s = select(problem, candidates, most=2)
+        s = select(problem, candidates, most=2, before=tried - len(candidates))
         idle = set()
         for k, x in enumerate(s.chosen):
             own = named and x.candidate.stage

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from calibration.balances.slowoffset import SLOW
 from calibration.names.name import Candidate, Name, Scene, candidate
 
-#: declared terms that carry no load
-FRICTION = ("coulomb", "viscous")
+#: terms that are no load: friction, and what the amplifier's zero does
+NO_LOAD = ("coulomb", "viscous", "drift", SLOW)
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -15,9 +16,10 @@ def columns(s: Scene) -> list[Candidate]:
     elif lacks(s) or not s.both:
         return []
     else:  # all that the declared terms make but friction: an offset and a weight share what they make
-        p = s.problem
-        friction = [s.declared[n] * p.base[:, p.place(n)] for n in FRICTION if n in s.declared]
-        load = np.abs(s.declared_part - np.sum(friction, axis=0))
+        p, mass = s.problem, s.view.rig.constants.get("inertia", 0.0)
+        carried = [k for k, (n, _) in enumerate(p.base_labels) if n not in NO_LOAD]
+        sizes = np.array([s.declared[p.base_labels[k][0]] for k in carried])
+        load = np.abs(p.base[:, carried] @ sizes + mass * s.at(s.view.second(s.view.x)))
     full = np.interp(np.arange(len(s.view.t)), s.view.rows, load)
     return [candidate(NAME.name, s.answer(full), "coefficient", sign=1, most=1.0)]
 

@@ -8,6 +8,7 @@ from calibration.arrays import Array
 from calibration.finding import UNKNOWN
 from calibration.names.candidates import tried
 from calibration.names.name import Candidate, Scene
+from calibration.names.scene import FEWEST
 from calibration.names.unknown_shapes import over
 
 # fits of the declared terms beside a force's own square, until both hold still. ASSUMPTION
@@ -20,6 +21,10 @@ PLACE_STEP = 0.01
 PLACES = tuple((k + 0.5) / 25 for k in range(25))
 # of the range: widths of a dent that are tried, standard deviations. ASSUMPTION
 WIDTHS = (0.02, 0.05)
+# widths from its place at which a dent is no more than rounding. arithmetic
+REACH = 8.0
+# of the range, that a dent is at least wide. ASSUMPTION
+NARROWEST = 1e-3
 # of a dent's width, a small change of it. ASSUMPTION
 WIDTH_STEP = 0.1
 
@@ -27,14 +32,17 @@ WIDTH_STEP = 0.1
 def alone(s: Scene) -> list[Candidate]:
     """The shapes of this balance: a dent between two sensors, an end stop or a bent torque in a force.
 
-    Beside an offset that wanders within a file either of these would be any slope over one stroke.
+    None stands beside an offset that wanders within a file. An end stop would then be any slope.
     """
-    if s.pair is not None or s.view.slow_offset or not s.view.ok.any():
+    r = s.view.response
+    if s.pair is not None or s.view.slow_offset or r.is_speed or not s.view.ok.any():
         return []
     if not s.force:
         return _dents(s)
-    moves = s.view.dynamic and s.view.response.channel != "acceleration"
-    return [*_saturation(s), *_end_stops(s)] if moves else []
+    if not s.view.dynamic or r.channel == "acceleration":
+        return []
+    iron = _saturation(s) if r.channel in ("effort", "current") else []
+    return [*iron, *_end_stops(s)]
 
 
 def _saturation(s: Scene) -> list[Candidate]:
@@ -68,12 +76,15 @@ def _dents(s: Scene) -> list[Candidate]:
     low, span = _range(s)
 
     def full(p: Array) -> Array:
-        return np.asarray(np.exp(-0.5 * ((s.view.x - p[0]) / max(abs(p[1]), 1e-9 * span)) ** 2))
+        off = np.abs(s.view.x - p[0]) / max(abs(p[1]), NARROWEST * span)
+        return np.where(off < REACH, np.exp(-0.5 * off**2), 0.0)
 
     out = []
     for width in WIDTHS:
         steps = (PLACE_STEP * span, WIDTH_STEP * width * span)
         for place in PLACES:
+            if np.mean(np.abs(s.view.x - low - place * span) < width * span) < FEWEST:
+                continue
             at = {"place": (low + place * span, s.angle_unit), "width": (width * span, s.angle_unit)}
             size = ("amplitude", s.unit)
             out.append(tried(UNKNOWN, s.shaped(full), size, at=at, steps=steps, domain="axis_angle"))

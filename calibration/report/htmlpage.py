@@ -13,6 +13,9 @@ CHANNELS = {
     "S": "sensor, clock or log",
 }
 
+#: parameters that say where a shape without a name lies
+PLACES = ("begin", "place")
+
 
 def summary(data: dict[str, Any]) -> str:
     """What was found, in one sentence."""
@@ -44,10 +47,6 @@ def _say(effect: dict[str, Any]) -> str:
     detail += [f"{name} {p['value']:.3g} {unit}".strip() for name, unit, p in size(effect)]
     place = f" on {effect['stage']}" if effect["stage"] else ""
     return f"{effect['name']}{place}" + (f" ({', '.join(detail)})" if detail else "")
-
-
-#: where a shape without a name lies
-PLACES = ("begin", "place")
 
 
 def size(effect: dict[str, Any]) -> list[tuple[str, str, dict[str, Any]]]:

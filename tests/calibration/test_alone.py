@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.calibration.test_drives import COULOMB, FORCE, SENSORS, motion
+from tests.calibration.test_drives import COULOMB, FORCE, MASS, SENSORS, motion
 from tests.calibration.test_drives import answer as answer_of
 from tests.calibration.test_strangers import LONG, answer, domains, rate
 
@@ -100,3 +100,32 @@ def test_a_dent_is_one_place_and_no_harmonics(tmp_path: Path) -> None:
     assert only["parameters"]["place"]["value"] == pytest.approx(-0.07, abs=0.002)
     assert only["parameters"]["amplitude"]["value"] == pytest.approx(8e-6, rel=0.1)
     assert data["error"]["position"]["after"] < 1.5 * data["error"]["position"]["floor"]
+
+
+def test_a_slip_that_is_long_past_is_found(tmp_path: Path) -> None:
+    """In the first third of one file, whose end is held out: no held-out row sees it."""
+    t, x, y = sensors()
+    data = answer_of(tmp_path, SENSORS, (t, np.round(x, 5), y + 4e-5 * (t > 17.0)))
+    assert [e["name"] for e in data["effects"]] == ["roller_slip"]
+    assert data["effects"][0]["parameters"]["time"]["value"] == pytest.approx(17.0, abs=0.05)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_offset_that_walks_has_no_slips(tmp_path: Path, seed: int) -> None:
+    """A random walk of ten times the noise over the file: every row is a step of it."""
+    t, x, y = sensors()
+    walk = np.cumsum(np.random.default_rng(seed).standard_normal(len(t))) * 10 * QUIET / np.sqrt(len(t))
+    data = answer_of(tmp_path, SENSORS, (t, np.round(x, 5), y + walk))
+    assert "roller_slip" not in [e["name"] for e in data["effects"]]
+
+
+def test_a_declared_mass_is_a_load_as_well(tmp_path: Path) -> None:
+    t, x, u = motion(LONG)
+    load = MASS * rate(rate(x))
+    rubbing = 0.3 * np.abs(load) * np.sign(rate(x))
+    mass = f"constants: {{inertia: {{value: {MASS}, unit: kg, source: a scale}}}}\n"
+    rig = FORCE.replace("[inertia, ", "[") + mass
+    data = answer_of(tmp_path, rig, (t, np.round(x, 5), u + rubbing))
+    first = data["effects"][0]
+    assert first["name"] == "load_friction"
+    assert first["parameters"]["coefficient"]["value"] == pytest.approx(0.3, rel=0.1)

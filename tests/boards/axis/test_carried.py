@@ -1,7 +1,7 @@
 """A position on its way: latched, aged on the encoder board, sent, and carried on at the velocity of now."""
 
 import pytest
-from bus.protocol.tach import pack_tach
+from bus.protocol.motion import pack_tach
 
 from boards.axis.config import AxisConfig
 from boards.axis.motion import Motion

@@ -16,7 +16,7 @@ GOOD = HeldOut(before=2.0, after=1.0, z=9.0, share=0.5, everywhere=True)
 
 def contender(**other: Any) -> Any:
     """One that has all it takes."""
-    candidate = SimpleNamespace(name="gear_mesh", least=None)
+    candidate = SimpleNamespace(name="gear_mesh", least=None, kind="linear", stage=None)
     return SimpleNamespace(
         **{"bayes": 50.0, "evidence": 30.0, "candidate": candidate, "after": lambda k: 30.0 * k, **other}
     )
@@ -46,8 +46,8 @@ def test_none_may_make_the_held_out_run_worse(worse: float) -> None:
         (contender(), scored(0.9 * MARGIN, 3.0), "falls by 4.5 % only"),
         (contender(), scored(-0.2), r"grows by 20.0 %$"),
         (contender(), scored(0.5, 0.9 * LUCK_Z), "within luck"),
-        (contender(evidence=0.9 * needed(TRIED), after=lambda k: 0.0), GOOD, "too little evidence"),
-        (contender(evidence=0.9 * needed(TRIED), after=lambda k: 4.0 * k), GOOD, "2 times as long"),
+        (contender(evidence=0.9 * 7.0, after=lambda k: 0.0), GOOD, "too little evidence"),
+        (contender(evidence=0.9 * 7.0, after=lambda k: 4.0 * k), GOOD, "2 times as long"),
     ],
 )
 def test_each_rule_says_why(one: Any, inside: HeldOut, why: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenarios.lab.faults.evidence import Evidence
+from scenarios.lab.faults.layers import Evidence
 
 from host.logs.traces import Trace
 from host.procedures.autoguide import Guided
