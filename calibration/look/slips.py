@@ -73,7 +73,7 @@ def _turns(view: View, p: Problem) -> NDArray[np.int64]:
     way = np.sign(view.direction[view.rows])
     moving = np.flatnonzero(way != 0)
     changed = (np.diff(way[moving]) != 0) & (np.diff(p.session[moving]) == 0)
-    return moving[1:][changed]
+    return np.asarray(moving[1:][changed], dtype=np.int64)
 
 
 def _with_gap(s: Selection, scene: Scene) -> Selection:

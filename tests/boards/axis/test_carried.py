@@ -1,7 +1,6 @@
 """A position on its way: latched, aged on the encoder board, sent, and carried on at the velocity of now."""
 
 import pytest
-from bus.protocol.motion import pack_tach
 
 from boards.axis.config import AxisConfig
 from boards.axis.motion import Motion
@@ -9,6 +8,7 @@ from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
 from boards.axis.tachometer import RemoteTachometer
 from bus.protocol import pack_position
+from bus.protocol.motion import pack_tach
 from bus.protocol.scales import rate_q16
 
 FRAME_NS, TICK_NS = 120_000, 5_000_000
