@@ -100,5 +100,5 @@ def test_the_output_encoder_shows_play_and_harmonics(tmp_path: Path) -> None:
     assert {"encoder_eccentricity", "gear_eccentricity"} <= {turn["name"], *turn["equivalent"]}
     assert {"amplitude", "amplitude_2", "amplitude_3", "amplitude_4"} <= set(turn["parameters"])
     case = next(c for c in CASES if c.key == "servo_output")
-    assert case.own is not None  # least squares of eight harmonics and a gap: what physics is known to be there
+    assert case.own is not None  # least squares of eight harmonics and a gap
     assert data["error"]["position"]["after"] < WORSE * case.own(case.logs, case.rig)
