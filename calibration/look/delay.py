@@ -30,12 +30,12 @@ EARNS = 0.05
 @dataclass
 class Timed:
     """The search once the effort is where it belongs, or slips are apart. Such an effect is `first`, and
-    `before` is the held-out error without it. `note`: of a hold."""
+    `declared` the declared model without it. `note`: of a hold."""
 
     problem: Problem
     found: Found
     first: Finding | None = None
-    before: float | None = None
+    declared: Selection | None = None
     note: str = ""
     close: str = ""  # a delay that the log can neither name nor leave out, and what would tell
 
@@ -59,7 +59,8 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
     late = find(moved)
     now, was = late[0].held.after, found[0].held.after
     simpler = len(late[0].chosen) < len(found[0].chosen)
-    before = Selection.of(problem).held.before
+    declared = Selection.of(problem)
+    before = declared.held.before
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
     alone, floor = late[0].held.before, plain_loop.floor
@@ -75,7 +76,7 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
     if telling or (simpler and now < was):
         if before > 0:  # of what the declared model leaves, as every other effect's
             delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
-        return Timed(moved, late, delay, before)
+        return Timed(moved, late, delay, declared)
     return Timed(plain_loop, found)
 
 

@@ -59,9 +59,10 @@ class Balance:
     """One balance with what was selected on it.
 
     key: its letter in report.json. row: of the error table, None where it has none. floor: rms that sensors
-    leave, measured apart from the fit. before: held-out rms before a fault of a column was undone, where one
-    was. numbers: the declared ones, re-calibrated. not_identifiable: what this motion cannot tell. needs: of
-    the log, before "nothing" could be said. remarks: notes that the terminal repeats.
+    leave, measured apart from the fit. before, declared: held-out rms before a fault of a column was undone,
+    where one was, and the declared model then. numbers: the declared ones, re-calibrated. not_identifiable:
+    what this motion cannot tell. needs: of the log, before "nothing" could be said. remarks: notes that the
+    terminal repeats.
     For pictures: over gives the values (n_fitted,) that an effect is drawn over, and their label; direction
     (n_fitted,) is the motion's.
     """
@@ -71,6 +72,7 @@ class Balance:
     selection: Selection
     floor: float | None = None
     before: float | None = None
+    declared: Selection | None = None
     findings: Sequence[Finding] = ()
     numbers: Mapping[str, Parameter] = field(default_factory=dict)
     controls: Sequence[dict[str, Any]] = ()

@@ -64,8 +64,8 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     again = find(apart)
     if again[0].held.after > s.held.after:
         return Timed(whole, found)
-    before = Selection.of(whole).held.before
-    return Timed(apart, again, _finding(again[0], list(steps), view, inside.share), before)
+    first = _finding(again[0], list(steps), view, inside.share)
+    return Timed(apart, again, first, Selection.of(whole))
 
 
 def _turns(view: View, p: Problem) -> NDArray[np.int64]:

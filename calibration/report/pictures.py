@@ -34,7 +34,7 @@ def of_balance(b: Balance) -> list[Picture]:
         over = "period" if b.spectrum.periods else "order"
         image = plots.spectrum_plot(s, b.spectrum, f"Amplitude over {over}, {name}")
         out.append({"image": image, "alt": "Fitted rows; dotted: known parts, short marks: what was found"})
-    trace = plots.trace_plot(s, f"Held-out residual before and after, {name}")
+    trace = plots.trace_plot(s, b.declared or s, f"Held-out residual before and after, {name}")
     out.append({"image": trace, "alt": TRACE})
     out.append({"image": plots.gate_plot(s, f"Is anything there at all? {name}"), "alt": plots.GATE})
     return out

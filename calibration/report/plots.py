@@ -181,15 +181,16 @@ def _mark(ax: Any, lines: dict[str, float], ticks: list[float]) -> None:
         ax.axvline(at, ymax=0.05, color=RED, lw=1.2)
 
 
-def trace_plot(selection: Selection, title: str) -> str:
-    """Held-out residual before and after over time; gaps between held-out spans are closed and marked. A line
-    whose phase is every run's own has that run's, as in the error table."""
+def trace_plot(selection: Selection, declared: Selection, title: str) -> str:
+    """Held-out residual before, which is the declared model's, and after over time. Gaps between held-out
+    spans are closed and marked. A line whose phase is every run's own has that run's, as in the table."""
     p = selection.problem
     rows = p.test if p.test.any() else p.valid
     if rows.sum() < FEWEST_OF_A_TRACE:
         return nothing_to_draw(title, "no held-out rows in this channel")
-    models = (selection.bare, selection.model)
-    before, after = (m.left_out(p) if p.test.any() else m.residual(p, rows) for m in models)
+    first = declared if np.array_equal(declared.problem.test, p.test) else selection
+    models = ((first.bare, first.problem), (selection.model, p))
+    before, after = (m.left_out(q) if p.test.any() else m.residual(q, rows) for m, q in models)
     t, run = p.t[rows], p.run[rows]
     gap = (np.diff(t) > 5 * p.period_s) | (np.diff(t) < 0) | (np.diff(run) != 0)
     step = np.where(gap, 0.0, np.diff(t))

@@ -167,7 +167,7 @@ def test_the_report_shows_the_command(tmp_path: Path, monkeypatch: pytest.Monkey
     """Its picture's error is the table's: the line has the held-out file's own phase."""
     drawn: list[Selection] = []
     draw = plots.trace_plot
-    monkeypatch.setattr(plots, "trace_plot", lambda s, title: (drawn.append(s), draw(s, title))[1])
+    monkeypatch.setattr(plots, "trace_plot", lambda s, d, title: (drawn.append(s), draw(s, d, title))[1])
     report(tmp_path, RIG, hertz=3.7)
     logs = sorted(tmp_path.glob("run*.csv"))
     assert calibrate(logs, tmp_path / "rig.yaml", [], tmp_path / "pictures") == 0
