@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from mypy_extensions import mypyc_attr
+
 from bus.protocol import FRAME_BYTES, Opcode, Result, layout_of
 
 
@@ -98,6 +100,7 @@ def kept(
     return Parameter(number, name, *bounds, lambda: int(getattr(owner, attribute)), write)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class ParameterTable:
     """Answers GET_PARAMETER and SET_PARAMETER."""
 
