@@ -38,8 +38,8 @@ PLAIN = (
 """What takes an `Opcode` as an int and asks for its layout: mypyc unboxes it to a bare number.
 Declarations, which are read once: a frozen record of the library cannot be pickled.
 No night runs on the chips at register level, and mypyc refuses one of them.
-Classes that derive from those of a package that is not compiled stay plain, too, and classes that inherit
-`DeclaredBoard`'s constructor: there mypyc calls it twice (two ports on the wire), plain Python once.
+Classes that derive from those of a package that is not compiled stay plain, too.
+So do classes that inherit `DeclaredBoard`'s constructor. There mypyc calls it twice (two ports on the wire).
 A compiled class that plain code derives from says so (`mypyc_attr`): Python forbids it of all others."""
 _PLACE = "__file__"
 """A module that looks for files beside itself stays plain: compiled, it lies elsewhere."""
