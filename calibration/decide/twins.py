@@ -14,7 +14,9 @@ from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z
+from calibration.finding import UNKNOWN
 from calibration.names import gravity_imbalance
+from calibration.names.brake_drag import CHANGES
 from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
@@ -34,6 +36,20 @@ def told_by_the_clock(s: Selection, scene: Scene) -> Selection:
         if compare(s.problem, other.model, s.model, s.after.whitener).sure:
             alone = replace(c, twins=tuple(t for t in c.twins if t != CLOCKED))
             s = s.put(k, replace(s.chosen[k], candidate=alone))
+    return s
+
+
+def told_by_the_way(s: Selection, scene: Scene) -> Selection:
+    """Friction that changes at some time turns over with the motion. Where held-out rows do not tell it from
+    an offset that changes then, it has no name: `unknown` is its twin."""
+    for k, c in enumerate(s.candidates):
+        clock = next((name for name in c.fixed if name in scene.clocks), "")
+        if c.name not in CHANGES or scene.pair is not None or not clock or not np.isfinite(s.held.after):
+            continue
+        step = scene.at((scene.clocks[clock] >= c.fixed[clock][0]).astype(float))[:, None]
+        offset = s.put(k, replace(s.chosen[k], candidate=replace(c, columns=step)))
+        if not compare(s.problem, offset.model, s.model, s.after.whitener).sure:
+            s = s.put(k, replace(s.chosen[k], candidate=replace(c, twins=(*c.twins, UNKNOWN))))
     return s
 
 

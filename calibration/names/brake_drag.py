@@ -10,6 +10,7 @@ from calibration.names.onsets import steps
 # s: longer than any log. ASSUMPTION
 FOREVER_S = 1e6
 LESS = ("friction_warmup", "preload_change")  # friction that falls from some time on
+CHANGES = ("brake_drag", "preload_change")  # friction that is another from some time on
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -27,15 +28,17 @@ def to_plant(f: Finding, facts: Facts) -> Made:
 
 
 def one_way(f: Finding, s: Scene) -> Finding:
-    """Where all goes one way, a sensor's offset that changes looks the same. Less drag has other names."""
-    if f.name != NAME.name or s.pair is not None:
+    """Where all goes one way, or held-out rows say no more (decide/twins.py), a sensor's offset that changes
+    looks the same. Less drag has other names."""
+    offset = f.name in CHANGES and UNKNOWN in f.equivalent
+    if s.pair is not None or not (offset or f.name == NAME.name):
         return f
-    if f.parameters["torque"].value < 0.0:
+    if f.name == NAME.name and f.parameters["torque"].value < 0.0:
         f = replace(f, equivalent=tuple(dict.fromkeys([*f.equivalent, *LESS])))
-    if s.both:
+    if s.both and not offset:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
-    why = "one way only, an offset of the column that changes looks the same"
+    why = f"{'' if s.both else 'one way only, '}an offset of the column that changes looks the same"
     return replace(f, name=UNKNOWN, equivalent=alike).noted(why)
 
 
