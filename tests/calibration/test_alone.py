@@ -132,8 +132,8 @@ def test_a_declared_mass_is_a_load_as_well(tmp_path: Path) -> None:
 
 
 def turning(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Place and force of the mass: to and fro for 40 s, then four fifths of the time one way."""
-    v = np.where(t < 40.0, 0.5 * np.sin(1.3 * t), 0.35 + 0.45 * np.sin(1.3 * t))
+    """Place and force of the mass: to and fro for 40 s, then nine tenths of the time one way."""
+    v = np.where(t < 40.0, 0.5 * np.sin(1.3 * t), 0.42 + 0.45 * np.sin(1.3 * t))
     v = np.convolve(np.pad(v, 50, "edge"), np.ones(101) / 101, "valid")
     force = MASS * np.gradient(v, PERIOD) + VISCOUS * v + COULOMB * np.sign(v)
     return np.cumsum(v) * PERIOD, force
@@ -141,11 +141,11 @@ def turning(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("drags", [True, False])
 def test_an_offset_that_changes_is_no_brake_although_most_goes_one_way(tmp_path: Path, drags: bool) -> None:
-    """From 44 s on; a brake turns over with the motion in the fifth that is left."""
+    """From 44 s on; a brake turns over with the motion in the tenth that is left."""
     t = np.arange(0, 80.0, PERIOD)
     x, force = turning(t)
     more = 0.15 * (t > 44.0) * (np.sign(np.gradient(x)) if drags else 1.0)
     noise = 0.1 * np.random.default_rng(6).standard_normal(len(t))
     data = answer_of(tmp_path, FORCE, (t, np.round(x, 5), force + more + noise))
     names = [e["name"] for e in data["effects"]]
-    assert names == ["brake_drag"] if drags else "brake_drag" not in names
+    assert names == ["brake_drag"] if drags else set(names) <= {"unknown"}
