@@ -1,4 +1,4 @@
-"""One function of a measured column in the place of several functions of the motion."""
+"""One function of a load, or of a temperature, in the place of several functions of the motion."""
 
 from calibration.decide.parameters import finding_of
 from calibration.decide.rules import OTHER_COLUMNS

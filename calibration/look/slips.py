@@ -65,7 +65,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     if again[0].held.after > s.held.after:
         return Timed(whole, found)
     first = _finding(again[0], list(steps), view, inside.share)
-    return Timed(apart, again, first, Selection.of(whole))
+    return Timed(apart, again, first, Selection.of(s.problem))
 
 
 def _turns(view: View, p: Problem) -> NDArray[np.int64]:
