@@ -84,6 +84,9 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
         return (view.t[at] * c.frequency) % 1.0, f"phase of {c.frequency:.5g} Hz, turns"
     if c.domain == "temperature" and "temperature" in view.columns:
         return view.columns["temperature"][at], "temperature, degC"
+    effort = next((k for k in WINDS if k in view.columns), "")
+    if c.domain == "current" and effort:
+        return view.at(view.columns[effort]), f"{effort}, {view.rig.columns[effort].unit}"
     table = {
         **dict.fromkeys(("axis_angle", "motor_angle"), (size * view.x, f"position, {unit}")),
         "velocity": (size * view.speed, f"speed, {unit}/s"),

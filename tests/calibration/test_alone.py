@@ -5,6 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.balances.view import view_of
+from calibration.inputs.rigfile import load_rig
+from calibration.inputs.tables import read_table
+from calibration.look.said import place_of
+from calibration.names.unknown_shapes import over
 from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, SENSORS, VISCOUS, motion
 from tests.calibration.test_drives import answer as answer_of
 from tests.calibration.test_strangers import LONG, answer, domains, rate
@@ -149,3 +154,16 @@ def test_an_offset_that_changes_is_no_brake_although_most_goes_one_way(tmp_path:
     data = answer_of(tmp_path, FORCE, (t, np.round(x, 5), force + more + noise))
     names = [e["name"] for e in data["effects"]]
     assert names == ["brake_drag"] if drags else set(names) <= {"unknown"}
+
+
+def test_a_function_of_a_load_is_drawn_over_the_load(tmp_path: Path) -> None:
+    t, x, y = sensors(10.0)
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(LOADED, "utf-8")
+    table = np.column_stack((t, np.round(x, 5), y, np.sin(3.0 * x)))
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,x,u,load", comments="")
+    declared = load_rig(rig)
+    view = view_of(read_table(tmp_path / "a.csv", declared), declared, declared.responses[0])
+    values, label = place_of(view, over("current", np.zeros((len(view.rows), 1)), ("square", "rad")))
+    assert label == "effort, N m"
+    assert values == pytest.approx(np.sin(3.0 * view.x[view.rows]), abs=0.05)
