@@ -12,8 +12,8 @@ from plant.model import with_value
 from plant.parts import PlantModel
 from scenarios.studies.paper.measures import Array, Log
 from scenarios.studies.paper.scales import ARCSEC, LOG_PERIOD_S
+from scenarios.studies.paper.starts import START_STEPS
 
-START_STEPS = float(1 << 28)
 RAMP = 7200.0 * LOG_PERIOD_S
 """arcsec/s per sample: the firmware's acceleration limit, 2 deg/s2 (Table 1)."""
 
