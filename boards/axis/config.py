@@ -86,7 +86,7 @@ class AxisConfig:
         bearings' bristles make the axis a spring, which wants, and bears, more integral action than a
         sliding mass.
     kp_gust, ki_gust: instead of kp_pointing and ki_creep while parameter 41 is set and wind shakes the axis
-        (gusts.py).
+        (hold.py).
     correction: largest rate the position loop adds, Q16 counts/5 ms.
     lag_steps: following error at which the profile waits for the axis.
     acceleration: Q16 counts/5 ms per 5 ms (Table 1: 12.583 rad/s2 at the motor = 2 deg/s2).
