@@ -78,10 +78,10 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
             break
         found += fresh
         s = _select(problem, named, found, rng)
-        if shapes:
+        if shapes and k == 0:  # beside further lines names only leave less
             one = select(problem, shapes, rng, most=1, margin=NOISE_SHARE, before=s.looked_at)
             if _takes_more(one, s):
-                named, shapes = [*named, *shapes], []
+                named += shapes
                 s = _select(problem, named, found, rng)
         extra = [c.columns for c in s.candidates]
         if not any(c.name in searched for c in s.candidates) and k > 0:
