@@ -12,6 +12,7 @@ from calibration.balances.problem import Problem, Term, labels_of
 from calibration.balances.slowoffset import with_slow_offset
 from calibration.balances.thresholds import FEWEST_FILES
 from calibration.balances.view import View
+from calibration.inputs.declaration import JOINTS
 from calibration.inputs.run import Run
 
 # of the median divisor: below, the ratio says nothing. ASSUMPTION
@@ -25,6 +26,8 @@ BLOCK_ROWS = 20
 # memories of the filter in a block: 2 sqrt(pi) standard deviations each, the sum over a Gaussian's
 # autocorrelation (arithmetic). ASSUMPTION: blocks are then all but independent
 MEMORIES = 2.0
+# term of a rig file. definition
+PER_FILE = "offset_per_file"
 # of its own quantile range that a held-out file may exceed the others. ASSUMPTION
 COVER = 0.02
 
@@ -58,7 +61,7 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
         ar_order=0,
         block_s=max(_memory(view) * period, float(np.sum(valid)) * period / BLOCKS),
     )
-    if not response.is_force:  # an incremental sensor starts anywhere: every file has its own offset
+    if _own_offsets(view):
         problem.fresh = np.column_stack([(session == k).astype(float) for k in np.unique(session)])
     problem = with_slow_offset(problem, view, view.slow_offset)
     return problem if hold_out or len(records) < FEWEST_FILES else problem.in_turn()
@@ -104,25 +107,24 @@ def default_terms(view: View) -> tuple[str, ...]:
 
 
 def _terms(view: View) -> list[Term]:
-    """The declared model at full rate: of two sensors with an offset per file."""
-    files = np.unique(view.file)
-    per_file = not view.response.is_force and len(files) > 1
-    offsets = [(f"offset_{int(k) + 1}", view.unit, (view.file == k).astype(float)) for k in files]
-    named = (offsets if name == "offset" and per_file else _term(view, name) for name in default_terms(view))
-    return [term for terms in named for term in terms]
+    """The declared model at full rate."""
+    return [term for name in default_terms(view) for term in _term(view, name)]
+
+
+def _own_offsets(view: View) -> bool:
+    """Whether every file has its own offset: an incremental sensor starts anywhere, and a weight or a load
+    cell's zero may be declared to differ."""
+    return not view.response.is_force or PER_FILE in default_terms(view)
 
 
 def _term(view: View, name: str) -> list[Term]:
     """A term of the declared model at full rate."""
     unit, x = view.unit, view.angle_unit
     if name == "gravity":
-        carried, joint = view.columns.get("load", 1.0), view.columns.get("joint")
-        angles = {"": view.x} if joint is None else {"": view.x, "_joint": view.x + joint}
-        return [
-            (f"gravity_{side}{which}", unit, carried * of(angle / (view.turn or 1.0) * 2 * np.pi))
-            for which, angle in angles.items()
-            for side, of in (("cos", np.cos), ("sin", np.sin))
-        ]
+        return _gravity(view)
+    files = np.unique(view.file)
+    if name == PER_FILE or (name == "offset" and len(files) > 1 and _own_offsets(view)):
+        return [(f"offset_{int(k) + 1}", unit, (view.file == k).astype(float)) for k in files]
     brakes = -1.0 if view.response.channel == "acceleration" else 1.0
     known: dict[str, tuple[str, Callable[[], Array]]] = {
         "inertia": (
@@ -136,12 +138,30 @@ def _term(view: View, name: str) -> list[Term]:
         ),
         "coulomb": (unit, lambda: sliding_of(view).shape * brakes),
         "offset": (unit, lambda: np.ones(len(view.t))),
+        "applied": (f"{unit}/{_unit_of(view, name)}", lambda: view.columns[name]),
         "drift": (f"{unit}/s", lambda: view.clock - view.clock.mean()),
         "stiffness": (f"{unit}/{x}", lambda: view.x - view.x.mean()),
         "scale": (f"{unit}/{x}", lambda: view.x - view.x.mean()),
     }
     own, column = known[name]
     return [(name, own, np.asarray(column()))]
+
+
+def _gravity(view: View) -> list[Term]:
+    """cos and sin of the angle, times 1, cos and sin of every other joint's: a weight behind an arm's joints
+    turns this one by their products, however the joints lie to each other (derivative of its height)."""
+    turn = (view.turn or 1.0) / (2 * np.pi)
+    out = [("cos", np.cos(view.x / turn)), ("sin", np.sin(view.x / turn))]
+    for joint in (c for c in JOINTS if c in view.columns):
+        angle = view.columns[joint] / turn
+        both = (("cos", np.cos(angle)), ("sin", np.sin(angle)))
+        out += [(f"{name}_{side}_{joint}", x * wave) for side, wave in both for name, x in out]
+    carried = view.columns.get("load", 1.0)
+    return [(f"gravity_{name}", view.unit, carried * x) for name, x in out]
+
+
+def _unit_of(view: View, channel: str) -> str:
+    return view.rig.columns[channel].unit if channel in view.rig.columns else "1"
 
 
 def _held(view: View, records: list[Run], names: list[str]) -> Mask:

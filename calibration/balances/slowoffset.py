@@ -36,19 +36,20 @@ def slow_columns(view: View, held: Mask, order: int) -> Array:
         whole = np.ptp(t[file == k])
         for mine in ((file == k) & part for part in (~held, held) if part[file == k].any()):
             begin, length = float(t[mine].min()), max(float(np.ptp(t[mine])), 1e-300)
-            count = max(round(order * length / max(whole, length)), 1)
+            count = max(round(order * length / max(whole, length)), min(order, 1))
             out += [np.where(mine, np.cos(np.pi * j * (t - begin) / length), 0.0) for j in range(count + 1)]
     return np.column_stack(out)
 
 
-def with_slow_offset(p: Problem, view: View, order: int) -> Problem:
-    """The same balance with an offset that wanders; `order` 0 changes nothing."""
-    if not order:
+def with_slow_offset(p: Problem, view: View, order: int | None) -> Problem:
+    """The same balance with an offset that wanders, or is every file's own (`order` 0); None: it is one."""
+    if order is None:
         return p
     columns = slow_columns(view, p.held, order)
     fresh = columns if p.fresh is None else np.hstack([p.fresh, columns])
     means = np.flatnonzero(np.all((columns == 0) | (columns == 1), axis=0) & columns[~p.held].any(axis=0))
-    columns = np.delete(columns, means[:1], axis=1)  # the first file's mean is the offset itself
+    # the first file's mean is the offset itself, or every file's is its own
+    columns = np.delete(columns, means[:1] if p.fresh is None else means, axis=1)
     labels = [*p.base_labels, *[(SLOW, view.unit)] * columns.shape[1]]
     return replace(p, base=np.hstack([p.base, columns]), base_labels=labels, fresh=fresh)
 
@@ -62,23 +63,29 @@ def slowness(view: View) -> int:
     return min(min(moves, default=0) // STROKES, MOST)
 
 
-def offset_order(view: View, problem: Problem, flexible: Array) -> tuple[int, float]:
-    """Cosines per file that the offset needs (0: it stands still), and the rms of what they take away.
+def offset_order(view: View, problem: Problem, flexible: Array) -> tuple[int | None, float]:
+    """Cosines per file that the offset needs, 0: every file's own constant, None: one constant for all. Also
+    the rms of what they take away.
 
-    `flexible` (n_fitted, k): what drives may leave. A walk is what only slow functions of time predict.
+    `flexible` (n_fitted, k): what drives may leave. A walk is what only slow functions of time predict, a
+    constant per file what neither they nor a friction per file do.
     """
-    problem, order = problem.once, slowness(view)
+    problem, order = problem.once, slowness(view) if view.dynamic else 0
     rows = problem.test
-    if not order or rows.sum() < 20 * (order + 1) or problem.train.sum() < 20 * flexible.shape[1]:
-        return 0, 0.0
-    slow = slow_columns(view, problem.held, order)
+    if rows.sum() < 20 * (order + 1) or problem.train.sum() < 20 * flexible.shape[1]:
+        return None, 0.0
     sign = np.sign(view.direction[view.rows])[:, None]
     none = np.zeros((len(problem.y), 0))
-    left, before = _held(problem, none, slow), _held(problem, none, none)
-    others = (before, _held(problem, flexible, none), _held(problem, none, slow * sign))
-    if left > (1 - TELLING) * min(others) or _line(view, problem, order) < LINE * left:
-        return 0, 0.0
-    return order, float(np.sqrt(before - left))
+    before, bent = _held(problem, none, none), _held(problem, flexible, none)
+    several = len(np.unique(problem.session[problem.valid])) > 1
+    found, least = None, min(before, bent)
+    for k in sorted({0, order} if several else {order} - {0}):
+        slow = slow_columns(view, problem.held, k)
+        left = _held(problem, none, slow)
+        most = (1 - TELLING) * min(least, _held(problem, none, slow * sign))
+        if left <= most and (k == 0 or _line(view, problem, order) >= LINE * left):
+            found, least = k, left
+    return found, float(np.sqrt(before - least))
 
 
 def _held(p: Problem, fixed: Array, fresh: Array) -> float:

@@ -77,7 +77,7 @@ class View:
     rates: float = 0.0  # standard deviation, rows, by which rates and accelerations are smoothed
     quanta: dict[str, float] = field(default_factory=dict)  # steps of the columns, as they were logged
     slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
-    slow_offset: int = 0  # cosines per file by which the response's offset wanders
+    slow_offset: int | None = None  # cosines per file by which the response's offset wanders; 0: a constant
     standstill: float = 0.0  # speed, position units per s, below which the direction fades
     speed: Array = field(default_factory=lambda: np.zeros(0))  # smoothed, for what is not linear in it
     direction: Array = field(default_factory=lambda: np.zeros(0))

@@ -59,6 +59,12 @@ class Selection:
         again.refused = [*self.refused, *more]
         return again
 
+    @property
+    def worth(self) -> list[float]:
+        """What each effect takes off the held-out mean square beside the others, of what was before."""
+        left = [self.without(k).held.after ** 2 for k in range(len(self.chosen))]
+        return [(x - self.held.after**2) / (self.held.before**2 or 1.0) for x in left]
+
     def put(self, k: int, other: Contender) -> Selection:
         """The same with another effect in the place of `k`."""
         return self.keep([other if j == k else x for j, x in enumerate(self.chosen)])

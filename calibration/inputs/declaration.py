@@ -12,6 +12,8 @@ from plant.effects import REGISTRY
 
 #: channels whose response is a balance of forces; the others compare one sensor with another
 FORCES = ("effort", "force", "current", "acceleration", "velocity")
+#: channels of other joints' angles, which a weight is carried over
+JOINTS = ("joint", "joint2", "joint3")
 #: the SI unit at the end of a key
 _UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")
 T = TypeVar("T")
@@ -50,6 +52,7 @@ class Column:
     delay_s: float = 0.0  # known lateness, taken out
     window_s: float | None = None  # over which a counted rate counts, up to the row's stamp
     format: str = ""  # of stamps that are no numbers: iso, or strptime's
+    clock: str | int = ""  # the column that holds the clock of such a stamp's day
     sign_bit: int | None = None  # of sign-magnitude words, from 0
     files: dict[str, float] = field(default_factory=dict)  # a factor per file, by the name's pattern
     steps: tuple[tuple[float, float], ...] = ()  # (s, factor from then on)

@@ -88,7 +88,7 @@ def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose
         held = [row[k] for row in some if len(row) > k and row[k]]
         clear = name.isprintable() and plain(name) is None  # a name that is a number would be read as one
         column = name if clear and h.fields.count(name) == 1 else k
-        form = {str(column): ISO} if held and all(_is_stamp(x) for x in held) else {}
+        form = {str(column): (ISO, "")} if held and all(_is_stamp(x) for x in held) else {}
         try:
             got = read_columns(path, text, [column], tuple(fields.get("names", ())), None, form)
         except CalibrationInputError as error:
@@ -111,7 +111,7 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
     first, second = found.columns
     time, value = (second, first) if found.stamp == second else (first, second)
     long = {"name": name, "value": str(value)}
-    stamps = {str(time): ISO} if found.stamp == time else {}
+    stamps = {str(time): (ISO, "")} if found.stamp == time else {}
     timed = {**long, "time": str(time)}
     columns = read_long(path, text, [*signals, time], timed, stamps, len(signals))
     return Loose(dict(columns.items()), found.stamp, {"long": long})

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Any
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.declaration import Motors, Rig
+from calibration.inputs.declaration import JOINTS, Motors, Rig
 from calibration.inputs.units import rad_per_unit
 
 #: channels beside motors that are an angle (position) or an angle per s
@@ -68,7 +68,8 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
     used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference"}
     used |= {*channels} | {r.divide_by for r in responses if r.divide_by}
     used |= {"effort", "force", "current"} if "position2" in channels else set()
-    used |= {"load", "joint"} if "gravity" in estimated else set()
+    used |= {"load", *JOINTS} if "gravity" in estimated else set()
+    used |= {"applied"}
     used |= {"effort"} if "controller" in data else set()
     used |= {"voltage", "duty", "current"} if {"voltage", "duty"} & set(columns) else set()
     for name, where in columns.items():
@@ -76,7 +77,11 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
             yield f"columns.{name}.steps: must be in the order of their times"
         if where.integrated and name == "time":
             yield "columns.time.integrated: time is not integrated; leave it out"
-    if {"load", "joint"} & set(columns) and "gravity" not in estimated:
-        yield "columns.load, columns.joint: act through gravity; add it to estimate"
+    if {"load", *JOINTS} & set(columns) and "gravity" not in estimated:
+        yield "columns.load, columns.joint and further ones: act through gravity; add it to estimate"
+    if ("applied" in columns) != ("applied" in estimated):
+        yield "columns.applied: is a force of the term applied; the one needs the other, in estimate"
+    if {"offset", "offset_per_file"} <= estimated:
+        yield "estimate: offset_per_file stands in the place of offset; leave one out"
     for name in (name for name in columns if name not in used):
         yield f"columns.{name}: nothing uses it with this response; leave it out"

@@ -78,13 +78,17 @@ def is_stamp(word: str) -> bool:
 
 
 def with_seconds(
-    path: Path, rows: list[str], mark: str, place: int, form: str, line: int, name: str
+    path: Path, rows: list[str], mark: str, places: tuple[int, int | None], form: str, line: int, name: str
 ) -> list[str]:
-    """Rows of a table whose stamps at `place` are seconds then; `line`, `name` are for messages."""
+    """Rows of a table whose stamps are seconds then. `places` are those of the stamp and, where another
+    column holds it, of its clock; `line`, `name` are for messages."""
     out, width = [], rows[0].count(mark)
+    place, clock = places
     for k, row in enumerate(rows, line):
         fields = row.split(mark)
-        if len(fields) == width + 1 and (word := fields[place].strip().strip('"')):
+        whole = len(fields) == width + 1
+        both = [fields[p].strip().strip('"') for p in (place, clock) if p is not None] if whole else []
+        if word := " ".join(filter(None, both)):
             try:
                 fields[place] = repr(seconds(word, form))
             except ValueError:

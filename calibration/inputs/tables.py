@@ -34,14 +34,15 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     if "column" in rig.runs:
         wanted.append(rig.runs["column"])
     stamp = rig.columns.get("time")
-    stamps = {str(stamp.column): stamp.format} if stamp is not None and stamp.format else {}
+    stamps = {str(stamp.column): (stamp.format, stamp.clock)} if stamp is not None and stamp.format else {}
     if reader := READERS.get(path.suffix.lower()):
         found = reader(path, [str(c) for c in wanted])
     else:
         text = load_utf8(path) if text is None else text
         if rig.long and stamp is not None:
             compete = 2 if any(r.is_force for r in rig.responses) else 1  # a force and its position
-            found = [read_long(path, text, wanted, {**rig.long, "time": str(stamp.column)}, stamps, compete)]
+            long, shape = {**rig.long, "time": str(stamp.column)}, (rig.names, rig.delimiter)
+            found = [read_long(path, text, wanted, long, stamps, compete, shape)]
         else:
             found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]

@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Collection, Mapping
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -93,7 +94,8 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
         skip += 1
     if skip >= len(lines):
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
-    mark = delimiter or next((mark for mark in "\t;," if mark in lines[skip]), " ")
+    skip = _behind_remarks(lines, skip, delimiter)
+    mark = delimiter or _mark(lines[skip])
     if mark == " ":  # aligned columns are parted by any number of blanks
         lines = [" ".join(line.split()) for line in lines]
     check_width(path, lines[skip].count(mark) + 1, skip + 1)
@@ -107,6 +109,30 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     if len(fields) != rows:
         raise CalibrationInputError(path, f"{rows} fields, {len(fields)} names", first + 1)
     return Heading(lines, fields, first, mark, skip - 1 if fields == said else skip)
+
+
+def _mark(line: str) -> str:
+    return next((mark for mark in "\t;," if mark in line), " ")
+
+
+def _behind_remarks(lines: list[str], skip: int, delimiter: str | None) -> int:
+    """Index of the header row below lines such as "Operator: N. N.", which have fewer or more fields than the
+    rows have; `skip` where no such row is found."""
+
+    def fields(line: str) -> list[str]:
+        return line.split() if mark == " " else split(line, mark)
+
+    rows = [k for k in range(skip, len(lines)) if lines[k].strip()]
+    row = lines[rows[-2 if len(rows) > 2 else -1]]  # the last one may be cut off
+    mark = delimiter or _mark(row)
+    width = len(fields(row))
+    if width < 2 or len(fields(lines[skip])) == width or all(plain(f) is None for f in fields(row)):
+        return skip
+    for k, below in pairwise(rows):
+        names = fields(lines[k])
+        if len(names) == len(fields(lines[below])) == width and all(f and plain(f) is None for f in names):
+            return k
+    return skip
 
 
 def _commented(above: list[str], mark: str, count: int) -> list[str]:
@@ -123,10 +149,10 @@ def read_columns(
     wanted: list[str | int],
     names: tuple[str, ...] = (),
     delimiter: str | None = None,
-    stamps: Mapping[str, str] = MappingProxyType({}),
+    stamps: Mapping[str, tuple[str, str | int]] = MappingProxyType({}),
 ) -> dict[str, Array]:
     """The wanted columns (by name, or place from 0) of a table's `text`, keyed by `str(column)`. `stamps` are
-    the formats of those that are stamps and become s."""
+    the formats of those that are stamps and become s, and the column ("": none) that holds their clock."""
     lines, fields, first, mark, at = heading(path, text, names, delimiter)
     places = [_place(path, c, fields, first > at, at + 1) for c in wanted]
     called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
@@ -134,7 +160,9 @@ def read_columns(
     rows = lines[first:]
     for column, k in zip(wanted, places, strict=True):
         if str(column) in stamps:
-            rows = with_seconds(path, rows, mark, k, stamps[str(column)], first + 1, labels[k])
+            form, clock = stamps[str(column)]
+            beside = None if clock == "" else _place(path, clock, fields, first > at, at + 1)
+            rows = with_seconds(path, rows, mark, (k, beside), form, first + 1, labels[k])
     got = read_numbers(path, "\n".join(rows), labels, first + 1, mark, set(places))
     return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
 
@@ -144,14 +172,16 @@ def read_long(
     text: str,
     wanted: list[str | int],
     long: Mapping[str, str],
-    stamps: Mapping[str, str],
+    stamps: Mapping[str, tuple[str, str | int]],
     compete: int,
+    shape: tuple[tuple[str, ...], str | None] = ((), None),
 ) -> dict[str, Array]:
     """The wanted signals of a long table on the stamps of one of them, as `wide` has it. Its rows hold a
-    name, a stamp and a value (`long`: the columns of `name`, `time` and `value`)."""
+    name, a stamp and a value (`long`: the columns of `name`, `time` and `value`). `shape`: names of the
+    columns of a file without a header row, delimiter."""
     time = long["time"]
-    got = read_columns(path, text, [time, long["value"]], (), None, stamps)
-    lines, fields, first, mark, at = heading(path, text)
+    got = read_columns(path, text, [time, long["value"]], *shape, stamps)
+    lines, fields, first, mark, at = heading(path, text, *shape)
     place = _place(path, long["name"], fields, True, at + 1)
     names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[time])]
     signals = [str(c) for c in wanted if str(c) != time]

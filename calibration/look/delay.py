@@ -30,12 +30,13 @@ EARNS = 0.05
 @dataclass
 class Timed:
     """The search once the effort is where it belongs, or slips are apart. Such an effect is `first`, and
-    `declared` the declared model without it. `note`: of a hold."""
+    `declared` the declared model without it, or without `offsets` of the files' own. `note`: of a hold."""
 
     problem: Problem
     found: Found
     first: Finding | None = None
     declared: Selection | None = None
+    offsets: Finding | None = None
     note: str = ""
     close: str = ""  # a delay that the log can neither name nor leave out, and what would tell
 

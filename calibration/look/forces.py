@@ -1,6 +1,7 @@
 """One response of a rig: columns that are late, the declared terms, names, what is left of it."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -19,6 +20,7 @@ from calibration.decide.thresholds import AS_MUCH
 from calibration.decide.twins import told_by_the_clock, told_by_the_way, weight_first
 from calibration.decide.verdict import ROWS
 from calibration.decide.withdraw import as_told, of_calibrated, unnamed
+from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
 from calibration.look.gap import crossed_first, where_known
@@ -27,6 +29,12 @@ from calibration.look.said import close, filtered, lacking_names, moves_with, pl
 from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, one_filter, sharpest, turned
 from calibration.look.slips import slipped
+
+#: of a finding
+OWN = (
+    "every file has a constant of its own, as another weight, pressure or zero: declare offset_per_file, or"
+    " the force as applied"
+)
 
 
 def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
@@ -65,22 +73,34 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
             return Timed(whole, search(whole))
         return timed(view, made, whole, response.channel, search)
 
-    if view.dynamic:
+    if response.is_force and not response.is_speed:
         problem = made(0.0)
         view.slow_offset, wander = offset_order(view, problem, scene_of(view, problem).wander)
     when = attempt()
-    if view.slow_offset:
-        slow, view.slow_offset = view.slow_offset, 0
+    if view.slow_offset is not None:
+        slow, view.slow_offset = view.slow_offset, None
         steady = attempt()
         if _instead(steady, when):
             when = steady
         else:
             view.slow_offset = slow
-            remarks.append(
+            remarks += [
                 f"{response.channel}: its offset wanders by {wander:.2g} {response.unit} rms within a file."
                 f" {slow} slow functions of time are fitted anew in every file, as the offset is"
-            )
-    return (_sharper(when, view, made, attempt) if view.dynamic else when), remarks
+            ] * (slow > 0)
+    when = _sharper(when, view, made, attempt) if view.dynamic else when
+    return (_apart(when, view, made, wander) if view.slow_offset == 0 else when), remarks
+
+
+def _apart(when: Timed, view: View, made: Make, size: float) -> Timed:
+    """With the files' own constants, `size` rms, as a finding: the declared model has one for all of them."""
+    view.slow_offset = None
+    declared = Selection.of(made(0.0))
+    view.slow_offset = 0
+    share = 1 - (when.found[0].held.before / (declared.held.before or 1.0)) ** 2
+    rms = {"rms": Parameter(size, view.unit)}
+    first = Finding(UNKNOWN, "T", "time", parameters=rms, share=share, note=OWN)
+    return replace(when, offsets=first, declared=declared)
 
 
 def _instead(steady: Timed, slow: Timed) -> bool:
@@ -120,7 +140,8 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
     s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
-    findings = as_told([f for k in range(len(s.chosen)) for f in findings_of(s, k)], scene)
+    named = [replace(f, share=x) for k, x in enumerate(s.worth) for f in findings_of(s, k)]
+    findings = as_told(named, scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)
     findings = settle(of_one_place(findings, left), left, problem.channel) + quick_lines(view, problem)
@@ -133,7 +154,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
         floor=floor,
         before=None if when.declared is None else when.declared.held.before,
         declared=when.declared,
-        findings=[*([when.first] if when.first is not None else []), *unnamed(findings, tried)],
+        findings=[*filter(None, [when.offsets, when.first]), *unnamed(findings, tried)],
         numbers=calibrated(s),
         controls=tried,
         missing=left_over(together, scene, floor),

@@ -22,7 +22,8 @@ RINGS = 0.145
 BELOW = 0.5
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
 FEWEST_PERIODS = 8.0
-# share of the moves that are shorter than one in which a mode rings: a sweep has quick ones. ASSUMPTION
+# share of the moving time in moves that are shorter than one in which a mode rings: a sweep begins with long
+# ones. ASSUMPTION
 LONG_MOVES = 0.9
 # Hz. ASSUMPTION: slower than the first mode of a steerable structure; antennas of 70 to 100 m begin above it
 SLOWEST_HZ = 0.5
@@ -48,11 +49,12 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     else:
         a, way = np.asarray(v.second(v.x)), np.sign(v.direction[np.abs(v.direction) > HALF])
-        # a mode rings within one of the longer moves, and often in the log; slower, it is the motion
+        # half a period lies within one of the longer moves, and many in the log; slower, it is the motion
         moves = np.diff(np.flatnonzero(np.diff(way)), prepend=-1, append=len(way) - 1)
-        longest = float(np.quantile(moves, LONG_MOVES)) * v.period_s
+        moves = np.sort(moves)
+        longest = float(moves[np.searchsorted(np.cumsum(moves), LONG_MOVES * np.sum(moves))]) * v.period_s
         often = FEWEST_PERIODS / max(len(v.t) * v.period_s, 1e-9)
-        lowest = min(max(often, 1 / max(longest, v.period_s), SLOWEST_HZ), SEEN / v.period_s)
+        lowest = min(max(often, 0.5 / max(longest, v.period_s), SLOWEST_HZ), SEEN / v.period_s)
         corner = 1 / (2 * np.pi * max(v.wide, 1.0) * v.period_s)
         top = max(BELOW * corner, 2 * lowest)
         count = 1 + int(np.ceil(np.log(top / lowest) / (2 * DAMPING)))  # every resonance's width holds one

@@ -35,7 +35,7 @@ def alone(s: Scene) -> list[Candidate]:
     None stands beside an offset that wanders within a file. An end stop would then be any slope.
     """
     r = s.view.response
-    if s.pair is not None or s.view.slow_offset or r.is_speed or not s.view.ok.any():
+    if s.pair is not None or s.view.slow_offset is not None or r.is_speed or not s.view.ok.any():
         return []
     if not s.force:
         return _dents(s)

@@ -57,3 +57,15 @@ def test_a_force_that_comes_and_goes_is_no_walk(tmp_path: Path) -> None:
         tables.append((t, x, u + 0.5 * np.sin(2 * np.pi * t / 7.0 + k)))
     data = answer(tmp_path, FORCE, *tables)
     assert not any("wanders" in r for r in data["reasons"]) and found(data) != []
+
+
+def test_a_constant_of_every_files_own_is_real_and_has_no_name(tmp_path: Path) -> None:
+    """A weight of 40 N more in the second file."""
+    t, x, u = motion()
+    data = answer(tmp_path, FORCE, (t, x, u), (t[:4000], x[:4000], u[:4000] + 40.0))
+    (effect,) = data["effects"]
+    assert (effect["name"], effect["domain"]) == ("unknown", "time")
+    assert "every file has a constant of its own" in effect["note"]
+    error = data["error"]["torque"]
+    assert error["after"] < 0.1 and error["before"] == pytest.approx(20.0, rel=0.1)
+    assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.03)

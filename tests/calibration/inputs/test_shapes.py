@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from calibration.balances.balance import problem_of
 from calibration.balances.view import view_of
@@ -159,20 +160,88 @@ def test_a_gain_per_file_and_a_load_per_file(tmp_path: Path) -> None:
         read_drive([tmp_path / "other.csv"], rig)
 
 
-def test_another_joints_angle_turns_gravity(tmp_path: Path) -> None:
-    columns = COLUMNS + "  joint: {column: q2, unit: rad}\n"
+@pytest.mark.parametrize("joints", [1, 2])
+def test_other_joints_angles_turn_gravity(tmp_path: Path, joints: int) -> None:
+    """Of an arm whose axes lie at any angle the weight's torque is the slope of its height, from matrices."""
+    columns = COLUMNS + "".join(
+        f"  {name}: {{column: q{k}, unit: rad}}\n" for k, name in enumerate(("joint", "joint2")[:joints])
+    )
     more = TAIL.replace("viscous", "gravity")
     (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{more}", encoding="utf-8")
-    other = 0.7 * np.sin(2.3 * T)
-    effort = 5.0 * np.sin(X + other) + 2.0 * np.cos(X) + 0.1
-    (tmp_path / "a.csv").write_text(rows(T, X, effort, other, head="t,x,u,q2"), encoding="utf-8")
+    others = [0.7 * np.sin(2.3 * T), 0.9 * np.sin(1.1 * T + 1.0)][:joints]
+    axes = [Rotation.from_euler("xyz", [0.4, -0.3, 0.2]), Rotation.from_euler("xyz", [-0.8, 0.5, 0.1])]
+
+    def height(x: np.ndarray) -> np.ndarray:
+        tip = Rotation.from_euler("z", x[:, None]).apply([1.0, 0.3, 0.2])
+        for angle, tilt in zip(others, axes, strict=False):
+            tip = Rotation.from_euler("z", angle[:, None]).apply(np.add(tilt.apply(tip), [0.2, 0.0, 0.1]))
+        return np.asarray(5.0 * tip[:, 1])
+
+    effort = (height(X + 1e-5) - height(X - 1e-5)) / 2e-5 + 0.1
+    head = ",".join(["t", "x", "u", *(f"q{k}" for k in range(joints))])
+    (tmp_path / "a.csv").write_text(rows(T, X, effort, *others, head=head), encoding="utf-8")
     rig = load_rig(tmp_path / "rig.yaml")
     records = read_drive([tmp_path / "a.csv"], rig).records
     p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
-    found, left = p.plain_fit(p.train)
-    sizes = [found[k] for k in ("gravity_sin_joint", "gravity_cos", "gravity_cos_joint", "gravity_sin")]
-    assert sizes == pytest.approx([5.0, 2.0, 0.0, 0.0], abs=0.05)  # what the filter takes off the sines
-    assert np.std(left[p.train]) < 0.01
+    _, left = p.plain_fit(p.valid)
+    assert p.base.shape[1] == 2 * 3**joints + 1
+    assert np.std(left[p.valid]) < 0.01 * np.std(p.y[p.valid])  # what the filter takes off the waves
+
+
+def test_another_force_and_every_files_own_offset_are_terms(tmp_path: Path) -> None:
+    """A pressure that pushes, a weight over a pulley that is no column, a load cell's zero."""
+    columns = COLUMNS + "  applied: {column: p, unit: bar, files: {a: 1, b: 2}}\n"
+    more = TAIL.replace("[viscous, offset]", "[applied, offset_per_file]")
+    (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{more}", encoding="utf-8")
+    pressure = 5.0 + np.sin(1.7 * T)
+    for name, factor, zero in (("a", 1.0, -3.0), ("b", 2.0, 8.0)):
+        text = rows(T, X, 60.0 * factor * pressure + zero, pressure, head="t,x,u,p")
+        (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
+    rig = load_rig(tmp_path / "rig.yaml")
+    records = read_drive([tmp_path / f"{name}.csv" for name in "ab"], rig).records
+    p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
+    found, _ = p.plain_fit(p.valid)
+    assert found == pytest.approx({"applied": 60.0, "offset_1": -3.0, "offset_2": 8.0}, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ("estimate: [viscous, applied]", r"columns\.applied: is a force of the term applied"),
+        ("estimate: [offset, offset_per_file]", "offset_per_file stands in the place of offset"),
+    ],
+)
+def test_terms_that_need_or_exclude_another_are_told(tmp_path: Path, more: str, says: str) -> None:
+    text = f"rig: r\ncolumns:\n{COLUMNS}{TAIL.splitlines()[0]}\n{more}\n"
+    (tmp_path / "rig.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(CalibrationInputError, match=says):
+        load_rig(tmp_path / "rig.yaml")
+
+
+def test_lines_above_the_header_row_are_passed_over(tmp_path: Path) -> None:
+    """As exports of oscilloscopes and PLCs begin; and a header row that is wrong is told as before."""
+    above = "Name;Axis 1\nOperator;N. N.;night shift;x;y\nStart 12:00\n\n"
+    table = rows(T, X, U).replace(",", ";")
+    assert read(tmp_path, above + table).columns["position"].tolist() == X.tolist()
+    with pytest.raises(CalibrationInputError, match=r"a.csv:2: 3 fields, 2 names"):
+        read(tmp_path, "t,x\n" + "\n".join(table.replace(";", ",").splitlines()[1:]) + "\n")
+
+
+def test_a_monitors_log_has_names_day_and_clock_in_columns_of_their_own(tmp_path: Path) -> None:
+    """A long table without a header row, its columns parted by any number of blanks."""
+    clock = [f"2020-12-08  00:00:{s:09.6f}" for s in T]
+    text = "\n".join(
+        f"axis:x   {c} {float(x)!r}\naxis:u {c}   {float(u)!r}" for c, x, u in zip(clock, X, U, strict=True)
+    )
+    columns = """  time: {column: day, clock: clock, unit: s, format: iso}
+  position: {column: "axis:x", unit: rad}
+  effort: {column: "axis:u", unit: V}
+"""
+    more = "delimiter: space\nnames: [name, day, clock, value]\nlong: {name: name, value: value}\n"
+    run = read(tmp_path, text + "\n", columns, more)
+    assert run.columns["t"] == pytest.approx(T, abs=1e-6)
+    assert run.columns["position"].tolist() == X.tolist()
+    assert run.columns["effort"].tolist() == U.tolist()
 
 
 def test_a_speed_alone_has_a_position_and_a_torque_alone_one_of_a_known_speed(tmp_path: Path) -> None:
