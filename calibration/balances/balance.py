@@ -148,8 +148,11 @@ def _term(view: View, name: str) -> list[Term]:
 
 
 def _gravity(view: View) -> list[Term]:
-    """cos and sin of the angle, times 1, cos and sin of every other joint's: a weight behind an arm's joints
-    turns this one by their products, however the joints lie to each other (derivative of its height)."""
+    """cos and sin of the angle, times 1, cos and sin of every other joint's.
+
+    The torque of a weight behind several joints is the slope of its height, which is a sum of such products
+    however the joints lie to each other.
+    """
     turn = (view.turn or 1.0) / (2 * np.pi)
     out = [("cos", np.cos(view.x / turn)), ("sin", np.sin(view.x / turn))]
     for joint in (c for c in JOINTS if c in view.columns):

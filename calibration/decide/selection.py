@@ -61,7 +61,7 @@ class Selection:
 
     @property
     def worth(self) -> list[float]:
-        """What each effect takes off the held-out mean square beside the others, of what was before."""
+        """Share of the held-out mean square that each effect takes off beside the others."""
         left = [self.without(k).held.after ** 2 for k in range(len(self.chosen))]
         return [(x - self.held.after**2) / (self.held.before**2 or 1.0) for x in left]
 
