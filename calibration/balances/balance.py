@@ -150,7 +150,7 @@ def _term(view: View, name: str) -> list[Term]:
 def _gravity(view: View) -> list[Term]:
     """cos and sin of the angle, times 1, cos and sin of every other joint's.
 
-    The torque of a weight behind several joints is the slope of its height, which is a sum of such products
+    The torque of a weight behind several joints is the slope of its height. That is a sum of such products,
     however the joints lie to each other.
     """
     turn = (view.turn or 1.0) / (2 * np.pi)
