@@ -23,8 +23,6 @@ SCALES = (0.3, 0.3, 0.5)
 # natural decades from the bounds. ASSUMPTION
 INSIDE = 1e-3
 SEARCH = {"loss": "soft_l1", "f_scale": 0.05, "x_scale": SCALES, "diff_step": 0.02, "max_nfev": 15}
-# of the rows' roughness, that a search may leave: the rest is the sensors' noise. ASSUMPTION
-ENOUGH = 2.0
 # Gauss-Newton steps on the rows that the model already fits. ASSUMPTION
 POLISH = 6
 # times the median residual, within which it fits them. ASSUMPTION
@@ -100,19 +98,13 @@ class _Fit:
 
         torque = self.torque[self.rows]
         scale = float(np.std(torque)) or 1.0
-        roughness = float(np.std(np.diff(torque, n=2))) / np.sqrt(6.0)
 
         def residual(logs: Array) -> Array:
             return np.concatenate([self.left(logs) / scale, (logs - start) / SPREAD * HOLD])
 
-        tried = []
-        for shift in STARTS:
-            begin = np.clip(start + np.array(shift), LOWEST + INSIDE, HIGHEST - INSIDE)
-            tried.append(least_squares(residual, begin, bounds=(LOWEST, HIGHEST), **SEARCH))
-            best = min(tried, key=lambda found: found.cost)
-            if float(np.median(np.abs(self.left(best.x)))) < ENOUGH * roughness:
-                break
-        return np.asarray(best.x)
+        begins = (np.clip(start + shift, LOWEST + INSIDE, HIGHEST - INSIDE) for shift in np.array(STARTS))
+        tried = (least_squares(residual, x, bounds=(LOWEST, HIGHEST), **SEARCH) for x in begins)
+        return np.asarray(min(tried, key=lambda found: found.cost).x)
 
     def polished(self, logs: Array) -> Array:
         """The same after Gauss-Newton steps on the rows that fit."""
