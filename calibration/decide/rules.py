@@ -16,9 +16,9 @@ from calibration.decide.accept import refuse, scores
 from calibration.decide.parameters import parameters_of
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
-from calibration.finding import UNKNOWN, Parameter
+from calibration.finding import UNKNOWN
 from calibration.names import NAMES
-from calibration.names.structural_mode import MOST_DAMPED, STRUCTURES_DAMPED
+from calibration.names.structural_mode import rings
 from calibration.statistics.regression import under
 from calibration.statistics.thresholds import SURE_Z
 
@@ -129,16 +129,9 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
-        return (
-            "damped too much for a resonance" if "damping" in told and _no_structure(told["damping"]) else ""
-        )
+        return "damped too much for a resonance" if "damping" in told and not rings(told["damping"]) else ""
 
     return each(why)
-
-
-def _no_structure(damping: Parameter) -> bool:
-    """Whether a damping is above what structures have, or its interval reaches to the bound."""
-    return damping.value > STRUCTURES_DAMPED or (damping.high or 0.0) >= MOST_DAMPED
 
 
 @each

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.balances.filters import by_piece
+from calibration.finding import Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
@@ -16,8 +17,6 @@ LEAST_DAMPED = 0.001
 STRUCTURES_DAMPED = 0.1
 # part of critical, at most: twice that, where it is not well told. ASSUMPTION
 MOST_DAMPED = 0.2
-# part of critical: more comes to the bound of the fit on an axis, and is no resonance. ASSUMPTION
-RINGS = 0.145
 # part of the filter's corner: above it nothing remains to be seen. ASSUMPTION
 BELOW = 0.5
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
@@ -93,6 +92,11 @@ def second_mass(a: Array, file: NDArray[np.int64], dt: float, f: float, damping:
     return np.asarray(by_piece(a, file, lambda x: np.asarray(lfilter(num, den, x))) / narrow)
 
 
+def rings(damping: Parameter) -> bool:
+    """Whether a damping is one that structures have, and its interval does not reach to the bound."""
+    return damping.value <= STRUCTURES_DAMPED and (damping.high or 0.0) < MOST_DAMPED
+
+
 def to_plant(f: Finding, facts: Facts) -> Made:
     """The second mass is part of the plant's inertia, not of the calibrated one."""
     made = as_found(f, facts)
@@ -116,6 +120,6 @@ NAME = Name(
     beside=Beside(
         consequences={"T": ("damaged_tooth",)},
         single=True,
-        plausible=lambda f: f.parameters["damping"].value <= RINGS,
+        plausible=lambda f: rings(f.parameters["damping"]),
     ),
 )
