@@ -148,18 +148,19 @@ def _term(view: View, name: str) -> list[Term]:
 
 
 def _gravity(view: View) -> list[Term]:
-    """cos and sin of the angle, times 1, cos and sin of every other joint's.
+    """cos and sin of the angle; of a joint in front of it, whose axis is parallel, those of their sum, too.
 
-    The torque of a weight behind several joints is the slope of its height. That is a sum of such products,
-    however the joints lie to each other.
+    Of several joints their cosines and sines multiply this one's: the torque of a weight is the slope of its
+    height, and a sum of such products however the joints lie to each other.
     """
-    turn = (view.turn or 1.0) / (2 * np.pi)
-    out = [("cos", np.cos(view.x / turn)), ("sin", np.sin(view.x / turn))]
-    for joint in (c for c in JOINTS if c in view.columns):
-        angle = view.columns[joint] / turn
-        both = (("cos", np.cos(angle)), ("sin", np.sin(angle)))
+    turn, carried = (view.turn or 1.0) / (2 * np.pi), view.columns.get("load", 1.0)
+    joints = [c for c in JOINTS if c in view.columns]
+    angles = {"": view.x} if len(joints) != 1 else {"": view.x, "_joint": view.x + view.columns[joints[0]]}
+    sides = (("cos", np.cos), ("sin", np.sin))
+    out = [(f"{side}{which}", of(x / turn)) for which, x in angles.items() for side, of in sides]
+    for joint in joints if len(joints) > 1 else []:
+        both = [(side, of(view.columns[joint] / turn)) for side, of in sides]
         out += [(f"{name}_{side}_{joint}", x * wave) for side, wave in both for name, x in out]
-    carried = view.columns.get("load", 1.0)
     return [(f"gravity_{name}", view.unit, carried * x) for name, x in out]
 
 

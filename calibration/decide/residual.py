@@ -197,7 +197,8 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
     findings: list[Finding] = []
     floor = s.problem.floor
     little = bool(floor) and left_over(s, scene, floor) is None
-    if little and s.chosen:  # the names leave what is not called missing either
+    within = scene.force and bool(floor) and s.held.after <= floor
+    if little and (s.chosen or within):  # what the names leave, or the floor holds, is not called missing
         return s, s, []
     for _ in range(MOST[scene.force]):
         scene.model = np.asarray(together.columns @ together.after.beta)
@@ -208,7 +209,7 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         beside_names = replace(s.problem, base=together.columns, base_phases=own)
         more = select(beside_names, offered, most=1, before=s.looked_at)
         s.refused += more.refused
-        # what the floor may hold is no function of anything, unless most of it goes with that
+        # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):
             break
         kept = leave_out(s, displaced(more.chosen[0])) if not findings else s

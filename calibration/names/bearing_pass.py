@@ -28,6 +28,8 @@ NARROW = 0.2
 # rollers that pass in a turn of a shaft: a bearing has 7 to 30, six tenths of which pass (Harris, Rolling
 # Bearing Analysis, 25). ASSUMPTION: slewing rings, which have more, sit on shafts that turn slowly
 MOST_ROLLERS = 18.0
+# turns of a bearing's cage, its slowest part, per turn of its shaft: 0.35 to 0.45 (Harris). ASSUMPTION: less
+CAGE = 0.3
 # lines that are tried of a drive with one motor. ASSUMPTION
 MOST = 6
 # harmonics of an axis' stage at least, at which no line is free. ASSUMPTION
@@ -86,14 +88,16 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
         return f
     f = replace(f, note=f"period {(s.view.turn or 1.0) / order:.5g} {s.angle_unit}")
     stage, harmonic = _harmonic_of(f, s)
-    quickest = max((s.turn / g.period for g in s.view.rig.stages if g.period), default=0.0)
-    if stage is None and has_train(s) and order <= MOST_ROLLERS * quickest:
+    turning = [s.turn / g.period for g in s.view.rig.stages if g.period]
+    slow = bool(turning) and order < CAGE * min(turning)
+    if stage is None and has_train(s) and not slow and order <= MOST_ROLLERS * max(turning):
         return f
     name = _called(stage, f)
     alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f), NAME.name]) if x != name]
     if stage is None:
         gears = replace(f, name=name, stage=None, equivalent=alike)
-        table = "no declared stage turns quicker" if s.view.rig.stages else "no gear table was given"
+        declared = f"{'every' if slow else 'no'} declared stage turns quicker"
+        table = declared if s.view.rig.stages else "no gear table was given"
         return gears.noted(f"{table}, so its stage cannot be named")
     sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
     shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)

@@ -19,8 +19,10 @@ from calibration.statistics.regression import solve
 
 PASSED = "bearing_pass"  # at an order of no stage
 EFFORTS = ("effort", "current", "force", "voltage")  # responses behind which something may be added
-# cycles within a file before a frequency is a frequency. ASSUMPTION
+# cycles within the log before a frequency is a frequency. ASSUMPTION
 TURNS = 6.0
+# likewise within a file: fewer are a walk. ASSUMPTION
+IN_A_FILE = 3.0
 # harmonics of a square wave. definition
 ODD = (1, 3, 5, 7, 9)
 # times that a file repeats its motion: with fewer no frequency lies between two of its multiples. ASSUMPTION
@@ -55,7 +57,8 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     v = s.view
     files = s.problem.session
     t = v.t[v.rows]
-    length = min(float(t[files == k].max()) for k in np.unique(files))
+    lengths = [float(t[files == k].max()) for k in np.unique(files)]
+    length = min(lengths)
     if length <= 0:
         return []
     top, lag = 0.5 / (v.period_s * max(v.step, 1)), repeat_lag(v)
@@ -65,7 +68,8 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
         most = min(most, STRONG)
     multiples: Array = np.arange(1, most + 1) * np.float64(repeats)
     avoid = multiples[[_power(s, follows, f) > _power(s, s.residual, f) for f in multiples]]
-    want = Wanted(span=length, least=TURNS / length, most=5, avoid=avoid, large_first=large_first)
+    least = max(TURNS / sum(lengths), IN_A_FILE / length)
+    want = Wanted(span=length, least=least, most=5, avoid=avoid, large_first=large_first)
     out, count = [], len(np.unique(files))
     few, more = count <= FEW, {"kind": "line", "per_run": count > 1}
     for f in spectral_lines(s, t, want):

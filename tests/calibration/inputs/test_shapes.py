@@ -160,31 +160,44 @@ def test_a_gain_per_file_and_a_load_per_file(tmp_path: Path) -> None:
         read_drive([tmp_path / "other.csv"], rig)
 
 
-@pytest.mark.parametrize("joints", [1, 2])
-def test_other_joints_angles_turn_gravity(tmp_path: Path, joints: int) -> None:
-    """Of an arm whose axes lie at any angle the weight's torque is the slope of its height, from matrices."""
-    columns = COLUMNS + "".join(
-        f"  {name}: {{column: q{k}, unit: rad}}\n" for k, name in enumerate(("joint", "joint2")[:joints])
-    )
+def test_a_parallel_joints_angle_turns_gravity(tmp_path: Path) -> None:
+    columns = COLUMNS + "  joint: {column: q2, unit: rad}\n"
     more = TAIL.replace("viscous", "gravity")
     (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{more}", encoding="utf-8")
-    others = [0.7 * np.sin(2.3 * T), 0.9 * np.sin(1.1 * T + 1.0)][:joints]
+    other = 0.7 * np.sin(2.3 * T)
+    effort = 5.0 * np.sin(X + other) + 2.0 * np.cos(X) + 0.1
+    (tmp_path / "a.csv").write_text(rows(T, X, effort, other, head="t,x,u,q2"), encoding="utf-8")
+    rig = load_rig(tmp_path / "rig.yaml")
+    records = read_drive([tmp_path / "a.csv"], rig).records
+    p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
+    found, left = p.plain_fit(p.train)
+    sizes = [found[k] for k in ("gravity_sin_joint", "gravity_cos", "gravity_cos_joint", "gravity_sin")]
+    assert sizes == pytest.approx([5.0, 2.0, 0.0, 0.0], abs=0.05)  # what the filter takes off the sines
+    assert np.std(left[p.train]) < 0.01
+
+
+def test_two_joints_that_lie_anyhow_turn_gravity(tmp_path: Path) -> None:
+    """The weight's torque is the slope of its height, from rotation matrices."""
+    columns = COLUMNS + "".join(f"  {name}: {{column: {name}, unit: rad}}\n" for name in ("joint", "joint2"))
+    more = TAIL.replace("viscous", "gravity")
+    (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{columns}{more}", encoding="utf-8")
+    others = [0.7 * np.sin(2.3 * T), 0.9 * np.sin(1.1 * T + 1.0)]
     axes = [Rotation.from_euler("xyz", [0.4, -0.3, 0.2]), Rotation.from_euler("xyz", [-0.8, 0.5, 0.1])]
 
     def height(x: np.ndarray) -> np.ndarray:
         tip = Rotation.from_euler("z", x[:, None]).apply([1.0, 0.3, 0.2])
-        for angle, tilt in zip(others, axes, strict=False):
+        for angle, tilt in zip(others, axes, strict=True):
             tip = Rotation.from_euler("z", angle[:, None]).apply(np.add(tilt.apply(tip), [0.2, 0.0, 0.1]))
         return np.asarray(5.0 * tip[:, 1])
 
     effort = (height(X + 1e-5) - height(X - 1e-5)) / 2e-5 + 0.1
-    head = ",".join(["t", "x", "u", *(f"q{k}" for k in range(joints))])
-    (tmp_path / "a.csv").write_text(rows(T, X, effort, *others, head=head), encoding="utf-8")
+    text = rows(T, X, effort, *others, head="t,x,u,joint,joint2")
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
     rig = load_rig(tmp_path / "rig.yaml")
     records = read_drive([tmp_path / "a.csv"], rig).records
     p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
     _, left = p.plain_fit(p.valid)
-    assert p.base.shape[1] == 2 * 3**joints + 1
+    assert p.base.shape[1] == 2 * 3**2 + 1
     assert np.std(left[p.valid]) < 0.01 * np.std(p.y[p.valid])  # what the filter takes off the waves
 
 
