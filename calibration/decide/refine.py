@@ -56,12 +56,14 @@ def refine(rest: Rest, c: Candidate) -> Candidate:
     reach = np.array(c.steps) * limits.REFINE_REACH
     for _ in range(limits.REFINE_ROUNDS):
         for k in range(len(at)):
-            for offset in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS):
-                trial = at.copy()
-                trial[k] += offset
-                value = rest.taken(shape(trial))
-                if value > best:
-                    best, at = value, trial
+            one = np.arange(len(at)) == k
+            trials = [at + d * one for d in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS)]
+            values = [rest.taken(shape(trial)) for trial in trials]
+            if (most := max(values)) >= best:  # an edge between two rows may lie anywhere between them
+                best, at = (
+                    most,
+                    np.mean([x for x, v in zip(trials, values, strict=True) if v == most], axis=0),
+                )
         reach /= limits.REFINE_REACH
     return c.moved(at)
 

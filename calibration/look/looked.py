@@ -187,10 +187,14 @@ def missing_over(b: Balance, places: Sequence[Place], stacked: int = 1) -> Left 
 def unnamed_where_missing(
     effects: list[Finding], needs: Sequence[str], balances: Sequence[Balance]
 ) -> tuple[list[Finding], list[str]]:
-    """What stays far above the floor without any name is `unknown` where it has a domain, else a need."""
+    """What stays far above the floor without any name is `unknown`, else a need.
+
+    It is so over its domain, or over time where it is much and hangs on nothing that the log holds.
+    """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects and not needs:
-        effects = [Finding(UNKNOWN, b.key, m.domain, note=b.still) for b, m in large if m.domain]
+        over = [(b, m.domain or ("time" if b.times > EFFECT else "")) for b, m in large]
+        effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))
 

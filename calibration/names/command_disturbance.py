@@ -33,6 +33,8 @@ STRONG = 50
 FEWEST_ROWS = 1000
 # share of such a line's resolution cell, for its refinement. ASSUMPTION
 STEP_CELLS = 0.05
+# likewise of a square, which rows between its edges do not tell. ASSUMPTION
+EDGE_CELLS = 0.25
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
 PHASES = 17
 # files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
@@ -126,8 +128,8 @@ def _of_volts(s: Scene) -> list[Candidate]:
     for f0, square in product(standing_out(added[rows], since[rows], run[rows], want), (False, True)):
         at = {"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")}
         more: dict[str, Any] = {"frequency": f0, "sign": 1, "searched": 1 + len(np.unique(run))}
-        wave = _wave(s, added, volts, square)
-        out.append(tried(NAME.name, wave, "amplitude", at=at, steps=(STEP_CELLS / want.span,), **more))
+        wave, step = _wave(s, added, volts, square), (EDGE_CELLS if square else STEP_CELLS) / want.span
+        out.append(tried(NAME.name, wave, "amplitude", at=at, steps=(step,), **more))
     return out
 
 
@@ -165,7 +167,9 @@ def _phase(x: Array, y: Array, square: bool) -> float:
 
     reach = np.pi / 2
     for _ in range(3):  # the fundamental of uneven rows can be off by a good part of a quarter
-        best = max(best + reach * np.linspace(-1, 1, PHASES), key=explained)
+        tried = best + reach * np.linspace(-1, 1, PHASES)
+        gains = np.array([explained(phase) for phase in tried])
+        best = float(np.mean(tried[gains == gains.max()]))  # its edges may lie anywhere between two rows
         reach *= 2.0 / PHASES
     return best
 

@@ -33,7 +33,7 @@ def test_a_log_without_an_effect_is_answered_nothing_and_recalibrates_the_declar
 ) -> None:
     report = answer(tmp_path, [])
     assert report["verdict"] == "nothing" and report["effects"] == []
-    model = load()
+    model = load(default_files()["low_preload"])
     friction = model.axes.ra.friction
     for name, true in (
         ("coulomb", friction.coulomb.si),
