@@ -9,7 +9,7 @@ from scipy.ndimage import convolve1d
 
 from calibration.arrays import Array, Mask
 from calibration.balances.filters import by_piece, smooth
-from calibration.balances.noise import position_noise, row_to_row
+from calibration.balances.noise import row_to_row
 from calibration.balances.thresholds import FEWEST_FILES, FEWEST_ROWS, LEAST_SCALE
 from calibration.balances.view import View
 from calibration.statistics.regression import gls
@@ -88,7 +88,7 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     error = max(error, _scatter(view.file[rows], free, moved, train))
     last = gls(moved, free[:, :2], train, 0, block)
     b, c = rms(before.residual[test]), rms(last.residual[test])
-    noise = row_to_row(view.columns["velocity"], view.ok), position_noise(view.x, view.file) / view.period_s
+    noise = row_to_row(view.columns["velocity"], view.ok), view.noise / view.period_s
     passed = (_passed(f, sigma) for f in (_over_two_rows, np.gradient))
     floor = float(np.hypot.reduce([x * gain for x, gain in zip(noise, passed, strict=True)]))
     late = (

@@ -94,7 +94,7 @@ def passed(view: View, full: Array, beside: Array | None = None) -> float | None
 
 def _bent(view: View, by: Filter) -> float:
     """The position's noise as an acceleration behind a filter."""
-    return position_noise(view.x, view.file) * float(np.sqrt(by.bends)) / view.period_s**2
+    return view.noise * float(np.sqrt(by.bends)) / view.period_s**2
 
 
 def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
@@ -109,7 +109,7 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
         own = max(own, step * ROUNDING * float(np.sqrt(view.filter.passes)))
     bent = abs(declared.get("inertia", 0.0)) * _bent(view, Filter(view.wide))
     known = None if own is None else float(np.hypot(own, bent))
-    coulomb, noise = declared.get("coulomb", 0.0), position_noise(view.x, view.file)
+    coulomb, noise = declared.get("coulomb", 0.0), view.noise
     if coulomb <= 0 or noise <= 0 or not view.dynamic or not p.valid.any():
         return known, None
     # the chance that noise of two places, here and where it turned, hides the way; friction is then twice off
@@ -127,8 +127,8 @@ def _of_two(view: View) -> float | None:
         return None
     gain, ratio = abs(view.response.gain), abs(view.response.ratio or 1.0)
     steps = view.quanta.get("position"), view.quanta.get(view.response.channel)
-    own = max(position_noise(second, view.file), (steps[1] or 0.0) * ROUNDING)
-    noise = float(np.hypot(own * gain, ratio * position_noise(view.x, view.file)))
+    own = position_noise(second, view.file, steps[1])
+    noise = float(np.hypot(own * gain, ratio * view.noise))
     if view.sigma <= 0 or steps == (None, None):
         return noise * float(np.sqrt(view.filter.passes))
     path = smooth(view.x, view.segment, 2 * view.sigma)  # the log's own motion, rounded from other origins

@@ -54,11 +54,14 @@ def row_to_row(x: Array, rows: Mask) -> float:
     return rms(fourth) / float(np.sqrt(comb(8, 4))) if len(fourth) > FEWEST_FOR_A_SCATTER else float("nan")
 
 
-def position_noise(x: Array, file: NDArray[np.int64]) -> float:
-    """rms of the position's white noise, from its fourth differences, and of its rounding."""
+def position_noise(x: Array, file: NDArray[np.int64], step: float | None = None) -> float:
+    """rms of the position's white noise, from its fourth differences, and of its rounding.
+
+    step: of the sensor, where x was put between its rows and has none itself.
+    """
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
     noise = by_median(fourth) / np.sqrt(comb(8, 4))
-    step = quantum(x)
+    step = step or quantum(x)
     if step is None:
         steps = np.abs(np.diff(x))
         steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently

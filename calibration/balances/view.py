@@ -109,9 +109,14 @@ class View:
         return self.rig.columns["position"].unit
 
     @property
+    def noise(self) -> float:
+        """rms of the position's noise and rounding, position units."""
+        return position_noise(self.x, self.file, self.quanta.get("position"))
+
+    @property
     def resolved(self) -> float:
         """Travel, position units, below which what happens after a reversal is the sensor's."""
-        return RESOLVED * float(np.sqrt(12.0)) * position_noise(self.x, self.file)
+        return RESOLVED * float(np.sqrt(12.0)) * self.noise
 
     @property
     def top(self) -> float:
@@ -164,7 +169,10 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     dynamic = response.is_force and (heavy or response.channel == "acceleration")
     apart = gap if dynamic else gap & ~_stood_over(columns["position"], gap, rig)
     fresh = np.concatenate([[True], (np.diff(file) != 0) | (apart[1:] != apart[:-1])])
-    sigma = _sigma(columns["position"], file, period, rig, dynamic)
+    # as they were logged: on a grid of its own a column has none
+    quanta = {k: step for k in columns if (step := quantum(numbers(records, k))) is not None}
+    noise = position_noise(columns["position"], file, quanta.get("position"))
+    sigma = _sigma(columns["position"], file, noise, period, rig, dynamic)
     view = View(
         rig=rig,
         response=response,
@@ -181,8 +189,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         dynamic=dynamic,
         rates=sigma if dynamic else 0.0,
         turn=rig.turn or units_per_turn(rig.columns["position"].unit),
-        # as they were logged: on a grid of its own a column has none
-        quanta={k: step for k in columns if (step := quantum(numbers(records, k))) is not None},
+        quanta=quanta,
     )
     _motion(view, sigma)
     view.run = _runs(view, label)
@@ -229,11 +236,10 @@ def _stood_over(x: Array, gap: Mask, rig: Rig) -> Mask:
     return out
 
 
-def _sigma(x: Array, file: NDArray[np.int64], period: float, rig: Rig, dynamic: bool) -> float:
-    """Rows: wide enough for the position's noise to be a small part of the acceleration."""
+def _sigma(x: Array, file: NDArray[np.int64], noise: float, period: float, rig: Rig, dynamic: bool) -> float:
+    """Rows: wide enough for the position's `noise` to be a small part of the acceleration."""
     if rig.smooth_s is not None:
         return rig.smooth_s / WINDOW / period
-    noise = position_noise(x, file)
     sigma = LEAST
     while sigma < MOST:
         a = np.concatenate([np.diff(gaussian_filter1d(x[i:j], sigma), 2) for i, j in pieces(file)])
@@ -258,7 +264,7 @@ def _passing(x: Array, file: NDArray[np.int64], rig: Rig, sigma: float) -> float
 
 def acceleration(view: View) -> Array:
     """Full-rate acceleration (n,), smoothed until the position's noise is a small part of it."""
-    width = _sigma(view.x, view.file, view.period_s, view.rig, True)
+    width = _sigma(view.x, view.file, view.noise, view.period_s, view.rig, True)
     return smooth(view.second(view.x), view.segment, width)
 
 
@@ -277,7 +283,7 @@ def _motion(view: View, sigma: float) -> None:
     view.since = since_reversal(soft, view.direction, view.file)
     if view.dynamic:  # a driven axis also stands still: there its friction has no direction
         fade(view, STANDSTILLS[3])
-        noise = position_noise(view.x, view.file) / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
+        noise = view.noise / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
         view.slow = max(SURE_Z * noise, SLOWEST * view.top)
 
 

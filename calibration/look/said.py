@@ -86,7 +86,8 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
         return view.columns["temperature"][at], "temperature, degC"
     effort = next((k for k in WINDS if k in view.columns), "")
     if c.domain == "current" and effort:
-        return view.at(view.columns[effort]), f"{effort}, {view.rig.columns[effort].unit}"
+        said = view.rig.columns.get(effort)  # an axis log's columns are its format's
+        return view.at(view.columns[effort]), f"{effort}, {said.unit}" if said else effort
     table = {
         **dict.fromkeys(("axis_angle", "motor_angle"), (size * view.x, f"position, {unit}")),
         "velocity": (size * view.speed, f"speed, {unit}/s"),

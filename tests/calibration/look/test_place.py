@@ -1,0 +1,20 @@
+"""Signals that effects are drawn over, of an axis log too, whose columns no rig file declares."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from calibration.look.said import place_of
+from calibration.names.candidates import candidate
+from plant.effects import REGISTRY
+from tests.calibration.names.test_volts import scene
+
+
+@pytest.mark.parametrize("name", sorted(REGISTRY))
+def test_every_name_has_a_place_in_an_axis_log(name: str) -> None:
+    view = scene(2).view
+    effort = np.zeros(len(view.t))
+    view = replace(view, columns={**view.columns, "effort": effort, "current": effort})
+    x, label = place_of(view, candidate(name, np.ones((len(view.rows), 1)), ("size", "1")))
+    assert len(x) == len(view.rows) and label
