@@ -6,6 +6,7 @@ anew, the rule asked again.
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -134,16 +135,22 @@ def within_bounds(resolved: float) -> Rule:
     return each(why)
 
 
-@each
-def cancelled(s: Selection, k: int) -> str:
-    """An effect of which another one takes most away again: neither is as large as it is said to be."""
-    rows = s.problem.train
-    own = s.effect(k)[rows]
-    for j, other in enumerate(s.candidates):
-        theirs = s.effect(j)[rows]
-        if j != k and np.std(own + theirs) < limits.CANCELS * min(float(np.std(own)), float(np.std(theirs))):
-            return f"cancels against {other.say()}"
-    return ""
+def cancelling(s: Selection) -> tuple[int, int] | None:
+    """Two effects of which one takes most of the other away: neither is as large as it is said to be."""
+    each_effect = [s.effect(k)[s.problem.train] for k in range(len(s.chosen))]
+    for j, k in combinations(range(len(s.chosen)), 2):
+        one, other = each_effect[j], each_effect[k]
+        if np.std(one + other) < limits.CANCELS * min(float(np.std(one)), float(np.std(other))):
+            return j, k
+    return None
+
+
+def cancelled(s: Selection) -> tuple[int, str] | None:
+    """Of two effects that cancel each other the one whose absence leaves less on held-out rows."""
+    if (pair := cancelling(s)) is None:
+        return None
+    gone = min(pair, key=lambda k: float(np.nan_to_num(_left(s.without(k)))))
+    return gone, f"cancels against {s.candidates[sum(pair) - gone].say()}"
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:

@@ -10,6 +10,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import FEWEST_MOVING
 from calibration.balances.torque import Torque, Transmission, torque_problem
 from calibration.decide.broadband import wind
+from calibration.decide.rules import cancelling
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_BLOCKS, SAME_ORDER_SHARE
@@ -106,7 +107,12 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
     if denied := {c.name for c, beta in s.fitted if volts_deny(result, c, float(beta[0]))}:
         fresh = [("T", name, DENIED) for name in sorted(denied)]
         result.refused += [x for x in fresh if x not in result.refused]
-        s = select(p, [c for c in candidates if c.name not in denied], result.rng)
+        candidates = [c for c in candidates if c.name not in denied]
+        s = select(p, candidates, result.rng)
+    if pair := cancelling(s):  # again with either, which may have been bent by the other
+        names = [s.candidates[k].name for k in pair]
+        without = [select(p, [c for c in candidates if c.name != name], result.rng) for name in names]
+        s = min(without, key=lambda one: one.held.after)
     return s, whole, moving
 
 
