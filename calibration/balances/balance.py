@@ -44,7 +44,7 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
         valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
     if not view.dynamic and response.is_force:
         valid &= np.abs(view.direction[at]) > 0
-    held = _held(view, records, hold_out)
+    held = _held(view, records, hold_out, valid)
     period, session = view.period_s * view.step, view.file[at]
     problem = Problem(
         channel="T" if response.is_force else "K",
@@ -168,8 +168,9 @@ def _unit_of(view: View, channel: str) -> str:
     return view.rig.columns[channel].unit if channel in view.rig.columns else "1"
 
 
-def _held(view: View, records: list[Run], names: list[str]) -> Mask:
-    """Named files; of three and more one that the others cover; else the end of every run."""
+def _held(view: View, records: list[Run], names: list[str], valid: Mask) -> Mask:
+    """Named files; of three and more one that the others cover; else the end of the `valid` rows of every
+    run."""
     session, run = view.file[view.rows], view.run[view.rows]
     if names:
         return np.isin(session, [k for k, r in enumerate(records) if r.among(names)])
@@ -177,7 +178,7 @@ def _held(view: View, records: list[Run], names: list[str]) -> Mask:
         return np.asarray(session == _covered(view, session, len(records)))
     held = np.zeros(len(run), dtype=bool)
     for label in np.unique(run):
-        rows = np.flatnonzero((run == label) & view.ok[view.rows])  # a rest between two runs has none to hold
+        rows = np.flatnonzero((run == label) & valid)  # a rest has none to hold
         last = rows[int(len(rows) * (1 - view.rig.hold_out)) :]
         if len(last):
             held[last[0] : last[-1] + 1] = run[last[0] : last[-1] + 1] == label

@@ -26,6 +26,8 @@ DRIFT_TURNS = 2.0
 LEAST_DEGREE = 2
 # s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
 SLOWEST_S = 663.0
+# blocks in a turn of the slowest period, 40 s of a mount's: air and guiding forget sooner. ASSUMPTION
+PER_BLOCK = 16.6
 # pieces of the longest section, each held out in its turn, where it has fewer turns. ASSUMPTION
 LEAST_PIECES = 3
 # groups of pieces, where there are more: every sixth piece is held out together. ASSUMPTION
@@ -97,7 +99,7 @@ def guide_problem(
         slow=not hold_out,
         period_s=period,
         ar_order=3,
-        block_s=max(12 * period, 40.0),
+        block_s=max(12 * period, slowest_s / PER_BLOCK),
         fresh=fresh,
         domains={"clock": rows["clock"]} if whole else {},
         floor=by_median(bent - np.median(bent)) / float(np.sqrt(6)) if len(bent) else 0.0,
