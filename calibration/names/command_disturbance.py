@@ -60,8 +60,9 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     files = s.problem.session
     t = v.t[v.rows]
     lengths = [float(t[files == k].max()) for k in np.unique(files)]
-    length = min(lengths)
-    if length <= 0:
+    length, train = min(lengths), s.problem.train
+    fitted = min((float(np.ptp(t[train & (files == k)])) for k in np.unique(files[train])), default=0.0)
+    if fitted <= 0:
         return []
     top, lag = 0.5 / (v.period_s * max(v.step, 1)), repeat_lag(v)
     repeats = 1.0 / (lag * v.period_s) if lag else 0.0  # Hz
@@ -86,7 +87,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
 
             rings = len(overtones) == 1 and not MODE.lacks(s)
             more["twins"] = (MODE.name, *places) if rings else places
-            at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / length, ("amplitude", s.unit)
+            at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / fitted, ("amplitude", s.unit)
             out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))
     return out
 
