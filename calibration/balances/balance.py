@@ -64,7 +64,7 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
     if _own_offsets(view):
         problem.fresh = np.column_stack([(session == k).astype(float) for k in np.unique(session)])
     problem = with_slow_offset(problem, view, view.slow_offset)
-    return problem if hold_out or len(records) < FEWEST_FILES else problem.in_turn()
+    return problem.told() if hold_out or len(records) < FEWEST_FILES else problem.in_turn()
 
 
 def _memory(view: View) -> float:

@@ -87,12 +87,19 @@ class Problem:
 
     def in_turn(self) -> Problem:
         """With every session held out in its turn, on rows of which the others tell the declared terms."""
+        return replace(self, turned=np.logical_or.reduce([part._told for part in self.turns]))
+
+    def told(self) -> Problem:
+        """With held-out rows of which the fitted ones tell the declared terms: no others are judged."""
+        return replace(self, valid=self.valid & (~self.held | self._told))
+
+    @property
+    def _told(self) -> Mask:
+        others, mine = self.base[self.train], self.base[self.test]
+        own = np.zeros(self.base.shape[1], dtype=bool) if self.fresh is None else ~others.any(axis=0)
         rows = np.zeros(len(self.y), dtype=bool)
-        for part in self.turns:
-            others, mine = self.base[part.train], self.base[part.test]
-            own = np.zeros(self.base.shape[1], dtype=bool) if self.fresh is None else ~others.any(axis=0)
-            rows[part.test] = told(others[:, ~own], mine[:, ~own])
-        return replace(self, turned=rows)
+        rows[self.test] = told(others[:, ~own], mine[:, ~own])
+        return rows
 
     def design(self, chosen: Sequence[Candidate]) -> Array:
         """Base and chosen candidates side by side."""

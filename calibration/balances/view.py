@@ -167,12 +167,14 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     starts = np.array([r.start_s or 0.0 for r in records])
     heavy = "inertia" in (*rig.estimate, *rig.constants)
     dynamic = response.is_force and (heavy or response.channel == "acceleration")
-    apart = gap if dynamic else gap & ~_stood_over(columns["position"], gap, rig)
-    fresh = np.concatenate([[True], (np.diff(file) != 0) | (apart[1:] != apart[:-1])])
     # as they were logged: on a grid of its own a column has none
     quanta = {k: step for k in columns if (step := quantum(numbers(records, k))) is not None}
     noise = position_noise(columns["position"], file, quanta.get("position"))
     sigma = _sigma(columns["position"], file, noise, period, rig, dynamic)
+    if dynamic:
+        gap &= ~_filtered_over(gap, sigma)
+    apart = gap if dynamic else gap & ~_stood_over(columns["position"], gap, rig)
+    fresh = np.concatenate([[True], (np.diff(file) != 0) | (apart[1:] != apart[:-1])])
     view = View(
         rig=rig,
         response=response,
@@ -217,6 +219,14 @@ def _regular(record: Run, period: float) -> dict[str, Array]:
                 if not good[a] and b - a > SHORT:
                     ok &= (grid < t[a]) | (grid > t[b - 1])
     return out | {"gap": (wide & inside).astype(float), "ok": ok.astype(float)}
+
+
+def _filtered_over(gap: Mask, sigma: float) -> Mask:
+    """Rows of gaps that are shorter than the filter's standard deviation, rows: a row stands for as much."""
+    out = np.zeros(len(gap), dtype=bool)
+    for a, b in pieces(gap.astype(np.int64)):
+        out[a:b] = b - a < sigma
+    return out
 
 
 def _stood_over(x: Array, gap: Mask, rig: Rig) -> Mask:
