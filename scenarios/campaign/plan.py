@@ -57,7 +57,7 @@ class Plan:
     shares: npt.NDArray[np.float64]
     """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
     way: str
-    """Of sampling: grid, random, latin hypercube, sobol, or saltelli for Sobol indices."""
+    """Of sampling: grid, random, latin hypercube or sobol."""
     metrics: tuple[str, ...]
     keep: str
     time_s: float | None
@@ -178,25 +178,10 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
 
     if way == "latin hypercube":
         return np.asarray(qmc.LatinHypercube(width, rng=random).random(runs))
-    if way == "saltelli":
-        base = 1 << max(0, (runs // (width + 2)).bit_length() - 1)
-        both = qmc.Sobol(2 * width, rng=random).random(base)
-        return saltelli(both[:, :width], both[:, width:])
     drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
         max(0, (runs - 1).bit_length())
     )
     return drawn[:runs]
-
-
-def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """The runs that Sobol indices are made of (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259): two
-    samples (n, width), then for every input the first with that input's column of the second."""
-    blocks = [one, other]
-    for column in range(one.shape[1]):
-        mixed = one.copy()
-        mixed[:, column] = other[:, column]
-        blocks.append(mixed)
-    return np.concatenate(blocks)
 
 
 def _text(value: object) -> str:

@@ -11,7 +11,7 @@ from scenarios.campaign import figures, table
 from scenarios.campaign.calibration import FIELD
 from scenarios.campaign.figures import Columns, numbers
 from scenarios.campaign.plan import Plan
-from scenarios.campaign.sensitivity import Indices, Influence, influence, share, sobol
+from scenarios.campaign.sensitivity import Influence, influence, share
 from scenarios.lab.prepare import load
 from scenarios.language.document import Document
 from scenarios.run.evaluate import KINDS
@@ -31,7 +31,6 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     drawn = {
         "distributions": figures.distributions(columns, metrics, limits, units),
         "influences": figures.influences(found, [f"input: {each.name}" for each in plan.inputs]),
-        "indices": figures.indices(_indices(plan, columns, metrics), [each.name for each in plan.inputs]),
         "failures": figures.failures(columns, groups),
     }
     pictures = [
@@ -72,15 +71,6 @@ def _again(plan: Plan) -> str:
     """The calibration alone, as it is declared; the run's own numbers stand above it."""
     logs = " ".join(str(plan.file.parent / log) for log in plan.base[FIELD]["logs"])
     return f"schmidt calibrate {logs} --out again"
-
-
-def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
-    """Sobol indices of the metrics that every run of a `saltelli` sample has."""
-    if plan.way != "saltelli" or len(columns["key"]) < plan.count:
-        return []
-    order = np.argsort(np.array(columns["index"]))
-    found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
-    return [each for each in found if each is not None]
 
 
 def _influences(plan: Plan, columns: Columns, metrics: list[str]) -> list[Influence]:

@@ -127,9 +127,9 @@ def test_many_runs_have_the_interval_that_resampling_gives(monkeypatch: pytest.M
 
 
 def test_blocks_of_resamples_are_one_draw(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = np.concatenate(list(sensitivity._resamples(30, 30, 3)))
+    whole = np.concatenate(list(sensitivity._resamples(30, 3)))
     monkeypatch.setattr(sensitivity, "_BLOCK", 30 * 7)
-    parts = list(sensitivity._resamples(30, 30, 3))
+    parts = list(sensitivity._resamples(30, 3))
     assert len(parts) > 100
     assert np.array_equal(np.concatenate(parts), whole)
 
