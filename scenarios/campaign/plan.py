@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.campaign import calibration, inputs
+from scenarios.campaign import inputs
 from scenarios.lab.prepare import CAMPAIGNS, located
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
@@ -63,11 +63,6 @@ class Plan:
     time_s: float | None
 
     @property
-    def calibrates(self) -> bool:
-        """Whether its runs are calibrations, not scenarios."""
-        return calibration.FIELD in self.base
-
-    @property
     def count(self) -> int:
         """Planned runs."""
         return math.prod(len(each.values) for each in self.inputs) if self.way == "grid" else len(self.shares)
@@ -106,8 +101,10 @@ def load(file: Path) -> Plan:
     document = read(file)
     check(document, schema(SCHEMA_FILE))
     data = document.data
-    scenario = file.parent / data["scenario"] if "scenario" in data else file
-    plain = _base(data, scenario)
+    scenario = file.parent / data["scenario"]
+    base = read(scenario)
+    load_scenario(base)
+    plain = json.loads(json.dumps({**base.data, "_folder": str(scenario.parent.resolve())}, default=str))
     found = tuple(
         inputs.read(given, document.where(("inputs", index)), plain)
         for index, given in enumerate(data["inputs"])
@@ -138,35 +135,8 @@ def load(file: Path) -> Plan:
         keep=data.get("keep", "nothing"),
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
     )
-    first = plan.case(0).document
-    if plan.calibrates:
-        _check_calibration(document, first)
-    else:
-        load_scenario(Document(file, first, {}))  # the first case is a scenario, too
+    load_scenario(Document(file, plan.case(0).document, {}))  # the first case is a scenario, too
     return plan
-
-
-def _base(data: dict[str, Any], scenario: Path) -> dict[str, Any]:
-    """What the inputs change, and the folder its names are relative to."""
-    if calibration.FIELD in data:
-        return calibration.base(data[calibration.FIELD], scenario.parent)
-    base = read(scenario)
-    load_scenario(base)
-    plain = {**base.data, "_folder": str(scenario.parent.resolve())}
-    found: dict[str, Any] = json.loads(json.dumps(plain, default=_text))
-    return found
-
-
-def _check_calibration(document: Document, first: dict[str, Any]) -> None:
-    """Its logs are there, and no input wants what only a scenario has."""
-    for name in first[calibration.FIELD]["logs"]:
-        if not (document.file.parent / name).is_file():
-            raise ScenarioError(f"{document.where((calibration.FIELD, 'logs'))}: there is no file {name}")
-    for index, given in enumerate(document.data["inputs"]):
-        kind = next((word for word in ("parameter", "seed", "start", "fault") if word in given), None)
-        if kind is not None:
-            where = document.where(("inputs", index))
-            raise ScenarioError(f"{where}: a calibration has no {kind}; vary `plant` or a `field`")
 
 
 def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64]:
@@ -182,8 +152,3 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
         max(0, (runs - 1).bit_length())
     )
     return drawn[:runs]
-
-
-def _text(value: object) -> str:
-    """Dates of YAML as text."""
-    return value.isoformat() if hasattr(value, "isoformat") else str(value)

@@ -8,7 +8,6 @@ import numpy as np
 
 from host.logs.files import write_file
 from scenarios.campaign import figures, table
-from scenarios.campaign.calibration import FIELD
 from scenarios.campaign.figures import Columns, numbers
 from scenarios.campaign.plan import Plan
 from scenarios.campaign.sensitivity import Influence, influence, share
@@ -24,7 +23,7 @@ WORST = "worst.yaml"
 def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     """Draw and write everything from the table. wall_s, made: of this call, for the figures of speed."""
     columns = table.read(folder / table.TABLE)
-    limits, units = ({}, {}) if plan.calibrates else _expected(plan)
+    limits, units = _expected(plan)
     metrics = [name for name in columns if name.startswith("metric: ")]
     found = _influences(plan, columns, metrics)
     groups = _groups(plan, columns)
@@ -37,7 +36,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         picture(figure, folder / f"{name}.png") for name, figure in drawn.items() if figure is not None
     ]
     worst = _worst(plan, columns, limits)
-    if worst and not plan.calibrates:
+    if worst:
         _write_worst(plan, worst["index"], folder / WORST)
     passed = sum(map(bool, columns["passed"]))
     text = rendered(
@@ -49,7 +48,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         metrics=[_summary(columns, name, limits, units) for name in metrics],
         pictures=pictures,
         worst=worst,
-        repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
+        repeat=f"schmidt run {folder / WORST}",
         failures=Counter(filter(None, columns["failure"])).most_common(20),
         speed=_speed(columns, wall_s, made),
     )
@@ -65,12 +64,6 @@ def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]
         {e.name: (e.limit, e.upper) for e in expected},
         {name: unit for name, unit in units.items() if unit != "1"},
     )
-
-
-def _again(plan: Plan) -> str:
-    """The calibration alone, as it is declared; the run's own numbers stand above it."""
-    logs = " ".join(str(plan.file.parent / log) for log in plan.base[FIELD]["logs"])
-    return f"schmidt calibrate {logs} --out again"
 
 
 def _influences(plan: Plan, columns: Columns, metrics: list[str]) -> list[Influence]:

@@ -202,23 +202,3 @@ def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) 
     assert starts[2] - starts[0] == pytest.approx(turn * 60 / 360, abs=1)
     with pytest.raises(ScenarioError, match="beyond the soft limits"):
         load(campaign([{"start": "declination", "is": [-80]}], sample="grid"))
-
-
-def test_a_campaign_over_a_calibration_varies_its_plant_and_nothing_of_a_scenario(tmp_path: Path) -> None:
-    (tmp_path / "axis.csv").write_text("")
-    path = tmp_path / "many.yaml"
-    data = {
-        "name": "many",
-        "calibration": {"logs": ["axis.csv"], "plant": "low-preload"},
-        "inputs": [{"plant": FRICTION, "times": [0.9, 1.1]}],
-        "sample": "grid",
-    }
-    path.write_text(yaml.safe_dump(data))
-    values = [case.document["plant"]["overrides"][FRICTION] for case in cases(path)]
-    assert values[1] / values[0] == pytest.approx(1.1 / 0.9)
-    path.write_text(yaml.safe_dump({**data, "inputs": [{"seed": True, "is": [1]}]}))
-    with pytest.raises(ScenarioError, match="a calibration has no seed"):
-        load(path)
-    path.write_text(yaml.safe_dump({**data, "calibration": {"logs": ["gone.csv"]}}))
-    with pytest.raises(ScenarioError, match=r"there is no file gone\.csv"):
-        load(path)
