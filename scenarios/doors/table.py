@@ -56,14 +56,12 @@ def _can(asked: Asked, live: LiveNetwork) -> Door:
 
 def _serial(asked: Asked, live: LiveNetwork) -> Door:
     from scenarios.doors.serial_pty import PtyDoor
-    from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
+    from scenarios.doors.serial_tcp import TcpDoor
 
-    kinds: dict[str, type[PtyDoor | TcpDoor]] = {"pty": PtyDoor, "tcp": TcpDoor, "rfc2217": Rfc2217Door}
+    kinds: dict[str, type[PtyDoor | TcpDoor]] = {"pty": PtyDoor, "tcp": TcpDoor}
     kind, _, rest = asked.spec.partition(":")
     if kind not in kinds or not rest:
-        raise OptionError(
-            f'--serial "{asked.spec}": expected pty:DIR, tcp:[HOST:]PORT or rfc2217:[HOST:]PORT'
-        )
+        raise OptionError(f'--serial "{asked.spec}": expected pty:DIR or tcp:[HOST:]PORT')
     return kinds[kind](rest, live)
 
 
@@ -116,10 +114,9 @@ ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
         attach={"": "python-can: interface={word}, channel={rest}"},
     ),
     DoorKind(
-        name="serial", form="pty:DIR|tcp:PORT|rfc2217:PORT", make=_serial,
+        name="serial", form="pty:DIR|tcp:PORT", make=_serial,
         help="The RS232 lines: pseudo-terminals in DIR, or TCP ports from PORT on (five; final: twelve).",
-        attach={"pty": "{lines}", "tcp": "socket://{at} is {first}, and so on to {last}",
-                "rfc2217": "rfc2217://{at} is {first}, and so on to {last}"},
+        attach={"pty": "{lines}", "tcp": "socket://{at} is {first}, and so on to {last}"},
     ),
     DoorKind(
         name="hid", form="uhid|unix:PATH", make=_hid, help="The gateway's USB: /dev/hidrawN, or a socket.",
