@@ -66,10 +66,6 @@ class Telescope:
             self.house.stop()
         return job
 
-    def set_horizon(self, altitude_rad: float) -> None:
-        """Altitude below which nothing is gone to or tracked."""
-        self.observatory.horizon_rad = altitude_rad
-
     def target(self) -> Observed | None:
         """Where it is going to, or what it follows; None: neither."""
         track, now = self.drive.pointing.track, self.snapshot
