@@ -145,13 +145,12 @@ def _summary(
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:
-    cpu = numbers(columns, "cpu_s") if "cpu_s" in columns else np.zeros(1)
     simulated = numbers(columns, "simulated_s") if "simulated_s" in columns else np.zeros(1)
     return {
         "wall_s": wall_s,
         "made": made,
-        "cpu_s": float(np.nanmedian(cpu)),
+        "cpu_s": float(np.nanmedian(numbers(columns, "cpu_s"))),
         "simulated_h": float(np.nansum(simulated)) / 3600.0,
-        "machines": sorted({str(each) for each in columns.get("machine", []) if each}),
-        "compiled": sum(bool(each) for each in columns.get("compiled", [])),
+        "machines": sorted({str(each) for each in columns["machine"] if each}),
+        "compiled": sum(map(bool, columns["compiled"])),
     }

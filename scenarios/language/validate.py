@@ -2,7 +2,6 @@
 
 import difflib
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
@@ -74,26 +73,10 @@ def check(document: Document, language: dict[str, Any] | None = None) -> None:
     """
     validator = _validator()(language or schema())
     errors = validator.iter_errors(_plain(document.data))
-    problems = sorted(
-        {each for error in errors for each in _describe(document, error)} or _infinite(document)
-    )
+    problems = sorted({each for error in errors for each in _describe(document, error)})
     if problems:
         first, *others = (text for _, _, text in problems)
         raise beside(ScenarioError(first), others, str(document.file))
-
-
-def _infinite(document: Document) -> Iterator[Problem]:
-    """Numbers that are none: `.inf` and `.nan` pass every bound of a schema."""
-    waiting: list[tuple[Path_, Any]] = [((), document.data)]
-    while waiting:
-        path, value = waiting.pop()
-        if isinstance(value, float) and not math.isfinite(value):
-            field = ".".join(str(part) for part in path)
-            yield _problem(document, path, f"{field}: {value} is no number to work with")
-        if isinstance(value, Mapping):
-            waiting += [((*path, str(key)), each) for key, each in value.items()]
-        elif isinstance(value, list):
-            waiting += [((*path, index), each) for index, each in enumerate(value)]
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
