@@ -61,7 +61,7 @@ class Telescope:
         job = self.drive.stop()
         for device in AXES.values():
             self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
-        self.focuser.halt()
+        self.focuser.hold()
         if self.house.boards(DOME):
             self.house.stop()
         return job

@@ -2,12 +2,13 @@
 
 import asyncio
 from collections.abc import Callable
+from html import escape
 
 from nicegui import ui
 
 from host.console.plots import plots
 from host.console.runs import RecordedRuns
-from host.console.shell import Shell, box, button, escape
+from host.console.shell import Shell, box, button
 
 REPORTS = "/reports"
 

@@ -203,7 +203,7 @@ def test_H3_focus_moves_steps_holds_and_frees(rig: Rig) -> None:
     rig.do(lambda t: t.focuser.move_to(-700))
     rig.advance(0.5)
     assert rig.telescope.snapshot.focus and rig.telescope.snapshot.focus.moving
-    rig.run(lambda t: t.focuser.halt())
+    rig.run(lambda t: t.focuser.hold())
     rig.advance(1.0)
     focus = rig.telescope.snapshot.focus
     assert focus and not focus.moving and -700 < focus.half_steps < 97
