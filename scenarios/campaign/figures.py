@@ -62,7 +62,7 @@ def influences(found: list[Influence], inputs: list[str]) -> Figure | None:
         return None
     strong.sort(key=lambda each: (each.metric, -abs(each.value)), reverse=True)
     figure = new_figure(0.27 * len(strong) + 1.0)
-    view = axes(figure, 1, 1, 1, xlabel="Spearman's rank correlation, 95 % bootstrap interval")
+    view = axes(figure, 1, 1, 1, xlabel="Spearman's rank correlation, 95 % interval")
     palette = dict(zip(inputs, _PALETTE * (1 + len(inputs) // len(_PALETTE)), strict=False))
     for place, each in enumerate(strong):
         sure = each.low > 0.0 or each.high < 0.0
