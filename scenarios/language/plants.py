@@ -9,7 +9,8 @@ from scenarios.language.document import ScenarioError
 from scenarios.language.validate import nearest
 
 if TYPE_CHECKING:
-    from plant.model import EffectModel, PlantModel
+    from plant.model import PlantModel
+    from plant.parts import EffectModel
 
 
 def named(given: Any) -> dict[str, Any]:

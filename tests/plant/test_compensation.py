@@ -10,8 +10,8 @@ from boards.axis.compensator import Compensator
 from bus.protocol import HARMONICS
 from plant import compensation as written
 from plant.gears import ORDERS, RATIO
-from plant.model import Number, load, with_effects
-from plant.parts import EffectModel, PlantModel
+from plant.model import load, with_effects
+from plant.parts import EffectModel, Number, PlantModel
 from plant.units import ARCSEC
 from scenarios.language.configure import FORMAT, load_compensation
 from scenarios.language.document import ScenarioError

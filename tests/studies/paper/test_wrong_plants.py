@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from plant.model import Number, load, with_effects, with_value
+from plant.model import load, with_effects, with_value
+from plant.parts import Number
 from scenarios.studies.options import HIGH, LOW
 from scenarios.studies.paper.experiments import EXPERIMENTS
 from scenarios.studies.paper.starts import QUICK, Benches, viscous_only, with_inertia
