@@ -102,7 +102,7 @@ def test_a_wrong_table_is_wrong_by_what_was_asked(low: PlantModel, tmp_path: Pat
         (HEAD.replace("travel", "way"), "friction: field 'travel_arcsec' is missing"),
         (HEAD + "lines: [{order: 1}]", "lines.0: field 'cosine_steps' is missing"),
         (HEAD + "lines: [{order: -1, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: -1 is out of range"),
-        (HEAD + "lines: [{order: .nan, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: nan"),
+        (HEAD + "lines: [{order: .nan, cosine_steps: 1, sine_steps: 0}]", "nan is no number"),
         ("[", "not YAML"),
     ],
 )  # fmt: skip
