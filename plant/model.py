@@ -15,8 +15,8 @@ from plant.effects import REGISTRY
 from plant.parts import EffectModel, MountErrors, Number
 from plant.parts import PlantModel as PlantModel
 from plant.reading import ModelError as ModelError
-from plant.reading import Reader, nearest
-from plant.yamltext import TextError, check_yaml, read_text
+from plant.reading import Reader
+from plant.yamltext import TextError, check_yaml, nearest, read_text
 
 FILES = Path(__file__).parent / "files"
 DEFAULT = "low_preload_bridge"

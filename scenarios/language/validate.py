@@ -1,6 +1,5 @@
 """A document against the published schema; errors name file, line, field and the nearest valid word."""
 
-import difflib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -8,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from plant.yamltext import beside
+from plant.yamltext import beside, nearest
 from scenarios.language.document import Document, Path_, ScenarioError
 from scenarios.language.units import BASE, QUANTITIES, UnitError, parse, unit_of
 
@@ -77,15 +76,6 @@ def check(document: Document, language: dict[str, Any] | None = None) -> None:
     if problems:
         first, *others = (text for _, _, text in problems)
         raise beside(ScenarioError(first), others, str(document.file))
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """A hint that names the nearest valid word, or all of them when none is near."""
-    known = list(words)
-    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.5)
-    if near:
-        return f"did you mean {next(k for k in known if k.lower() == near[0])!r}?"
-    return "use one of " + ", ".join(known) if known else "none is allowed here"
 
 
 def _problem(document: Document, path: Path_, text: str, rank: int = 1) -> Problem:
