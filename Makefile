@@ -27,7 +27,13 @@ compiled: $(READY)
 
 # dist/: the wheel of this platform (manylinux where auditwheel can tell) and the pure one
 wheels: $(VENV)/.wheels
-	$(BIN)/python -m scenarios.native.wheels
+	rm -rf out/wheels
+	SCHMIDT_PURE=1 $(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir out/wheels .
+	SCHMIDT_PURE= $(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir out/wheels .
+	mkdir -p dist
+	cp out/wheels/*.whl dist
+	-PATH="$(CURDIR)/$(BIN):$$PATH" auditwheel repair --wheel-dir dist out/wheels/*linux*.whl && rm dist/*-linux_*.whl
+	@ls dist/*.whl; test $$(ls out/wheels/*.whl | wc -l) = 2 || (echo "schmidt: the compiled wheel is missing" && false)
 
 test: lint fast slow
 

@@ -12,58 +12,11 @@ from typing import Any
 import yaml
 
 from plant.effects import REGISTRY
-from plant.parts import (
-    Axes,
-    AxisModel,
-    Controller,
-    EffectModel,
-    Encoders,
-    Environment,
-    FocusModel,
-    Friction,
-    Function,
-    Gear,
-    Motor,
-    MountErrors,
-    Number,
-    Numerics,
-    PlantModel,
-    Stops,
-    Supply,
-)
-from plant.reading import ModelError, Reader, nearest
-from plant.yamltext import TextError, check_yaml, read_text
-
-__all__ = [
-    "Axes",
-    "AxisModel",
-    "Controller",
-    "EffectModel",
-    "Encoders",
-    "Environment",
-    "FocusModel",
-    "Friction",
-    "Function",
-    "Gear",
-    "ModelError",
-    "Motor",
-    "MountErrors",
-    "Number",
-    "Numerics",
-    "PlantModel",
-    "Stops",
-    "Supply",
-    "default_files",
-    "dump",
-    "dumps",
-    "get",
-    "load",
-    "loads",
-    "numbers",
-    "with_effects",
-    "with_mount_errors",
-    "with_value",
-]
+from plant.parts import EffectModel, MountErrors, Number
+from plant.parts import PlantModel as PlantModel
+from plant.reading import ModelError as ModelError
+from plant.reading import Reader
+from plant.yamltext import TextError, check_yaml, nearest, read_text
 
 FILES = Path(__file__).parent / "files"
 DEFAULT = "low_preload_bridge"

@@ -3,7 +3,6 @@ word.
 """
 
 import dataclasses
-import difflib
 import math
 from typing import Any, get_args, get_type_hints
 
@@ -15,6 +14,7 @@ from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import KINDS, STOPS
 from plant.parts import AxisModel, EffectModel, Function, Number, Stops
 from plant.units import UNITS, factor
+from plant.yamltext import nearest as nearest
 
 MAX_KNOTS = 32
 MAX_EFFECTS = 100
@@ -23,12 +23,6 @@ MAX_EFFECTS = 100
 
 class ModelError(ValueError):
     """A plant file that cannot be used: file, line, field and what was expected."""
-
-
-def nearest(word: str, choices: list[str]) -> str:
-    """Return a hint with the nearest valid word, or the list of all."""
-    close = difflib.get_close_matches(word, choices, 1, 0.5)
-    return f"did you mean '{close[0]}'?" if close else "expected one of: " + ", ".join(sorted(choices))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,6 +79,12 @@ class Reader:
         if word not in choices:
             raise self.fail(node, path, f"'{word}' is not known; " + nearest(word, choices))
         return word
+
+    def word(
+        self, given: dict[str, yaml.Node], path: str, field: str, choices: list[str], default: str
+    ) -> str:
+        """Return one word of a list at a field, or the default where it is absent."""
+        return self.choice(given[field], f"{path}.{field}", choices) if field in given else default
 
     def number(self, node: yaml.Node, path: str, unit: str, low: float, high: float) -> Number:
         """Return a number whose unit fits `unit` and whose value lies within the bounds (in `unit`)."""
@@ -159,11 +159,8 @@ class Reader:
         effect = REGISTRY[name]
         if name == "unknown":
             given = self.fields(node, path, ["name", "function"], ["enabled"])
-            return EffectModel(
-                name,
-                function=self.function(given["function"], path + ".function"),
-                enabled=self.flag(given, path),
-            )
+            function = self.function(given["function"], path + ".function")
+            return EffectModel(name, function=function, enabled=self.enabled(given, path))
         places = ["stage", "harmonic"] if effect.staged else []
         given = self.fields(node, path, ["name", *places[:1]], ["parameters", "enabled", *places[1:]])
         stage = (
@@ -183,13 +180,11 @@ class Reader:
             if "parameters" in given
             else {}
         )
-        return EffectModel(name, stage, harmonic, parameters, None, self.flag(given, path))
+        return EffectModel(name, stage, harmonic, parameters, None, self.enabled(given, path))
 
-    def flag(self, given: dict[str, yaml.Node], path: str) -> bool:
+    def enabled(self, given: dict[str, yaml.Node], path: str) -> bool:
         """Return `enabled`, true when absent."""
-        if "enabled" not in given:
-            return True
-        return self.choice(given["enabled"], path + ".enabled", ["true", "false"]) == "true"
+        return self.word(given, path, "enabled", ["true", "false"], "true") == "true"
 
     def parameters(self, node: yaml.Node, path: str, effect: Effect) -> dict[str, Number]:
         """Return an effect's parameters."""
@@ -207,13 +202,9 @@ class Reader:
         given = self.fields(node, path, ["target", "domain", "knots", "source"], optional)
         target = self.choice(given["target"], path + ".target", list(TARGETS))
         domain = self.choice(given["domain"], path + ".domain", list(DOMAINS))
-        kind = (
-            self.choice(given["interpolation"], path + ".interpolation", list(KINDS))
-            if "interpolation" in given
-            else "cubic"
-        )
+        kind = self.word(given, path, "interpolation", list(KINDS), "cubic")
         period = self.real(given["period"], path + ".period") if "period" in given else 0.0
-        motor = int(self.choice(given["motor"], path + ".motor", ["0", "1", "2"])) if "motor" in given else 0
+        motor = int(self.word(given, path, "motor", ["0", "1", "2"], "0"))
         rows = given["knots"]
         if kind == "stop" and domain != "axis_angle":
             raise self.fail(given["domain"], path + ".domain", "a sum of stops follows the axis_angle")

@@ -5,8 +5,9 @@ nested deeper than the parser's stack. Both are seen in the event stream, which 
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 import yaml
@@ -37,6 +38,15 @@ def beside(first: Exception, others: Sequence[str], place: str) -> Exception:
     if len(others) >= MOST_TOLD:
         first.add_note(f"{place}: and {len(others) - MOST_TOLD + 1} mistakes more")
     return first
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """A hint that names the nearest valid word, or all of them when none is near."""
+    known = {each.lower(): each for each in words}
+    near = get_close_matches(word.lower(), known, 1, 0.5)
+    if near:
+        return f"did you mean {known[near[0]]!r}?"
+    return f"use one of {', '.join(known.values())}" if known else "none is allowed here"
 
 
 def check_regular(path: Path) -> None:

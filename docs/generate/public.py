@@ -65,7 +65,6 @@ PUBLIC: dict[str, tuple[str, tuple[str, ...]]] = {
             "host.client:Client",
             "host.serial_link:SerialLink",
             "host.telescope.telescope:Telescope",
-            "host.telescope.desk:PlainDesk",
             "host.telescope.desk:AsyncDesk",
             "host.sky.observed:observe",
         ),

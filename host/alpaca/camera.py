@@ -1,8 +1,6 @@
 """ICameraV4: the telescope's camera and the guide camera, on the emulated sky."""
 
-from collections.abc import Callable
-
-from host.alpaca.device import Device, Get, Member, Put, fixed, missing, missing_put, table
+from host.alpaca.device import Device, Member, Put, fixed, missing, missing_put, of, stated, table
 from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.alpaca.slewing import pulse
@@ -68,10 +66,6 @@ class CameraDevice(Device):
         return Window(left=w["StartX"] * b, top=w["StartY"] * b, width=w["NumX"] * b, height=w["NumY"] * b)
 
 
-def _of(read: Callable[[CameraDevice], object]) -> Get:
-    return lambda device, _: read(device)
-
-
 def _array(device: CameraDevice, _: Parameters) -> Counts:
     return device.frame.counts
 
@@ -129,30 +123,30 @@ CameraDevice.members = table(
     *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
     *(Member(name, missing(name)) for name in _MISSING),
     *(Member(name, missing(name), missing_put(name)) for name in _MISSING_PUT),
-    *(Member(name, _of(lambda d: d.binning), _set_binning(name)) for name in ("BinX", "BinY")),
+    *(Member(name, of(lambda d: d.binning), _set_binning(name)) for name in ("BinX", "BinY")),
     *(Member(f"Max{name}", fixed(MOST_BINNING)) for name in ("BinX", "BinY")),
-    *(Member(name, _of(lambda d, name=name: d.window[name]), _set_window(name)) for name in (  # type: ignore[misc]
+    *(Member(name, of(lambda d, name=name: d.window[name]), _set_window(name)) for name in (  # type: ignore[misc]
         "StartX", "StartY", "NumX", "NumY")),
-    *(Member(name, _of(lambda d, name=name: d.state()[name])) for name in (  # type: ignore[misc]
+    *(Member(name, stated(name)) for name in (
         "CameraState", "CCDTemperature", "ImageReady", "IsPulseGuiding", "PercentCompleted")),
-    Member("CameraXSize", _of(lambda d: d.model.width)),
-    Member("CameraYSize", _of(lambda d: d.model.height)),
-    Member("ElectronsPerADU", _of(lambda d: d.model.gain_e_adu)),
+    Member("CameraXSize", of(lambda d: d.model.width)),
+    Member("CameraYSize", of(lambda d: d.model.height)),
+    Member("ElectronsPerADU", of(lambda d: d.model.gain_e_adu)),
     Member("ExposureMax", fixed(LONGEST_S)),
-    Member("ExposureMin", _of(lambda d: d.model.shortest_s)),
+    Member("ExposureMin", of(lambda d: d.model.shortest_s)),
     Member("ExposureResolution", fixed(0.0)),
-    Member("FullWellCapacity", _of(lambda d: d.model.full_well_e)),
+    Member("FullWellCapacity", of(lambda d: d.model.full_well_e)),
     Member("HasShutter", fixed(True)),
     Member("ImageArray", _array),
     Member("ImageArrayVariant", _array),
-    Member("LastExposureDuration", _of(lambda d: d.frame.seconds)),
-    Member("LastExposureStartTime", _of(_started)),
-    Member("MaxADU", _of(lambda d: d.model.most_adu)),
-    Member("PixelSizeX", _of(lambda d: d.model.pixel_m * 1e6)),
-    Member("PixelSizeY", _of(lambda d: d.model.pixel_m * 1e6)),
+    Member("LastExposureDuration", of(lambda d: d.frame.seconds)),
+    Member("LastExposureStartTime", of(_started)),
+    Member("MaxADU", of(lambda d: d.model.most_adu)),
+    Member("PixelSizeX", of(lambda d: d.model.pixel_m * 1e6)),
+    Member("PixelSizeY", of(lambda d: d.model.pixel_m * 1e6)),
     Member("ReadoutMode", fixed(0), _set_mode),
     Member("ReadoutModes", fixed(["normal"])),
-    Member("SensorName", _of(lambda d: d.model.sensor)),
+    Member("SensorName", of(lambda d: d.model.sensor)),
     Member("SensorType", fixed(0)),
     Member("AbortExposure", put=_abort),
     Member("PulseGuide", put=pulse),

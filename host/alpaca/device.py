@@ -4,7 +4,7 @@ import asyncio
 import importlib.metadata
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from host.alpaca.errors import (
     ACTION_NOT_IMPLEMENTED,
@@ -19,7 +19,6 @@ from host.telescope import AsyncDesk, Job, Refused, Snapshot, Telescope
 
 _HEARD_S, _LOOK_S = 3.0, 0.05
 """Wall time a connection waits for the boards at most; they send every 5 to 250 ms. ASSUMPTION."""
-T = TypeVar("T")
 Get = Callable[[Any, Parameters], Any]
 Put = Callable[[Any, Parameters], Coroutine[Any, Any, Any]]
 Act = Callable[[Telescope], object]
@@ -60,17 +59,17 @@ class Device:
         """The telescope at the last tick."""
         return self.desk.now
 
-    async def do(self, act: Callable[[Telescope], T]) -> T:
+    async def do(self, act: Act) -> None:
         """Have a command carried out, or raise `AlpacaError`."""
         try:
-            return await self.desk.do(act)
+            await self.desk.do(act)
         except Refused as refusal:
             raise of_refusal(refusal) from None
 
-    async def run(self, act: Callable[[Telescope], Job[T]]) -> T:
+    async def run(self, act: Callable[[Telescope], Job[Any]]) -> None:
         """The same, until it has ended."""
         try:
-            return await self.desk.run(act)
+            await self.desk.run(act)
         except Refused as refusal:
             raise of_refusal(refusal) from None
 
@@ -169,6 +168,16 @@ def table(*members: Member) -> dict[str, Member]:
 def fixed(value: object) -> Get:
     """A property that never changes."""
     return lambda _device, _: value
+
+
+def of(read: Callable[[Any], object]) -> Get:
+    """A property that is read from the device alone."""
+    return lambda device, _: read(device)
+
+
+def stated(name: str) -> Get:
+    """A property that `DeviceState` tells, too."""
+    return lambda device, _: device.state()[name]
 
 
 def missing(name: str) -> Get:

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
 
 from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
 from host.alpaca.errors import within
@@ -72,13 +71,6 @@ async def _turn(device: DomeDevice, given: Parameters) -> None:
     await device.command(lambda t: t.house.turn(azimuth % 360))
 
 
-def _put(act: Callable[[Telescope], Job[None]]) -> Any:
-    async def put(device: DomeDevice, _: Parameters) -> None:
-        await device.command(act)
-
-    return put
-
-
 _CAN = ("SetAzimuth", "SetShutter", "Slave")
 _CANNOT = ("FindHome", "Park", "SetAltitude", "SetPark", "SyncAzimuth")
 DomeDevice.members = table(
@@ -91,8 +83,8 @@ DomeDevice.members = table(
     Member("ShutterStatus", lambda device, _: device.shutter()),
     Member("Slaved", lambda device, _: device.desk.telescope.house.slaved, _slave),
     Member("Slewing", lambda device, _: device.slewing()),
-    Member("AbortSlew", put=_put(lambda t: t.house.stop())),
-    Member("CloseShutter", put=_put(lambda t: t.house.shutter(False))),
-    Member("OpenShutter", put=_put(lambda t: t.house.shutter(True))),
+    Member("AbortSlew", put=lambda device, _: device.command(lambda t: t.house.stop())),
+    Member("CloseShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(False))),
+    Member("OpenShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(True))),
     Member("SlewToAzimuth", put=_turn),
 )  # fmt: skip

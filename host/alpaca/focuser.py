@@ -50,10 +50,6 @@ async def _move(device: FocuserDevice, given: Parameters) -> None:
     await device.do(lambda t: t.focuser.move_to(position - TRAVEL_HALF_STEPS))
 
 
-async def _halt(device: FocuserDevice, _: Parameters) -> None:
-    await device.run(lambda t: t.focuser.halt())
-
-
 FocuserDevice.members = table(
     Member("Absolute", fixed(True)),
     Member("IsMoving", lambda device, _: device.moving),
@@ -64,6 +60,6 @@ FocuserDevice.members = table(
     Member("TempComp", fixed(False), missing_put("TempComp")),
     Member("TempCompAvailable", fixed(False)),
     Member("Temperature", missing("Temperature")),
-    Member("Halt", put=_halt),
+    Member("Halt", put=lambda device, _: device.run(lambda t: t.focuser.hold())),
     Member("Move", put=_move),
 )

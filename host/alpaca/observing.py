@@ -3,7 +3,7 @@
 import math
 
 from bus.protocol.nodes import WEATHER
-from host.alpaca.device import Device, Get, Member, missing, table, unknown
+from host.alpaca.device import Device, Member, missing, stated, table, unknown
 from host.alpaca.errors import INVALID_VALUE, AlpacaError, not_implemented, within
 from host.alpaca.parameters import Parameters
 
@@ -73,10 +73,6 @@ class SafetyMonitorDevice(Device):
         return {"IsSafe": self.connected and not self.desk.telescope.house.unsafe()}
 
 
-def _value(name: str) -> Get:
-    return lambda device, _: device.state()[name]
-
-
 def _sensor(given: Parameters) -> str:
     name = given.text("SensorName").lower()
     if name in map(str.lower, _WITHOUT):
@@ -103,11 +99,11 @@ async def _refresh(_device: Device, _: Parameters) -> None:
 
 
 ObservingConditionsDevice.members = table(
-    *(Member(name, _value(name)) for name in _SENSORS),
+    *(Member(name, stated(name)) for name in _SENSORS),
     *(Member(name, missing(name)) for name in _WITHOUT),
     Member("AveragePeriod", lambda _device, _: 0.0, _average),
     Member("Refresh", put=_refresh),
     Member("SensorDescription", lambda _device, given: _SENSORS[_sensor(given)]),
     Member("TimeSinceLastUpdate", _since),
 )
-SafetyMonitorDevice.members = table(Member("IsSafe", _value("IsSafe"), always=True))
+SafetyMonitorDevice.members = table(Member("IsSafe", stated("IsSafe"), always=True))

@@ -87,14 +87,10 @@ def _ground(device: SlewingDevice, given: Parameters) -> Goto:
 
 def _slew(name: str, way: Way) -> tuple[Member, Member]:
     """The two methods that take the telescope there: one answers when it has arrived, the other at once."""
-
-    async def arrive(device: SlewingDevice, given: Parameters) -> None:
-        await device.run(way(device, given))
-
-    async def begin(device: SlewingDevice, given: Parameters) -> None:
-        await device.do(way(device, given))
-
-    return Member(name, put=arrive), Member(f"{name}Async", put=begin)
+    return (
+        Member(name, put=lambda device, given: device.run(way(device, given))),
+        Member(f"{name}Async", put=lambda device, given: device.do(way(device, given))),
+    )
 
 
 def _sync(where: Where) -> Put:
@@ -114,17 +110,9 @@ async def _abort(device: SlewingDevice, _: Parameters) -> None:
     await device.do(lambda t: t.drive.abort())
 
 
-async def _park(device: SlewingDevice, _: Parameters) -> None:
-    await device.do(lambda t: t.drive.park())
-
-
 async def _unpark(device: SlewingDevice, _: Parameters) -> None:
     if device.now.parked:
         await device.run(lambda t: t.drive.power_on())
-
-
-async def _set_park(device: SlewingDevice, _: Parameters) -> None:
-    await device.do(lambda t: t.drive.set_park())
 
 
 async def _move_axis(device: SlewingDevice, given: Parameters) -> None:
@@ -152,9 +140,9 @@ MEMBERS = (
     Member("AbortSlew", put=_abort),
     Member("FindHome", put=missing_put("FindHome")),
     Member("MoveAxis", put=_move_axis),
-    Member("Park", put=_park),
+    Member("Park", put=lambda device, _: device.do(lambda t: t.drive.park())),
     Member("PulseGuide", put=pulse),
-    Member("SetPark", put=_set_park),
+    Member("SetPark", put=lambda device, _: device.do(lambda t: t.drive.set_park())),
     *_slew("SlewToAltAz", _ground),
     *_slew("SlewToCoordinates", _sky(_coordinates)),
     *_slew("SlewToTarget", _sky(_target)),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from host.alpaca import slewing
-from host.alpaca.device import Get, Member, Put, fixed, missing, missing_put, table, unknown
+from host.alpaca.device import Get, Member, Put, fixed, missing, missing_put, of, table, unknown
 from host.alpaca.errors import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, sidereal_time_rad
@@ -78,11 +78,6 @@ _STATE: dict[str, Callable[[TelescopeDevice], object]] = {
     "UTCDate": lambda device: device.utc(),
 }
 """What DeviceState tells, each of which is a property, too."""
-
-
-def _state(name: str) -> Get:
-    read = _STATE[name]
-    return lambda device, _: read(device)
 
 
 def _target(attribute: str, name: str) -> Get:
@@ -163,10 +158,6 @@ def _side(_device: TelescopeDevice, given: Parameters) -> None:
     missing("DestinationSideOfPier")(_device, given)
 
 
-def _site(value: Callable[[TelescopeDevice], float]) -> Get:
-    return lambda device, _: value(device)
-
-
 _CAN = (
     "Park", "PulseGuide", "SetDeclinationRate", "SetGuideRates", "SetPark", "SetRightAscensionRate",
     "SetTracking", "Slew", "SlewAltAz", "SlewAltAzAsync", "SlewAsync", "Sync", "Unpark",
@@ -176,7 +167,7 @@ _CANNOT = ("FindHome", "SetPierSide", "SyncAltAz")
 TelescopeDevice.members = table(
     *(Member(f"Can{what}", fixed(True)) for what in _CAN),
     *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
-    *(Member(name, _state(name)) for name in (
+    *(Member(name, of(_STATE[name])) for name in (
         "Altitude", "AtHome", "AtPark", "Azimuth", "Declination", "IsPulseGuiding", "RightAscension",
         "SiderealTime", "Slewing")),
     Member("AlignmentMode", fixed(1)),
@@ -193,18 +184,18 @@ TelescopeDevice.members = table(
     Member("GuideRateRightAscension", _guide(0), _set_guide(0, "GuideRateRightAscension")),
     Member("RightAscensionRate", _drift(0), _set_drift(0, "RightAscensionRate")),
     Member("SideOfPier", missing("SideOfPier"), missing_put("SideOfPier")),
-    Member("SiteElevation", _site(lambda d: d.desk.telescope.observatory.site.height_m),
+    Member("SiteElevation", of(lambda d: d.desk.telescope.observatory.site.height_m),
            missing_put("moving the telescope")),
-    Member("SiteLatitude", _site(lambda d: math.degrees(d.desk.telescope.observatory.site.latitude_rad)),
+    Member("SiteLatitude", of(lambda d: math.degrees(d.desk.telescope.observatory.site.latitude_rad)),
            missing_put("moving the telescope")),
-    Member("SiteLongitude", _site(lambda d: math.degrees(d.desk.telescope.observatory.site.longitude_rad)),
+    Member("SiteLongitude", of(lambda d: math.degrees(d.desk.telescope.observatory.site.longitude_rad)),
            missing_put("moving the telescope")),
     Member("SlewSettleTime", missing("SlewSettleTime"), missing_put("SlewSettleTime")),
     Member("TargetDeclination", _target("target_dec_deg", "TargetDeclination"), _set_target_dec),
     Member("TargetRightAscension", _target("target_ra_h", "TargetRightAscension"), _set_target_ra),
-    Member("Tracking", _state("Tracking"), _set_tracking),
+    Member("Tracking", of(_STATE["Tracking"]), _set_tracking),
     Member("TrackingRate", lambda device, _: RATES.index(device.desk.telescope.drive.drive_rate), _set_rate),
     Member("TrackingRates", fixed(list(range(len(RATES))))),
-    Member("UTCDate", _state("UTCDate"), missing_put("setting the clock")),
+    Member("UTCDate", of(_STATE["UTCDate"]), missing_put("setting the clock")),
     *slewing.MEMBERS,
 )  # fmt: skip

@@ -7,11 +7,9 @@ from typing import Any
 from nicegui import ui
 
 from host.console.live import Sample
-from host.console.shell import Shell, box
+from host.console.shell import Shell, box, seldom
 from host.console.views import INK, LINE, SOFT
 
-_EVERY = 4
-"""A plot is sent once in so many ticks, once a second."""
 DASHES = ("solid", "dashed")
 """In red light two lines differ better by form than by colour."""
 SHOWN_S = 120
@@ -42,13 +40,7 @@ def _telling(shell: Shell, label: ui.label) -> Any:
 
 
 def _refresher(shell: Shell, chart: Any, names: tuple[str, ...], pick: Any, least: float) -> Any:
-    count = 0
-
     def refresh() -> None:
-        nonlocal count
-        count += 1
-        if count % _EVERY != 1:
-            return
         samples = list(shell.live.samples)
         fresh = options(names, "day" if shell.day else "night")
         lines = series(samples, pick, len(names))
@@ -58,7 +50,7 @@ def _refresher(shell: Shell, chart: Any, names: tuple[str, ...], pick: Any, leas
         chart.options.update({key: value for key, value in fresh.items() if key != "series"})
         chart.update()
 
-    return refresh
+    return seldom(refresh)
 
 
 def span(values: Sequence[float], least: float) -> dict[str, float]:

@@ -17,8 +17,9 @@ from host.console.pages.dome import dome
 from host.console.pages.focus import focus
 from host.console.pages.main import main
 from host.console.pages.maintenance import maintenance
+from host.console.runs import RecordedRuns
 from host.console.shell import Shell
-from host.console.views import BusView, Runs
+from host.console.views import BusView
 from host.guard import Guard
 from host.telescope import Telescope
 from host.web import answer
@@ -52,7 +53,7 @@ class Consoles:
     """Pages over one telescope, one bus and one folder of recorded runs. One object per process: NiceGUI
     keeps its pages in the module. pages: how many browsers have shown."""
 
-    def __init__(self, telescope: Telescope, bus_view: BusView, runs: Runs, token: str) -> None:
+    def __init__(self, telescope: Telescope, bus_view: BusView, runs: RecordedRuns, token: str) -> None:
         self.live = Live(telescope, bus_view)
         self.pages = 0
         nicegui_app.add_static_files(REPORTS, runs.folder)

@@ -2,6 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
+from html import escape
 from typing import Any
 
 from nicegui import ui
@@ -290,8 +291,3 @@ def log_of(shell: Shell, name: str, lines: Callable[[], Sequence[tuple[float, st
         text = escape("\n".join(f"{utc(t_s)[11:19]}  {words}" for t_s, words in reversed(lines())))
         if (made := f'<pre class="lines">{text}</pre>') != element.content:
             element.set_content(made)
-
-
-def escape(text: str) -> str:
-    """Text for HTML."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,4 +1,4 @@
-"""What the consoles are shown beyond the telescope: whoever serves them fills these in.
+"""What the consoles are shown of the bus: whoever serves them fills it in.
 
 How they look: red on black for a dark observatory floor, dark on light by day (theme.css).
 """
@@ -72,29 +72,6 @@ class BusView(Protocol):
 
     def clear_fault(self, number: int) -> Future[str]:
         """End one; the same."""
-
-
-class Runs(Protocol):
-    """Axis logs recorded on request, and the finder over them."""
-
-    folder: Path
-    """Where recordings and reports lie."""
-
-    @property
-    def recording(self) -> bool:
-        """Whether a run is being recorded."""
-
-    def start(self) -> None:
-        """Begin a new run of both axes."""
-
-    def stop(self) -> None:
-        """End it; its files are whole."""
-
-    def logs(self, axis: str) -> list[Path]:
-        """Finished runs of `ra` or `dec`, oldest first."""
-
-    def command(self, axis: str, out: Path) -> list[str]:
-        """The command line that calibrates on them and writes its report to `out`."""
 
 
 def words(identifier: int, data: bytes) -> str:

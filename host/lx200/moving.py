@@ -130,7 +130,7 @@ _WAKE = _does(lambda t, _: t.drive.wake())
 """Track, after powering up where that is needed."""
 _LAND = _does(lambda t, _: t.drive.track(False))
 """Stop following the sky."""
-_FOCUS_STOP = _does(lambda t, _: t.focuser.halt())
+_FOCUS_STOP = _does(lambda t, _: t.focuser.hold())
 MOVING: dict[str, Handler] = {
     "MS": slew, "MA": slew_ground, "CM": sync, "Q": _STOP, "U": precision, "hP": _PARK, "hW": _WAKE,
     "AP": _WAKE, "AL": _LAND, "AA": nothing, "TM": nothing,

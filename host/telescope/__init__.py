@@ -1,7 +1,7 @@
 """The typed telescope client: what doors, consoles and programs command the telescope by."""
 
 from host.sky.tracks import DriveRate
-from host.telescope.desk import AsyncDesk, PlainDesk
+from host.telescope.desk import AsyncDesk
 from host.telescope.jobs import Activity, Job, Reason, Refused
 from host.telescope.observatory import Observatory
 from host.telescope.state import AxisState, BoardState, FocusState, Snapshot
@@ -9,5 +9,5 @@ from host.telescope.telescope import Telescope
 
 __all__ = [
     "Activity", "AsyncDesk", "AxisState", "BoardState", "DriveRate", "FocusState", "Job", "Observatory",
-    "PlainDesk", "Reason", "Refused", "Snapshot", "Telescope",
+    "Reason", "Refused", "Snapshot", "Telescope",
 ]  # fmt: skip

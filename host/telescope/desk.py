@@ -1,4 +1,4 @@
-"""Two ways to sit at the telescope from another thread: plain (blocking) and async.
+"""How one sits at the telescope from an asyncio loop in a thread of its own.
 
     desk = AsyncDesk(telescope)
     await desk.run(lambda t: t.drive.goto(star))        # until the telescope is on target
@@ -10,7 +10,6 @@
 
 import asyncio
 from collections.abc import Callable
-from concurrent.futures import TimeoutError as FutureTimeout
 from typing import TypeVar
 
 from host.telescope.jobs import Job, Reason, Refused
@@ -25,8 +24,8 @@ _LOOK_S = 0.05
 """Wall time between two looks at what comes with a tick."""
 
 
-class _Desk:
-    """What both have in common."""
+class AsyncDesk:
+    """For one asyncio loop. console: it respects the console lock, which programs do not, nor a stop ever."""
 
     def __init__(self, telescope: Telescope, console: bool = False) -> None:
         self.telescope = telescope
@@ -38,7 +37,6 @@ class _Desk:
         return self.telescope.snapshot
 
     def _guarded(self, act: Callable[[Telescope], T], always: bool) -> Callable[[Telescope], T]:
-        """Consoles respect the console lock; programs do not, and a stop never does."""
         if not self._console or always:
             return act
 
@@ -48,39 +46,6 @@ class _Desk:
             return act(telescope)
 
         return unless_locked
-
-
-class PlainDesk(_Desk):
-    """Blocking; for threads other than the ticking one."""
-
-    def do(self, act: Callable[[Telescope], T], always: bool = False, urgent: bool = False) -> T:
-        """Have a command carried out at the next tick; returns its value or raises `Refused`."""
-        future = self.telescope.call(self._guarded(act, always), urgent)
-        try:
-            return future.result(ANSWER_S)
-        except FutureTimeout:
-            future.cancel()
-            raise Refused(Reason.SILENT, f"no tick within {ANSWER_S:g} s; is it paused?") from None
-
-    def run(self, act: Callable[[Telescope], Job[T]], timeout_s: float | None = None) -> T:
-        """Have a command carried out and wait until its job has ended."""
-        job = self.do(act)
-        try:
-            return job.finished.result(timeout_s)
-        except FutureTimeout:
-            raise Refused(Reason.SILENT, f"{job.name}: not done within {timeout_s} s") from None
-
-    def emergency_stop(self) -> None:
-        """Stop everything, whatever the lock says."""
-        self.do(lambda telescope: telescope.emergency_stop(), always=True, urgent=True)
-
-    def lock(self, on: bool) -> None:
-        """Lock the consoles, or unlock them."""
-        self.do(lambda telescope: setattr(telescope, "locked", on), always=True)
-
-
-class AsyncDesk(_Desk):
-    """For one asyncio loop in a thread of its own."""
 
     async def do(self, act: Callable[[Telescope], T], always: bool = False, urgent: bool = False) -> T:
         """Have a command carried out at the next tick; returns its value or raises `Refused`."""

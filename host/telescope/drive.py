@@ -1,7 +1,6 @@
 """What the axes do: one thing at a time, and tracking again when it has ended, if tracking is on."""
 
 import math
-from collections.abc import Generator
 
 from bus.protocol import AxisMode, Device, Opcode, unpack_target
 from bus.protocol.scales import rate_q16
@@ -167,7 +166,7 @@ class Drive:
         """Go to the park position and switch the axes off."""
         self.tracking = False
         if self.parked:
-            return self.begin("park", self._nothing(), Activity.STOPPING)
+            return self.begin("park", self.client.wait(0.0), Activity.STOPPING)
         return self.begin("park", self._park(), Activity.PARKING)
 
     def set_park(self) -> None:
@@ -358,10 +357,6 @@ class Drive:
             yield from self.client.ask(axis, Opcode.STOP)
         if self.powered:
             yield from self.client.until("stop: both axes at rest", self._at_rest, _REST_S)
-
-    def _nothing(self) -> Generator[None, None, None]:
-        return
-        yield
 
     def _at_rest(self) -> bool:
         motions = [self.client.motion(axis) for axis in power.AXES]

@@ -39,7 +39,7 @@ class Focuser:
         return self._begin(f"focus by {half_steps:+d}", focus.step_by(self.client, half_steps))
 
     def run(self, outward: bool, slow: bool = False) -> Job[None]:
-        """Hold a key: move until `halt`, to the end of the travel at most."""
+        """Hold a key: move until `hold`, to the end of the travel at most."""
         self._energised()
         sign = 1 if outward else -1
         end = focus.move_to(self.client, sign * TRAVEL_HALF_STEPS)
@@ -50,12 +50,8 @@ class Focuser:
         self._energised()
         return self._begin("focus reference", focus.reference(self.client))
 
-    def halt(self) -> Job[None]:
-        """Stop where it is and hold: the same as `hold`."""
-        return self.hold()
-
     def hold(self) -> Job[None]:
-        """Motor power off: brake, then the coils hold."""
+        """Motor power off: stop where it is, then the coils hold."""
         return self._begin("focus hold", focus.set_state(self.client, "hold"))
 
     def free(self) -> Job[None]:

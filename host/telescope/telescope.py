@@ -61,14 +61,10 @@ class Telescope:
         job = self.drive.stop()
         for device in AXES.values():
             self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
-        self.focuser.halt()
+        self.focuser.hold()
         if self.house.boards(DOME):
             self.house.stop()
         return job
-
-    def set_horizon(self, altitude_rad: float) -> None:
-        """Altitude below which nothing is gone to or tracked."""
-        self.observatory.horizon_rad = altitude_rad
 
     def target(self) -> Observed | None:
         """Where it is going to, or what it follows; None: neither."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from scenarios.campaign.sensitivity import Array, Indices, Influence, share
+from scenarios.campaign.sensitivity import Array, Influence, share
 from scenarios.run.report.style import COLOURS, axes, new_figure, title
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def influences(found: list[Influence], inputs: list[str]) -> Figure | None:
         return None
     strong.sort(key=lambda each: (each.metric, -abs(each.value)), reverse=True)
     figure = new_figure(0.27 * len(strong) + 1.0)
-    view = axes(figure, 1, 1, 1, xlabel="Spearman's rank correlation, 95 % bootstrap interval")
+    view = axes(figure, 1, 1, 1, xlabel="Spearman's rank correlation, 95 % interval")
     palette = dict(zip(inputs, _PALETTE * (1 + len(inputs) // len(_PALETTE)), strict=False))
     for place, each in enumerate(strong):
         sure = each.low > 0.0 or each.high < 0.0
@@ -76,32 +76,6 @@ def influences(found: list[Influence], inputs: list[str]) -> Figure | None:
     )
     view.set_xlim(-1.05, 1.05)
     title(view, "What moves what (filled: the interval does not hold zero)")
-    return figure
-
-
-def indices(found: list[Indices], inputs: list[str]) -> Figure | None:
-    """Sobol indices with their intervals, a panel per metric: alone (filled) and with all others (open)."""
-    found = found[:_PANELS]
-    if not found:
-        return None
-    rows = -(-len(found) // 3)
-    figure = new_figure(rows * (0.34 * len(inputs) + 1.2))
-    for place, each in enumerate(found):
-        view = axes(figure, rows, 3, place + 1, xlabel="share of the variance")
-        kinds = (
-            (each.first, each.first_interval, 0.12, _PALETTE[0]),
-            (each.total, each.total_interval, -0.12, "white"),
-        )
-        for values, interval, shift, face in kinds:
-            for k, value in enumerate(values):
-                y = len(inputs) - 1 - k + shift
-                view.plot(interval[k], [y, y], color=_PALETTE[0], lw=1.4)
-                view.plot(value, y, "o", ms=5, color=face, mec=_PALETTE[0])
-        view.axvline(0.0, color="#5d6b7a", lw=0.8)
-        shown = place % 3 == 0
-        view.set_yticks(range(len(inputs)), [name[:24] for name in reversed(inputs)] if shown else [])
-        title(view, each.metric.removeprefix("metric: ")[:WORDS])
-    figure.suptitle("Sobol indices: alone (filled) and with all others (open), 95 % interval", fontsize=9)
     return figure
 
 

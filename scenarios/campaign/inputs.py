@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from plant.model import ModelError, get
+from plant.yamltext import nearest
 from scenarios.language.document import ScenarioError
 from scenarios.language.load import DEFAULT_PLANT
 from scenarios.language.plants import named, plant_model
-from scenarios.language.validate import nearest
 
 Document = dict[str, Any]
 _LEVELS = 5

@@ -1,7 +1,5 @@
 """One run of a campaign, wherever it is made: a scenario in, a row out."""
 
-import hashlib
-import json
 import platform
 import shutil
 import tempfile
@@ -10,7 +8,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from scenarios.campaign import calibration
 from scenarios.campaign.plan import Case
 from scenarios.lab.prepare import prepare
 from scenarios.language.document import Document
@@ -30,8 +27,7 @@ def run(job: Case) -> Row:
     row |= {f"input: {name}": _cell(value) for name, value in job.values.items()}
     with tempfile.TemporaryDirectory(prefix="schmidt-run-") as folder:
         try:
-            made = _calibrated if calibration.FIELD in job.document else _simulated
-            row |= made(job, Path(folder))
+            row |= _simulated(job, Path(folder))
         except ValueError as error:
             row |= {"failure": " ".join(str(error).split()), "passed": False, "missed": ""}
         if job.kept and (job.keep == "all" or (job.keep == "failed" and not row["passed"])):
@@ -44,14 +40,6 @@ def run(job: Case) -> Row:
         "compiled": compiled(),
         "machine": platform.node(),
     }
-
-
-def _calibrated(job: Case, folder: Path) -> Row:
-    found = calibration.row(job.document, Path(job.beside), folder)
-    figures = found.pop("figures")
-    row: Row = {"passed": True, "missed": "", **found}
-    row["digest"] = hashlib.sha256(json.dumps([found, figures], sort_keys=True).encode()).hexdigest()
-    return row | _figures(job.metrics, figures, figures)
 
 
 def _simulated(job: Case, folder: Path) -> Row:
@@ -68,19 +56,14 @@ def _simulated(job: Case, folder: Path) -> Row:
         "simulated_s": summary["simulated_s"],
         "silent_faults": summary["silent_faults"],
     }
-    return row | _figures(job.metrics, {verdict.name: verdict.value for verdict in result.verdicts}, summary)
-
-
-def _figures(metrics: tuple[str, ...], named: dict[str, Any], others: dict[str, Any]) -> Row:
-    """Columns of the metrics asked for. named: those that `expectations` means."""
-    row: Row = {}
-    for metric in metrics:
+    judged = {verdict.name: verdict.value for verdict in result.verdicts}
+    for metric in job.metrics:
         if metric == _EXPECTATIONS:
-            row |= {f"metric: {name}": value for name, value in named.items()}
-        elif metric in named:
-            row[f"metric: {metric}"] = named[metric]
-        elif isinstance(others.get(metric), int | float):
-            row[f"metric: {metric}"] = others[metric]
+            row |= {f"metric: {name}": value for name, value in judged.items()}
+        elif metric in judged:
+            row[f"metric: {metric}"] = judged[metric]
+        elif isinstance(summary.get(metric), int | float):
+            row[f"metric: {metric}"] = summary[metric]
         else:
             raise ValueError(f"the run has no figure {metric!r}")
     return row

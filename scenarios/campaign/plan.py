@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.campaign import calibration, inputs
+from scenarios.campaign import inputs
 from scenarios.lab.prepare import CAMPAIGNS, located
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
@@ -57,15 +57,10 @@ class Plan:
     shares: npt.NDArray[np.float64]
     """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
     way: str
-    """Of sampling: grid, random, latin hypercube, sobol, or saltelli for Sobol indices."""
+    """Of sampling: grid, random, latin hypercube or sobol."""
     metrics: tuple[str, ...]
     keep: str
     time_s: float | None
-
-    @property
-    def calibrates(self) -> bool:
-        """Whether its runs are calibrations, not scenarios."""
-        return calibration.FIELD in self.base
 
     @property
     def count(self) -> int:
@@ -106,8 +101,10 @@ def load(file: Path) -> Plan:
     document = read(file)
     check(document, schema(SCHEMA_FILE))
     data = document.data
-    scenario = file.parent / data["scenario"] if "scenario" in data else file
-    plain = _base(data, scenario)
+    scenario = file.parent / data["scenario"]
+    base = read(scenario)
+    load_scenario(base)
+    plain = json.loads(json.dumps({**base.data, "_folder": str(scenario.parent.resolve())}, default=str))
     found = tuple(
         inputs.read(given, document.where(("inputs", index)), plain)
         for index, given in enumerate(data["inputs"])
@@ -138,35 +135,8 @@ def load(file: Path) -> Plan:
         keep=data.get("keep", "nothing"),
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
     )
-    first = plan.case(0).document
-    if plan.calibrates:
-        _check_calibration(document, first)
-    else:
-        load_scenario(Document(file, first, {}))  # the first case is a scenario, too
+    load_scenario(Document(file, plan.case(0).document, {}))  # the first case is a scenario, too
     return plan
-
-
-def _base(data: dict[str, Any], scenario: Path) -> dict[str, Any]:
-    """What the inputs change, and the folder its names are relative to."""
-    if calibration.FIELD in data:
-        return calibration.base(data[calibration.FIELD], scenario.parent)
-    base = read(scenario)
-    load_scenario(base)
-    plain = {**base.data, "_folder": str(scenario.parent.resolve())}
-    found: dict[str, Any] = json.loads(json.dumps(plain, default=_text))
-    return found
-
-
-def _check_calibration(document: Document, first: dict[str, Any]) -> None:
-    """Its logs are there, and no input wants what only a scenario has."""
-    for name in first[calibration.FIELD]["logs"]:
-        if not (document.file.parent / name).is_file():
-            raise ScenarioError(f"{document.where((calibration.FIELD, 'logs'))}: there is no file {name}")
-    for index, given in enumerate(document.data["inputs"]):
-        kind = next((word for word in ("parameter", "seed", "start", "fault") if word in given), None)
-        if kind is not None:
-            where = document.where(("inputs", index))
-            raise ScenarioError(f"{where}: a calibration has no {kind}; vary `plant` or a `field`")
 
 
 def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64]:
@@ -178,27 +148,7 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
 
     if way == "latin hypercube":
         return np.asarray(qmc.LatinHypercube(width, rng=random).random(runs))
-    if way == "saltelli":
-        base = 1 << max(0, (runs // (width + 2)).bit_length() - 1)
-        both = qmc.Sobol(2 * width, rng=random).random(base)
-        return saltelli(both[:, :width], both[:, width:])
     drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
         max(0, (runs - 1).bit_length())
     )
     return drawn[:runs]
-
-
-def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """The runs that Sobol indices are made of (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259): two
-    samples (n, width), then for every input the first with that input's column of the second."""
-    blocks = [one, other]
-    for column in range(one.shape[1]):
-        mixed = one.copy()
-        mixed[:, column] = other[:, column]
-        blocks.append(mixed)
-    return np.concatenate(blocks)
-
-
-def _text(value: object) -> str:
-    """Dates of YAML as text."""
-    return value.isoformat() if hasattr(value, "isoformat") else str(value)

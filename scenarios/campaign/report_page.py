@@ -8,10 +8,9 @@ import numpy as np
 
 from host.logs.files import write_file
 from scenarios.campaign import figures, table
-from scenarios.campaign.calibration import FIELD
 from scenarios.campaign.figures import Columns, numbers
 from scenarios.campaign.plan import Plan
-from scenarios.campaign.sensitivity import Indices, Influence, influence, share, sobol
+from scenarios.campaign.sensitivity import Influence, influence, share
 from scenarios.lab.prepare import load
 from scenarios.language.document import Document
 from scenarios.run.evaluate import KINDS
@@ -24,21 +23,20 @@ WORST = "worst.yaml"
 def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
     """Draw and write everything from the table. wall_s, made: of this call, for the figures of speed."""
     columns = table.read(folder / table.TABLE)
-    limits, units = ({}, {}) if plan.calibrates else _expected(plan)
+    limits, units = _expected(plan)
     metrics = [name for name in columns if name.startswith("metric: ")]
     found = _influences(plan, columns, metrics)
     groups = _groups(plan, columns)
     drawn = {
         "distributions": figures.distributions(columns, metrics, limits, units),
         "influences": figures.influences(found, [f"input: {each.name}" for each in plan.inputs]),
-        "indices": figures.indices(_indices(plan, columns, metrics), [each.name for each in plan.inputs]),
         "failures": figures.failures(columns, groups),
     }
     pictures = [
         picture(figure, folder / f"{name}.png") for name, figure in drawn.items() if figure is not None
     ]
     worst = _worst(plan, columns, limits)
-    if worst and not plan.calibrates:
+    if worst:
         _write_worst(plan, worst["index"], folder / WORST)
     passed = sum(map(bool, columns["passed"]))
     text = rendered(
@@ -50,7 +48,7 @@ def write(plan: Plan, folder: Path, wall_s: float, made: int) -> None:
         metrics=[_summary(columns, name, limits, units) for name in metrics],
         pictures=pictures,
         worst=worst,
-        repeat=_again(plan) if plan.calibrates else f"schmidt run {folder / WORST}",
+        repeat=f"schmidt run {folder / WORST}",
         failures=Counter(filter(None, columns["failure"])).most_common(20),
         speed=_speed(columns, wall_s, made),
     )
@@ -66,21 +64,6 @@ def _expected(plan: Plan) -> tuple[dict[str, tuple[float, bool]], dict[str, str]
         {e.name: (e.limit, e.upper) for e in expected},
         {name: unit for name, unit in units.items() if unit != "1"},
     )
-
-
-def _again(plan: Plan) -> str:
-    """The calibration alone, as it is declared; the run's own numbers stand above it."""
-    logs = " ".join(str(plan.file.parent / log) for log in plan.base[FIELD]["logs"])
-    return f"schmidt calibrate {logs} --out again"
-
-
-def _indices(plan: Plan, columns: Columns, metrics: list[str]) -> list[Indices]:
-    """Sobol indices of the metrics that every run of a `saltelli` sample has."""
-    if plan.way != "saltelli" or len(columns["key"]) < plan.count:
-        return []
-    order = np.argsort(np.array(columns["index"]))
-    found = [sobol(name, numbers(columns, name)[order], len(plan.inputs)) for name in metrics]
-    return [each for each in found if each is not None]
 
 
 def _influences(plan: Plan, columns: Columns, metrics: list[str]) -> list[Influence]:
@@ -162,13 +145,12 @@ def _summary(
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:
-    cpu = numbers(columns, "cpu_s") if "cpu_s" in columns else np.zeros(1)
     simulated = numbers(columns, "simulated_s") if "simulated_s" in columns else np.zeros(1)
     return {
         "wall_s": wall_s,
         "made": made,
-        "cpu_s": float(np.nanmedian(cpu)),
+        "cpu_s": float(np.nanmedian(numbers(columns, "cpu_s"))),
         "simulated_h": float(np.nansum(simulated)) / 3600.0,
-        "machines": sorted({str(each) for each in columns.get("machine", []) if each}),
-        "compiled": sum(bool(each) for each in columns.get("compiled", [])),
+        "machines": sorted({str(each) for each in columns["machine"] if each}),
+        "compiled": sum(map(bool, columns["compiled"])),
     }

@@ -120,7 +120,7 @@ def effects(name: str | None) -> None:
 
     if name is not None:
         if name not in REGISTRY:
-            from scenarios.language.validate import nearest
+            from plant.yamltext import nearest
 
             raise ValueError(f"no effect is called {name!r}; {nearest(name, REGISTRY)}")
         effect = REGISTRY[name]

@@ -6,16 +6,25 @@ from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, Number, jobs
+from scenarios.commands.options import PATH, Number
 from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
+
+_jobs = click.option(
+    "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
+)
+_scheduler = click.option(
+    "--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster)."
+)
+_low = click.option("--plant", default=LOW, help="Plant with low preload: a file or a name.")
+_high = click.option("--plant-high", default=HIGH, help="Plant with high preload: a file or a name.")
 
 
 @click.command(short_help="Run many variations of a scenario, with one report.")
 @click.argument("file", type=PATH)
 @click.option("--out", type=PATH, help="Output folder (default: out/<campaign>).")
-@jobs
-@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster).")
+@_jobs
+@_scheduler
 @click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
 def campaign(scheduler: str | None, **given: Any) -> None:
     """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
@@ -29,14 +38,13 @@ def campaign(scheduler: str | None, **given: Any) -> None:
 @click.command(short_help="Repeat the paper's experiments.")
 @click.option("--json", "json_file", type=PATH, help="Write the rows to this file.")
 @click.option("--out", type=PATH, default=Path("out/paper"))
-@click.option("--plant", type=PATH, help="Plant file with low preload.")
-@click.option("--plant-high", type=PATH, help="Plant file with high preload.")
+@_low
+@_high
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
-@click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
 @click.option("--others", type=click.IntRange(0), default=0, help="Starts and seeds that no search used.")
-@jobs
-@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
+@_jobs
+@_scheduler
 def paper(**given: Any) -> None:
     """Repeat the paper's experiments from eight starts: published against emulated (exit 1: a row missed)."""
     options = PaperOptions(**given)
@@ -48,8 +56,8 @@ def paper(**given: Any) -> None:
 
 @click.command(short_help="Hold 15 arcsec/s from many starts and measure the rate.")
 @click.option("--out", type=PATH, default=Path("out/objective"))
-@click.option("--plant", default=LOW, help="Plant with low preload: a file or a name.")
-@click.option("--plant-high", default=HIGH, help="Plant with high preload: a file or a name.")
+@_low
+@_high
 @click.option("--compensation", type=PATH, help="A compensation.yaml of schmidt calibrate.")
 @click.option("--starts", type=click.IntRange(1, 64), default=8, help="Number of start angles.")
 @click.option("--seeds", type=click.IntRange(1, 16), default=3, help="Seeds, taken in turn.")

@@ -9,12 +9,12 @@ from rich.console import Console
 from bus.protocol import Device
 from host.client import TICK_NS
 from host.console.heard import HeardBus
+from host.console.runs import RecordedRuns
 from host.links.ports import CanPort, HidrawPort, SerialPort, SocketPort
 from host.links.task import LinkTask
 from host.serial_link import SerialLink
 from scenarios.doors.options import HostOptions
 from scenarios.doors.pc import Host, TelescopePc, dated
-from scenarios.doors.runs import RecordedRuns
 from scenarios.lab.networks import devices_in
 from scenarios.lab.prepare import chosen
 from scenarios.lab.session import log_headers

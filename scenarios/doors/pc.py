@@ -9,6 +9,7 @@ from pathlib import Path
 from bus.protocol import Device
 from host.camera.camera import Camera
 from host.client import TICK_NS, Client
+from host.console.runs import RecordedRuns
 from host.console.views import BusView
 from host.link import HidLink
 from host.logs.ascii import AsciiLogs, rotating
@@ -22,7 +23,6 @@ from host.telescope import Observatory, Telescope
 from plant.deadzone import bias_steps
 from scenarios.doors.door import Keeper
 from scenarios.doors.options import DoorOptions
-from scenarios.doors.runs import RecordedRuns
 from scenarios.doors.table import ON_HOST, doors_on
 from scenarios.lab.networks import in_order
 from scenarios.lab.prepare import UNDATED

@@ -12,13 +12,13 @@ from typing import Any
 from host.camera.camera import Camera, Frame
 from host.camera.models import CAMERAS
 from host.camera.stars import SyntheticSky, from_file
+from host.console.runs import RecordedRuns
 from host.console.views import BusState, FaultKind
 from host.logs.clientguiding import ClientGuiding
 from scenarios.doors.door import counted
 from scenarios.doors.options import DoorOptions
 from scenarios.doors.pc import Host, TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken, Wish
-from scenarios.doors.runs import RecordedRuns
 from scenarios.language.model import Scenario
 
 _LOOKED_S = 1.0

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from scenarios.doors.options import DoorOptions, OptionError
+from scenarios.native.modules import PACKAGE
 
 if TYPE_CHECKING:
     from scenarios.doors.door import Door
@@ -23,11 +25,12 @@ Place = TypeVar("Place")
 
 
 class Asked(NamedTuple):
-    """One door as it was asked for. spec: what follows its option; number: of its kind, from 0."""
+    """One door as it was asked for. spec: what follows its option; number: of its kind, from 0. token: for
+    clients of other machines; None: made up."""
 
     spec: str
     number: int
-    options: DoorOptions
+    token: str | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,88 +51,52 @@ class DoorKind(Generic[Place]):
     extra: str | None = None
 
 
-def _can(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.can import CanDoor
+def _class(name: str) -> Any:
+    """A door's class by its full name; its module is imported now."""
+    module, _, word = name.rpartition(".")
+    return getattr(import_module(PACKAGE + module), word)
 
-    return CanDoor(asked.spec, asked.number, live)
 
-
-def _serial(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.serial_pty import PtyDoor
-    from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
-
-    kinds: dict[str, type[PtyDoor | TcpDoor]] = {"pty": PtyDoor, "tcp": TcpDoor, "rfc2217": Rfc2217Door}
+def _serial(asked: Asked, live: LiveNetwork) -> Any:
+    kinds = {"pty": "scenarios.doors.serial_pty.PtyDoor", "tcp": "scenarios.doors.serial_tcp.TcpDoor"}
     kind, _, rest = asked.spec.partition(":")
     if kind not in kinds or not rest:
-        raise OptionError(
-            f'--serial "{asked.spec}": expected pty:DIR, tcp:[HOST:]PORT or rfc2217:[HOST:]PORT'
-        )
-    return kinds[kind](rest, live)
+        raise OptionError(f'--serial "{asked.spec}": expected pty:DIR or tcp:[HOST:]PORT')
+    return _class(kinds[kind])(rest, live)
 
 
-def _hid(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.hid_uhid import UhidDoor
-    from scenarios.doors.hid_unix import UnixDoor
-
+def _hid(asked: Asked, live: LiveNetwork) -> Any:
     if asked.spec == "uhid":
-        return UhidDoor(live)
+        return _class("scenarios.doors.hid_uhid.UhidDoor")(live)
     kind, _, path = asked.spec.partition(":")
     if kind != "unix" or not path:
         raise OptionError(f'--hid "{asked.spec}": expected uhid or unix:PATH')
-    return UnixDoor(path, live)
-
-
-def _debug(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.serial_pty import DebugDoor
-
-    return DebugDoor(asked.spec, live)
-
-
-def _control(asked: Asked, live: LiveNetwork) -> Door:
-    from scenarios.doors.control import ControlDoor
-
-    return ControlDoor(asked.spec, asked.options.token, live)
-
-
-def _lx200(asked: Asked, host: Host) -> Door:
-    from scenarios.doors.lx200 import Lx200Door
-
-    return Lx200Door(asked.spec, host)
-
-
-def _alpaca(asked: Asked, host: Host) -> Door:
-    from scenarios.doors.alpaca import AlpacaDoor
-
-    return AlpacaDoor(asked.spec, host)
-
-
-def _console(asked: Asked, host: Host) -> Door:
-    from scenarios.doors.console import ConsoleDoor
-
-    return ConsoleDoor(asked.spec, asked.options.token, host)
+    return _class("scenarios.doors.hid_unix.UnixDoor")(path, live)
 
 
 ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
     DoorKind(
-        name="can", form="INTERFACE:CHANNEL", make=_can,
+        name="can", form="INTERFACE:CHANNEL",
+        make=lambda asked, live: _class("scenarios.doors.can.CanDoor")(asked.spec, asked.number, live),
         help="The CAN bus, such as socketcan:vcan0; repeatable.",
         attach={"": "python-can: interface={word}, channel={rest}"},
     ),
     DoorKind(
-        name="serial", form="pty:DIR|tcp:PORT|rfc2217:PORT", make=_serial,
+        name="serial", form="pty:DIR|tcp:PORT", make=_serial,
         help="The RS232 lines: pseudo-terminals in DIR, or TCP ports from PORT on (five; final: twelve).",
-        attach={"pty": "{lines}", "tcp": "socket://{at} is {first}, and so on to {last}",
-                "rfc2217": "rfc2217://{at} is {first}, and so on to {last}"},
+        attach={"pty": "{lines}", "tcp": "socket://{at} is {first}, and so on to {last}"},
     ),
     DoorKind(
         name="hid", form="uhid|unix:PATH", make=_hid, help="The gateway's USB: /dev/hidrawN, or a socket.",
     ),
     DoorKind(
-        name="debug", form="DIR", make=_debug, attach={"": "slcan in {spec}"}, repeatable=False,
+        name="debug", form="DIR", attach={"": "slcan in {spec}"}, repeatable=False,
+        make=lambda asked, live: _class("scenarios.doors.serial_pty.DebugDoor")(asked.spec, live),
         help="Every board's debug port as a pseudo-terminal in DIR (slcan).",
     ),
     DoorKind(
-        name="control", form="[HOST:]PORT", make=_control, repeatable=False,
+        name="control", form="[HOST:]PORT", repeatable=False,
+        make=lambda asked, live: _class("scenarios.doors.control.ControlDoor")(asked.spec, asked.token, live),
         help="Speed, pause, status, stop (see schmidt control).",
         attach={"": "schmidt control status --at {at}"},
     ),
@@ -137,17 +104,20 @@ ON_NETWORK: tuple[DoorKind[LiveNetwork], ...] = (
 """In the order in which their nodes come onto the wire."""
 ON_HOST: tuple[DoorKind[Host], ...] = (
     DoorKind(
-        name="lx200", form="[HOST:]PORT|pty:NAME", make=_lx200,
+        name="lx200", form="[HOST:]PORT|pty:NAME",
+        make=lambda asked, host: _class("scenarios.doors.lx200.Lx200Door")(asked.spec, host),
         help="LX200, for Stellarium and INDI; repeatable.",
         attach={"pty": "{spec}", "": "LX200 over TCP, {at}"},
     ),
     DoorKind(
-        name="alpaca", form="[HOST:]PORT", make=_alpaca, extra="alpaca", repeatable=False,
+        name="alpaca", form="[HOST:]PORT", extra="alpaca", repeatable=False,
+        make=lambda asked, host: _class("scenarios.doors.alpaca.AlpacaDoor")(asked.spec, host),
         help="ASCOM Alpaca telescope and focuser, of an emulated sky (serve) cameras, too; with discovery.",
         attach={"": "ASCOM Alpaca at http://{at}/"},
     ),
     DoorKind(
-        name="console", form="[HOST:]PORT", make=_console, extra="consoles", repeatable=False,
+        name="console", form="[HOST:]PORT", extra="consoles", repeatable=False,
+        make=lambda asked, host: _class("scenarios.doors.console.ConsoleDoor")(asked.spec, asked.token, host),
         help="The consoles, for a browser.", attach={"": "open http://{at}/"},
     ),
 )  # fmt: skip
@@ -156,7 +126,7 @@ ON_HOST: tuple[DoorKind[Host], ...] = (
 def asked(kinds: Sequence[DoorKind[Place]], options: DoorOptions) -> list[tuple[DoorKind[Place], Asked]]:
     """What the options ask for of these kinds, in the table's order."""
     return [
-        (kind, Asked(spec, number, options))
+        (kind, Asked(spec, number, options.token))
         for kind in kinds
         for number, spec in enumerate(options.asked.get(kind.name, ()))
     ]

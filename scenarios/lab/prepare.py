@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.sky.observed import Clock
+from plant.yamltext import nearest
 from scenarios.language.configure import read_tables, with_firmware, with_parameters
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
 from scenarios.language.model import Scenario, check_targets
-from scenarios.language.validate import nearest, schema
+from scenarios.language.validate import schema
 
 if TYPE_CHECKING:
     from boards.core.declared import DeclaredBoard

@@ -1,6 +1,7 @@
 """YAML documents that remember where each value stood, so that an error can say file and line."""
 
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,8 @@ class Document:
 
 
 class _Loader(yaml.SafeLoader):
-    """Dates stay text, which the language reads itself; a value that cannot be made names its line."""
+    """Dates stay text, which the language reads itself; a value that cannot be made names its line. So do
+    `.inf` and `.nan`, which pass every bound of a schema."""
 
     yaml_implicit_resolvers = {  # noqa: RUF012 - as PyYAML has it
         first: [each for each in rules if each[0] != "tag:yaml.org,2002:timestamp"]
@@ -44,14 +46,17 @@ class _Loader(yaml.SafeLoader):
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
         """A value; raises ScenarioError."""
+        line = node.start_mark.line + 1
         try:
-            return super().construct_object(node, deep)
+            value = super().construct_object(node, deep)
         except ScenarioError:
             raise
         except (ValueError, ArithmeticError, AttributeError, TypeError, LookupError) as error:
             # yaml's constructors take what they find: a !!timestamp that is none has no groups
-            line = node.start_mark.line + 1
             raise ScenarioError(f"{self._file}:{line}: not YAML: {_reason(error)}") from None
+        if isinstance(value, float) and not isfinite(value):
+            raise ScenarioError(f"{self._file}:{line}: {value} is no number to work with")
+        return value
 
 
 def read(file: Path) -> Document:

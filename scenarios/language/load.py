@@ -12,11 +12,11 @@ from host.sky import pointmodel
 from host.sky.mount import limits_mount
 from host.sky.observed import Clock
 from host.sky.site import NAINITAL, Site, standard_pressure_hpa
-from plant.yamltext import read_text
+from plant.yamltext import nearest, read_text
 from scenarios.language import model
 from scenarios.language.document import Document, ScenarioError
 from scenarios.language.units import parse
-from scenarios.language.validate import check, nearest, schema
+from scenarios.language.validate import check, schema
 
 DEFAULT_PLANT = "low-preload-bridge"
 BESIDE = ("name", "at", "until", "may_not_act")

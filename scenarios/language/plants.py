@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from plant.yamltext import nearest
 from scenarios.language.document import ScenarioError
-from scenarios.language.validate import nearest
 
 if TYPE_CHECKING:
-    from plant.model import EffectModel, PlantModel
+    from plant.model import PlantModel
+    from plant.parts import EffectModel
 
 
 def named(given: Any) -> dict[str, Any]:

@@ -1,15 +1,13 @@
 """A document against the published schema; errors name file, line, field and the nearest valid word."""
 
-import difflib
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from plant.yamltext import beside
+from plant.yamltext import beside, nearest
 from scenarios.language.document import Document, Path_, ScenarioError
 from scenarios.language.units import BASE, QUANTITIES, UnitError, parse, unit_of
 
@@ -74,35 +72,10 @@ def check(document: Document, language: dict[str, Any] | None = None) -> None:
     """
     validator = _validator()(language or schema())
     errors = validator.iter_errors(_plain(document.data))
-    problems = sorted(
-        {each for error in errors for each in _describe(document, error)} or _infinite(document)
-    )
+    problems = sorted({each for error in errors for each in _describe(document, error)})
     if problems:
         first, *others = (text for _, _, text in problems)
         raise beside(ScenarioError(first), others, str(document.file))
-
-
-def _infinite(document: Document) -> Iterator[Problem]:
-    """Numbers that are none: `.inf` and `.nan` pass every bound of a schema."""
-    waiting: list[tuple[Path_, Any]] = [((), document.data)]
-    while waiting:
-        path, value = waiting.pop()
-        if isinstance(value, float) and not math.isfinite(value):
-            field = ".".join(str(part) for part in path)
-            yield _problem(document, path, f"{field}: {value} is no number to work with")
-        if isinstance(value, Mapping):
-            waiting += [((*path, str(key)), each) for key, each in value.items()]
-        elif isinstance(value, list):
-            waiting += [((*path, index), each) for index, each in enumerate(value)]
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """A hint that names the nearest valid word, or all of them when none is near."""
-    known = list(words)
-    near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.5)
-    if near:
-        return f"did you mean {next(k for k in known if k.lower() == near[0])!r}?"
-    return "use one of " + ", ".join(known) if known else "none is allowed here"
 
 
 def _problem(document: Document, path: Path_, text: str, rank: int = 1) -> Problem:

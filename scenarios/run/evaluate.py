@@ -78,13 +78,8 @@ def pointing_error(outcome: Outcome, given: dict[str, Any]) -> float:
     for record, low_s, high_s in _windows(outcome, given, "pointing_error"):
         for star, begin_s, end_s in looks(record, low_s, high_s):
             ra, dec = pointing_errors(outcome, star, begin_s, end_s, given.get("source", "truth"))[1:]
-            match given.get("axis", "sky"):
-                case "ra":
-                    parts.append(ra)
-                case "dec":
-                    parts.append(dec)
-                case _:
-                    parts.append(np.hypot(ra * np.cos(star.declination_rad), dec))
+            sky = np.hypot(ra * np.cos(star.declination_rad), dec)
+            parts.append({"ra": ra, "dec": dec}.get(given.get("axis", "sky"), sky))
     return _statistic(np.concatenate(parts), given)
 
 

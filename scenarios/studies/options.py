@@ -10,19 +10,17 @@ LOW, HIGH = "low_preload_bridge", "high_preload_bridge"
 @dataclass(frozen=True, kw_only=True)
 class PaperOptions:
     """json_file: where the JSON goes. out: folder of the table (and the JSON, when none is named). plant,
-    plant_high: plant files for low and high preload instead of the project's own. rows: comma-separated.
+    plant_high: plant files, or names, for low and high preload. rows: comma-separated.
 
-    quick: two starts only, for a look. every: all 24 combinations of angle and seed. others: so many starts
-    and seeds that no search has used. jobs: processes (None: one per core); scheduler: a Dask scheduler
-    instead."""
+    quick: two starts only, for a look. others: so many starts and seeds that no search has used. jobs:
+    processes (None: one per core); scheduler: a Dask scheduler instead."""
 
     out: Path
     json_file: Path | None = None
-    plant: Path | None = None
-    plant_high: Path | None = None
+    plant: str = LOW
+    plant_high: str = HIGH
     rows: str | None = None
     quick: bool = False
-    every: bool = False
     others: int = 0
     jobs: int | None = None
     scheduler: str | None = None

@@ -66,7 +66,7 @@ def schmidt(words: list[str], folder: Path) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("attach")
-    for port in sorted({int(number) for number in re.findall(r"\b(?:7501|7521|4030|8080|11111|7411)\b",
+    for port in sorted({int(number) for number in re.findall(r"\b(?:7501|4030|8080|11111|7411)\b",
                                                              " ".join(command()))}):  # fmt: skip
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -149,7 +149,6 @@ CHECKS: dict[str, Callable[[str], bool]] = {
     "--can udp_multicast:239.74.163.2": hears_frames,
     "--serial pty:out/ports": hears_bytes,
     "--serial tcp:7501": hears_bytes,
-    "--serial rfc2217:7521": hears_bytes,
     "--hid unix:out/gateway.sock": hears_reports,
     "--lx200 4030": lx200_tcp,
     "--lx200 pty:out/lx200": lx200_serial,
@@ -175,7 +174,6 @@ def test_every_door_of_the_page_is_run_here_or_in_the_guest() -> None:
     assert all(option in guest for option in GUEST)
 
 
-@pytest.mark.filterwarnings("ignore:set:DeprecationWarning")  # pyserial's own RFC 2217 client
 @pytest.mark.parametrize("row", rows(), ids=lambda row: row.option.replace("--", "").replace(" ", "-"))
 def test_a_door_is_attached_to_as_the_page_says(
     row: Row, served: Path, monkeypatch: pytest.MonkeyPatch

@@ -17,7 +17,7 @@ BOARDS = ("AXIS_RA", "POSITION_RA", "FOCUS")
         ("--control 7411", "schmidt control status --at 127.0.0.1:7411"),
         ("--can socketcan:vcan0", "python-can: interface=socketcan, channel=vcan0"),
         ("--serial tcp:7000", "socket://127.0.0.1:7000 is AXIS_RA, and so on to port 7002, FOCUS"),
-        ("--serial rfc2217:[::1]:7000", "rfc2217://[::1]:7000 is AXIS_RA, and so on to port 7002, FOCUS"),
+        ("--serial tcp:[::1]:7000", "socket://[::1]:7000 is AXIS_RA, and so on to port 7002, FOCUS"),
         ("--lx200 pty:handbox", "pty:handbox"),
         ("--hid unix:gateway", "unix:gateway"),
         ("--debug ports", "slcan in ports"),

@@ -1,7 +1,6 @@
-"""The five RS232 lines as pseudo-terminals, TCP and RFC 2217, read by pyserial."""
+"""The five RS232 lines as pseudo-terminals and over TCP, read by pyserial."""
 
 import socket
-import threading
 from pathlib import Path
 from time import monotonic
 
@@ -11,7 +10,7 @@ import serial
 from bus.protocol.serial import PacketDecoder
 from scenarios.doors.lines import Feed
 from scenarios.doors.serial_pty import PtyDoor
-from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
+from scenarios.doors.serial_tcp import TcpDoor
 from tests.doors.conftest import MS, Bench
 from tests.ports import free_ports
 
@@ -111,45 +110,3 @@ def test_tcp_serves_several_readers_and_survives_one_that_goes(bench: Bench) -> 
         assert {packet.device for packet in packets} == {0x21}
     with pytest.raises(OSError, match="cannot be listened on"):
         TcpDoor(str(base), bench.served).open()
-
-
-@pytest.mark.filterwarnings("ignore:set:DeprecationWarning")  # pyserial's own client
-def test_pyserials_own_rfc2217_client_sets_a_rate_and_reads(bench: Bench) -> None:
-    base = free_ports(5)
-    door = Rfc2217Door(str(base), bench.served)
-    bench.open(door)
-    heard: list[bytes] = []
-    failed: list[BaseException] = []
-
-    def read() -> None:
-        try:
-            url = f"rfc2217://127.0.0.1:{base + 4}"
-            with serial.serial_for_url(url, baudrate=115_200, timeout=0.2) as port:
-                port.baudrate = 19_200
-                while sum(map(len, heard)) < 600:
-                    heard.append(port.read(200))
-        except BaseException as error:
-            failed.append(error)
-
-    thread = threading.Thread(target=read, daemon=True)
-    thread.start()
-    bench.until(lambda: not thread.is_alive(), 30.0)
-    assert not failed
-    packets = PacketDecoder().feed(b"".join(heard))
-    assert {packet.device for packet in packets} == {0x41}
-    bench.run(20)
-    assert door.state() == "1 at FOCUS"
-
-
-@pytest.mark.parametrize(
-    "data", [b"\xff\xfa\x2c\x01\xff\xf0", b"\xff\xfa\xff\xf0", b"\xff" * 1001, b"\xff\xfa" + b"x" * 9000]
-)
-def test_telnet_that_is_none_costs_its_client_only(bench: Bench, data: bytes) -> None:
-    base = free_ports(5)
-    bench.open(Rfc2217Door(str(base), bench.served))
-    with socket.create_connection(("127.0.0.1", base)) as bad:
-        bad.sendall(data)
-        bench.run(50)
-    bench.run(5)
-    assert bench.all_tick()
-    assert bench.said == []

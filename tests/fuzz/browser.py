@@ -17,11 +17,11 @@ from typing import Any
 
 from nicegui import Client
 
+from host.console.runs import RecordedRuns
 from host.console.server import Consoles
 from scenarios.doors.clients import listen
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.piped_host import BusMirror
-from scenarios.doors.runs import RecordedRuns
 from scenarios.lab.prepare import chosen
 from tests.fuzz import inputs
 from tests.fuzz.left import counted

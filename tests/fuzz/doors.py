@@ -28,7 +28,7 @@ from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.serial_tcp import Rfc2217Door, TcpDoor
+from scenarios.doors.serial_tcp import TcpDoor
 from scenarios.doors.snapshots import Snapshots
 from scenarios.doors.steps import Steps
 from scenarios.doors.usb import out_report
@@ -245,32 +245,6 @@ def steps(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     return found
 
 
-def telnet(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
-    """What an RFC 2217 client sends."""
-    door = Rfc2217Door("7501", served)
-    found = {"accepted": 0, "hung up": 0}
-    ours, theirs = socket.socketpair()
-    theirs.setblocking(False)
-    client = Client(ours, "")
-    door.greet(client)
-    signs = (b"\xff\xfa\x2c", b"\xff\xf0", b"\xff\xfd\x2c", b"\xff", b"\xff\xff", b"\xff\xfb\x00", b"")
-
-    def one(_number: int) -> None:
-        door.take(client, random.choice(signs) + inputs.data(random, 20) + random.choice(signs))
-        found["hung up" if client.gone else "accepted"] += 1
-        if client.gone:
-            client.gone = False
-            door.forget(client)
-            door.greet(client)
-        with suppress(BlockingIOError):
-            theirs.recv(1 << 16)
-
-    rounds(served, count, one)
-    client.close()
-    theirs.close()
-    return found
-
-
 def serial(served: LiveNetwork, count: int, random: Random) -> dict[str, int]:
     """Raw TCP of a serial line: bytes, clients that hang up, that reset, that never read."""
     for base in range(20_000 + 10 * random.randrange(1000), 32_000, 10):  # below the ports of clients
@@ -321,7 +295,7 @@ def scenarios(served: LiveNetwork, count: int, random: Random) -> dict[str, int]
 
 DOORS: dict[str, Callable[[LiveNetwork, int, Random], dict[str, int]]] = {
     "frames": frames, "datagrams": datagrams, "hid": hid, "control": control, "steps": steps,
-    "telnet": telnet, "serial": serial, "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
+    "serial": serial, "scenarios": scenarios, "lx200": lx200, "alpaca": alpaca,
 }  # fmt: skip
 
 

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from plant import model
 from plant.kernels import layout as at
-from plant.model import EffectModel, Number, PlantModel
+from plant.model import PlantModel
+from plant.parts import EffectModel, Number
 from plant.plant import Plant
 
 SECOND = 1_000_000_000

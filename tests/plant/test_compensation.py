@@ -10,8 +10,8 @@ from boards.axis.compensator import Compensator
 from bus.protocol import HARMONICS
 from plant import compensation as written
 from plant.gears import ORDERS, RATIO
-from plant.model import Number, load, with_effects
-from plant.parts import EffectModel, PlantModel
+from plant.model import load, with_effects
+from plant.parts import EffectModel, Number, PlantModel
 from plant.units import ARCSEC
 from scenarios.language.configure import FORMAT, load_compensation
 from scenarios.language.document import ScenarioError
@@ -102,7 +102,7 @@ def test_a_wrong_table_is_wrong_by_what_was_asked(low: PlantModel, tmp_path: Pat
         (HEAD.replace("travel", "way"), "friction: field 'travel_arcsec' is missing"),
         (HEAD + "lines: [{order: 1}]", "lines.0: field 'cosine_steps' is missing"),
         (HEAD + "lines: [{order: -1, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: -1 is out of range"),
-        (HEAD + "lines: [{order: .nan, cosine_steps: 1, sine_steps: 0}]", "lines.0.order: nan"),
+        (HEAD + "lines: [{order: .nan, cosine_steps: 1, sine_steps: 0}]", "nan is no number"),
         ("[", "not YAML"),
     ],
 )  # fmt: skip

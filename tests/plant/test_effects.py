@@ -16,7 +16,7 @@ from plant.effects.base import STAGES, Term
 from plant.effects.signals import MEMORY, MOTOR, SEED, TIME, VECTOR, Hook
 from plant.evaluate import values_over
 from plant.kernels.layout import ROW, ROW_MEMORY
-from plant.model import EffectModel, Function, Number
+from plant.parts import EffectModel, Function, Number
 from plant.plant import Plant
 from plant.rows import KINDS
 from plant.units import ARCSEC, UNITS

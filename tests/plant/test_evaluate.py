@@ -10,7 +10,7 @@ from plant.effects import signals as sig
 from plant.effects.unknown import COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD, formula
 from plant.evaluate import evaluate, signals, values_over
 from plant.kernels.layout import ROW, ROW_MEMORY
-from plant.model import EffectModel, Number
+from plant.parts import EffectModel, Number
 from plant.rows import KINDS, values, vector
 from plant.units import ARCSEC
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from plant import model
-from plant.model import ModelError, MountErrors, Number
+from plant.model import ModelError
 from plant.mount import sky
+from plant.parts import MountErrors, Number
 
 LATITUDE = math.radians(29 + 22 / 60)
 PERFECT = {each.name: Number(0.0, "arcsec", "test") for each in dataclasses.fields(MountErrors)}

@@ -2,17 +2,18 @@
 
 import asyncio
 from collections.abc import Callable
+from html import escape
 
 from nicegui import ui
 
 from host.console.plots import plots
-from host.console.shell import Shell, box, button, escape
-from host.console.views import Runs
+from host.console.runs import RecordedRuns
+from host.console.shell import Shell, box, button
 
 REPORTS = "/reports"
 
 
-def calibrate(shell: Shell, runs: Runs) -> None:
+def calibrate(shell: Shell, runs: RecordedRuns) -> None:
     """The page."""
     with shell.page("/calibrate", "Calibrate"), ui.element("div").classes("boxes"):
         with box("Record"):

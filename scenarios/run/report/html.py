@@ -42,8 +42,6 @@ def write(
         Path(__file__).with_name("report.html.j2"),
         scenario=outcome.scenario,
         verdicts=verdicts,
-        passed=all(verdict.passed for verdict in verdicts),
-        steps=_timeline(outcome),
         summary=summary,
         pictures=pictures,
         compared=compared[0] if compared is not None else [],
@@ -77,25 +75,3 @@ def picture(figure: Figure, path: Path) -> str:
     figure.savefig(buffer, format="png")
     write_file(path, buffer.getvalue())
     return base64.b64encode(buffer.getvalue()).decode()
-
-
-def _timeline(outcome: Outcome) -> list[dict[str, Any]]:
-    """Steps as bars: shares of the run's length in percent."""
-    length = max(outcome.counters["simulated_s"], 1e-9)
-    rows = []
-    for record in outcome.records:
-        row: dict[str, Any] = {
-            "name": record.step.name,
-            "action": record.step.action,
-            "failed": record.failed,
-        }
-        if record.start_s is not None:
-            end_s = record.end_s if record.end_s is not None else length
-            row |= {
-                "start": record.start_s,
-                "seconds": end_s - record.start_s,
-                "left": 100 * record.start_s / length,
-                "width": max(0.3, 100 * (end_s - record.start_s) / length),
-            }
-        rows.append(row)
-    return rows

@@ -1,7 +1,7 @@
 """Torque over velocity from steady runs, the static LuGre curve through it (paper, Fig. 8, Table 2)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -139,9 +139,7 @@ class FrictionFit:
 
     def torque(self, rate: Array) -> Array:
         """Return the fitted friction, N m, at rates in rad/s."""
-        return friction_curve(
-            rate, (self.coulomb, self.stiction, self.stribeck_rate, self.exponent, self.viscous)
-        )
+        return friction_curve(rate, astuple(self))
 
 
 EXPONENTS = (0.5, 2.0)

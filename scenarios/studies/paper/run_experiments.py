@@ -12,16 +12,15 @@ from typing import Any
 from rich.console import Console
 
 from host.logs.files import write_file
-from plant.model import default_files, load
+from plant.model import load
 from plant.parts import PlantModel
 from scenarios.campaign.executor import each
 from scenarios.progress import shown
-from scenarios.studies.options import HIGH, LOW, PaperOptions
+from scenarios.studies.options import PaperOptions
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment, Figures
 from scenarios.studies.paper.rows import Row, markdown
-from scenarios.studies.paper.starts import ALL, QUICK, STARTS, Benches, EmulatorBench, Start, others
+from scenarios.studies.paper.starts import QUICK, STARTS, Benches, EmulatorBench, Start, others
 
-DEFAULTS = {"low": LOW, "high": HIGH}
 Outcome = tuple[Figures, str]
 """Figures, or why there are none."""
 DEAREST = ("E7", "E6", "E8", "E11", "E3", "E5", "E13", "E1")
@@ -78,23 +77,6 @@ def row_of(experiment: Experiment, outcomes: Mapping[Start, Outcome]) -> Row:
     )
 
 
-def pair(low: Path | None, high: Path | None) -> dict[str, str]:
-    """Return the two plant files.
-
-    One that is not named is the other's twin, "low" and "high" exchanged in its name. Where there is no twin,
-    it is the project's own.
-    """
-    found = {"low": low, "high": high}
-    names = {}
-    for preload, other in (("low", "high"), ("high", "low")):
-        given, partner = found[preload], found[other]
-        if given is None and partner is not None:
-            twin = partner.with_name(partner.name.replace(other, preload))
-            given = twin if twin != partner and (twin.exists() or twin.stem in default_files()) else None
-        names[preload] = str(given or DEFAULTS[preload])
-    return names
-
-
 def select(names: str | None) -> list[Experiment]:
     """Return the experiments named by a comma-separated list; all without one. Raises ValueError."""
     if names is None:
@@ -127,9 +109,9 @@ def paper(options: PaperOptions) -> int:
     cannot be used.
     """
     console, out = Console(), options.out
-    files = pair(options.plant, options.plant_high)
-    plants: dict[str, PlantModel] = {preload: load(name) for preload, name in files.items()}
-    chosen, starts = select(options.rows), QUICK if options.quick else ALL if options.every else STARTS
+    files = {"low": options.plant, "high": options.plant_high}
+    plants = {preload: load(name) for preload, name in files.items()}
+    chosen, starts = select(options.rows), QUICK if options.quick else STARTS
     starts = others(options.others) if options.others else starts
     write_file(out / ".probe", "")  # find out before minutes of work, not after
     (out / ".probe").unlink()

@@ -40,8 +40,6 @@ class Start:
 
 STARTS = tuple(Start(angle, SEEDS[k % len(SEEDS)]) for k, angle in enumerate(ANGLES_DEG))
 """What decides a row: eight angles, the seeds in turn."""
-ALL = tuple(Start(angle, seed) for angle in ANGLES_DEG for seed in SEEDS)
-"""Every angle with every seed."""
 FRESH, TRAVEL_DEG = 20261126, (85.0, 275.0)
 """Seed of `others`, which the search must never see; degrees of the absolute encoder."""
 QUICK = STARTS[::4]

@@ -16,11 +16,11 @@ from bus.protocol import Device, pack_heartbeat
 from bus.protocol.report import pack_report
 from host.client import SILENCE_NS, Client
 from host.console.heard import HeardBus
+from host.console.runs import RecordedRuns
 from host.console.views import words
 from host.link import HidLink
 from host.logs.journal import Journal
 from scenarios.doors.busview import EmulatedBus
-from scenarios.doors.runs import RecordedRuns
 from tests.doors.process import PROGRAM, ROOT, Serving
 from tests.host.console.conftest import opened, press
 from tests.host.telescope.conftest import Rig

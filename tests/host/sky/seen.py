@@ -10,8 +10,8 @@ from host.sky.mount import limits_mount
 from host.sky.pointmodel import PointingModel, Term
 from host.sky.pointstars import Sighting
 from host.sky.pointterms import Array
-from plant.model import MountErrors, Number
 from plant.mount import sky
+from plant.parts import MountErrors, Number
 
 LATITUDE = math.radians(29 + 22 / 60)
 MOUNT = limits_mount(math.radians(100), math.radians(-45), math.radians(92), LATITUDE)

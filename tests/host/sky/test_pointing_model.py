@@ -17,8 +17,8 @@ from host.sky.pointstars import Sighting
 from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from host.sky.site import NAINITAL
 from host.sky.track import StarTrack
-from plant.model import MountErrors
 from plant.mount import sky
+from plant.parts import MountErrors
 from tests.host.sky.seen import LATITUDE, MOUNT, NAMES, axes, drawn, errors, misses, plain, sightings
 from tests.host.sky.test_mount import EVENING
 

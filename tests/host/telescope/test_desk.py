@@ -1,23 +1,24 @@
-"""The plain and the async desk, from threads of their own, while this thread ticks."""
+"""The desk, from a thread of its own, while this thread ticks."""
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from typing import Any
 
 import pytest
 
 from bus.protocol import AxisMode
-from host.telescope import AsyncDesk, PlainDesk, Reason, Refused
+from host.telescope import AsyncDesk, Reason, Refused
 from tests.host.telescope.conftest import Rig
 
 
-def beside(rig: Rig, work: Callable[[], object], limit_s: float = 300.0) -> object:
+def beside(rig: Rig, work: Callable[[], Coroutine[Any, Any, object]], limit_s: float = 300.0) -> object:
     """Run `work` in a thread and the emulation in this one until it has ended."""
     results: list[object] = []
 
     def body() -> None:
         try:
-            results.append(work())
+            results.append(asyncio.run(work()))
         except Exception as error:
             results.append(error)
 
@@ -34,8 +35,8 @@ def beside(rig: Rig, work: Callable[[], object], limit_s: float = 300.0) -> obje
     return results[0]
 
 
-def test_the_plain_desk_blocks_until_done_and_passes_refusals_on(rig: Rig) -> None:
-    desk = PlainDesk(rig.telescope)
+def test_a_job_is_awaited_to_its_end_and_refusals_are_passed_on(rig: Rig) -> None:
+    desk = AsyncDesk(rig.telescope)
     beside(rig, lambda: desk.run(lambda t: t.drive.power_on()))
     assert desk.now.powered
     with pytest.raises(Refused) as refused:
@@ -51,7 +52,7 @@ def test_the_async_desk_awaits(rig: Rig) -> None:
         await desk.do(lambda t: t.drive.track(True))
         return await desk.run(lambda t: t.boards.get(t.client.devices[0], 1))
 
-    assert beside(rig, lambda: asyncio.run(work())) == 10  # percent: the plant file's counter torque
+    assert beside(rig, work) == 10  # percent: the plant file's counter torque
     assert desk.now.tracking
 
 
@@ -81,7 +82,7 @@ def test_a_stop_overtakes_what_moves_nothing(rig: Rig) -> None:
 
 
 def test_H2_the_lock_holds_consoles_but_not_the_stop_nor_programs(rig: Rig) -> None:
-    console, program = PlainDesk(rig.telescope, console=True), PlainDesk(rig.telescope)
+    console, program = AsyncDesk(rig.telescope, console=True), AsyncDesk(rig.telescope)
     beside(rig, lambda: console.lock(True))
     rig.advance(0.1)
     assert console.now.locked
@@ -101,10 +102,6 @@ def test_a_telescope_that_does_not_tick_is_said_to_be_silent(
 ) -> None:
     monkeypatch.setattr("host.telescope.desk.ANSWER_S", 0.05)
     with pytest.raises(Refused, match="no tick"):
-        PlainDesk(rig.telescope).do(lambda t: t.drive.power_on())
-    rig.advance(1.0)  # given up: it is not carried out later
-    assert not rig.telescope.snapshot.powered
-    with pytest.raises(Refused, match="no tick"):
         asyncio.run(AsyncDesk(rig.telescope).do(lambda t: t.drive.power_on()))
-    rig.advance(1.0)
+    rig.advance(1.0)  # given up: it is not carried out later
     assert not rig.telescope.snapshot.powered

@@ -10,8 +10,8 @@ from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe
 from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope.jobs import Refused
-from plant.model import MountErrors
 from plant.mount import sky
+from plant.parts import MountErrors
 from tests.host.sky.seen import LATITUDE, sightings
 from tests.host.telescope.conftest import Rig
 

@@ -161,7 +161,7 @@ def test_tracking_ends_at_the_horizon_limit(rig: Rig) -> None:
     place = rig.pc.observatory.observed(
         rig.telescope.snapshot.ra.steps or 0, rig.telescope.snapshot.dec.steps or 0
     )
-    rig.do(lambda t: t.set_horizon(place.altitude_rad - 60 * ARCSEC))
+    rig.telescope.observatory.horizon_rad = place.altitude_rad - 60 * ARCSEC
     rig.advance(20.0)
     assert not rig.telescope.snapshot.tracking
     assert any("horizon" in entry.text for entry in rig.pc.journal.entries if entry.kind == "error")
@@ -170,7 +170,7 @@ def test_tracking_ends_at_the_horizon_limit(rig: Rig) -> None:
 def test_what_rises_below_the_horizon_limit_goes_on(rig: Rig) -> None:
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=-3.0), wake=True))
     rig.advance(2.0)
-    rig.do(lambda t: t.set_horizon(math.radians(85.0)))
+    rig.telescope.observatory.horizon_rad = math.radians(85.0)
     rig.advance(4.0)
     assert rig.telescope.snapshot.tracking and rig.telescope.snapshot.activity == "tracking"
 
@@ -203,7 +203,7 @@ def test_H3_focus_moves_steps_holds_and_frees(rig: Rig) -> None:
     rig.do(lambda t: t.focuser.move_to(-700))
     rig.advance(0.5)
     assert rig.telescope.snapshot.focus and rig.telescope.snapshot.focus.moving
-    rig.run(lambda t: t.focuser.halt())
+    rig.run(lambda t: t.focuser.hold())
     rig.advance(1.0)
     focus = rig.telescope.snapshot.focus
     assert focus and not focus.moving and -700 < focus.half_steps < 97

@@ -10,7 +10,8 @@ import pytest
 from plant import fmu, model
 from plant.effects import REGISTRY
 from plant.fmu.variables import exported
-from plant.model import EffectModel, PlantModel
+from plant.model import PlantModel
+from plant.parts import EffectModel
 from plant.plant import Plant
 from scenarios.native import compiled
 from tests.plant.fmu.recorded import Imported, differences, record

@@ -11,7 +11,6 @@ import yaml
 from scipy.stats import kstest
 
 from scenarios.campaign.plan import Case, load
-from scenarios.campaign.sensitivity import sobol
 from scenarios.language.document import Document, ScenarioError
 
 SCENARIO = """\
@@ -203,47 +202,3 @@ def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) 
     assert starts[2] - starts[0] == pytest.approx(turn * 60 / 360, abs=1)
     with pytest.raises(ScenarioError, match="beyond the soft limits"):
         load(campaign([{"start": "declination", "is": [-80]}], sample="grid"))
-
-
-def test_a_saltelli_sample_gives_the_indices_of_a_function_whose_indices_are_known(campaign: Any) -> None:
-    """Ishigami and Homma (1990), a = 7, b = 0.1: the variances in closed form."""
-    planned = load(
-        campaign(
-            [{"name": str(k), "plant": FRICTION, "is": {"between": [-np.pi, np.pi]}} for k in range(3)],
-            sample="saltelli",
-            budget={"runs": 5 * 2048},
-        )
-    )
-    x = 2.0 * np.pi * planned.shares - np.pi
-    y = np.sin(x[:, 0]) + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
-    one, two = 0.5 * (1.0 + 0.1 * np.pi**4 / 5.0) ** 2, 7.0**2 / 8.0
-    both = 0.1**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
-    every = one + two + both
-    found = sobol("y", y, 3)
-    assert found is not None
-    assert found.first == pytest.approx([one / every, two / every, 0.0], abs=0.03)
-    assert found.total == pytest.approx([(one + both) / every, two / every, both / every], abs=0.03)
-    for value, interval in ((found.first, found.first_interval), (found.total, found.total_interval)):
-        assert np.all(interval[:, 0] <= value + 0.02)
-        assert np.all(value - 0.02 <= interval[:, 1])
-    assert sobol("y", np.append(y[:-1], np.nan), 3) is None
-
-
-def test_a_campaign_over_a_calibration_varies_its_plant_and_nothing_of_a_scenario(tmp_path: Path) -> None:
-    (tmp_path / "axis.csv").write_text("")
-    path = tmp_path / "many.yaml"
-    data = {
-        "name": "many",
-        "calibration": {"logs": ["axis.csv"], "plant": "low-preload"},
-        "inputs": [{"plant": FRICTION, "times": [0.9, 1.1]}],
-        "sample": "grid",
-    }
-    path.write_text(yaml.safe_dump(data))
-    values = [case.document["plant"]["overrides"][FRICTION] for case in cases(path)]
-    assert values[1] / values[0] == pytest.approx(1.1 / 0.9)
-    path.write_text(yaml.safe_dump({**data, "inputs": [{"seed": True, "is": [1]}]}))
-    with pytest.raises(ScenarioError, match="a calibration has no seed"):
-        load(path)
-    path.write_text(yaml.safe_dump({**data, "calibration": {"logs": ["gone.csv"]}}))
-    with pytest.raises(ScenarioError, match=r"there is no file gone\.csv"):
-        load(path)

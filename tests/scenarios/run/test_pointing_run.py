@@ -14,8 +14,9 @@ from host.procedures.pointing_run import directions
 from host.sky import pointmodel
 from host.sky.catalogue import star
 from host.sky.observed import observe_many
-from plant.model import MountErrors, dumps, load
+from plant.model import dumps, load
 from plant.mount import sky
+from plant.parts import MountErrors
 from scenarios.lab.snapshot.file import read
 from scenarios.lab.snapshot.run import Order
 from scenarios.language.document import ScenarioError, parse

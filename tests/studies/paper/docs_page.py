@@ -27,8 +27,7 @@ the board sends every 10 ms: velocity as counts of the last 5 ms, control effort
 
 **From where.** Each row is measured from {len(ANGLES_DEG)} angles of the axis with {len(set(SEEDS))} seeds in
 turn. The angles lie between {ANGLES_DEG[0]:g} and {ANGLES_DEG[-1]:g}° of the absolute encoder. A row is met
-when every limit holds at every start. `--every` takes all combinations, `--rows E1,E6` some rows, and
-`--quick` two starts for a look.
+when every limit holds at every start. `--rows E1,E6` takes some rows, and `--quick` two starts for a look.
 
 **Tests that must fail.** For every row a plant in `tests/studies/paper/` must miss it. Such plants have no
 Coulomb friction, another inertia, gains ten times as high, a disturbance too large or another resistance.

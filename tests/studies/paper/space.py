@@ -6,7 +6,8 @@ from math import exp, log
 
 import numpy as np
 
-from plant.model import EffectModel, Number, PlantModel, with_effects, with_value
+from plant.model import PlantModel, with_effects, with_value
+from plant.parts import EffectModel, Number
 from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.scales import GEAR_RATIO, INERTIA, TABLE_2
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from plant.model import load
+from scenarios.studies.options import HIGH, LOW
 from scenarios.studies.paper.experiments import EXPERIMENTS
-from scenarios.studies.paper.run_experiments import DEFAULTS, as_json, run_rows
+from scenarios.studies.paper.run_experiments import as_json, run_rows
 from scenarios.studies.paper.starts import QUICK
 
 pytestmark = pytest.mark.long
@@ -18,7 +19,7 @@ TABLE = Path(__file__).parents[3] / "docs" / "results" / "experiments.md"
 
 @pytest.fixture(scope="module")
 def plants():
-    return {preload: load(name) for preload, name in DEFAULTS.items()}
+    return {"low": load(LOW), "high": load(HIGH)}
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,7 @@ def rows(plants):
 
 
 def test_the_json_has_the_agreed_shape(rows):
-    document = json.loads(json.dumps(as_json(rows, dict(DEFAULTS), 1.0, QUICK)))
+    document = json.loads(json.dumps(as_json(rows, {"low": LOW, "high": HIGH}, 1.0, QUICK)))
     assert [row["id"] for row in document["rows"]] == [f"E{k}" for k in range(1, 16)]
     for row in document["rows"]:
         assert isinstance(row["passed"], bool)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from plant.model import load
+from scenarios.studies.options import HIGH, LOW
 from scenarios.studies.paper.experiments import closed as in_loop
 from scenarios.studies.paper.experiments import opened as out_of_loop
 from scenarios.studies.paper.experiments.closed import stick_slips
@@ -12,12 +13,11 @@ from scenarios.studies.paper.experiments.frictionmap import CONSTANT_ERROR, Nois
 from scenarios.studies.paper.experiments.identify import FirstOrder, fit, second_order
 from scenarios.studies.paper.experiments.models import RULES
 from scenarios.studies.paper.rows import Row
-from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.scales import COUNT_RATE
 from scenarios.studies.paper.starts import STARTS, Benches
 from tests.studies.paper.synthetic import log_of
 
-PLANTS = {preload: load(name) for preload, name in DEFAULTS.items()}
+PLANTS = {"low": load(LOW), "high": load(HIGH)}
 
 
 class Axis:

@@ -1,15 +1,14 @@
 """What a row says about figures from many starts: median, worst, and that one start is enough to miss it."""
 
 from datetime import date
-from pathlib import Path
 
 import pytest
 
 from scenarios.studies.paper.experiments import EXPERIMENTS
 from scenarios.studies.paper.experiments.experiment import EVER, Experiment, Limit
 from scenarios.studies.paper.rows import Row, markdown
-from scenarios.studies.paper.run_experiments import DEFAULTS, measure, pair, row_of, select
-from scenarios.studies.paper.starts import ALL, ANGLES_DEG, QUICK, SEEDS, STARTS
+from scenarios.studies.paper.run_experiments import measure, row_of, select
+from scenarios.studies.paper.starts import ANGLES_DEG, QUICK, SEEDS, STARTS
 from tests.studies.paper.docs_page import PAGE, page
 
 BAND = Limit(figure="peak", unit="%", low=10.0, high=25.0, words="peak", scale=5.0)
@@ -69,8 +68,7 @@ def test_eight_angles_and_three_seeds():
     assert {start.seed for start in STARTS} == set(SEEDS)
     assert len(SEEDS) >= 3
     assert len(STARTS) == len(ANGLES_DEG)
-    assert len(ALL) == len(ANGLES_DEG) * len(SEEDS)
-    assert set(QUICK) < set(STARTS) < set(ALL)
+    assert set(QUICK) < set(STARTS)
 
 
 def test_every_row_quotes_the_paper_and_says_what_it_is_held_to():
@@ -96,15 +94,6 @@ def test_rows_can_be_chosen_and_a_wrong_name_is_said():
     assert len(select(None)) == 15
     with pytest.raises(ValueError, match="'E99' is no row; there are E1"):
         select("E99")
-
-
-def test_one_plant_file_brings_its_twin(tmp_path):
-    assert pair(None, None) == DEFAULTS
-    assert pair(Path("low_preload"), None) == {"low": "low_preload", "high": "high_preload"}
-    (tmp_path / "my_low.yaml").touch()
-    (tmp_path / "my_high.yaml").touch()
-    assert pair(None, tmp_path / "my_high.yaml")["low"] == str(tmp_path / "my_low.yaml")
-    assert pair(Path("other.yaml"), None)["high"] == DEFAULTS["high"]
 
 
 def test_the_page_is_what_the_rows_say():

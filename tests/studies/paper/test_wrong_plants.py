@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from plant.model import Number, load, with_effects, with_value
+from plant.model import load, with_effects, with_value
+from plant.parts import Number
+from scenarios.studies.options import HIGH, LOW
 from scenarios.studies.paper.experiments import EXPERIMENTS
-from scenarios.studies.paper.run_experiments import DEFAULTS
 from scenarios.studies.paper.starts import QUICK, Benches, viscous_only, with_inertia
 from tests.studies.paper.compiled import CompiledBench
 from tests.studies.paper.objective import SCALE
@@ -14,7 +15,7 @@ from tests.studies.paper.statics import stall_current
 
 pytestmark = pytest.mark.slow
 
-PLANTS = {preload: load(name) for preload, name in DEFAULTS.items()}
+PLANTS = {"low": load(LOW), "high": load(HIGH)}
 BY_ID = {row.id: row for row in EXPERIMENTS}
 
 

@@ -10,6 +10,9 @@ from host.logs.journal import Journal
 from host.procedures.manual import AXES
 from host.serial_link import SerialLink
 
+_BEFORE = __name__.removesuffix("host.console.runs")
+"""Before the rooms' names: nothing in a checkout, `schmidt.` in a wheel."""
+
 
 class RecordedRuns:
     """Runs of both axes in a folder. Pages only ask; `poll` and `receive`, on the host's own thread, write.
@@ -54,9 +57,9 @@ class RecordedRuns:
         return found[:-1] if AXES[axis].name in self._open else found
 
     def command(self, axis: str, out: Path) -> list[str]:
-        """The finder as its own program: it may take a minute, and nobody must wait for it."""
+        """The command line that calibrates on them into `out`. It may take a minute: a program of its own."""
         logs = [str(path) for path in self.logs(axis)]
-        program = "from scenarios.cli import main; main()"
+        program = f"from {_BEFORE}scenarios.cli import main; main()"
         return [sys.executable, "-c", program, "calibrate", *logs, "--out", str(out)]
 
     def poll(self) -> None:
