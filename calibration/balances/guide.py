@@ -24,6 +24,8 @@ CELL_S = 3.0
 DRIFT_TURNS = 2.0
 # of the drift: refraction and polar alignment change its rate. ASSUMPTION
 LEAST_DEGREE = 2
+# likewise at most: eight hours of a mount's slowest worm. ASSUMPTION
+MOST_DEGREE = 43
 # s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
 SLOWEST_S = 663.0
 # blocks in a turn of the slowest period, 40 s of a mount's: air and guiding forget sooner. ASSUMPTION
@@ -178,7 +180,7 @@ def _drift(t: Array, here: Mask, slowest_s: float) -> Array:
     """Legendre polynomials over the rows `here`: refraction, polar axis and flexure; degree d has d / 2
     waves."""
     span = float(np.ptp(t[here]))
-    degree = max(round(span / (DRIFT_TURNS * slowest_s / 2)), LEAST_DEGREE)
+    degree = min(max(round(span / (DRIFT_TURNS * slowest_s / 2)), LEAST_DEGREE), MOST_DEGREE)
     x = np.where(here, 2 * (t - t[here].min()) / max(span, 1e-9) - 1, 0.0)
     return np.where(here[:, None], legvander(x, degree)[:, 1:], 0.0)
 

@@ -20,6 +20,7 @@ from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
 from calibration.inputs.text import (
     Heading,
+    Long,
     check_file,
     heading,
     load_utf8,
@@ -112,8 +113,8 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
     time, value = (second, first) if found.stamp == second else (first, second)
     long = {"name": name, "value": str(value)}
     stamps = {str(time): (ISO, "")} if found.stamp == time else {}
-    timed = {**long, "time": str(time)}
-    columns = read_long(path, text, [*signals, time], timed, stamps, len(signals))
+    timed = Long(name, str(time), str(value), compete=len(signals))
+    columns = read_long(path, text, [*signals, time], timed, stamps)
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 

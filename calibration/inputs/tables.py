@@ -16,7 +16,7 @@ from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
-from calibration.inputs.text import load_utf8, read_columns, read_long
+from calibration.inputs.text import Long, load_utf8, read_columns, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
 from calibration.inputs.words import read_signed
 
@@ -41,8 +41,8 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
         text = load_utf8(path) if text is None else text
         if rig.long and stamp is not None:
             compete = 2 if any(r.is_force for r in rig.responses) else 1  # a force and its position
-            long, shape = {**rig.long, "time": str(stamp.column)}, (rig.names, rig.delimiter)
-            found = [read_long(path, text, wanted, long, stamps, compete, shape)]
+            long = Long(rig.long["name"], str(stamp.column), rig.long["value"], compete)
+            found = [read_long(path, text, wanted, long, stamps, (rig.names, rig.delimiter))]
         else:
             found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]

@@ -167,26 +167,35 @@ def read_columns(
     return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
 
 
+class Long(NamedTuple):
+    """Columns of a table with a row per reading: the signal's name, its stamp, its value; `compete` as in
+    `wide`."""
+
+    name: str
+    time: str
+    value: str
+    compete: int
+
+
 def read_long(
     path: Path,
     text: str,
     wanted: list[str | int],
-    long: Mapping[str, str],
+    long: Long,
     stamps: Mapping[str, tuple[str, str | int]],
-    compete: int,
     shape: tuple[tuple[str, ...], str | None] = ((), None),
 ) -> dict[str, Array]:
-    """The wanted signals of a long table on the stamps of one of them, as `wide` has it. Its rows hold a
-    name, a stamp and a value (`long`: the columns of `name`, `time` and `value`). `shape`: names of the
-    columns of a file without a header row, delimiter."""
-    time = long["time"]
-    got = read_columns(path, text, [time, long["value"]], *shape, stamps)
+    """The wanted signals of a long table on the stamps of one of them, as `wide` has it.
+
+    shape: names of the columns of a file without a header row, delimiter.
+    """
+    got = read_columns(path, text, [long.time, long.value], *shape, stamps)
     lines, fields, first, mark, at = heading(path, text, *shape)
-    place = _place(path, long["name"], fields, True, at + 1)
-    names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[time])]
-    signals = [str(c) for c in wanted if str(c) != time]
-    found = wide(path, names, got[time], got[long["value"]], signals, compete)
-    return {time: found.pop(""), **found}
+    place = _place(path, long.name, fields, True, at + 1)
+    names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[long.time])]
+    signals = [str(c) for c in wanted if str(c) != long.time]
+    found = wide(path, names, got[long.time], got[long.value], signals, long.compete)
+    return {long.time: found.pop(""), **found}
 
 
 def _place(path: Path, column: str | int, fields: list[str], header: bool, line: int) -> int:
