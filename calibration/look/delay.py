@@ -70,6 +70,8 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
         why = "the declared model is at the floor without it"
     elif floor and part_left(before, now, floor) > MOST_LEFT:
         why = "it leaves most of what is above the floor"
+    elif any(x.startswith("inertia:") for x in late[2]) and found[2] == []:
+        why = "beside it the drive has no inertia: along a sine either is the other"
     if why:
         what = f"channel_delay of {channel}, {1e3 * delay.parameters['delay'].value:.2g} ms, was close"
         return Timed(plain_loop, found, close=f"{what} ({why}): quicker turns and a quieter effort")
