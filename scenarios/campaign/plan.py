@@ -201,4 +201,4 @@ def saltelli(one: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> np
 
 def _text(value: object) -> str:
     """Dates of YAML as text."""
-    return value.isoformat() if hasattr(value, "isoformat") else str(value)
+    return str(value)

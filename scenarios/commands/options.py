@@ -33,7 +33,7 @@ network = click.option(
     "--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18."
 )
 jobs = click.option(
-    "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
+    "--jobs", type=click.IntRange(1, 1024), help="Processes on this machine (default: one per core)."
 )
 runs = click.option(
     "--runs", type=PATH, default=Path("out/console"), help="Folder of the runs recorded on the console."
