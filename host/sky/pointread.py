@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import erfa
@@ -64,7 +65,7 @@ def _csv(path: Path, lines: list[str]) -> Stars:
     every = [each.strip() for each in lines[first].split(",")]
     names = [each for each in every if each != LABEL]
     rows = []
-    for number, row in enumerate(csv.reader(lines[first + 1 :]), first + 2):
+    for number, row in enumerate(_rows(path, lines[first + 1 :]), first + 2):
         if row and not row[0].startswith("#"):
             if len(row) != len(every):
                 raise PointingRunError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
@@ -77,6 +78,13 @@ def _csv(path: Path, lines: list[str]) -> Stars:
         h=angles[0], d=angles[1], ra=angles[2], dec=angles[3],
         latitude_rad=math.radians(_number(path, 1, latitude)), others=table,
     )  # fmt: skip
+
+
+def _rows(path: Path, lines: list[str]) -> Iterator[list[str]]:
+    try:
+        yield from csv.reader(lines)
+    except csv.Error as error:
+        raise PointingRunError(f"{path}: {error}") from None
 
 
 def _tpoint(path: Path, lines: list[str]) -> Stars:

@@ -73,7 +73,7 @@ def _named(path: Path) -> Iterator[None]:
     """Whatever goes wrong with what is in a file is one line with its name."""
     try:
         yield
-    except (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError) as error:
+    except (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, csv.Error) as error:
         raise ValueError(f"{path}: is not as a run has left it ({type(error).__name__}: {error})") from None
 
 

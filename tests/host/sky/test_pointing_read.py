@@ -96,6 +96,7 @@ def test_another_csv_is_no_pointing_run(tmp_path: Path) -> None:
         ("a.csv", HEAD.split("\n")[1] + "\n1,2,3,4,5\n", "a.csv: the latitude is missing"),
         ("a.csv", HEAD + "1,2,3,4\n", "a.csv:3: 4 values for 5 columns"),
         ("a.csv", HEAD + "1,2,3,4,x\n", "a.csv:3: 'x' is not a number"),
+        ("a.csv", HEAD + "1,2,3,4," + "5" * 200_000 + "\n", "a.csv: field larger than"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(tmp_path: Path, name: str, text: str, line: str) -> None:
