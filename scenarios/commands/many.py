@@ -34,7 +34,9 @@ def campaign(scheduler: str | None, **given: Any) -> None:
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
 @click.option("--every", is_flag=True, help="Every start angle with every seed: 24 starts instead of eight.")
-@click.option("--others", type=click.IntRange(0, 1000), default=0, help="Starts and seeds that no search used.")
+@click.option(
+    "--others", type=click.IntRange(0, 1000), default=0, help="Starts and seeds that no search used."
+)
 @jobs
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead.")
 def paper(**given: Any) -> None:

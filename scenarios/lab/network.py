@@ -247,7 +247,7 @@ _AVR = ".elf"
 _IN_C = ("AXIS_", "POSITION_", "MOTOR_")
 """Boards whose chips firmware.h knows."""
 _IN_AVR = ("MOTOR_", "DISPLAY")
-"""Boards that are on the bus and nowhere else: the emulated AVR has no RS232, no USB and no pins to the plant."""
+"""Boards that need the bus alone: the emulated AVR has no RS232, no USB and no pins to the plant."""
 
 
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:

@@ -28,7 +28,12 @@ _MOST_STEPS = 3000
 def _block(beside: dict[str, Any], **fields: dict[str, Any]) -> dict[str, Any]:
     """beside: fields that may be missing."""
     properties = fields | beside
-    return {"type": "object", "required": list(fields), "properties": properties, "additionalProperties": False}
+    return {
+        "type": "object",
+        "required": list(fields),
+        "properties": properties,
+        "additionalProperties": False,
+    }
 
 
 def _number(low: float, **high: float) -> dict[str, Any]:

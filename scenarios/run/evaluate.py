@@ -55,7 +55,8 @@ def judge(outcome: Outcome) -> list[Verdict]:
     programme = Verdict("programme completed", done, total, "steps", reason=reason)
     whole = [Verdict("run to its end", 0, 1, "times", reason=cut_off)] if cut_off else []
     silent = [_silent(each) for each in outcome.faults if each.missing]
-    return [programme, *whole, *silent, *(_judge_one(outcome, each) for each in outcome.scenario.expectations)]
+    judged = [_judge_one(outcome, each) for each in outcome.scenario.expectations]
+    return [programme, *whole, *silent, *judged]
 
 
 def _silent(fault: Evidence) -> Verdict:

@@ -54,7 +54,9 @@ TARGETS: dict[str, tuple[str, ...]] = {
     "bus/protocol/report.py": (f"{_CODECS}/test_report.py",),
     "bus/protocol/saturate.py": _PROTOCOL,
     "bus/protocol/serial.py": (f"{_CODECS}/test_edges.py", f"{_CODECS}/test_serial.py"),
-    "scenarios/run/evaluate.py": tuple(f"tests/scenarios/run/test_{name}.py" for name in ("evaluate", "judge")),
+    "scenarios/run/evaluate.py": tuple(
+        f"tests/scenarios/run/test_{name}.py" for name in ("evaluate", "judge")
+    ),
 }
 
 

@@ -89,7 +89,9 @@ class Order:
         if Device.GATEWAY.name not in session.network.boards:
             raise SnapshotError("snapshots of a run need a network with a gateway")
         if self.at_ns < (now_ns := session.network.queue.now_ns):
-            raise SnapshotError(f"a snapshot at {self.at_ns * 1e-9:g} s: the run is at {now_ns * 1e-9:g} s already")
+            raise SnapshotError(
+                f"a snapshot at {self.at_ns * 1e-9:g} s: the run is at {now_ns * 1e-9:g} s already"
+            )
         self.tape = Tape(session, [] if begun is None else begun["heard"])
         if begun is not None:
             session.rows = begun["rows"]

@@ -136,7 +136,8 @@ def test_a_run_is_one_mcap_file(folders: dict[str, Path], tmp_path: Path) -> Non
     ("name", "text"),
     [
         ("truth-ra.parquet", b"no parquet"), ("can.log", b"\xff"), ("can.log", b"(0.1) can0\n"),
-        ("commands.log", b"2026-02-10\n"), ("axis-ra.csv", b"t,setpoint\nx,1\n"), ("axis-dec.csv", b"a,b\n1,2\n"),
+        ("commands.log", b"2026-02-10\n"),
+        ("axis-ra.csv", b"t,setpoint\nx,1\n"), ("axis-dec.csv", b"a,b\n1,2\n"),
         *(("summary.json", {word: wrong}) for word in ("start_utc", "simulated_s", "steps", "faults")
           for wrong in ("x", [1])),
     ],
@@ -149,7 +150,9 @@ def test_a_file_that_no_run_has_left_so_is_named(
     if isinstance(text, dict):
         text = json.dumps(json.loads((folder / name).read_text()) | text).encode()
     (folder / name).write_bytes(text)
-    with pytest.raises(ValueError, match=re.escape(f"{folder / name}: is not as a run has left it")) as caught:
+    with pytest.raises(
+        ValueError, match=re.escape(f"{folder / name}: is not as a run has left it")
+    ) as caught:
         export(folder, tmp_path / "run.mcap")
     assert "\n" not in str(caught.value)
 
