@@ -119,7 +119,7 @@ class LineFile:
 def reason(error: Exception) -> str:
     """The reason that the system gives, in one line, without its number."""
     said = getattr(error, "strerror", None) or str(error)
-    return (said.splitlines() or ["cannot be written"])[0].lower()
+    return (said.splitlines() or [type(error).__name__])[0].lower()
 
 
 RESERVE_BYTES = 8 << 20

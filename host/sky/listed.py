@@ -24,6 +24,8 @@ VARIABLE = "SCHMIDT_CATALOGUE"
 """The path of a list of one's own: columns name, ra, dec (ICRS). All of it is on the chart."""
 _FAINTEST = 40.0
 """Magnitude, either way. ASSUMPTION: the Sun has -27, the faintest that was ever seen 32."""
+_LONGEST = 50_000_000
+"""Bytes of a list: a million objects. ASSUMPTION: more is no list, and fills the memory."""
 _EARTH_AU = 6378.137 / 149597870.7
 """Equatorial radius (WGS84) in astronomical units (IAU 2012)."""
 
@@ -41,6 +43,8 @@ def read(path: Path) -> list[Listed]:
     if path.exists() and not path.is_file():  # a pipe or a device may never end
         raise ValueError(f"{path}: no regular file; a list of objects is a CSV file")
     try:
+        if path.stat().st_size > _LONGEST:
+            raise ValueError(f"{path}: is longer than {_LONGEST} bytes")
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise ValueError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None

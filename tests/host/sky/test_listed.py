@@ -75,6 +75,10 @@ def test_a_list_that_cannot_be_read_says_where(text: str, said: str, tmp_path: P
         read(own)
     with pytest.raises(ValueError, match="cannot be read"):
         read(tmp_path / "none.csv")
+    with own.open("wb") as file:
+        file.truncate(1 << 33)
+    with pytest.raises(ValueError, match="is longer than 50000000 bytes"):
+        read(own)
 
 
 def test_many_at_once_are_where_each_is() -> None:
