@@ -51,7 +51,7 @@ def read(given: dict[str, Any], where: str, base: Document) -> Input:
 def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
     if ("is" in given) == ("times" in given):
         raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
-    spread = given.get("times", given.get("is"))
+    spread: Any = given.get("times", given.get("is"))
     if isinstance(spread, list):
         if "times" in given and not all(type(each) in (int, float) for each in spread):
             raise ScenarioError(f"{where}: {kind}: `times` is a list of numbers")
