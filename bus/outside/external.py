@@ -55,7 +55,7 @@ def open_bus(spec: str) -> can.BusABC:
     try:  # an interface's own settings: of any type, which the signature cannot know
         bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option
-        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = " ".join(str(getattr(error, "strerror", None) or error).split()) or type(error).__name__
         remedy = _remedy(error).format(channel) if interface == "socketcan" else ""
         raise SpecError(f'"{spec}" cannot be opened: {reason}{remedy and f"; try: {remedy}"}') from None
     with suppress(OSError, NotImplementedError, AttributeError, ValueError):  # no socket, or not so much

@@ -57,16 +57,16 @@ def row_to_row(x: Array, rows: Mask) -> float:
 def position_noise(x: Array, file: NDArray[np.int64], step: float | None = None) -> float:
     """rms of the position's white noise, from its fourth differences, and of its rounding.
 
-    step: of the sensor, where x was put between its rows and has none itself.
+    step: of the sensor, where x was put between its rows and has a smaller one itself.
     """
     fourth = np.diff(x, 4)[np.convolve(np.diff(file) != 0, np.ones(4), "valid")[: len(x) - 4] == 0]
     noise = by_median(fourth) / np.sqrt(comb(8, 4))
-    step = step or quantum(x)
-    if step is None:
+    own = quantum(x)
+    if own is None:
         steps = np.abs(np.diff(x))
         steps = steps[steps > 1e-9 * (float(np.ptp(x)) or 1.0)]  # rows between two samples round differently
-        step = float(np.quantile(steps, 0.02)) if len(steps) else 0.0
-    return float(max(noise, step * ROUNDING))
+        own = float(np.quantile(steps, 0.02)) if len(steps) else 0.0
+    return float(max(noise, max(own, step or 0.0) * ROUNDING))
 
 
 def column_noise(frame: Frame) -> dict[str, float]:

@@ -51,8 +51,9 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
     c = contender.candidate
     free = c.kind == "line" and c.stage is None  # the best of a spectrum
     least = c.least or needed(max(tried, limits.SPECTRUM) if free else tried)
-    # chosen on the fitted rows, tested on the held-out ones: two independent chances
-    more = held.evidence if held.sure else 0.0
+    # chosen on the fitted rows, tested on the held-out ones: of a short log both chances count
+    short = named and held.sure and contender.blocks < limits.FEWEST_BLOCKS
+    more = held.evidence if short else 0.0
     if contender.evidence + more >= least:
         return ""
     times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) + more >= least), 0)

@@ -14,7 +14,7 @@ from calibration.inputs.declaration import GUESSED
 from calibration.inputs.loose import Loose, Said, read_loose, said
 from calibration.inputs.repair import counter_length
 from calibration.inputs.run import quantum
-from calibration.inputs.thresholds import GAP
+from calibration.inputs.thresholds import GAP, LARGEST_NUMBER
 from calibration.inputs.units import PER_TURN, units_per_turn
 
 # rows: standard deviation of the filter before a rate or a force is compared. ASSUMPTION
@@ -89,7 +89,7 @@ class _Draft:
 def draft(path: Path) -> str:
     """A rig file's text; CalibrationInputError for a log without two columns, or that needs no rig file."""
     loose = read_loose(path)
-    finite = {c: np.where(np.isfinite(x), x, np.nan) for c, x in loose.columns.items()}
+    finite = {c: np.where(np.abs(x) <= LARGEST_NUMBER, x, np.nan) for c, x in loose.columns.items()}
     columns = {c: x for c, x in finite.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}
     d = _Draft({c: _filled(x) for c, x in columns.items()})
     d.unsaid += [f"{c!r} holds one number, or none" for c in loose.columns if c not in columns]

@@ -79,6 +79,8 @@ def _number(path: Path, key: str, text: str, line: int) -> float:
     if value is None:
         what = f"'{key}' is '{text}', must be a plain number ({WHAT[key]})"
         raise CalibrationInputError(path, what, line)
-    if not (value > 0 or (key == "counter_torque" and value == 0)) or value > LARGEST_SCALE:
-        raise CalibrationInputError(path, f"'{key}' is {value}, must be positive ({WHAT[key]})", line)
+    share = key == "counter_torque"
+    if not (value > 0 or (share and value == 0)) or value > (1.0 if share else LARGEST_SCALE):
+        most = ", one at most" if share else ""
+        raise CalibrationInputError(path, f"'{key}' is {value}, must be positive{most} ({WHAT[key]})", line)
     return value

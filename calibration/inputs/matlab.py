@@ -162,6 +162,8 @@ def _numbers(value: Any) -> Array:
     if array.ndim == 2 and min(array.shape) > 1:
         size = f"{array.shape[0]} x {array.shape[1]}"
         raise LookupError(f"is a matrix of {size}: name a row or a column")
+    if np.iscomplexobj(array):
+        raise LookupError("holds complex numbers")
     try:
         return np.asarray(array, dtype=float).ravel()
     except (TypeError, ValueError):

@@ -62,7 +62,8 @@ def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
                     if value is not None:
                         rows[name].append(((message.log_time - begin_ns) * 1e-9, value))
     except (McapError, StructError, ValueError, OSError) as error:
-        raise CalibrationInputError(path, f"is no MCAP file that can be read ({error})") from None
+        reason = getattr(error, "strerror", None) or error
+        raise CalibrationInputError(path, f"is no MCAP file that can be read ({reason})") from None
     arrays = {name: np.array(found, dtype=float) for name, found in rows.items() if found}
     columns = {name: (both[:, 0], both[:, 1]) for name, both in arrays.items()}
     return [_joined(path, wanted, columns, sorted(have))]

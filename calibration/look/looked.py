@@ -189,11 +189,12 @@ def unnamed_where_missing(
 ) -> tuple[list[Finding], list[str]]:
     """What stays far above the floor without any name is `unknown`, else a need.
 
-    It is so over its domain, or over time where it is much and hangs on nothing that the log holds.
+    It is so over its domain; of a force over time, where it is much and hangs on nothing that the log holds.
     """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects and not needs:
-        over = [(b, m.domain or ("time" if b.times > EFFECT else "")) for b, m in large]
+        much = {b.key: "time" for b, _ in large if b.key == "T" and b.times > EFFECT}
+        over = [(b, m.domain or much.get(b.key, "")) for b, m in large]
         effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from queue import SimpleQueue
 from typing import Protocol
 
+from host.logs.files import reason as reason_of
+
 READ_S = 0.2
 """Longest wait within a read; how soon a task notices that it shall end."""
 RETRY_S = 1.0
@@ -85,7 +87,7 @@ class LinkTask:
                         self._inbox.put((self.name, data))
             except Exception as error:  # whatever a driver raises, it breaks this link only
                 self.breaks += 1
-                words = " ".join(str(error).split()) or type(error).__name__
+                words = reason_of(error)
                 if words != reason:
                     self._say(f"{self.name}: broken: {words}; tried again every second")
                     reason = words

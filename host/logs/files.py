@@ -116,9 +116,10 @@ class LineFile:
         return self._digest.hexdigest()
 
 
-def reason(error: OSError) -> str:
-    """The reason that the system gives, in one line."""
-    return ((error.strerror or str(error)).splitlines() or ["cannot be written"])[0].lower()
+def reason(error: Exception) -> str:
+    """The reason that the system gives, in one line, without its number."""
+    said = getattr(error, "strerror", None) or str(error)
+    return (said.splitlines() or [type(error).__name__])[0].lower()
 
 
 RESERVE_BYTES = 8 << 20

@@ -4,6 +4,7 @@ import csv
 import math
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +22,10 @@ FAINTEST_NGC = 9.0
 """Visual magnitude to which the NGC is listed. ASSUMPTION: a few hundred objects, what binoculars show."""
 VARIABLE = "SCHMIDT_CATALOGUE"
 """The path of a list of one's own: columns name, ra, dec (ICRS). All of it is on the chart."""
+_FAINTEST = 40.0
+"""Magnitude, either way. ASSUMPTION: the Sun has -27, the faintest that was ever seen 32."""
+_LONGEST = 50_000_000
+"""Bytes of a list: a million objects. ASSUMPTION: more is no list, and fills the memory."""
 _EARTH_AU = 6378.137 / 149597870.7
 """Equatorial radius (WGS84) in astronomical units (IAU 2012)."""
 
@@ -38,19 +43,33 @@ def read(path: Path) -> list[Listed]:
     if path.exists() and not path.is_file():  # a pipe or a device may never end
         raise ValueError(f"{path}: no regular file; a list of objects is a CSV file")
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        if path.stat().st_size > _LONGEST:
+            raise ValueError(f"{path}: is longer than {_LONGEST} bytes")
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: cannot be read: {error}") from None
+        raise ValueError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     notes = next((k for k, line in enumerate(lines) if not line.startswith("#")), 0)
-    rows = csv.DictReader(lines[notes:])
+    rows = csv.DictReader(lines[notes:], restval="")
+    if not {"name", "ra", "dec"} <= set(rows.fieldnames or ()):
+        raise ValueError(f"{path}: line {notes + 1}: the head line needs name, ra and dec")
     found = []
-    for row in rows:
-        try:
+    try:
+        for row in rows:
             star = Star(row["name"], parse_right_ascension(row["ra"]), parse_declination(row["dec"]))
-            found.append(Listed(star, float(row["magnitude"]) if row.get("magnitude") else None))
-        except (KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"{path}: line {notes + rows.line_num}: {error}") from None
+            found.append(Listed(star, _magnitude(row.get("magnitude", ""))))
+    except (csv.Error, ValueError) as error:
+        line = notes + rows.line_num + isinstance(error, csv.Error)  # which ends before it is counted
+        raise ValueError(f"{path}: line {line}: {error}") from None
     return found
+
+
+def _magnitude(text: str) -> float | None:
+    if not text:
+        return None
+    with suppress(ValueError):
+        if abs(magnitude := float(text)) <= _FAINTEST:
+            return magnitude
+    raise ValueError(f"magnitude {text!r} is no number of at most {_FAINTEST:g}")
 
 
 @cache

@@ -18,6 +18,9 @@ _NEAR_RAD = 1e-10
 _MOST_TURNS = 50
 """Three turns do; near the pole, where a cone of 1′ hides all within 1′, it takes more."""
 
+_MOST_ARCSEC = 324_000.0
+"""Largest term, 90°. ASSUMPTION: the zero of an axis may be anywhere, no mount has more of anything else."""
+
 
 class PointingFileError(ValueError):
     """A file of a pointing model that cannot be used: one line of what is wrong."""
@@ -126,15 +129,13 @@ def parsed(text: str, path: Path) -> PointingModel:
     try:
         terms = tuple(Term(**each) for each in data.pop("terms"))
         model = PointingModel(terms=terms, **data)
-        values = [
-            model.latitude_rad,
-            *(value for each in terms for value in (each.arcsec, each.within_arcsec)),
-        ]
-        if not all(math.isfinite(value) for value in values):
-            raise ValueError("a number is not finite")
+        if not abs(model.latitude_rad) <= math.pi / 2:
+            raise ValueError("the latitude is beyond a pole")
+        if not all(abs(size) <= _MOST_ARCSEC for each in terms for size in (each.arcsec, each.within_arcsec)):
+            raise ValueError("a term is larger than 90°")
     except (KeyError, TypeError, ValueError) as error:
         raise PointingFileError(f"{path}: not a pointing model: {error}") from None
     for each in terms:
-        if each.name not in TERMS:
+        if each.name not in tuple(TERMS):  # whatever a file calls it: not all of JSON can be looked up
             raise PointingFileError(f"{path}: no term is called {each.name!r}; there are {', '.join(TERMS)}")
     return model

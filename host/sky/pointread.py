@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import erfa
@@ -26,8 +27,13 @@ _LINE = 200
 _SKIPPED = ("", "END")
 _RECORD = 14
 """Numbers of a record: three each of both places of the star and of the telescope, two of sidereal time."""
-_HPA_MOST = 1100.0
-"""Air pressure, hPa; more is no pressure. ASSUMPTION: the highest ever measured is 1084."""
+_AIR = (
+    ("temperature", -100.0, 60.0, "°C"), ("pressure", 0.0, 1100.0, "hPa"), ("height", -500.0, 9000.0, "m"),
+    ("humidity", 0.0, 1.0, ""), ("wavelength", 0.1, 100.0, "µm"),
+)  # fmt: skip
+"""What a site's air may be. ASSUMPTION: beyond what was ever measured on the ground (-89 °C, 1084 hPa)."""
+_MOST_DEG = {HOUR_ANGLE: 360.0, DECLINATION: 90.0, AXES[0]: 360.0, AXES[1]: 360.0}
+"""Of angles, either way; an axis may stand beyond the pole."""
 
 
 class PointingRunError(ValueError):
@@ -64,19 +70,30 @@ def _csv(path: Path, lines: list[str]) -> Stars:
     every = [each.strip() for each in lines[first].split(",")]
     names = [each for each in every if each != LABEL]
     rows = []
-    for number, row in enumerate(csv.reader(lines[first + 1 :]), first + 2):
+    for number, row in enumerate(_rows(path, lines[first + 1 :]), first + 2):
         if row and not row[0].startswith("#"):
             if len(row) != len(every):
                 raise PointingRunError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
             rows.append(
-                [_number(path, number, each) for name, each in zip(every, row, strict=True) if name != LABEL]
+                [
+                    _number(path, number, each, _MOST_DEG.get(name, math.inf))
+                    for name, each in zip(every, row, strict=True)
+                    if name != LABEL
+                ]
             )
     table = dict(zip(names, np.array(rows).reshape(-1, len(names)).T, strict=True))
     angles = [np.radians(table.pop(each)) for each in (HOUR_ANGLE, DECLINATION, *AXES)]
     return Stars(
         h=angles[0], d=angles[1], ra=angles[2], dec=angles[3],
-        latitude_rad=math.radians(_number(path, 1, latitude)), others=table,
+        latitude_rad=math.radians(_number(path, 1, latitude, 90.0)), others=table,
     )  # fmt: skip
+
+
+def _rows(path: Path, lines: list[str]) -> Iterator[list[str]]:
+    try:
+        yield from csv.reader(lines)
+    except csv.Error as error:
+        raise PointingRunError(f"{path}: {error}") from None
 
 
 def _tpoint(path: Path, lines: list[str]) -> Stars:
@@ -96,7 +113,7 @@ def _tpoint(path: Path, lines: list[str]) -> Stars:
         raise PointingRunError(
             f"{path}:{number}: the site is latitude in three parts, date in three parts, …"
         )
-    latitude = _sexagesimal(words[:3], site[:3], path, number)
+    latitude = _sexagesimal(words[:3], site[:3], path, number, 90.0)
     a, b = _refraction(path, number, site[6:])
     stars = [_star(path, line, words, math.radians(latitude), a, b) for line, words in body[1:]]
     if not stars:
@@ -110,10 +127,12 @@ def _refraction(path: Path, number: int, air: list[float]) -> tuple[float, float
     wavelength um, as far as they are there."""
     if len(air) < 2 or air[1] == 0:
         return 0.0, 0.0
-    if not 0 < air[1] < _HPA_MOST:
-        raise PointingRunError(f"{path}:{number}: pressure {air[1]:g} hPa is outside 0 to {_HPA_MOST:g}")
-    humidity, wavelength = [*air[3:5], 0.5, 0.55][:2] if len(air) >= 5 else (0.5, 0.55)
-    a, b = erfa.refco(air[1], air[0], min(max(humidity, 0.0), 1.0), wavelength)
+    for value, (what, low, high, unit) in zip(air, _AIR, strict=False):
+        if not low <= value <= high:
+            told = f"{what} {value:g} {unit}".rstrip()
+            raise PointingRunError(f"{path}:{number}: {told} is outside {low:g} to {high:g}")
+    humidity, wavelength = air[3:5] if len(air) >= 5 else (0.5, 0.55)
+    a, b = erfa.refco(air[1], air[0], humidity, wavelength)
     return float(a), float(b)
 
 
@@ -124,7 +143,10 @@ def _star(
     if len(words) < _RECORD:
         raise PointingRunError(f"{path}:{number}: a star has {_RECORD} numbers, here are {len(words)}")
     parts = [_number(path, number, each) for each in words[:_RECORD]]
-    places = [_sexagesimal(words[k : k + 3], parts[k : k + 3], path, number) for k in (0, 3, 6, 9)]
+    places = [
+        _sexagesimal(words[k : k + 3], parts[k : k + 3], path, number, most)
+        for k, most in ((0, 24.0), (3, 90.0), (6, 24.0), (9, 360.0))
+    ]
     sidereal = parts[12] + parts[13] / 60
     h, ra = (math.radians(15 * (sidereal - place)) for place in (places[0], places[2]))
     d, dec = math.radians(places[1]), math.radians(places[3])
@@ -138,19 +160,23 @@ def _star(
     return math.remainder(h, 2 * math.pi), d, math.remainder(ra, 2 * math.pi), dec
 
 
-def _sexagesimal(words: list[str], parts: list[float], path: Path, number: int) -> float:
-    """Whole, minutes, seconds; the sign stands before the whole, also before a 0."""
+def _sexagesimal(words: list[str], parts: list[float], path: Path, number: int, most: float) -> float:
+    """Whole, minutes, seconds; the sign stands before the whole, also before a 0. most: either way."""
     if not (0 <= parts[1] < 60 and 0 <= parts[2] < 60):
         raise PointingRunError(f"{path}:{number}: {' '.join(words)} is not whole, minutes and seconds")
     size = abs(parts[0]) + parts[1] / 60 + parts[2] / 3600
+    if size > most:
+        raise PointingRunError(f"{path}:{number}: {' '.join(words)} is beyond {most:g}")
     return -size if words[0].startswith("-") else size
 
 
-def _number(path: Path, number: int, text: str) -> float:
+def _number(path: Path, number: int, text: str, most: float = math.inf) -> float:
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
         raise PointingRunError(f"{path}:{number}: {text!r} is not a number")
+    if abs(value) > most:
+        raise PointingRunError(f"{path}:{number}: {text} is beyond {most:g}")
     return value

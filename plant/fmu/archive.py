@@ -19,8 +19,11 @@ _MACHINES = {"x86_64": "x86_64", "aarch64": "aarch64"}
 def write(model: PlantModel, axis: str, seed: int, path: Path, fmi: int = 3) -> Exported:
     """Write one axis (`ra` or `dec`) as a file for FMI 2.0 or 3.0; the same bytes for the same model.
 
-    seed: of noise and of what is by chance, as a run has it. Raises FmuError where this machine cannot.
+    seed: of noise and of what is by chance, as a run has it. Raises FmuError where this machine cannot, or
+    `path` is a folder or a device.
     """
+    if path.exists() and not path.is_file():
+        raise FmuError(f"{path}: is no regular file, which an archive needs")
     made = exported(model, axis, seed)
     plain = header(made, "")
     token = "{" + hashlib.sha256(f"{fmi}\n{plain}".encode()).hexdigest()[:32] + "}"

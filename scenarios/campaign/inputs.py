@@ -49,13 +49,13 @@ def read(given: dict[str, Any], where: str, base: Document) -> Input:
 
 
 def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
-    spread = given.get("times", given.get("is"))
+    if ("is" in given) == ("times" in given):
+        raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
+    spread: Any = given.get("times", given.get("is"))
     if isinstance(spread, list):
         if "times" in given and not all(type(each) in (int, float) for each in spread):
             raise ScenarioError(f"{where}: {kind}: `times` is a list of numbers")
         return (lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]), spread
-    if not isinstance(spread, dict):
-        raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
     levels = int(spread.get("levels", _LEVELS))
     inverse = _inverse(spread, where)
     whole = bool(spread.get("whole"))
@@ -91,7 +91,10 @@ def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
         law = getattr(stats, name)(**numbers)
         if not float(law.ppf(0.5)) == float(law.ppf(0.5)):
             raise ValueError("its parameters are out of range")
-    except (TypeError, ValueError) as error:
+    except TypeError:  # of a signature nobody knows
+        shapes = getattr(stats, name).shapes or "no shape"
+        raise ScenarioError(f"{where}: {name}: takes loc, scale and {shapes}") from None
+    except ValueError as error:
         raise ScenarioError(f"{where}: {name}: {' '.join(str(error).split())}") from None
     return lambda share: float(law.ppf(share))
 

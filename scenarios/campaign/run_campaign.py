@@ -44,6 +44,10 @@ class _Waiting:
         self._kept = None if planned.keep == "nothing" else str(out.resolve() / "runs")
         self._begun_s = time.perf_counter()
         self.late = False
+        self.keys: set[str] = set()
+        """Of the plan, so far."""
+        self.alike = 0
+        """Runs of the plan that are one of those before: the same input is the same run."""
 
     @property
     def wall_s(self) -> float:
@@ -53,7 +57,10 @@ class _Waiting:
     def __iter__(self) -> Iterator[tuple[str, plan.Case]]:
         limit_s = self._planned.time_s
         for case in self._planned.cases():
-            if case.key in self._done:
+            known = case.key in self.keys
+            self.alike += known
+            self.keys.add(case.key)
+            if known or case.key in self._done:
                 continue
             if limit_s is not None and self.wall_s > limit_s:
                 self.late = True
@@ -99,8 +106,12 @@ def campaign(options: CampaignOptions, task: Callable[[plan.Case], Row] = run) -
     table.write(out)
     write(planned, out, wall_s, len(journal.done) - before)
     where = f"report {out / 'report.html'}, table {out / table.TABLE}"
-    print(f"{len(journal.done)} of {planned.count} runs, {where}")
-    missing = planned.count - len(journal.done)
+    total = planned.count - waiting.alike
+    # rows of another plan are no runs of this one; which they are is known when all of it was seen
+    made = len(journal.done & waiting.keys if len(waiting.keys) == total else journal.done)
+    more = f" ({waiting.alike} more are alike)" if waiting.alike else ""
+    print(f"{made} of {total} runs{more}, {where}")
+    missing = total - made
     if missing <= 0:
         return status
     why = "interrupted" if status == INTERRUPTED else "out of time" if waiting.late else "workers were lost"

@@ -42,7 +42,9 @@ def campaign(scheduler: str | None, **given: Any) -> None:
 @_high
 @click.option("--rows", metavar="E1,E2,...", help="These rows only, by their names.")
 @click.option("--quick", is_flag=True, help="Two starts instead of eight; decides nothing.")
-@click.option("--others", type=click.IntRange(0), default=0, help="Starts and seeds that no search used.")
+@click.option(
+    "--others", type=click.IntRange(0, 1000), default=0, help="Starts and seeds that no search used."
+)
 @_jobs
 @_scheduler
 def paper(**given: Any) -> None:

@@ -5,6 +5,7 @@ import select
 import socket
 
 from host.guard import HEAD_BYTES, is_http
+from host.logs.files import reason
 
 LOCAL = "127.0.0.1"
 
@@ -39,7 +40,7 @@ def listen(host: str, port: int) -> socket.socket:
         family, _, _, _, where = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         listener = socket.socket(family, socket.SOCK_STREAM)
     except (OSError, UnicodeError) as error:
-        raise OSError(f"{host}:{port} cannot be used: {error}") from None
+        raise OSError(f"{host}:{port} cannot be used: {reason(error)}") from None
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(where)

@@ -61,6 +61,8 @@ def check(options: DoorOptions) -> None:
     for option, given in (("--stars", options.stars), ("--frames", options.frames)):
         if given is not None and not options.asked.get("alpaca"):
             raise OptionError(f"{option} needs --alpaca, which has the cameras")
+    if options.logs is not None and not any(asked(ON_HOST, options)):
+        raise OptionError(f"--logs are the host's: it needs {named(ON_HOST, 'or')}")
     if isinstance(options, ServeOptions) and options.clock == "steps" and not options.asked.get("control"):
         raise OptionError("--clock steps needs --control: nobody else could step")
 

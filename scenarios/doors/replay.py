@@ -19,6 +19,8 @@ from scenarios.progress import Show, shown
 
 _STEP_NS = 1_000_000_000
 """Simulated time between two looks at what is left."""
+_LAST_NS = 10_000_000_000_000_000
+"""Longest session, as `scenarios.language.units` has it for a run: four months."""
 
 
 class ReplayError(ValueError):
@@ -104,11 +106,13 @@ def _facts(folder: Path) -> dict[str, Any]:
             all(isinstance(facts[key], kind) for key, kind in wanted.items())
             and all(isinstance(facts.get(key) or none, type(none)) for key, none in other.items())
             and all(isinstance(each, str) for each in facts["kinds"])
+            and 0 <= facts.get("end_ns", 0) <= _LAST_NS
             and all({"t_ns", "entries"} <= set(each) for each in facts.get("snapshots", {}).values())
         ):
             raise ValueError("fields are missing, or of another type")
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {error}") from None
+        reason = getattr(error, "strerror", None) or error
+        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {reason}") from None
     return facts
 
 

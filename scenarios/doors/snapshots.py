@@ -15,6 +15,7 @@ from bus.outside.door import Door as Fence
 from bus.outside.errorframes import ErrorFrames
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer, Punctuality
+from host.logs.files import LogError, reason
 from host.serial_link import SerialLink
 from plant.model import PlantModel
 from scenarios.doors.busview import EmulatedBus
@@ -99,6 +100,10 @@ class Snapshots:
     """
 
     def __init__(self, folder: Path, served: LiveNetwork, recording: Recording | None = None) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise LogError(f"{folder}: cannot be made: {reason(error)}") from None
         self._folder = folder
         self._served = served
         self._recording = recording

@@ -5,6 +5,7 @@ from contextlib import AbstractContextManager
 
 from bus.can import Frame
 from bus.can.candump import line, parsed
+from host.logs.files import reason
 from scenarios.doors.clients import address
 from scenarios.doors.control import ControlError
 
@@ -87,7 +88,7 @@ def tell(command: str, at: str, token: str | None = None) -> str:
         what = f"nobody listens; start schmidt serve --control {port} first"
         raise ControlError(f"{host}:{port}: {what}") from None
     except (OSError, UnicodeError) as error:
-        raise ControlError(f"{host}:{port}: no answer: {error}") from None
+        raise ControlError(f"{host}:{port}: no answer: {reason(error)}") from None
     if not answer.startswith("ok"):
         raise ControlError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
     return answer.removeprefix("ok").strip()

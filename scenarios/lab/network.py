@@ -246,6 +246,8 @@ _AVR = ".elf"
 """Ending of a program for an ATmega328P."""
 _IN_C = ("AXIS_", "POSITION_", "MOTOR_")
 """Boards whose chips firmware.h knows."""
+_IN_AVR = ("MOTOR_", "DISPLAY")
+"""Boards that need the bus alone: the emulated AVR has no RS232, no USB and no pins to the plant."""
 
 
 def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
@@ -296,8 +298,9 @@ def _check_firmware(config: NetworkConfig) -> None:
     firmware = {name: settings.firmware for name, settings in config.nodes.items() if settings.firmware}
     for name, file in firmware.items():
         where = f"network: nodes.{name}.firmware"
-        if not name.startswith(_IN_C) and file.suffix != _AVR:
-            raise NetworkError(f"{where}: C runs on boards {', '.join(_IN_C)} only")
+        what, boards = ("a program for an AVR", _IN_AVR) if file.suffix == _AVR else ("C", _IN_C)
+        if not name.startswith(boards):
+            raise NetworkError(f"{where}: {what} runs on boards {', '.join(boards)} only")
         if config.canopen:
             raise NetworkError(f"{where}: a board with firmware of its own has no CANopen voice")
 

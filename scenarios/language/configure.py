@@ -25,8 +25,15 @@ _Q8, _Q16 = 256, 65536
 _MOST_STEPS = 3000
 
 
-def _block(**fields: dict[str, Any]) -> dict[str, Any]:
-    return {"type": "object", "required": list(fields), "properties": fields}
+def _block(beside: dict[str, Any], **fields: dict[str, Any]) -> dict[str, Any]:
+    """beside: fields that may be missing."""
+    properties = fields | beside
+    return {
+        "type": "object",
+        "required": list(fields),
+        "properties": properties,
+        "additionalProperties": False,
+    }
 
 
 def _number(low: float, **high: float) -> dict[str, Any]:
@@ -34,15 +41,28 @@ def _number(low: float, **high: float) -> dict[str, Any]:
 
 
 _WAVE = _number(-_MOST_STEPS, maximum=_MOST_STEPS)
-_ROW = _block(order=_number(0, exclusiveMaximum=32768), cosine_steps=_WAVE, sine_steps=_WAVE)
+_TEXT = {"type": "string"}
+_SOURCE = {"source": _TEXT}
+_ROW = _block(
+    {"torque_Nm": {"type": "number"}} | _SOURCE,
+    order=_number(0, exclusiveMaximum=32768),
+    cosine_steps=_WAVE,
+    sine_steps=_WAVE,
+)
 _LANGUAGE = _block(
+    {
+        "plant": _TEXT,
+        "lines": {"type": "array", "maxItems": HARMONICS, "items": _ROW},
+        "left_out": {"type": "array", "items": _TEXT},
+    },
+    format={"enum": [FORMAT]},
     axis={"enum": ["ra", "dec"]},
     friction=_block(
+        _SOURCE,
         steps=_number(0, maximum=_MOST_STEPS),
         travel_arcsec={"type": "number", "exclusiveMinimum": 0, "maximum": ARCSEC_PER_TURN},
     ),
 )
-_LANGUAGE["properties"]["lines"] = {"type": "array", "maxItems": HARMONICS, "items": _ROW}
 """What a file may say; orders are cycles per turn, with 16 bits before the point."""
 
 

@@ -32,12 +32,17 @@ class Document:
 
 
 class _Loader(yaml.SafeLoader):
-    """Dates stay text, which the language reads itself; a value that cannot be made names its line. So do
-    `.inf` and `.nan`, which pass every bound of a schema."""
+    """Values that JSON has, too, no others: dates stay text, which the language reads itself. One that cannot
+    be made names its line, as `.inf` and `.nan` do, which pass every bound of a schema."""
 
     yaml_implicit_resolvers = {  # noqa: RUF012 - as PyYAML has it
         first: [each for each in rules if each[0] != "tag:yaml.org,2002:timestamp"]
         for first, rules in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+    yaml_constructors = {  # noqa: RUF012
+        tag: make
+        for tag, make in yaml.SafeLoader.yaml_constructors.items()
+        if tag is None or tag.rpartition(":")[2] in ("null", "bool", "int", "float", "str", "seq", "map")
     }
 
     def __init__(self, text: str, file: Path) -> None:

@@ -157,11 +157,7 @@ def _found(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """YAML's time stamps and odd keys as text, so that the schema sees JSON's types only."""
+    """Odd keys as text, as JSON has them."""
     if isinstance(value, Mapping):
         return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
-    return value.isoformat() if hasattr(value, "isoformat") else str(value)
+    return [_plain(each) for each in value] if isinstance(value, list) else value

@@ -43,18 +43,20 @@ class Verdict:
 
 
 def judge(outcome: Outcome) -> list[Verdict]:
-    """Verdicts on the programme, on faults that never acted, and on all expectations, in their order."""
+    """Verdicts on the programme, on a run that was cut off, on faults that never acted, and on all
+    expectations, in their order."""
     failed = [record for record in outcome.records if record.failed]
     done = sum(record.end_s is not None and not record.failed for record in outcome.records)
     reason = f"{failed[0].step.name}: {failed[0].failed}" if failed else ""
-    if outcome.counters.get("interrupted"):
-        reason = reason or "the run was interrupted"
+    cut_off = "the run was interrupted" if outcome.counters.get("interrupted") else ""
     total = len(outcome.records)
     if done < total and not reason:
-        reason = f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
+        reason = cut_off or f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
     programme = Verdict("programme completed", done, total, "steps", reason=reason)
+    whole = [Verdict("run to its end", 0, 1, "times", reason=cut_off)] if cut_off else []
     silent = [_silent(each) for each in outcome.faults if each.missing]
-    return [programme, *silent, *(_judge_one(outcome, each) for each in outcome.scenario.expectations)]
+    judged = [_judge_one(outcome, each) for each in outcome.scenario.expectations]
+    return [programme, *whole, *silent, *judged]
 
 
 def _silent(fault: Evidence) -> Verdict:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from heapq import merge
 from math import isfinite
@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, TextIO
 from bus.protocol.page import DBC_PATH
 from plant.yamltext import read_text
 
+SUMMARY = "summary.json"
 _BATCH = 4096
 """Rows of a Parquet file at a time."""
 _LINE_LOGS = {
@@ -57,14 +58,28 @@ class Entry(NamedTuple):
 
 
 def sources(folder: Path, summary: dict[str, Any]) -> list[Iterator[Entry]]:
-    """All that is there; each one sorted by time."""
-    found = [_frames(path) for path in (folder / "can.log", folder / "can.log.zst") if path.exists()][:1]
-    found += [_axis_log(path) for path in sorted(folder.glob("axis-*.csv"))]
-    found += [_parquet(path) for path in sorted(folder.glob("*.parquet"))]
-    found += [
-        _lines(folder / f"{name}.log", name) for name in _LINE_LOGS if (folder / f"{name}.log").exists()
-    ]
-    return [*found, *_of_summary(summary)]
+    """All that is there; each one sorted by time. Raises ValueError, here or on the way, with the file that
+    is broken."""
+    logs = [(_frames, path) for path in (folder / "can.log", folder / "can.log.zst") if path.exists()][:1]
+    logs += [(_axis_log, path) for path in sorted(folder.glob("axis-*.csv"))]
+    logs += [(_parquet, path) for path in sorted(folder.glob("*.parquet"))]
+    logs += [(_lines, path) for name in _LINE_LOGS if (path := folder / f"{name}.log").exists()]
+    with _named(folder / SUMMARY):
+        return [*(_told(read, path) for read, path in logs), *_of_summary(summary)]
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Whatever goes wrong with what is in a file is one line with its name."""
+    try:
+        yield
+    except (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, csv.Error) as error:
+        raise ValueError(f"{path}: is not as a run has left it ({type(error).__name__}: {error})") from None
+
+
+def _told(read: Callable[[Path], Iterator[Entry]], path: Path) -> Iterator[Entry]:
+    with _named(path):
+        yield from read(path)
 
 
 def _frames(path: Path) -> Iterator[Entry]:
@@ -121,10 +136,10 @@ def _parquet(path: Path) -> Iterator[Entry]:
             yield Entry(round(row["t_s"] * 1e9), source, row)
 
 
-def _lines(path: Path, name: str) -> Iterator[Entry]:
+def _lines(path: Path) -> Iterator[Entry]:
     """A text log of the host: fields behind two blanks."""
-    fields = _LINE_LOGS[name]
-    source = Source(f"/{name}", {field: NUMBER if field == "t_s" else TEXT for field in fields})
+    fields = _LINE_LOGS[path.stem]
+    source = Source(f"/{path.stem}", {field: NUMBER if field == "t_s" else TEXT for field in fields})
     with path.open(encoding="utf-8") as file:
         for line in file:
             if not line.startswith("#"):
@@ -153,11 +168,11 @@ def _of_summary(summary: dict[str, Any]) -> list[Iterator[Entry]]:
 def summary_of(folder: Path) -> dict[str, Any]:
     """summary.json of a run; raises ValueError where there is none."""
     try:
-        found: dict[str, Any] = json.loads(read_text(folder / "summary.json"))
+        found: dict[str, Any] = json.loads(read_text(folder / SUMMARY))
     except FileNotFoundError:
-        raise ValueError(f"{folder}: no summary.json: give the output folder of schmidt run") from None
+        raise ValueError(f"{folder}: no {SUMMARY}: give the output folder of schmidt run") from None
     except ValueError as error:
-        raise ValueError(f"{folder / 'summary.json'}: {error}") from None
+        raise ValueError(f"{folder / SUMMARY}: {error}") from None
     return found
 
 
@@ -169,16 +184,16 @@ def export(folder: Path, file: Path) -> int:
     from mcap.writer import Writer
 
     summary = summary_of(folder)
-    start_ns = round(datetime.fromisoformat(summary["start_utc"]).timestamp() * 1e3) * 1_000_000
+    with _named(folder / SUMMARY):
+        start_ns = round(datetime.fromisoformat(summary["start_utc"]).timestamp() * 1e3) * 1_000_000
+        about = {word: str(summary[word]) for word in ("scenario", "seed", "plant", "trace_digest")}
     channels: dict[str, int] = {}
     count = 0
     try:
         with file.open("wb") as stream:
             writer = Writer(stream)
             writer.start(library="schmidt")
-            writer.add_metadata(
-                "run", {word: str(summary[word]) for word in ("scenario", "seed", "plant", "trace_digest")}
-            )
+            writer.add_metadata("run", about)
             for entry in merge(*sources(folder, summary), key=lambda each: each.t_ns):
                 topic = entry.source.topic
                 if topic not in channels:

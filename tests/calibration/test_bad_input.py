@@ -43,6 +43,10 @@ VOLTS = column(LOG, 2, lambda v: f"{int(v) / 3000 * 24:.4f}")
         (b"\x89PNG\r\n\x1a\n" + bytes(99), ":1: is not UTF-8"),
         (LOG.encode("utf-16"), "is not UTF-8"),
         (LOG.replace("axis-log 1", "axis-log 2").encode(), ":1: 'format' is 'axis-log 2'"),
+        (
+            LOG.replace("counter_torque: 0.1\n", "counter_torque: 1.01\n").encode(),
+            "must be positive, one at most",
+        ),
         (LOG.replace(",", ";").encode(), ":11: the columns are parted by semicolons"),
         (column(LOG, 0, lambda v: v.replace(".", ",")).encode(), ":12: 10 fields.*decimal commas"),
         (column(LOG, 0, lambda v: f"{float(v) * 1000:.0f}").encode(), ":12: column 't': rows are 10 apart"),

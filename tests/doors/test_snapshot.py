@@ -13,6 +13,7 @@ import pytest
 from bus.can.candump import CandumpWriter
 from bus.protocol import COMMAND_BASE, Device, Opcode, pack_command
 from bus.protocol.report import pack_report
+from host.logs.files import LogError
 from scenarios.doors.can import CanDoor
 from scenarios.doors.clients import Client
 from scenarios.doors.control import ControlDoor
@@ -192,8 +193,11 @@ def test_a_session_without_a_folder_says_how_it_would_have_one(bench: Bench) -> 
 
 
 def test_a_disk_that_takes_nothing_is_one_line(bench: Bench, tmp_path: Path) -> None:
-    (tmp_path / "taken").write_text("a file where the folder should be")
     Snapshots(tmp_path / "taken", bench.served)
+    (tmp_path / "taken").rmdir()
+    (tmp_path / "taken").write_text("a file where the folder should be")
+    with pytest.raises(LogError, match="taken: cannot be made: file exists"):
+        Snapshots(tmp_path / "taken", bench.served)
     answer = ask(bench, "snapshot x")
     assert answer.startswith("error: ")
     assert "cannot be written" in answer

@@ -54,6 +54,16 @@ TARGETS: dict[str, tuple[str, ...]] = {
     "bus/protocol/report.py": (f"{_CODECS}/test_report.py",),
     "bus/protocol/saturate.py": _PROTOCOL,
     "bus/protocol/serial.py": (f"{_CODECS}/test_edges.py", f"{_CODECS}/test_serial.py"),
+    "calibration/decide/accept.py": tuple(
+        f"tests/calibration/decide/test_{n}.py" for n in ("accept", "select")
+    ),
+    "calibration/decide/verdict.py": (
+        "tests/calibration/decide/test_rules.py",
+        "tests/calibration/test_honesty.py",
+    ),
+    "scenarios/run/evaluate.py": tuple(
+        f"tests/scenarios/run/test_{name}.py" for name in ("evaluate", "judge")
+    ),
 }
 
 

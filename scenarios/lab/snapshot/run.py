@@ -88,6 +88,10 @@ class Order:
         """From the start (or from a snapshot of it): what the host hears is kept."""
         if Device.GATEWAY.name not in session.network.boards:
             raise SnapshotError("snapshots of a run need a network with a gateway")
+        if self.at_ns < (now_ns := session.network.queue.now_ns):
+            raise SnapshotError(
+                f"a snapshot at {self.at_ns * 1e-9:g} s: the run is at {now_ns * 1e-9:g} s already"
+            )
         self.tape = Tape(session, [] if begun is None else begun["heard"])
         if begun is not None:
             session.rows = begun["rows"]

@@ -6,11 +6,13 @@ from hypothesis import strategies as st
 
 from bus.protocol import Device
 from bus.protocol.serial import (
+    MEANINGS,
     SAMPLES,
     SYNC,
     AxisSample,
     PacketDecoder,
     SerialError,
+    fields,
     pack_packet,
     packet_bytes,
 )
@@ -84,3 +86,24 @@ def test_L3_axis_packets_fit_their_line() -> None:
 def test_L3_packets_that_cannot_be_are_refused(device: int, rows: list[tuple[int]], complaint: str) -> None:
     with pytest.raises(SerialError, match=complaint):
         pack_packet(device, 0, 0, rows)
+
+
+@pytest.mark.parametrize(
+    ("device", "types"),
+    [
+        (Device.AXIS_DEC, ("i16", "u32", "i16", "u16", "u16", "i16", "i16", "u32", "i32")),
+        (Device.POSITION_RA, ("u32",)),
+        (Device.FOCUS, ("i16", "i16", "u16")),
+        (0xEE, ("u8",) * 7),
+    ],
+)
+def test_L3_fields_stand_one_behind_the_other(device: int, types: tuple[str, ...]) -> None:
+    """As the page tells them; ten of a packet's bytes are head and CRC."""
+    found, at = fields(device), 0
+    for (name, kind, place), wanted in zip(found, types, strict=True):
+        assert (kind, place) == (wanted, at), name
+        at += int(wanted[1:]) // 8
+    assert all(MEANINGS[name] for name, _, _ in found)
+    assert packet_bytes(device) == 10 + SAMPLES * at
+    if device == 0xEE:
+        assert [name for name, _, _ in found] == [f"byte{k}" for k in range(1, 8)]

@@ -8,7 +8,8 @@ import pytest
 
 from calibration.decide.accept import needed, refuse
 from calibration.decide.heldout import HeldOut
-from calibration.decide.thresholds import LUCK_Z, MARGIN, ROUNDING
+from calibration.decide.thresholds import HANDICAP, LUCK_Z, MARGIN, ROUNDING
+from calibration.finding import UNKNOWN
 
 TRIED = 1000
 GOOD = HeldOut(before=2.0, after=1.0, z=9.0, share=0.5, everywhere=True)
@@ -53,6 +54,19 @@ def test_none_may_make_the_held_out_run_worse(worse: float) -> None:
 def test_each_rule_says_why(one: Any, inside: HeldOut, why: str) -> None:
     assert re.search(why, refuse(one, inside, GOOD, MARGIN, TRIED))
     assert refuse(contender(), scored(0.5, 0.9 * LUCK_Z, everywhere=True), GOOD, MARGIN, TRIED) == ""
+
+
+def test_what_has_no_name_takes_more_than_what_has_one() -> None:
+    between = scored((MARGIN + HANDICAP) / 2)
+    nameless = contender(candidate=SimpleNamespace(name=UNKNOWN, least=None, kind="linear", stage=None))
+    assert refuse(contender(), between, GOOD, MARGIN, TRIED) == ""
+    assert "only" in refuse(nameless, between, GOOD, MARGIN, TRIED)
+    assert refuse(nameless, scored(1.01 * HANDICAP), GOOD, MARGIN, TRIED) == ""
+
+
+def test_what_gains_everywhere_gains_more_than_the_margin_when_it_may_be_luck() -> None:
+    at_it = scored(MARGIN, 0.9 * LUCK_Z, everywhere=True)
+    assert "within luck" in refuse(contender(), at_it, GOOD, MARGIN, TRIED)
 
 
 def test_the_best_of_more_candidates_needs_more() -> None:

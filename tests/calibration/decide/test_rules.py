@@ -115,6 +115,12 @@ def test_verdicts() -> None:
     assert judge([drag, unknown])[0] == "found"
     assert judge([unknown])[0] == "unknown"
     assert judge([both])[0] == "ambiguous"
+    names = ["coulomb_change", "load_friction", "brake_drag"]
+    many = Finding("viscous_change", "T", "velocity", equivalent=names)
+    told = judge([many])[1] or ""
+    assert [name for name in ("viscous_change", *names) if f"{name}: " in told] == [
+        "viscous_change", "coulomb_change", "load_friction"
+    ], "three experiments, no more"  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -173,6 +173,13 @@ def test_a_number_without_end_is_drafted_and_refused_with_its_row(tmp_path: Path
         read_drive([log], load_rig(rig))
 
 
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_all_measuring_are_none(tmp_path: Path) -> None:
+    rows = (f"{k},{k % 7},{k % 5}e300" for k in range(60))
+    (tmp_path / "a.csv").write_text("\n".join(["t,q,u", *rows]))
+    assert "column: u" not in draft(tmp_path / "a.csv")
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -22,3 +22,10 @@ def test_what_is_no_archive_is_one_line(tmp_path: Path) -> None:
     path.write_text("time,q\n")
     with pytest.raises(CalibrationInputError, match="is not a NumPy archive of plain arrays"):
         read_matlab(path, ["q"])
+
+
+def test_complex_numbers_are_no_column(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    np.savez(path, t=np.arange(6.0), q=np.arange(6.0) + 1j)
+    with pytest.raises(CalibrationInputError, match="'q': holds complex numbers"):
+        read_matlab(path, ["t", "q"])

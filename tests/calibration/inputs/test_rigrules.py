@@ -98,6 +98,11 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], str]] = [
     ),
     (ONE, {"stages.1.teeth": GONE}, "stages.wheel: 'of' needs 'teeth'"),
     (ONE, {"stages.1.of": GONE}, "stages.wheel: 'teeth' needs 'of'"),
+    (
+        ONE,
+        {"stages.1.teeth": [10**7, 30]},
+        "stages.wheel.teeth.0: 10000000 is greater than the maximum of 1000000",
+    ),
     (ONE, {"stages.1.period": 1.0}, "stages.wheel: give a period or teeth, not both"),
     (ONE, {"stages.1.period_s": 1.0}, "stages.wheel: give a period or teeth, not both"),
     (ONE, {"stages.0.period": GONE}, "stages.motor: give 'period', 'period_s', or 'teeth' with 'of'"),

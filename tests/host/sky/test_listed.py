@@ -58,9 +58,13 @@ def test_ones_own_list_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("name,ra\nX,1:00:00\n", "line 2: 'dec'"),
+        ("name,ra\nX,1:00:00\n", "line 1: the head line needs name, ra and dec"),
+        ("", "line 1: the head line needs"),
+        ("name,ra,dec\nX,1:00:00\n", "line 2: declination '' cannot be read"),
+        ("name,ra,dec\n" + "X" * 200_000 + ",1:00:00,+10:00:00\n", "line 2: field larger than"),
         ("name,ra,dec\nX,25:00:00,+10:00:00\n", "line 2: right ascension '25:00:00' is outside"),
-        ("# note\nname,ra,dec,magnitude\nX,1:00:00,+10:00:00,bright\n", "line 3: could not convert"),
+        ("# note\nname,ra,dec,magnitude\nX,1:00:00,+10:00:00,bright\n", "line 3: magnitude 'bright' is no"),
+        ("name,ra,dec,magnitude\nX,1:00:00,+10:00:00,nan\n", "line 2: magnitude 'nan' is no number"),
         ("\x80", "cannot be read"),
     ],
 )
@@ -71,6 +75,10 @@ def test_a_list_that_cannot_be_read_says_where(text: str, said: str, tmp_path: P
         read(own)
     with pytest.raises(ValueError, match="cannot be read"):
         read(tmp_path / "none.csv")
+    with own.open("wb") as file:
+        file.truncate(1 << 33)
+    with pytest.raises(ValueError, match="is longer than 50000000 bytes"):
+        read(own)
 
 
 def test_many_at_once_are_where_each_is() -> None:

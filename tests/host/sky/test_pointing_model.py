@@ -132,7 +132,11 @@ def test_a_model_comes_back_from_its_file(tmp_path: Path) -> None:
     ({"terms": [{"name": "IH", "arcsec": "1", "within_arcsec": 1.0}]}, "not a pointing model"),
     ({"terms": [{"name": "IH"}]}, "not a pointing model"),
     ({"terms": 3}, "not a pointing model"),
-    ({"latitude_rad": float("nan")}, "not a pointing model: a number is not finite"),
+    ({"terms": [{"name": [1], "arcsec": 1.0, "within_arcsec": 1.0}]}, "no term is called [1]; there"),
+    ({"terms": [{"name": "IH", "arcsec": 1.0, "within_arcsec": float("nan")}]}, "a term is larger than 90°"),
+    ({"terms": [{"name": "IH", "arcsec": -3.3e5, "within_arcsec": 1.0}]}, "a term is larger than 90°"),
+    ({"latitude_rad": float("nan")}, "not a pointing model: the latitude is beyond a pole"),
+    ({"latitude_rad": 1.6}, "not a pointing model: the latitude is beyond a pole"),
     ({"colour": 1}, "not a pointing model"),
 ])  # fmt: skip
 def test_a_broken_file_is_one_line(tmp_path: Path, change: dict[str, object], message: str) -> None:

@@ -94,8 +94,15 @@ def test_another_csv_is_no_pointing_run(tmp_path: Path) -> None:
         ("a.dat", f"x\n{SITE}\n{STAR.replace('06 12.5', '18 12.5')}\n", "a.dat:3: this star is below"),
         ("a.dat", f"x\n{SITE}\n{STAR.replace('12.5', 'nan')}\n", "a.dat:3: 'nan' is not a number"),
         ("a.csv", HEAD.split("\n")[1] + "\n1,2,3,4,5\n", "a.csv: the latitude is missing"),
+        ("a.dat", f"x\n{SITE} -300 800\n{STAR}\n", "a.dat:2: temperature -300 °C is outside -100 to 60"),
+        ("a.dat", f"x\n{SITE} 10 800 1950 0.5 0\n{STAR}\n", "a.dat:2: wavelength 0 µm is outside 0.1 to 100"),
+        ("a.dat", f"x\n{SITE.replace('29 22', '91 22')}\n{STAR}\n", r"a.dat:2: \+91 22 00.0 is beyond 90"),
+        ("a.dat", f"x\n{SITE}\n{STAR.replace('45 59', '95 59')}\n", r"a.dat:3: \+95 59 52.8 is beyond 90"),
+        ("a.csv", HEAD + "1,1e300,3,4,5\n", "a.csv:3: 1e300 is beyond 90"),
+        ("a.csv", HEAD.replace("29", "129", 1) + "1,2,3,4,5\n", "a.csv:1: 129.* is beyond 90"),
         ("a.csv", HEAD + "1,2,3,4\n", "a.csv:3: 4 values for 5 columns"),
         ("a.csv", HEAD + "1,2,3,4,x\n", "a.csv:3: 'x' is not a number"),
+        ("a.csv", HEAD + "1,2,3,4," + "5" * 200_000 + "\n", "a.csv: field larger than"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(tmp_path: Path, name: str, text: str, line: str) -> None:

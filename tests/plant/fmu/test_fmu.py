@@ -9,6 +9,7 @@ import pytest
 
 from plant import fmu, model
 from plant.effects import REGISTRY
+from plant.fmu.library import FmuError
 from plant.fmu.variables import exported
 from plant.model import PlantModel
 from plant.parts import EffectModel
@@ -137,6 +138,11 @@ def test_a_state_is_saved_and_restored(tmp_path: Path, fmi: int) -> None:
     assert ends[0] == ends[1]
     assert ends[0][0] > 0
     free(state)
+
+
+def test_a_device_is_no_archive() -> None:
+    with pytest.raises(FmuError, match="/dev/null: is no regular file"):
+        fmu.write(model.load(), "ra", 1, Path("/dev/null"), 3)
 
 
 def test_what_it_refuses(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,7 @@ import yaml
 from scipy.stats import kstest
 
 from scenarios.campaign.plan import Case, load
+from scenarios.campaign.run_campaign import _Waiting
 from scenarios.language.document import Document, ScenarioError
 
 SCENARIO = """\
@@ -175,6 +176,11 @@ def test_a_hundred_thousand_runs_are_planned_without_being_held(campaign: Any) -
         ({"seed": True, "is": {"between": [1, float("inf")], "whole": True}}, "inf is no number"),
         ({"seed": True, "is": {"distribution": "norm", "with": {"scale": float("nan")}}}, "nan is no number"),
         ({"plant": FRICTION}, "`is` or `times`"),
+        ({"plant": FRICTION, "is": [200], "times": [1.0]}, "`is` or `times`"),
+        (
+            {"seed": True, "is": {"distribution": "beta", "with": {"loc": 0}}},
+            "beta: takes loc, scale and a, b",
+        ),
         ({"seed": True, "times": [2]}, "use `is`"),
         ({"field": "steps.9.wait", "is": [1]}, "no field"),
         ({"field": "steps.².wait", "is": [1]}, "no field"),
@@ -190,6 +196,13 @@ def test_what_cannot_be_is_one_line_with_the_place(campaign: Any, given: dict[st
     assert words in str(error.value)
     assert "many.yaml" in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_runs_that_are_alike_are_made_once(campaign: Any, tmp_path: Path) -> None:
+    """The journal may hold runs of another plan, too."""
+    waiting = _Waiting(load(campaign([{"seed": True, "is": [5]}], budget={"runs": 3})), {"foreign"}, tmp_path)
+    assert [key for key, _ in waiting] == list(waiting.keys) and len(waiting.keys) == 1
+    assert waiting.alike == 2
 
 
 def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) -> None:

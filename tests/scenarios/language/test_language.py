@@ -82,7 +82,7 @@ def test_a_good_scenario_arrives_in_base_units() -> None:
         ("name: test\n", "name: test\nsite: {pressure: -5 hPa}\n", 2, ["0..1100 hPa"]),
         ("name: test\n", "name: test\nsite: {horizon: 95 deg}\n", 2, ["0..89 deg"]),
         ("start_utc: 2026-02-10", "start_utc: 2026-13-10", 2, ["start_utc", "'2026-13-10T14:00:00Z'"]),
-        ("start_utc: 2026-02-10T14:00:00Z", "start_utc: !!timestamp 2026-13-10", 2, ["month"]),
+        ("start_utc: 2026-02-10T14:00:00Z", "start_utc: !!timestamp 2026-13-10", 2, ["timestamp"]),
         ("name: test\n", "name: test\nplant: {file: x, overrides: {a: {value: 3}}}\n", 2,
          ["plant.overrides.a: expected a number or text, found a block of fields"]),
         ("name: test\n", "name: test\nplant: {file: x, effects: [" + "play, " * 3000 + "]}\n", 2,

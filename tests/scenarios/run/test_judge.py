@@ -58,6 +58,7 @@ def programme(*ends: str, **more: Any) -> evaluate.Verdict:
         (("ok", "ok", "ok"), False, True, 3, ""),
         (("ok", "jammed", "-"), False, False, 1, "second: jammed"),
         (("ok", "jammed", "-"), True, False, 1, "second: jammed"),
+        (("ok", "ok", "ok"), True, True, 3, ""),
         (("jammed", "late", "ok"), False, False, 1, "first: jammed"),
         (("ok", "-", "-"), False, False, 1, "still going at the time limit of 50 s"),
         (("ok", "-", "-"), True, False, 1, "the run was interrupted"),
@@ -71,6 +72,17 @@ def test_a_programme_is_its_steps_and_the_first_reason_counts(
     assert (verdict.passed, verdict.value, verdict.limit) == (passed, value, 3)
     assert (verdict.name, verdict.unit, verdict.upper) == ("programme completed", "steps", False)
     assert verdict.reason == reason
+
+
+def test_a_run_that_was_cut_off_passes_nothing_though_its_steps_are_done() -> None:
+    records = [Record(step, 0.0, 1.0) for step in SCENARIO.steps]
+    whole, cut_off = (
+        evaluate.judge(Outcome(Path(), SCENARIO, records, {"interrupted": each})) for each in (False, True)
+    )
+    assert [(each.name, each.passed) for each in whole] == [("programme completed", True)]
+    assert [(each.name, each.passed, each.reason) for each in cut_off[1:]] == [
+        ("run to its end", False, "the run was interrupted")
+    ]
 
 
 def test_a_line_of_the_summary_has_a_reason_only_where_there_is_one() -> None:

@@ -1,6 +1,8 @@
 """Recordings for other tools: a run's frames in their formats, a run as MCAP, columns back from both."""
 
 import json
+import re
+import shutil
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -128,6 +130,31 @@ def test_a_run_is_one_mcap_file(folders: dict[str, Path], tmp_path: Path) -> Non
     assert found["/commands"][0][1]["command"] == "PING"
     packed = tmp_path / "packed.mcap"
     assert export(folders["zstd"], packed) == count
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("truth-ra.parquet", b"no parquet"), ("can.log", b"\xff"), ("can.log", b"(0.1) can0\n"),
+        ("commands.log", b"2026-02-10\n"),
+        ("axis-ra.csv", b"t,setpoint\nx,1\n"), ("axis-dec.csv", b"a,b\n1,2\n"),
+        *(("summary.json", {word: wrong}) for word in ("start_utc", "simulated_s", "steps", "faults")
+          for wrong in ("x", [1])),
+    ],
+)  # fmt: skip
+def test_a_file_that_no_run_has_left_so_is_named(
+    folders: dict[str, Path], tmp_path: Path, name: str, text: bytes | dict[str, Any]
+) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(folders["text"], folder)
+    if isinstance(text, dict):
+        text = json.dumps(json.loads((folder / name).read_text()) | text).encode()
+    (folder / name).write_bytes(text)
+    with pytest.raises(
+        ValueError, match=re.escape(f"{folder / name}: is not as a run has left it")
+    ) as caught:
+        export(folder, tmp_path / "run.mcap")
+    assert "\n" not in str(caught.value)
 
 
 def test_a_fault_stands_where_it_first_acted() -> None:

@@ -87,6 +87,13 @@ def test_a_snapshot_of_a_run_that_began_with_one(tmp_path: Path) -> None:
     same_files(tmp_path / "one", tmp_path / "three")
 
 
+def test_no_snapshot_is_taken_of_what_is_over(tmp_path: Path) -> None:
+    _, file = first(tmp_path, 0.7)
+    with pytest.raises(SnapshotError, match=r"a snapshot at 0\.1 s: the run is at 0\.7 s already"):
+        again(file, tmp_path / "two", Order(100_000_000, tmp_path / "b.snapshot"))
+    assert not (tmp_path / "b.snapshot").exists()
+
+
 def test_the_command(schmidt: Command, short: Path, tmp_path: Path) -> None:
     one = schmidt("run", short, "--out", tmp_path / "one", "--no-report", "--snapshot-at", "1.234")
     assert one.returncode == 0, one.stderr
