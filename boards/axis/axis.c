@@ -32,7 +32,6 @@ _Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
 #define HARMONICS 8
 #define SAMPLES 25
 #define SAMPLE_BYTES 24
-#define PACKET_BYTES (8 + SAMPLES * SAMPLE_BYTES + 2)
 #define NO_SETPOINT INT32_MIN
 
 enum { COMMAND = 0x080, REPLY = 0x100, MEASUREMENT = 0x200, SUMMARY = 0x300, HEARTBEAT = 0x700 };
@@ -87,7 +86,8 @@ struct board {
     uint8_t first, waiting, late, late_reply[8];            /* inbox and a reply that found no buffer */
     uint8_t inbox[INBOX][9];                                /* length, data */
     uint8_t sequence, samples, clip_packet, ends;           /* ends: limit bits of the last POSITION */
-    uint8_t packet[PACKET_BYTES];
+    uint16_t crc;
+    uint8_t packet[8 + SAMPLE_BYTES + 2];                   /* the part that leaves: a sample, head or CRC with it */
 };
 
 const struct firmware firmware = {
@@ -567,7 +567,10 @@ static uint8_t bounds(uint8_t number, int32_t *low, int32_t *high) {
 }
 
 static void book(struct board *b) {
-    uint16_t extra = 0;
+    uint16_t extra = b->p[SPREAD] ? 75 : 0;
+    if (b->p[BIAS]) extra = (uint16_t)(extra + 10);
+    if (b->p[LOCK]) extra = (uint16_t)(extra + 140);
+    if (b->p[BLEND]) extra = (uint16_t)(extra + 100);
     if (b->p[COMPENSATION]) {
         for (uint8_t line = LINES; line < LINES + 3 * HARMONICS; line = (uint8_t)(line + 3))
             if (b->p[line + 1] || b->p[line + 2]) extra = (uint16_t)(extra + 120);
@@ -592,7 +595,7 @@ static void changed(struct board *b, uint8_t number) {
     }
     if ((number == KP || number == KI || number == LOCK) && (b->mode == RATE || b->mode == CLASS))
         velocity_gains(b);
-    if (number == SPREAD || number == COMPENSATION || (number >= LINES && number <= BIAS)) book(b);
+    if (number == SPREAD || number == COMPENSATION || number >= LINES) book(b);
 }
 
 /* --- commands: boards/core/commands.py, commands.py -------------------------------------------------------- */
@@ -775,26 +778,22 @@ static int16_t drive_fine(struct board *b, int64_t setpoint_q16) { /* duties fin
     return steps_of(effort);
 }
 
-static void send_packet(struct board *b) {
-    uint16_t crc = 0xFFFF;
-    if (b->clip_packet) clip(b);
-    for (uint16_t k = 2; k < PACKET_BYTES - 2; k++) {
-        crc ^= (uint16_t)((uint16_t)b->packet[k] << 8);
+static uint16_t crc_after(uint16_t crc, const uint8_t *data, uint8_t bytes) {
+    while (bytes--) {
+        crc ^= (uint16_t)((uint16_t)*data++ << 8);
         for (uint8_t bit = 0; bit < 8; bit++) crc = (uint16_t)(crc & 0x8000 ? (crc << 1) ^ 0x1021 : crc << 1);
     }
-    put(b->packet + PACKET_BYTES - 2, 2, crc);
-    uart_send(b->packet, PACKET_BYTES);
-    b->sequence++;
-    b->samples = 0;
+    return crc;
 }
 
 static void sample(struct board *b, int16_t effort, const uint16_t *current, int64_t setpoint_q16) {
     int64_t now = time_ns();
-    uint8_t *row = b->packet + 8 + b->samples * SAMPLE_BYTES, cut = 0;
+    uint8_t *row = b->packet + 8, *end = row + SAMPLE_BYTES, *part = b->samples ? row : b->packet, cut = 0;
     if (!b->samples) {
         put(b->packet, 4, UINT32_C(0x55AA) | (uint32_t)b->device << 16 | (uint32_t)b->sequence << 24);
         put(b->packet + 4, 4, crystal_100us());
         b->clip_packet = 0;
+        b->crc = crc_after(0xFFFF, b->packet + 2, 6);
     }
     put(row, 2, (uint64_t)effort);
     put(row + 2, 4, (uint64_t)(quotient(measured(b, now), UNITS_PER_STEP) & STEPS_MASK));
@@ -806,7 +805,15 @@ static void sample(struct board *b, int16_t effort, const uint16_t *current, int
     put(row + 16, 4, (uint64_t)auxiliary_sample(b, now));
     put(row + 20, 4, (uint64_t)setpoint_q16);
     b->clip_packet |= cut;
-    if (++b->samples == SAMPLES) send_packet(b);
+    b->crc = crc_after(b->crc, row, SAMPLE_BYTES);
+    if (++b->samples == SAMPLES) {
+        if (b->clip_packet) clip(b);
+        put(end, 2, b->crc);
+        end += 2;
+        b->sequence++;
+        b->samples = 0;
+    }
+    uart_send(part, (uint16_t)(end - part), b->samples);
 }
 
 static void telemetry(struct board *b, int64_t setpoint_q16) { /* every 10 ms */

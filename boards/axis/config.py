@@ -33,6 +33,15 @@ HARMONIC_CYCLES: Final = 120
 two products and sums (35)."""
 FRICTION_CYCLES: Final = 60
 """The friction model: two 32-bit products, sums."""
+SHARE_CYCLES: Final = 75
+"""With the spread duty: effort times share (15), division by 100 in two steps (40), low-pass (20)."""
+BIAS_CYCLES: Final = 10
+"""Added to both duties."""
+LOCK_CYCLES: Final = 140
+"""Sum and its limit in 64 bits (30), product with the gain (25); of the gusts two low-passes, sum and window
+(65), choice of gains (20)."""
+BLEND_CYCLES: Final = 100
+"""Two sums of 64 bits (20), a shift by up to 15 places, one at a time (80)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
