@@ -14,10 +14,12 @@ from boards.axis.config import (
     FRICTION_CYCLES,
     HARMONIC_CYCLES,
     LOCK_CYCLES,
+    OBSERVER_CYCLES,
     PWM_ROUTINE,
     SHARE_CYCLES,
 )
 from boards.axis.motion import Motion
+from boards.axis.observer import COEFFICIENTS, Observer
 from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.core import InterruptController, Parameter
 from boards.core.commands import kept
@@ -49,6 +51,7 @@ class FineOutput:
         """Told when the routines cost something else."""
         self.spread = 0
         self.bias_q8 = 0
+        self.observed = False
         self.compensator = Compensator()
 
     @property
@@ -89,6 +92,7 @@ class FineOutput:
         extra += BIAS_CYCLES if self.bias_q8 else 0
         extra += LOCK_CYCLES if motion.lock else 0
         extra += BLEND_CYCLES if motion.blend else 0
+        extra += OBSERVER_CYCLES if self.observed else 0
         if self.compensator.on:
             self.compensator.refresh()
             extra += self.compensator.lines * HARMONIC_CYCLES + FRICTION_CYCLES
@@ -189,3 +193,28 @@ def fine_parameters(output: FineOutput, motion: Motion) -> list[Parameter]:
             lambda: motion.blend.shift if motion.blend else 0, output.set_blend,
         ),
     ]  # fmt: skip
+
+
+_WORD: Final = (1 << 31) - 1
+
+
+def observer_parameters(observer: Observer, output: FineOutput) -> list[Parameter]:
+    """Rows of the parameter table: the switch, and the coefficients. One that changes switches it off."""
+
+    def switch(on: int) -> None:
+        observer.switch(on)
+        output.observed = bool(observer.on)
+        output.refresh()
+
+    def cell(place: int) -> Parameter:
+        def write(value: int) -> None:
+            observer.coefficients[place] = value
+            switch(0)
+
+        number = AxisParameter.OBSERVER_FIRST + place
+        return Parameter(
+            number, f"observer_{place}", -_WORD, _WORD, lambda: observer.coefficients[place], write
+        )
+
+    on = Parameter(AxisParameter.OBSERVER, "observer", 0, 1, lambda: observer.on, switch)
+    return [on, *map(cell, range(COEFFICIENTS))]

@@ -26,7 +26,7 @@ STACK_BYTES: Final = 128
 """ASSUMPTION: two nested routines with their registers and a call depth of six."""
 COMMANDS: Final = {"commands": INBOX * (FRAME_BYTES + 1), "late reply": FRAME_BYTES}
 """Buffers of every board, bytes: commands with their length, and a reply that found no transmit buffer."""
-PARAMETERS: Final = 42
+PARAMETERS: Final = 68
 """Rows of the axis board's parameter table, 32 bits each."""
 
 
@@ -83,6 +83,7 @@ AXIS: Final = Ledger(
     extra_cycles=HARMONICS * axis.HARMONIC_CYCLES
     + axis.FRICTION_CYCLES
     + axis.SHARE_CYCLES
+    + axis.OBSERVER_CYCLES
     + axis.BIAS_CYCLES
     + axis.LOCK_CYCLES
     + axis.BLEND_CYCLES,
