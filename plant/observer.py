@@ -1,9 +1,9 @@
 """The state observer of the axis board at a drive (`boards/axis/observer.py`): its sections, and where from.
 
-Model: the axis around steady sliding (`plant/linear.py`) with both rotors as one, a slow disturbance, and the
-last effort, which still acts while the next one is computed. Observer and feedback are those of least
-variance (LQG) for weights and noise below. Together they are one linear system, from the effort that went out
-and the angle that the axis is off to the next effort. Its poles are put in pairs.
+Model: the axis around steady sliding (`plant/linear.py`) with both rotors as one, and a slow disturbance. The
+last effort is a state, as it still acts while the next one is computed. Observer and feedback are those of
+least variance (LQG) for weights and noise below. Together they are one linear system, from the effort that
+went out and the angle that the axis is off to the next effort. Its poles are put in pairs.
 """
 
 from typing import Final
@@ -61,8 +61,10 @@ def lumped(model: PlantModel, part: AxisModel) -> tuple[Floats, Floats]:
 
 
 def designed(model: PlantModel, part: AxisModel) -> tuple[Floats, Floats, Floats, Floats]:
-    """a, b, gain, correction: x(k+1) = a x + b u and u = -gain x, of the observer's states at one tick; they
-    are moved by correction times what a reading was not expected to be."""
+    """a, b, gain, correction: x(k+1) = a x + b u and u = -gain x, of the observer's states at one tick.
+
+    They are moved by correction times what a reading was not expected to be.
+    """
     from scipy.linalg import expm, solve_discrete_are  # of the extra `calibrate`
 
     plant, effort = lumped(model, part)
@@ -103,8 +105,8 @@ def count_rad(part: AxisModel) -> float:
 def sections(model: PlantModel, part: AxisModel) -> tuple[list[tuple[float, ...]], float]:
     """Trace, determinant and numerators of four sections; what goes straight through, PWM steps per count.
 
-    A section is (n1 z + n0) / (z^2 - trace z + determinant): n1 and n0 of the effort, then of the angle in
-    counts.
+    A section is (n1 z + n0) / (z^2 - trace z + determinant). Both numbers come for the effort first, then for
+    the angle in counts.
     """
     a, b, gain, correction = designed(model, part)
     count = count_rad(part)

@@ -38,7 +38,7 @@ SHARE_CYCLES: Final = 75
 BIAS_CYCLES: Final = 10
 """Added to both duties."""
 LOCK_CYCLES: Final = 140
-"""Sum and its limit in 64 bits (30), product with the gain (25); of the gusts two low-passes, sum and window
+"""Sum and its limit in 64 bits (30), product with the gain (25). Of the gusts: two low-passes, sum and window
 (65), choice of gains (20)."""
 OBSERVER_CYCLES: Final = 900
 """25 products of 32 bits (625), sums, shifts and limits of four sections (200), angle and rate (75)."""

@@ -1,4 +1,4 @@
-"""What the paper's firmware does not have: a state observer in place of the PI near the tracking rate.
+"""A state observer in place of the PI near the tracking rate, which the paper's firmware does not have.
 
 At a high preload friction falls while the axis gets faster, which a PI on counts cannot hold. An observer
 with feedback of its states can: it knows axis, trains, bristles and motors (`plant/observer.py`). It was made
