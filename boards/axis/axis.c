@@ -13,6 +13,13 @@ _Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
 #define Q16 INT32_C(65536)
 #define SHARE_SHIFT 5 /* counter.py */
 #define Q18 INT64_C(262144)
+#define SECTIONS 4
+#define SLOWEST INT32_C(142723) /* observer.py: 5 and 25 arcsec/s in Q16 counts a tick */
+#define FASTEST INT32_C(713614)
+#define STILL_TICKS 100
+#define RAMP INT32_C(428)
+#define TRIM INT32_C(114178)
+#define OWED INT32_C(114178276)
 #define GUST_TICKS 1024
 #define GUST_LOUD (INT32_C(13107) * GUST_TICKS)
 #define GUST_QUIET (INT32_C(9175) * GUST_TICKS)
@@ -32,7 +39,6 @@ _Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
 #define HARMONICS 8
 #define SAMPLES 25
 #define SAMPLE_BYTES 24
-#define PACKET_BYTES (8 + SAMPLES * SAMPLE_BYTES + 2)
 #define NO_SETPOINT INT32_MIN
 
 enum { COMMAND = 0x080, REPLY = 0x100, MEASUREMENT = 0x200, SUMMARY = 0x300, HEARTBEAT = 0x700 };
@@ -49,7 +55,7 @@ enum {
 };
 enum { /* parameters by number */
     SPLIT = 1, KP, KI, LOW, HIGH, ACCELERATION, CLASSES, SPREAD = 12, COMPENSATION, LEVEL, TRAVEL, LINES,
-    BIAS = 40, LOCK, BLEND, PARAMETERS
+    BIAS = 40, LOCK, BLEND, OBSERVER, SECTION, THROUGH = SECTION + 24, PARAMETERS
 };
 enum { /* settings by place: boards/axis/config.py */
     KP_POINTING = 11, KI_POINTING, KI_CREEP, KP_GUST, KI_GUST, FADE, PWM_STEPS, GAIN, CORRECTION, CREEP_RATE, LAG,
@@ -80,6 +86,8 @@ struct board {
     int16_t velocity, effort, effort_command;
     uint16_t poscnt, counter;
     int32_t share_q16;                                      /* of the counter torque, smoothed */
+    int32_t states[2 * SECTIONS], owed_q16, rate_q16, held_q16, correction_q16; /* of the observer */
+    uint8_t still, driving;
     uint16_t gust_ticks;
     uint8_t gust_turned, blowing;
     uint8_t device, mode, selected, near_ticks;
@@ -87,7 +95,8 @@ struct board {
     uint8_t first, waiting, late, late_reply[8];            /* inbox and a reply that found no buffer */
     uint8_t inbox[INBOX][9];                                /* length, data */
     uint8_t sequence, samples, clip_packet, ends;           /* ends: limit bits of the last POSITION */
-    uint8_t packet[PACKET_BYTES];
+    uint16_t crc;
+    uint8_t packet[8 + SAMPLE_BYTES + 2];                   /* the part that leaves: a sample, head or CRC with it */
 };
 
 const struct firmware firmware = {
@@ -453,6 +462,7 @@ static int64_t point(struct board *b, int64_t now_ns) {
     } else {
         b->near_ticks = 0;
     }
+    b->correction_q16 = (int32_t)correction;
     b->ki = b->settings[creeping ? KI_CREEP : KI_POINTING];
     if (b->p[LOCK]) {
         if (creeping && !b->remaining) gusts_step(b, (feed >> 2) + correction - b->velocity * (int64_t)Q16);
@@ -477,6 +487,65 @@ static int64_t setpoint(struct board *b, int64_t now_ns) {
         return wanted;
     }
     return b->setpoint_q16;
+}
+
+/* --- the observer: observer.py ----------------------------------------------------------------------------- */
+
+static void observer_start(struct board *b) {
+    for (uint8_t k = 0; k < 2 * SECTIONS; k++) b->states[k] = 0;
+    b->owed_q16 = b->rate_q16 = 0;
+    b->still = b->driving = 0;
+}
+
+static uint8_t observer_sound(const struct board *b) {
+    int64_t gain = -(INT64_C(1) << 14);
+    const int32_t *c = b->p + SECTION;
+    for (uint8_t section = 0; section < SECTIONS; section++, c += 6) {
+        int64_t rest = (INT64_C(1) << 28) - c[0] + c[1];
+        if (size_of(c[1]) >= INT32_C(1) << 28 || size_of(c[0]) >= (INT64_C(1) << 28) + c[1]) return 0;
+        gain += quotient(((int64_t)c[2] + c[3]) * 16384, rest);
+    }
+    return size_of(gain) <= 163;
+}
+
+static int64_t observer_aim(struct board *b, int64_t setpoint_q16) { /* the PI's set point */
+    int64_t rate = 0;
+    if (pointing(b)) rate = (b->profile_rate + b->speed) >> 2;
+    else if (b->mode == RATE || b->mode == CLASS) rate = b->setpoint_q16;
+    if (b->velocity < -1 || b->velocity > 1) b->still = 0;
+    else if (b->still < STILL_TICKS) b->still++;
+    if (size_of(rate) <= SLOWEST || size_of(rate) >= FASTEST) {
+        b->driving = 0;
+        return setpoint_q16;
+    }
+    b->held_q16 = (int32_t)(rate + (pointing(b) ? limited(b->correction_q16 >> 4, TRIM) : 0));
+    if (!b->driving && b->still == STILL_TICKS) {
+        b->driving = 1;
+        b->rate_q16 = b->owed_q16 = 0;
+    }
+    return b->driving ? setpoint_q16 : 0;
+}
+
+static void observer_step(struct board *b) {
+    const int32_t *c = b->p + SECTION;
+    int32_t *state = b->states;
+    if (b->driving) {
+        b->rate_q16 += (int32_t)limited((int64_t)b->held_q16 - b->rate_q16, RAMP);
+        b->owed_q16 = (int32_t)limited(b->owed_q16 + b->velocity * (int64_t)Q16 - b->rate_q16, OWED);
+        b->driving = size_of(b->owed_q16) < OWED;
+    }
+    if (b->driving) {
+        int64_t effort = (int64_t)b->p[THROUGH] * b->owed_q16 >> 24;
+        for (uint8_t k = 0; k < SECTIONS; k++) effort += state[2 * k];
+        b->effort_q16 = (int32_t)limited(effort, effort_limit(b));
+    } else {
+        b->owed_q16 = 0;
+    }
+    for (uint8_t section = 0; section < SECTIONS; section++, c += 6, state += 2) {
+        int64_t first = state[0], u = b->effort_q16, owed = b->owed_q16;
+        state[0] = (int32_t)limited(((c[0] * first + c[2] * u) >> 28) + state[1] + (c[4] * owed >> 24), INT32_TOP);
+        state[1] = (int32_t)limited(((c[3] * u - c[1] * first) >> 28) + (c[5] * owed >> 24), INT32_TOP);
+    }
 }
 
 /* --- soft limits: limits.py -------------------------------------------------------------------------------- */
@@ -557,17 +626,24 @@ static uint8_t bounds(uint8_t number, int32_t *low, int32_t *high) {
     *low = number == SPLIT ? 10 : (number >= ACCELERATION && number < SPREAD) || number == TRAVEL;
     if (number < LINES) {
         *high = highest[number - 1];
+    } else if (number > OBSERVER) {
+        *high = INT32_TOP;
+        *low = -INT32_TOP;
     } else if (number < BIAS) {
         *high = cell ? EFFORT_Q8 : INT32_TOP;
         *low = cell ? -EFFORT_Q8 : 0;
     } else {
-        *high = number == BIAS ? EFFORT_Q8 / 10 : number == LOCK ? 1 : 15;
+        *high = number == BIAS ? EFFORT_Q8 / 10 : number == BLEND ? 15 : 1;
     }
     return 1;
 }
 
 static void book(struct board *b) {
-    uint16_t extra = 0;
+    uint16_t extra = b->p[SPREAD] ? 75 : 0;
+    if (b->p[BIAS]) extra = (uint16_t)(extra + 10);
+    if (b->p[LOCK]) extra = (uint16_t)(extra + 140);
+    if (b->p[BLEND]) extra = (uint16_t)(extra + 100);
+    if (b->p[OBSERVER]) extra = (uint16_t)(extra + 900);
     if (b->p[COMPENSATION]) {
         for (uint8_t line = LINES; line < LINES + 3 * HARMONICS; line = (uint8_t)(line + 3))
             if (b->p[line + 1] || b->p[line + 2]) extra = (uint16_t)(extra + 120);
@@ -589,10 +665,13 @@ static void changed(struct board *b, uint8_t number) {
         if (pointing(b)) b->kp = b->settings[KP_POINTING];
     } else if (number == BLEND) {
         b->blending = 0;
+    } else if (number >= OBSERVER) {
+        b->p[OBSERVER] = number == OBSERVER && b->p[OBSERVER] && observer_sound(b);
+        observer_start(b);
     }
     if ((number == KP || number == KI || number == LOCK) && (b->mode == RATE || b->mode == CLASS))
         velocity_gains(b);
-    if (number == SPREAD || number == COMPENSATION || (number >= LINES && number <= BIAS)) book(b);
+    if (number == SPREAD || number == COMPENSATION || number >= LINES) book(b);
 }
 
 /* --- commands: boards/core/commands.py, commands.py -------------------------------------------------------- */
@@ -619,6 +698,7 @@ static uint8_t set_parameter(struct board *b, uint8_t number, int32_t value, int
     }
     b->p[number] = value;
     changed(b, number);
+    *answer = b->p[number];
     return OK;
 }
 
@@ -775,26 +855,22 @@ static int16_t drive_fine(struct board *b, int64_t setpoint_q16) { /* duties fin
     return steps_of(effort);
 }
 
-static void send_packet(struct board *b) {
-    uint16_t crc = 0xFFFF;
-    if (b->clip_packet) clip(b);
-    for (uint16_t k = 2; k < PACKET_BYTES - 2; k++) {
-        crc ^= (uint16_t)((uint16_t)b->packet[k] << 8);
+static uint16_t crc_after(uint16_t crc, const uint8_t *data, uint8_t bytes) {
+    while (bytes--) {
+        crc ^= (uint16_t)((uint16_t)*data++ << 8);
         for (uint8_t bit = 0; bit < 8; bit++) crc = (uint16_t)(crc & 0x8000 ? (crc << 1) ^ 0x1021 : crc << 1);
     }
-    put(b->packet + PACKET_BYTES - 2, 2, crc);
-    uart_send(b->packet, PACKET_BYTES);
-    b->sequence++;
-    b->samples = 0;
+    return crc;
 }
 
 static void sample(struct board *b, int16_t effort, const uint16_t *current, int64_t setpoint_q16) {
     int64_t now = time_ns();
-    uint8_t *row = b->packet + 8 + b->samples * SAMPLE_BYTES, cut = 0;
+    uint8_t *row = b->packet + 8, *end = row + SAMPLE_BYTES, *part = b->samples ? row : b->packet, cut = 0;
     if (!b->samples) {
         put(b->packet, 4, UINT32_C(0x55AA) | (uint32_t)b->device << 16 | (uint32_t)b->sequence << 24);
         put(b->packet + 4, 4, crystal_100us());
         b->clip_packet = 0;
+        b->crc = crc_after(0xFFFF, b->packet + 2, 6);
     }
     put(row, 2, (uint64_t)effort);
     put(row + 2, 4, (uint64_t)(quotient(measured(b, now), UNITS_PER_STEP) & STEPS_MASK));
@@ -806,7 +882,15 @@ static void sample(struct board *b, int16_t effort, const uint16_t *current, int
     put(row + 16, 4, (uint64_t)auxiliary_sample(b, now));
     put(row + 20, 4, (uint64_t)setpoint_q16);
     b->clip_packet |= cut;
-    if (++b->samples == SAMPLES) send_packet(b);
+    b->crc = crc_after(b->crc, row, SAMPLE_BYTES);
+    if (++b->samples == SAMPLES) {
+        if (b->clip_packet) clip(b);
+        put(end, 2, b->crc);
+        end += 2;
+        b->sequence++;
+        b->samples = 0;
+    }
+    uart_send(part, (uint16_t)(end - part), b->samples);
 }
 
 static void telemetry(struct board *b, int64_t setpoint_q16) { /* every 10 ms */
@@ -847,14 +931,20 @@ static void send_target(struct board *b) { /* every 250 ms */
 
 void board_timer(struct board *b) {
     uint16_t poscnt = read_encoder();
-    int64_t wanted;
+    int64_t wanted, aim;
     int16_t effort;
     b->ticks++;
     b->velocity = (int16_t)(poscnt - b->poscnt);
     b->poscnt = poscnt;
     b->watch_counts += b->velocity;
     wanted = setpoint(b, time_ns());
-    effort = b->fixed ? b->effort_command : pi_step(b, wanted);
+    aim = b->p[OBSERVER] ? observer_aim(b, wanted) : wanted;
+    effort = b->fixed ? b->effort_command : pi_step(b, aim);
+    if (b->p[OBSERVER]) {
+        if (b->fixed) b->effort_q16 = effort * Q16;
+        observer_step(b);
+        effort = steps_of(b->effort_q16);
+    }
     if (b->p[SPREAD] || b->p[COMPENSATION] || b->p[BIAS]) {
         if (b->fixed) counter_follow(b, effort);
         effort = drive_fine(b, wanted);
@@ -898,6 +988,7 @@ void board_reset(struct board *b) {
     b->auxiliary_rate_q8 = 0;
     pi_start(b, 0, 0, 0);
     b->counter = 0;
+    observer_start(b);
     b->share_q16 = 0;
     b->effort = 0;
     fix_effort(b, 0);

@@ -33,6 +33,17 @@ HARMONIC_CYCLES: Final = 120
 two products and sums (35)."""
 FRICTION_CYCLES: Final = 60
 """The friction model: two 32-bit products, sums."""
+SHARE_CYCLES: Final = 75
+"""With the spread duty: effort times share (15), division by 100 in two steps (40), low-pass (20)."""
+BIAS_CYCLES: Final = 10
+"""Added to both duties."""
+LOCK_CYCLES: Final = 140
+"""Sum and its limit in 64 bits (30), product with the gain (25). Of the gusts: two low-passes, sum and window
+(65), choice of gains (20)."""
+OBSERVER_CYCLES: Final = 900
+"""25 products of 32 bits (625), sums, shifts and limits of four sections (200), angle and rate (75)."""
+BLEND_CYCLES: Final = 100
+"""Two sums of 64 bits (20), a shift by up to 15 places, one at a time (80)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

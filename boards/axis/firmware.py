@@ -6,7 +6,8 @@ from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import FCY_HZ, TABLE, TICK_NS, AxisConfig, AxisPeers, AxisPins
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import POINTING, STALE_NS, Motion
-from boards.axis.output import FineOutput, fine_parameters
+from boards.axis.observer import Observer
+from boards.axis.output import FineOutput, fine_parameters, observer_parameters
 from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
 from boards.axis.tachometer import RemoteAuxiliary, RemoteTachometer
@@ -76,12 +77,14 @@ class AxisBoard(PeriodicBoard):
         self.commands = self.common_commands() | axis_commands(self)
         self.fine: FineOutput | None = None
         """Set while parameter 12 or 13 is: duties finer than a PWM step, compensation."""
+        self.observer = Observer()
         self.output = FineOutput(self.cpu, self.pwm, self.pi, self.counter, self.motion)
         self.output.changed = self._output_changed
         self.set_parameters(
             [
                 *axis_parameters(self.motion, self.limits, self.counter),
                 *fine_parameters(self.output, self.motion),
+                *observer_parameters(self.observer, self.output),
             ]
         )
 
@@ -94,6 +97,7 @@ class AxisBoard(PeriodicBoard):
         self.auxiliary.forget()
         self.pi.start(0, 0, 0)
         self.counter.start()
+        self.observer.start()
         self.effort = 0
         self.effort_command = 0
         self.velocity = 0
@@ -119,8 +123,14 @@ class AxisBoard(PeriodicBoard):
         setpoint = motion.setpoint(t_ns - self.epoch_ns, velocity)
         effort = self.effort_command
         counter = self.counter
+        observer = self.observer
+        aim = observer.aim(motion.steady, setpoint, velocity) if observer.on else setpoint
         if effort is None:
-            effort = self.pi.step(setpoint, velocity)
+            effort = self.pi.step(aim, velocity)
+        elif observer.on:
+            self.pi.replace(effort << 16)
+        if observer.on:
+            effort = observer.step(self.pi, velocity)
         if self.fine is not None:
             if self.effort_command is not None:
                 counter.follow(effort, velocity)

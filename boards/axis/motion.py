@@ -65,6 +65,8 @@ class Motion:
         self.mode = AxisMode.OFF
         self.setpoint: Callable[[int, int], int] = self._idle
         self.setpoint_q16 = 0
+        self.steady = (0, 0)
+        """The rate that is to be held, 0: none, and the position loop's correction of it."""
         self.wanted_q16 = 0
         self.near_ticks = 0
         self.lock: RateLock | None = None
@@ -112,6 +114,7 @@ class Motion:
         self.mode = AxisMode.OFF
         self.setpoint = self._idle
         self.setpoint_q16 = self.wanted_q16 = self.rate = 0
+        self.steady = (0, 0)
         self.selected = 0
 
     def open_loop(self) -> None:
@@ -120,6 +123,7 @@ class Motion:
         self.mode = AxisMode.OPEN_LOOP
         self.setpoint = self._follow
         self.rate = 0
+        self.steady = (0, 0)
 
     def run(self, mode: AxisMode, rate_q16: int) -> None:
         """Velocity modes: go to `rate_q16` with the set acceleration and stay there."""
@@ -229,6 +233,7 @@ class Motion:
             if -self._creep_rate < wanted << _RATE_TO_UNIT < self._creep_rate:
                 self.gusts.step(setpoint - (velocity << 16))
                 self._velocity_gains()
+        self.steady = (0 if self.mode is AxisMode.STOP else self.setpoint_q16, 0)
         return setpoint
 
     def _point(self, now_ns: int, velocity: int) -> int:
@@ -262,6 +267,7 @@ class Motion:
         else:
             self.near_ticks = 0
         self.setpoint_q16 = setpoint = (feed >> 2) + correction
+        self.steady = (feed >> 2, correction)
         self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         gusts = self.gusts
         if gusts is not None:

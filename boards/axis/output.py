@@ -8,8 +8,18 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.axis.compensator import Compensator
-from boards.axis.config import FRICTION_CYCLES, HARMONIC_CYCLES, PWM_ROUTINE
+from boards.axis.config import (
+    BIAS_CYCLES,
+    BLEND_CYCLES,
+    FRICTION_CYCLES,
+    HARMONIC_CYCLES,
+    LOCK_CYCLES,
+    OBSERVER_CYCLES,
+    PWM_ROUTINE,
+    SHARE_CYCLES,
+)
 from boards.axis.motion import Motion
+from boards.axis.observer import COEFFICIENTS, Observer
 from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.core import InterruptController, Parameter
 from boards.core.commands import kept
@@ -41,6 +51,7 @@ class FineOutput:
         """Told when the routines cost something else."""
         self.spread = 0
         self.bias_q8 = 0
+        self.observed = False
         self.compensator = Compensator()
 
     @property
@@ -64,13 +75,27 @@ class FineOutput:
         self.bias_q8 = value_q8
         self.refresh()
 
+    def set_lock(self, on: int) -> None:
+        """Sum of the set point in RATE and CLASS, and a sense of wind."""
+        self._motion.set_lock(on)
+        self.refresh()
+
+    def set_blend(self, shift: int) -> None:
+        """Position from both encoders."""
+        self._motion.set_blend(shift)
+        self.refresh()
+
     def refresh(self) -> None:
         """Book what the routines now cost."""
-        cpu = self._cpu
-        extra = 0
+        cpu, motion = self._cpu, self._motion
+        extra = SHARE_CYCLES if self.spread else 0
+        extra += BIAS_CYCLES if self.bias_q8 else 0
+        extra += LOCK_CYCLES if motion.lock else 0
+        extra += BLEND_CYCLES if motion.blend else 0
+        extra += OBSERVER_CYCLES if self.observed else 0
         if self.compensator.on:
             self.compensator.refresh()
-            extra = self.compensator.lines * HARMONIC_CYCLES + FRICTION_CYCLES
+            extra += self.compensator.lines * HARMONIC_CYCLES + FRICTION_CYCLES
         cpu.top.own_ns = cpu.cycles_ns(cpu.top.source.cost_cycles + extra)
         cpu.steal(PWM_ROUTINE if self.spread else None, self._pwm.period_ns)
         self.changed()
@@ -161,10 +186,35 @@ def fine_parameters(output: FineOutput, motion: Motion) -> list[Parameter]:
         ),
         Parameter(
             AxisParameter.RATE_LOCK, "rate_lock", 0, 1,
-            lambda: int(motion.lock is not None), motion.set_lock,
+            lambda: int(motion.lock is not None), output.set_lock,
         ),
         Parameter(
             AxisParameter.POSITION_BLEND, "position_blend", 0, 15,
-            lambda: motion.blend.shift if motion.blend else 0, motion.set_blend,
+            lambda: motion.blend.shift if motion.blend else 0, output.set_blend,
         ),
     ]  # fmt: skip
+
+
+_WORD: Final = (1 << 31) - 1
+
+
+def observer_parameters(observer: Observer, output: FineOutput) -> list[Parameter]:
+    """Rows of the parameter table: the switch, and the coefficients. One that changes switches it off."""
+
+    def switch(on: int) -> None:
+        observer.switch(on)
+        output.observed = bool(observer.on)
+        output.refresh()
+
+    def cell(place: int) -> Parameter:
+        def write(value: int) -> None:
+            observer.coefficients[place] = value
+            switch(0)
+
+        number = AxisParameter.OBSERVER_FIRST + place
+        return Parameter(
+            number, f"observer_{place}", -_WORD, _WORD, lambda: observer.coefficients[place], write
+        )
+
+    on = Parameter(AxisParameter.OBSERVER, "observer", 0, 1, lambda: observer.on, switch)
+    return [on, *map(cell, range(COEFFICIENTS))]

@@ -51,6 +51,15 @@ class IncrementalPi:
         self.effort_q16 = effort
         return (effort + _HALF) >> 16
 
+    def replace(self, effort_q16: int) -> None:
+        """Another effort instead, from which the next tick goes on."""
+        self.effort_q16 = saturate(effort_q16, self._limit)
+
+    @property
+    def steps(self) -> int:
+        """The effort in whole PWM steps."""
+        return (self.effort_q16 + _HALF) >> 16
+
 
 _PERCENT: Final = 100
 SHARE_SHIFT: Final = 5

@@ -56,6 +56,7 @@ class FirmwareBoard(PeriodicBoard):
         self.memory = memory
         self.qei, self.pwm, self.adc, self.endat = chips.qei, chips.pwm, chips.adc, chips.endat
         self.uart = Uart(place.queue)
+        self._packet = b""
         self.parameters = _Asked(self)
         self._output_ns = 0
         self._sent: dict[int, Frame] = {}
@@ -73,6 +74,7 @@ class FirmwareBoard(PeriodicBoard):
     def reset(self) -> None:
         """After power-up."""
         self._sent.clear()
+        self._packet = b""
         self._call(_RESET, self.queue.now_ns)
 
     def unpowered(self, t_ns: int) -> None:
@@ -198,7 +200,12 @@ class FirmwareBoard(PeriodicBoard):
 
     def _ask_else(self, call: int, a: int, b: int, data: bytes) -> int:
         if call == _UART_SEND:
-            return self.uart.send(self._output_ns, data)
+            self._packet += data
+            if a:
+                self.uart.part(self._output_ns, data)
+                return 1
+            packet, self._packet = self._packet, b""
+            return self.uart.send(self._output_ns, packet, len(data))
         if call == _LOST_INTERRUPTS:
             return self.cpu.overruns
         if call == _COUNT_DROPPED:

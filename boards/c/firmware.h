@@ -101,8 +101,8 @@ uint16_t can_tec(void);
 void request_can(void);
 void can_notify(void);
 
-/* Transmit bytes on RS232; 0: both buffers are full. */
-uint8_t uart_send(const uint8_t *data, uint16_t length);
+/* Transmit bytes on RS232; 0: both buffers are full. more: they are no whole packet, the rest follows. */
+uint8_t uart_send(const uint8_t *data, uint16_t length, uint8_t more);
 
 /* --- what only an emulator can ask ----------------------------------------------------------------------- */
 

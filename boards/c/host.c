@@ -142,7 +142,9 @@ uint8_t can_state(void) { return (uint8_t)ask(CAN_STATE, 0, 0, NULL, 0); }
 uint16_t can_tec(void) { return (uint16_t)ask(CAN_TEC, 0, 0, NULL, 0); }
 void request_can(void) { ask(REQUEST_CAN, 0, 0, NULL, 0); }
 void can_notify(void) { ask(CAN_NOTIFY, 0, 0, NULL, 0); }
-uint8_t uart_send(const uint8_t *data, uint16_t length) { return (uint8_t)ask(UART_SEND, 0, 0, data, length); }
+uint8_t uart_send(const uint8_t *data, uint16_t length, uint8_t more) {
+    return (uint8_t)ask(UART_SEND, more, 0, data, length);
+}
 void book_cycles(uint32_t timer, uint16_t pwm) { ask(BOOK_CYCLES, timer, pwm, NULL, 0); }
 uint32_t lost_interrupts(void) { return (uint32_t)ask(LOST_INTERRUPTS, 0, 0, NULL, 0); }
 void count_dropped(void) { ask(COUNT_DROPPED, 0, 0, NULL, 0); }

@@ -35,8 +35,8 @@ HOLD_NS: Final = 4_000_000
 """A frame waits no longer than this for its report to fill. ASSUMPTION: four USB frames."""
 RING_SLOTS: Final = 64
 """512 bytes of the PIC's 2 KB. ASSUMPTION."""
-REPORTS_MOST: Final = 16
-"""Reports from the PC that wait for the firmware; USB would make the PC repeat what does not fit."""
+REPORTS_MOST: Final = 8
+"""Reports from the PC that wait for the firmware; the endpoint NAKs beyond. ASSUMPTION: 512 bytes."""
 COMMANDS_MOST: Final = 64
 """Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
 _BASE_MASK: Final = 0x700

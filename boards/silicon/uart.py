@@ -12,7 +12,7 @@ would be the minimum for the bare five columns (hardware.md 2.1)."""
 BITS_PER_BYTE: Final = 10
 """Start, eight data, stop."""
 BUFFERS: Final = 2
-"""Packets the firmware keeps: one leaving, one waiting."""
+"""What the firmware keeps of what it sends: one part leaving, one waiting."""
 
 Sink = Callable[[int, bytes], None]
 """(t_ns at which the last byte is through, the packet)."""
@@ -21,7 +21,7 @@ Sink = Callable[[int, bytes], None]
 class Uart:
     """Transmitter. sink: whoever listens, or None (the cable is out; the board cannot tell).
 
-    line: called with (t_ns of the first start bit, packet) when a packet is handed in, for who needs the time
+    line: called with (t_ns of the first start bit, bytes) when bytes are handed in, for who needs the time
     of every byte. The byte numbered i is through `duration_ns(i + 1)` after that.
     """
 
@@ -38,19 +38,23 @@ class Uart:
         """Time `length` bytes take on the line, ns."""
         return length * BITS_PER_BYTE * 1_000_000_000 // self.baud
 
-    def send(self, t_ns: int, packet: bytes) -> bool:
-        """Start sending at `t_ns`, or when the packet before is through; False (and counted) when both
-        buffers are full."""
+    def send(self, t_ns: int, packet: bytes, left: int = 0) -> bool:
+        """Start sending at `t_ns`, or when what came before is through; False (and counted) when both
+        buffers are full. left: the last bytes of the packet, if `part` has taken the others."""
         if len(self._packets) >= BUFFERS:
             self.dropped += 1
             return False
         self._packets.append(packet)
-        start_ns = max(t_ns, self._free_ns)
-        if self.line is not None:
-            self.line(start_ns, packet)
-        self._free_ns = start_ns + self.duration_ns(len(packet))
+        self.part(t_ns, packet[-left:])
         self._queue.at(self._free_ns, self._through)
         return True
+
+    def part(self, t_ns: int, data: bytes) -> None:
+        """Bytes of a packet that is not whole yet. They leave now; `sink` gets them with the packet."""
+        start_ns = max(t_ns, self._free_ns)
+        if self.line is not None:
+            self.line(start_ns, data)
+        self._free_ns = start_ns + self.duration_ns(len(data))
 
     def _through(self, t_ns: int) -> None:
         packet = self._packets.popleft()

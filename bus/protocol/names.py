@@ -182,6 +182,10 @@ class AxisParameter(IntEnum):
     POSITION_BLEND = 42
     """Time constant, 2^n ticks of 5 ms, below which the position loop trusts the incremental encoder; 0: the
     absolute encoder alone."""
+    OBSERVER = 43
+    """1: a state observer in place of the PI near the tracking rate; it stays 0 with unsound coefficients."""
+    OBSERVER_FIRST = 44
+    """Its coefficients up to 68, four sections of six and one more: `boards/axis/observer.py`."""
 
 
 HARMONICS: Final = 8

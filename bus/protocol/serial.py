@@ -5,7 +5,7 @@
 The time stamp is the board's own clock at the first sample, units of 100 µs, modulo 2**32 (five days).
 CRC-16: polynomial 0x1021, initial 0xFFFF, not reflected, no final XOR ("CCITT-FALSE"), over everything
 between sync and CRC. Layouts and CRC are ASSUMPTIONS; the paper gives the period, the 25 samples and the
-quantities (row L3).
+quantities (row L3). A board sends each part when it has it: the head with the first sample.
 """
 
 import re
@@ -99,6 +99,11 @@ def packet_bytes(device: int) -> int:
     return len(SYNC) + _head.size + SAMPLES * _known(device)[0].size + _crc.size
 
 
+def ahead_bytes(device: int) -> int:
+    """Bytes of a packet that have left before its last sample is taken; SerialError as above."""
+    return len(SYNC) + _head.size + (SAMPLES - 1) * _known(device)[0].size
+
+
 def fields(device: int) -> list[tuple[str, str, int]]:
     """Name, type (`i16`) and first byte of what a sample of `device` holds; SerialError as above."""
     layout, names = _known(device)
@@ -124,16 +129,25 @@ def pack_packet(
 
     Raises SerialError for a device without a serial line and a wrong number of samples.
     """
-    layout = _known(device)[0]
     if len(samples) != SAMPLES:
         raise SerialError(f"a packet holds {SAMPLES} samples, got {len(samples)}")
+    body = pack_head(device, sequence, stamp) + pack_rows(device, samples, clip)
+    return body + _crc.pack(crc_hqx(body[len(SYNC) :], _CRC_START))
+
+
+def pack_head(device: int, sequence: int, stamp: int) -> bytes:
+    """What stands before the samples of a packet."""
+    return SYNC + _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF)
+
+
+def pack_rows(device: int, samples: Sequence[Sequence[int]], clip: Clip = nobody) -> bytes:
+    """Samples of a packet, cut to their fields; raises SerialError for a device without a serial line."""
+    layout = _known(device)[0]
     try:
-        rows = b"".join(starmap(layout.pack, samples))
+        return b"".join(starmap(layout.pack, samples))
     except error:
         clip()
-        rows = b"".join(layout.pack(*fitted(layout, sample)) for sample in samples)
-    body = _head.pack(device, sequence & 0xFF, stamp & 0xFFFF_FFFF) + rows
-    return SYNC + body + _crc.pack(crc_hqx(body, _CRC_START))
+        return b"".join(layout.pack(*fitted(layout, sample)) for sample in samples)
 
 
 class PacketDecoder:

@@ -11,7 +11,7 @@ from scenarios.commands.parts import need
 from scenarios.studies.options import HIGH, LOW, ObjectiveOptions, PaperOptions
 
 _jobs = click.option(
-    "--jobs", type=click.IntRange(min=1), help="Processes on this machine (default: one per core)."
+    "--jobs", type=click.IntRange(1, 1024), help="Processes on this machine (default: one per core)."
 )
 _scheduler = click.option(
     "--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster)."

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 @network
 @click.option(
     "--firmware",
-    type=click.Choice(["paper", "fine"]),
+    type=click.Choice(["paper", "fine", "observer"]),
     help="Firmware of the axis boards: the paper's, or docs/results/one-arcsecond.md's.",
 )
 @click.option(

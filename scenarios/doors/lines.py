@@ -4,9 +4,10 @@ from collections import deque
 from collections.abc import Callable, Mapping
 
 from boards.silicon.uart import Uart
+from bus.protocol.serial import SAMPLES
 
-_WAITING_PACKETS = 64
-"""A feed that nobody empties keeps this much, sixteen seconds; older packets are gone. ASSUMPTION."""
+_WAITING = 64 * SAMPLES
+"""Parts that a feed keeps when nobody empties it, sixteen seconds; older ones are gone. ASSUMPTION."""
 
 
 class Feed:
@@ -19,8 +20,8 @@ class Feed:
         """Bytes of the first packet that have been handed out."""
 
     def hear(self, start_ns: int, packet: bytes) -> None:
-        """A packet's first start bit goes out at `start_ns`."""
-        if len(self._packets) >= _WAITING_PACKETS:
+        """The first start bit of a packet, or of a part of one, goes out at `start_ns`."""
+        if len(self._packets) >= _WAITING:
             self._packets.popleft()
             self._sent = 0
         self._packets.append((start_ns, packet))

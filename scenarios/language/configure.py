@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from boards.axis.observer import ANGLE_SHIFT, EFFORT_SHIFT
 from bus.protocol import HARMONICS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
@@ -15,6 +16,7 @@ from host.client import Client, Procedure
 from host.procedures import manual
 from host.procedures.manual import AXES
 from plant.deadzone import bias_steps
+from plant.observer import sections
 from plant.parts import AxisModel, PlantModel
 from scenarios.language.document import ScenarioError, read
 from scenarios.language.model import Scenario, Step
@@ -131,23 +133,36 @@ def load_compensation(file: Path) -> Compensation:
     )
 
 
-NAMES = ("paper", "fine")
-"""paper: everything off. fine: what docs/results/one-arcsecond.md proposes, without compensation."""
 BLEND_SHIFT = 11
 """10.2 s: four encoder lines when tracking. A roller ratio that is wrong by 1e-4 then costs 0.015 arcsec."""
 
 
 def parameters_of(name: str, model: PlantModel, axis: str = "ra") -> Mapping[int, int]:
-    """Return the parameters of a firmware on an axis of a plant: its bias follows from the power stage."""
+    """Return the parameters of a firmware on an axis of a plant: its bias follows from the power stage.
+
+    paper: everything off. fine: what docs/results/one-arcsecond.md proposes, without compensation. observer:
+    the same, with a state observer on the axis that tracks.
+    """
     if name == "paper":
         return {}
     part: AxisModel = getattr(model.axes, axis)
-    return {
+    fine: dict[int, int] = {
         AxisParameter.DUTY_FRACTION: 1,
         AxisParameter.RATE_LOCK: 1,
         AxisParameter.POSITION_BLEND: BLEND_SHIFT,
         AxisParameter.COUNTER_BIAS_Q8: bias_steps(model, part.motor) * 256,
     }
+    return fine | observer(model, part) if name == "observer" and axis == "ra" else fine
+
+
+def observer(model: PlantModel, part: AxisModel) -> dict[int, int]:
+    """Coefficients of a drive's observer, and its switch behind them."""
+    found, through = sections(model, part)
+    effort, angle = 1 << EFFORT_SHIFT, 1 << ANGLE_SHIFT
+    scales = (effort, effort, effort, effort, angle, angle)
+    values = [round(value * scale) for section in found for value, scale in zip(section, scales, strict=True)]
+    numbers = enumerate([*values, round(through * angle)], AxisParameter.OBSERVER_FIRST)
+    return dict(numbers) | {AxisParameter.OBSERVER: 1}
 
 
 _COMMAND_LINE = "command line"

@@ -190,7 +190,7 @@ def test_out_of_range_is_refused(lab: Lab) -> None:
         (Opcode.MOVE_TO, CENTRE, 6),
         (Opcode.TRACK_RATE, rate_q16(7300.0)),
         (Opcode.OPEN_LOOP, 3001),
-        (Opcode.GET_PARAMETER, 43),
+        (Opcode.GET_PARAMETER, 69),
         (Opcode.SET_PARAMETER, 6, 0),
     ):
         assert lab.command(*command).result == Result.OUT_OF_RANGE, command

@@ -15,11 +15,14 @@ from boards.c.library import members
 from bus.can import Frame
 from bus.outside.node import OutsideNode
 from bus.protocol import COMMAND_BASE, HEARTBEAT_BASE, MEASUREMENT_BASE, Device, Opcode, pack_command
+from bus.protocol.scales import rate_q16
+from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import build
 from scenarios.lab.networks import NetworkConfig, NodeConfig
 from scenarios.lab.prepare import chosen
+from scenarios.language.configure import parameters_of
 from scenarios.native import compiled
 from tests.scenarios.lab.faults.lab import EXAMPLES
 
@@ -109,7 +112,7 @@ class Duel:
         elif draw < 0.74:
             self.command(Opcode.SET_PARAMETER, *self.parameter())
         elif draw < 0.78:
-            self.random.choice((self.compensate, self.corner, self.settle, self.cut))()
+            self.random.choice((self.compensate, self.observe, self.corner, self.settle, self.cut))()
         elif draw < 0.86:
             self.stray()
         elif not self.running or (draw < 0.92 and len(self.running) < 3):
@@ -129,7 +132,7 @@ class Duel:
         offset = draw.choice((draw.choice(_EDGES[:5]), *(draw.randint(-far, far) for far in (2000, 1 << 30))))
         orders = {
             Opcode.PING: (),
-            Opcode.GET_PARAMETER: (draw.randint(0, 50),),
+            Opcode.GET_PARAMETER: (draw.randint(0, 70),),
             Opcode.POWER: (draw.choice((0, 1, 1, 1, 1, 1, 2)),),
             Opcode.STOP: (),
             Opcode.SET_RATE: (rate,),
@@ -165,6 +168,17 @@ class Duel:
             self.command(Opcode.SET_PARAMETER, number, value)
             self.both(0.002)
         self.command(Opcode.SET_CLASS, draw.randint(2, 5), draw.choice((-1, 1)))
+
+    def observe(self) -> None:
+        """An observer, at times with a coefficient of another, and the rate that it was made for."""
+        wanted = parameters_of("observer", load("high_preload_motor_units"))
+        for place, (number, value) in enumerate(wanted.items(), 1):
+            self.command(Opcode.SET_PARAMETER, number, value + (self.random.random() < 0.01) * (1 << 27))
+            if place % 6 == 0:  # as many as wait at a board
+                self.both(0.01)
+        order = self.random.choice(((Opcode.SET_CLASS, 5, 1), (Opcode.TRACK_RATE, rate_q16(15.041))))
+        self.command(*order)
+        self.both(self.random.uniform(0.5, 4.0))
 
     def corner(self) -> None:
         """Fast towards a soft limit that lies near, the axis board's own or the encoder board's."""

@@ -20,16 +20,14 @@ from boards.position import firmware as position
 from boards.silicon.hid import FRAME_NS
 from boards.silicon.uart import BUFFERS
 from bus.protocol import FRAME_BYTES, HARMONICS, Device
-from bus.protocol.serial import packet_bytes
+from bus.protocol.serial import ahead_bytes, packet_bytes
 
 STACK_BYTES: Final = 128
 """ASSUMPTION: two nested routines with their registers and a call depth of six."""
 COMMANDS: Final = {"commands": INBOX * (FRAME_BYTES + 1), "late reply": FRAME_BYTES}
 """Buffers of every board, bytes: commands with their length, and a reply that found no transmit buffer."""
-PARAMETERS: Final = 42
+PARAMETERS: Final = 68
 """Rows of the axis board's parameter table, 32 bits each."""
-_PACKET_FRAME: Final = 10
-"""Bytes of a packet around its samples: sync, device type, sequence, time stamp, CRC."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,9 +70,8 @@ class Ledger:
 
 
 def line(device: int) -> dict[str, int]:
-    """Buffers of an RS232 line, bytes: samples that become a packet, and packets that leave."""
-    packet = packet_bytes(device)
-    return {"samples": packet - _PACKET_FRAME, "packets": BUFFERS * packet}
+    """Buffers of an RS232 line, bytes: parts of a packet, the longest a sample behind its head of eight."""
+    return {"parts": BUFFERS * (8 + packet_bytes(device) - 2 - ahead_bytes(device))}
 
 
 AXIS: Final = Ledger(
@@ -83,10 +80,14 @@ AXIS: Final = Ledger(
     table=axis.TABLE,
     fcy_hz=axis.FCY_HZ,
     window_ns=5_000_000,
-    extra_cycles=HARMONICS * axis.HARMONIC_CYCLES + axis.FRICTION_CYCLES,
+    extra_cycles=HARMONICS * axis.HARMONIC_CYCLES
+    + axis.FRICTION_CYCLES
+    + axis.SHARE_CYCLES
+    + axis.OBSERVER_CYCLES
+    + axis.BIAS_CYCLES
+    + axis.LOCK_CYCLES
+    + axis.BLEND_CYCLES,
 )
-"""More RAM than the chip has: samples and packets of nine columns do not fit (FIDELITY.md, B1). Lock, blend,
-gusts, bias and smoothed share book no cycles."""
 POSITION: Final = Ledger(
     chip=PIC18F4480,
     buffers=COMMANDS | line(Device.POSITION_RA),
@@ -125,8 +126,6 @@ GATEWAY: Final = Ledger(
     fcy_hz=gateway.FCY_HZ,
     window_ns=FRAME_NS,
 )
-"""More RAM than the chip has, by the reports: a chip would hold two, and USB repeat the others (FIDELITY.md,
-B7)."""
 WRITTEN: Final = {
     "AXIS": AXIS, "POSITION": POSITION, "MOTOR": MOTOR, "FOCUS": FOCUS, "DISPLAY": DISPLAY,
     "GATEWAY": GATEWAY,

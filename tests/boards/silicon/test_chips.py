@@ -50,6 +50,20 @@ def test_P12_lvdt_adc_spans_the_reference() -> None:
     assert [VoltageAdc(lambda _t, v=v: v).read(0) for v in (0.0, 2.5, 5.0)] == [0, 512, 1023]  # type: ignore[misc]
 
 
+def test_L3_a_packet_that_left_in_parts_is_through_with_its_last_one() -> None:
+    queue = EventQueue()
+    got: list[tuple[int, bytes]] = []
+    heard: list[tuple[int, bytes]] = []
+    uart = Uart(queue, baud=115_200, sink=lambda t, packet: got.append((t, packet)))
+    uart.line = lambda t, part: heard.append((t, part))
+    uart.part(0, b"one")
+    uart.part(10_000_000, b"two")
+    assert uart.send(20_000_000, b"onetwoend", 3)
+    queue.run_until(1_000_000_000)
+    assert heard == [(0, b"one"), (10_000_000, b"two"), (20_000_000, b"end")]
+    assert got == [(20_000_000 + 3 * 10 * 1_000_000_000 // 115_200, b"onetwoend")]
+
+
 def test_L3_uart_bytes_take_their_time() -> None:
     queue = EventQueue()
     got: list[tuple[int, bytes]] = []

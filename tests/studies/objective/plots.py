@@ -5,15 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from plant.model import load, with_effects
 from plant.parts import EffectModel, PlantModel
 from scenarios.language.configure import parameters_of
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 from scenarios.studies.objective.bench import hold
 from scenarios.studies.objective.cases import EFFECTS, starts
-from tests.studies.objective import observer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,19 +50,15 @@ def low() -> Figure:
 
 
 def high() -> Figure:
-    """High preload: the fine firmware's PI, and the observer."""
+    """High preload that leaps: the fine firmware's PI, and its observer."""
     model = load("high_preload_motor_units")
-    pi = hold(model, _START, 1, "TRACK", list(parameters_of("fine", model).items()), _SECONDS)
-    errors = observer.hold(model, observer.design(model), observer.DESIGN_DELAY_S, _SECONDS, _START)
     figure = new_figure(4.2)
-    time_s = np.arange(len(errors)) * observer.TICK_S
-    for row, (name, t_s, rate) in enumerate(
-        (("PI with the fine firmware", pi.t_s - pi.t_s[0], pi.rate), ("state observer", time_s, errors)), 1
-    ):
+    for row, (name, firmware) in enumerate((("PI", "fine"), ("state observer", "observer")), 1):
+        held = hold(model, _START, 1, "TRACK", list(parameters_of(firmware, model).items()), _SECONDS)
         view = axes(figure, 2, 1, row, "time, s" if row == 2 else "", "arcsec/s")
-        peak = float(np.abs(rate).max())
-        view.plot(*thin(t_s, rate), color=COLOURS["ok" if peak <= 1.0 else "bad"], lw=0.6)
-        title(view, f"high preload, {name}: peak {peak:.2f} arcsec/s")
+        colour = COLOURS["ok" if held.peak <= 1.0 else "bad"]
+        view.plot(*thin(held.t_s - held.t_s[0], held.rate), color=colour, lw=0.6)
+        title(view, f"high preload, {name}: peak {held.peak:.2f} arcsec/s")
     return figure
 
 
