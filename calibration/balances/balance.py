@@ -150,8 +150,8 @@ def _term(view: View, name: str) -> list[Term]:
 def _gravity(view: View) -> list[Term]:
     """cos and sin of the angle; of a joint in front of it, whose axis is parallel, those of their sum, too.
 
-    Of several joints their cosines and sines multiply this one's: the torque of a weight is the slope of its
-    height, and a sum of such products however the joints lie to each other.
+    Of several joints their cosines and sines multiply this one's. The torque of a weight is the slope of its
+    height, a sum of such products however the joints lie.
     """
     turn, carried = (view.turn or 1.0) / (2 * np.pi), view.columns.get("load", 1.0)
     joints = [c for c in JOINTS if c in view.columns]
