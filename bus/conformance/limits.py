@@ -20,6 +20,8 @@ _SUPPLY_Q8: Final = 3000 << 8
 """All of the supply, PWM steps in Q8 (paper, section 3.3)."""
 _I32: Final = 1 << 31
 
+_OBSERVER_END: Final = 69
+"""Behind the observer's last coefficient (docs/reference/protocol.md)."""
 _CELLS = ((0, _I32 - 1), (-_SUPPLY_Q8, _SUPPLY_Q8), (-_SUPPLY_Q8, _SUPPLY_Q8))
 _SOFT_LIMITS = {4: (0, _LAST_STEP), 5: (0, _LAST_STEP)}
 PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
@@ -38,11 +40,12 @@ PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
         AxisParameter.COUNTER_BIAS_Q8: (0, 300 << 8),
         AxisParameter.RATE_LOCK: (0, 1),
         AxisParameter.POSITION_BLEND: (0, 15),
+        **dict.fromkeys(range(AxisParameter.OBSERVER_FIRST, _OBSERVER_END), (1 - _I32, _I32 - 1)),
     },
     "POSITION": _SOFT_LIMITS,
 }
 """Type of board -> parameter -> lowest and highest value, in the parameter's own unit. A test compares them
-with the firmware's."""
+with the firmware's. Whether 1 is taken as OBSERVER hangs on its coefficients, so it is not here."""
 
 _AT: dict[str, tuple[Command, ...]] = {
     "AXIS": (

@@ -86,5 +86,7 @@ def test_the_emulated_axis_is_off_after_an_interrupt() -> None:
 @pytest.mark.parametrize("name", ["AXIS_RA", "AXIS_DEC", "POSITION_RA", "POSITION_DEC"])
 def test_the_limits_checked_are_the_firmwares(name: str) -> None:
     rows = network().boards[name].parameters._rows
-    expected = PARAMETERS[name.partition("_")[0]]
-    assert {number: (row.low, row.high) for number, row in rows.items()} == expected
+    found = {number: (row.low, row.high) for number, row in rows.items()}
+    if name.startswith("AXIS"):  # taken with sound coefficients only
+        assert found.pop(p.AxisParameter.OBSERVER) == (0, 1)
+    assert found == PARAMETERS[name.partition("_")[0]]
