@@ -21,6 +21,7 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
 from calibration.look.jumps import with_jumps
 from calibration.look.looked import (
+    MOST,
     Balance,
     Looked,
     Options,
@@ -116,8 +117,11 @@ def _balance(s: Selection, mount: Mount, slow: list[str], tried: list[dict[str, 
     near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
     turns = [Place(f"the turn of {name}", None, (clock * rate) % 1.0) for name, rate in near.items()]
     missing = missing_over(b, [Place("time", None, p.t), *turns])
-    # no plant has an effect for what a night's air leaves
-    return b if missing is None else replace(b, missing=replace(missing, effect=False))
+    if missing is None:
+        return b
+    # no plant has an effect for what a night's air leaves; most of it over a part's turn is no air
+    turning = missing.domain is None and missing.share > MOST
+    return replace(b, missing=replace(missing, effect=turning))
 
 
 def _when(sections: list[Run], p: Problem, row: int) -> str:
