@@ -29,7 +29,7 @@ from plant.units import ARCSEC
 TICK_S: Final = 0.005
 """Paper, section 3.3."""
 DELAY_S: Final = 0.00009
-"""From the encoder to the new duty: the routine with all options but the table (`boards/axis/config.py`)."""
+"""From the encoder to the new duty: 81 us with the observer (`boards/axis/config.py`), rounded up."""
 RATE_ARCSEC: Final = 15.041
 _POSITION, _EFFORT = 1e7, 1e-4
 """Weights of position, 1/rad^2, and effort, 1/step^2: chosen among nine, with the noise, on three drives."""

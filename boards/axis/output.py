@@ -1,7 +1,7 @@
 """From the loop's effort to the duty registers when they are finer than a PWM step.
 
 The paper's firmware rounds effort and counter torque to whole steps (firmware.py, `routine`); this is what
-parameters 12 and 13 put in its place. Here are the rows of parameters 12 to 42, too.
+parameters 12 and 13 put in its place. Here are the rows of parameters 12 to 68, too.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ _HALF: Final = 1 << 15
 
 
 class FineOutput:
-    """Parameters 12 to 42 of the axis board.
+    """Parameters 12 to 68 of the axis board.
 
     bias_q8: duty both motors always get, PWM steps in Q8. It cancels at the axis. It keeps the lagging
         motor's teeth together where that motor's share of a small effort would drown in dead band and

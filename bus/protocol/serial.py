@@ -1,4 +1,4 @@
-"""RS232 packets: every 250 ms a board sends its last 25 samples, taken at 10 ms.
+"""RS232 packets of 25 samples, which a board takes every 10 ms and sends at once.
 
     sync AA 55 | device type u8 | sequence u8 | time stamp u32 | 25 samples | CRC-16 u16      (little endian)
 

@@ -38,6 +38,7 @@ class Candidate:
     twins: tuple[str, ...] = ()
     shape: Callable[[Array], Array] | None = None  # columns by the first len(steps) fixed parameters
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
+    open: bool = False  # rows leave a stretch of such a parameter open, as edges between them: its middle
     searched: int = 0  # parameters that were searched for beside the coefficients, and must pay
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
     neighbours: tuple[Candidate, ...] = ()  # lines of no stage, within the cell of this stage's order

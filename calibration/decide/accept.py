@@ -51,16 +51,13 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
     c = contender.candidate
     free = c.kind == "line" and c.stage is None  # the best of a spectrum
     least = c.least or needed(max(tried, limits.SPECTRUM) if free else tried)
-    # chosen on the fitted rows, tested on the held-out ones: of a short log both chances count
-    short = named and held.sure and contender.blocks < limits.FEWEST_BLOCKS
-    more = held.evidence if short else 0.0
-    if contender.evidence + more >= least:
+    if contender.evidence >= least:
         return ""
-    times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) + more >= least), 0)
+    times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)
     if times and held.share > limits.MARGIN and held.sure:
         return (
             f"{SHORT}: it lowers the held-out mean square by {100 * held.share:.0f} %, but -log10 p is"
-            f" {contender.evidence + more:.1f} of {least:.1f}. A log {times} times as long would decide."
+            f" {contender.evidence:.1f} of {least:.1f}. A log {times} times as long would decide."
         )
     return f"too little evidence (-log10 p = {contender.evidence:.1f})"
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtr
 
 from calibration.arrays import Array, Mask
 from calibration.balances.candidate import pairs_by_section
@@ -15,19 +14,16 @@ from calibration.balances.thresholds import FEWEST_FILES
 from calibration.decide import thresholds as limits
 from calibration.statistics.regression import leverage, solve, solve_without
 from calibration.statistics.tails import rms
-from calibration.statistics.thresholds import SMALLEST_TAIL
 from calibration.statistics.whitening import Whitener
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeldOut:
-    """rms before and after on held-out rows (channel's unit), z-score of the whitened gain over blocks, and
-    -log10 p of that (Student)."""
+    """rms before and after on held-out rows (channel's unit), z-score of the whitened gain over blocks."""
 
     before: float = float("nan")
     after: float = float("nan")
     z: float = 0.0
-    evidence: float = 0.0
     share: float = 0.0  # 1 - mean square after / before
     everywhere: bool = False  # cross-validation only: every fold gained
 
@@ -118,25 +114,24 @@ def compare(problem: Problem, before: Model, after: Model, whitener: Whitener) -
     full = np.zeros((len(problem.y), 2))
     full[rows] = np.column_stack([e0, e1])
     white = whitener.whiten(full, rows) ** 2
-    return _scored(e0, e1, *paired(white[:, 0] - white[:, 1], problem.block))
+    return _scored(e0, e1, paired_z(white[:, 0] - white[:, 1], problem.block))
 
 
-def _scored(e0: Array, e1: Array, z: float, evidence: float, everywhere: bool = False) -> HeldOut:
+def _scored(e0: Array, e1: Array, z: float, everywhere: bool = False) -> HeldOut:
     b, a = rms(e0), rms(e1)
     share = 1 - (a / b) ** 2 if b > 0 else 0.0
-    return HeldOut(before=b, after=a, z=z, evidence=evidence, share=share, everywhere=everywhere)
+    return HeldOut(before=b, after=a, z=z, share=share, everywhere=everywhere)
 
 
-def paired(gain: Array, block: int) -> tuple[float, float]:
-    """z-score of the mean gain over blocks of rows, and -log10 p of as large a one by chance (Student)."""
+def paired_z(gain: Array, block: int) -> float:
+    """z-score of the mean gain over blocks of rows."""
     if len(gain) < 2 * block:
         block = max(len(gain) // 4, 1)
     edges = np.arange(0, len(gain), block)
     sums = np.add.reduceat(gain, edges) if len(gain) else np.zeros(1)
     if len(sums) < 2 or np.std(sums) == 0:
-        return 0.0, 0.0
-    z = float(np.mean(sums) / (np.std(sums, ddof=1) / np.sqrt(len(sums))))
-    return z, -float(np.log10(max(stdtr(len(sums) - 1, -z), SMALLEST_TAIL)))
+        return 0.0
+    return float(np.mean(sums) / (np.std(sums, ddof=1) / np.sqrt(len(sums))))
 
 
 def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
@@ -186,7 +181,7 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
     e0, e1, fold = residuals[0][tested], residuals[1][tested], fold[tested]
     gain = e0**2 - e1**2
     everywhere = min(float(np.sum(gain[fold == k])) for k in dealt) > 0
-    return _scored(e0, e1, *paired(gain, problem.block), everywhere)
+    return _scored(e0, e1, paired_z(gain, problem.block), everywhere)
 
 
 def choose_held_out(frame: Frame, names: list[str]) -> tuple[Mask, list[str]]:

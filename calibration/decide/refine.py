@@ -59,11 +59,9 @@ def refine(rest: Rest, c: Candidate) -> Candidate:
             one = np.arange(len(at)) == k
             trials = [at + d * one for d in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS)]
             values = [rest.taken(shape(trial)) for trial in trials]
-            if (most := max(values)) >= best:  # an edge between two rows may lie anywhere between them
-                best, at = (
-                    most,
-                    np.mean([x for x, v in zip(trials, values, strict=True) if v == most], axis=0),
-                )
+            if (most := max(values)) > best or (c.open and most == best):
+                ties = [x for x, v in zip(trials, values, strict=True) if v == most]
+                best, at = most, np.mean(ties, axis=0) if c.open else ties[0]
         reach /= limits.REFINE_REACH
     return c.moved(at)
 

@@ -81,6 +81,6 @@ def _number(path: Path, key: str, text: str, line: int) -> float:
         raise CalibrationInputError(path, what, line)
     share = key == "counter_torque"
     if not (value > 0 or (share and value == 0)) or value > (1.0 if share else LARGEST_SCALE):
-        most = ", one at most" if share else ""
-        raise CalibrationInputError(path, f"'{key}' is {value}, must be positive{most} ({WHAT[key]})", line)
+        must = "0 to 1" if share else "positive"
+        raise CalibrationInputError(path, f"'{key}' is {value}, must be {must} ({WHAT[key]})", line)
     return value

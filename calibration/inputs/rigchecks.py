@@ -80,8 +80,11 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
     if {"load", *JOINTS} & set(columns) and "gravity" not in estimated:
         yield "columns.load, columns.joint and further ones: act through gravity; add it to estimate"
     if ("applied" in columns) != ("applied" in estimated):
-        yield "columns.applied: is a force of the term applied; the one needs the other, in estimate"
-    if {"offset", "offset_per_file"} <= estimated:
+        yield "columns.applied and 'applied' in estimate belong together; add the missing one"
+    if {"offset", "offset_per_file"} <= estimated | known:
         yield "estimate: offset_per_file stands in the place of offset; leave one out"
+    for name in (name for name in JOINTS if name in columns):
+        if columns[name].unit != columns["position"].unit:
+            yield f"columns.{name}.unit: must be the position's; give a scale"
     for name in (name for name in columns if name not in used):
         yield f"columns.{name}: nothing uses it with this response; leave it out"

@@ -130,8 +130,9 @@ def _behind_remarks(lines: list[str], skip: int, delimiter: str | None) -> int:
         return skip
     for k, below in pairwise(rows):
         names = fields(lines[k])
-        if len(names) == len(fields(lines[below])) == width and all(f and plain(f) is None for f in names):
-            return k
+        if len(names) == width:
+            words = all(f and plain(f) is None for f in names)
+            return k if words and len(fields(lines[below])) == width else skip
     return skip
 
 

@@ -193,8 +193,7 @@ def unnamed_where_missing(
     """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects and not needs:
-        much = {b.key: "time" for b, _ in large if b.key == "T" and b.times > EFFECT}
-        over = [(b, m.domain or much.get(b.key, "")) for b, m in large]
+        over = [(b, m.domain or ("time" if b.key == "T" and b.times > EFFECT else "")) for b, m in large]
         effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))

@@ -110,9 +110,12 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
         candidates = [c for c in candidates if c.name not in denied]
         s = select(p, candidates, result.rng)
     if pair := cancelling(s):  # again with either, which may have been bent by the other
-        names = [s.candidates[k].name for k in pair]
-        without = [select(p, [c for c in candidates if c.name != name], result.rng) for name in names]
-        s = min(without, key=lambda one: one.held.after)
+        keys = [s.candidates[k].key for k in pair]
+        without = [select(p, [c for c in candidates if c.key != key], result.rng) for key in keys]
+        left = min(range(2), key=lambda k: without[k].held.after)
+        gone, stays = (s.candidates[k].say() for k in (pair[left], pair[1 - left]))
+        result.refused += [("T", gone, f"cancels against {stays}")]
+        s = without[left]
     return s, whole, moving
 
 

@@ -61,7 +61,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     t = v.t[v.rows]
     lengths = [float(t[files == k].max()) for k in np.unique(files)]
     length, train = min(lengths), s.problem.train
-    fitted = min((float(np.ptp(t[train & (files == k)])) for k in np.unique(files[train])), default=0.0)
+    fitted = max((float(np.ptp(t[train & (files == k)])) for k in np.unique(files[train])), default=0.0)
     if fitted <= 0:
         return []
     top, lag = 0.5 / (v.period_s * max(v.step, 1)), repeat_lag(v)
@@ -128,7 +128,12 @@ def _of_volts(s: Scene) -> list[Candidate]:
     out = []
     for f0, square in product(standing_out(added[rows], since[rows], run[rows], want), (False, True)):
         at = {"frequency": (f0, "Hz"), "shape": (float(square), "0 sine, 1 square")}
-        more: dict[str, Any] = {"frequency": f0, "sign": 1, "searched": 1 + len(np.unique(run))}
+        more: dict[str, Any] = {
+            "frequency": f0,
+            "sign": 1,
+            "searched": 1 + len(np.unique(run)),
+            "open": square,
+        }
         wave, step = _wave(s, added, volts, square), (EDGE_CELLS if square else STEP_CELLS) / want.span
         out.append(tried(NAME.name, wave, "amplitude", at=at, steps=(step,), **more))
     return out

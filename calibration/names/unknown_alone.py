@@ -32,7 +32,7 @@ WIDTH_STEP = 0.1
 def alone(s: Scene) -> list[Candidate]:
     """The shapes of this balance: a dent between two sensors, an end stop or a bent torque in a force.
 
-    None stands beside an offset that wanders within a file. An end stop would then be any slope.
+    None stands beside an offset that wanders, or is every file's own. An end stop would then be any slope.
     """
     r = s.view.response
     if s.pair is not None or s.view.slow_offset is not None or r.is_speed or not s.view.ok.any():

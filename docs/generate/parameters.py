@@ -11,7 +11,7 @@ them with the step `set_parameter`, or from the start under `network: nodes: NAM
 whole numbers, in the unit that the name ends in: `q8`, `q12` and `q16` are binary fractions with as many
 bits. The value is the one after power-up.
 
-Parameters 12 to 42 of an axis board are off after power-up; that is the paper's firmware.
+Parameters 12 to 68 of an axis board are off after power-up; that is the paper's firmware.
 """
 
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 from pathlib import Path
 from typing import Final
@@ -118,8 +119,9 @@ class LineFile:
 
 def reason(error: Exception) -> str:
     """The reason that the system gives, in one line, without its number."""
-    said = getattr(error, "strerror", None) or str(error)
-    return (said.splitlines() or [type(error).__name__])[0].lower()
+    said = re.sub(r"\[Errno -?\d+\] ", "", getattr(error, "strerror", None) or str(error))
+    first = (said.splitlines() or [type(error).__name__])[0]
+    return first[:1].lower() + first[1:]
 
 
 RESERVE_BYTES = 8 << 20

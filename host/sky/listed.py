@@ -50,15 +50,15 @@ def read(path: Path) -> list[Listed]:
         raise ValueError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     notes = next((k for k, line in enumerate(lines) if not line.startswith("#")), 0)
     rows = csv.DictReader(lines[notes:], restval="")
-    if not {"name", "ra", "dec"} <= set(rows.fieldnames or ()):
-        raise ValueError(f"{path}: line {notes + 1}: the head line needs name, ra and dec")
     found = []
     try:
+        if not {"name", "ra", "dec"} <= set(rows.fieldnames or ()):
+            raise ValueError("the head line needs name, ra and dec")
         for row in rows:
             star = Star(row["name"], parse_right_ascension(row["ra"]), parse_declination(row["dec"]))
             found.append(Listed(star, _magnitude(row.get("magnitude", ""))))
     except (csv.Error, ValueError) as error:
-        line = notes + rows.line_num + isinstance(error, csv.Error)  # which ends before it is counted
+        line = notes + max(rows.line_num + isinstance(error, csv.Error), 1)  # which ends before it is counted
         raise ValueError(f"{path}: line {line}: {error}") from None
     return found
 

@@ -92,8 +92,9 @@ def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
         if not float(law.ppf(0.5)) == float(law.ppf(0.5)):
             raise ValueError("its parameters are out of range")
     except TypeError:  # of a signature nobody knows
-        shapes = getattr(stats, name).shapes or "no shape"
-        raise ScenarioError(f"{where}: {name}: takes loc, scale and {shapes}") from None
+        shapes = getattr(stats, name).shapes
+        more = f" and {shapes}" if shapes else ""
+        raise ScenarioError(f"{where}: {name}: takes loc, scale{more}") from None
     except ValueError as error:
         raise ScenarioError(f"{where}: {name}: {' '.join(str(error).split())}") from None
     return lambda share: float(law.ppf(share))

@@ -104,7 +104,7 @@ def load(file: Path) -> Plan:
     scenario = file.parent / data["scenario"]
     base = read(scenario)
     load_scenario(base)
-    plain = json.loads(json.dumps({**base.data, "_folder": str(scenario.parent.resolve())}, default=str))
+    plain = json.loads(json.dumps({**base.data, "_folder": str(scenario.parent.resolve())}))
     found = tuple(
         inputs.read(given, document.where(("inputs", index)), plain)
         for index, given in enumerate(data["inputs"])

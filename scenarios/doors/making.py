@@ -62,7 +62,7 @@ def check(options: DoorOptions) -> None:
         if given is not None and not options.asked.get("alpaca"):
             raise OptionError(f"{option} needs --alpaca, which has the cameras")
     if options.logs is not None and not any(asked(ON_HOST, options)):
-        raise OptionError(f"--logs are the host's: it needs {named(ON_HOST, 'or')}")
+        raise OptionError(f"--logs is the host's: it needs {named(ON_HOST, 'or')}")
     if isinstance(options, ServeOptions) and options.clock == "steps" and not options.asked.get("control"):
         raise OptionError("--clock steps needs --control: nobody else could step")
 

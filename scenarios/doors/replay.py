@@ -106,8 +106,8 @@ def _facts(folder: Path) -> dict[str, Any]:
             all(isinstance(facts[key], kind) for key, kind in wanted.items())
             and all(isinstance(facts.get(key) or none, type(none)) for key, none in other.items())
             and all(isinstance(each, str) for each in facts["kinds"])
-            and 0 <= facts.get("end_ns", 0) <= _LAST_NS
-            and all({"t_ns", "entries"} <= set(each) for each in facts.get("snapshots", {}).values())
+            and 0 <= (facts.get("end_ns") or 0) <= _LAST_NS
+            and all({"t_ns", "entries"} <= set(each) for each in (facts.get("snapshots") or {}).values())
         ):
             raise ValueError("fields are missing, or of another type")
     except (OSError, ValueError, KeyError, TypeError) as error:

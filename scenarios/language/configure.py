@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from boards.axis.observer import ANGLE_SHIFT, EFFORT_SHIFT
+import numpy as np
+
+from boards.axis.observer import ANGLE_SHIFT, EFFORT_SHIFT, Observer
 from bus.protocol import HARMONICS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
@@ -137,6 +139,9 @@ BLEND_SHIFT = 11
 """10.2 s: four encoder lines when tracking. A roller ratio that is wrong by 1e-4 then costs 0.015 arcsec."""
 
 
+NO_OBSERVER = "firmware observer: there is none for this plant's drive; take fine, or a softer or damped gear"
+
+
 def parameters_of(name: str, model: PlantModel, axis: str = "ra") -> Mapping[int, int]:
     """Return the parameters of a firmware on an axis of a plant: its bias follows from the power stage.
 
@@ -156,13 +161,19 @@ def parameters_of(name: str, model: PlantModel, axis: str = "ra") -> Mapping[int
 
 
 def observer(model: PlantModel, part: AxisModel) -> dict[int, int]:
-    """Coefficients of a drive's observer, and its switch behind them."""
-    found, through = sections(model, part)
+    """Coefficients of a drive's observer, and its switch behind them; ScenarioError where it has none."""
+    try:
+        found, through = sections(model, part)
+    except np.linalg.LinAlgError:
+        raise ScenarioError(NO_OBSERVER) from None
     effort, angle = 1 << EFFORT_SHIFT, 1 << ANGLE_SHIFT
     scales = (effort, effort, effort, effort, angle, angle)
     values = [round(value * scale) for section in found for value, scale in zip(section, scales, strict=True)]
-    numbers = enumerate([*values, round(through * angle)], AxisParameter.OBSERVER_FIRST)
-    return dict(numbers) | {AxisParameter.OBSERVER: 1}
+    board = Observer()
+    board.coefficients = [*values, round(through * angle)]
+    if max(map(abs, board.coefficients)) >= 1 << 31 or not board.sound():
+        raise ScenarioError(NO_OBSERVER)
+    return dict(enumerate(board.coefficients, AxisParameter.OBSERVER_FIRST)) | {AxisParameter.OBSERVER: 1}
 
 
 _COMMAND_LINE = "command line"

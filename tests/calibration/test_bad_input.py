@@ -45,7 +45,7 @@ VOLTS = column(LOG, 2, lambda v: f"{int(v) / 3000 * 24:.4f}")
         (LOG.replace("axis-log 1", "axis-log 2").encode(), ":1: 'format' is 'axis-log 2'"),
         (
             LOG.replace("counter_torque: 0.1\n", "counter_torque: 1.01\n").encode(),
-            "must be positive, one at most",
+            "must be 0 to 1",
         ),
         (LOG.replace(",", ";").encode(), ":11: the columns are parted by semicolons"),
         (column(LOG, 0, lambda v: v.replace(".", ",")).encode(), ":12: 10 fields.*decimal commas"),

@@ -115,7 +115,7 @@ def test_options_of_cameras_need_their_door(option: str, tmp_path: Path) -> None
 
 
 def test_logs_of_the_host_need_a_host(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"--logs are the host's: it needs --lx200, --alpaca or --console"):
+    with pytest.raises(OptionError, match=r"--logs is the host's: it needs --lx200, --alpaca or --console"):
         check(DoorOptions(asked={"control": ("0",)}, logs=tmp_path))
     check(DoorOptions(asked={"lx200": ("0",)}, logs=tmp_path))
 

@@ -21,4 +21,4 @@ def test_the_systems_reason_stands_without_its_number() -> None:
     for fails in (lambda: tell("status", "nowhere.invalid:1"), lambda: listen("nowhere.invalid", 1)):
         with pytest.raises((ControlError, OSError), match=r"nowhere\.invalid:1.*: ") as caught:
             fails()
-        assert "[Errno" not in str(caught.value)
+        assert "errno" not in str(caught.value).lower()

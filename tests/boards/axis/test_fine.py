@@ -1,4 +1,4 @@
-"""B1: what parameters 12 to 42 change in the axis board, on chips and a rigid axis."""
+"""B1: what parameters 12 to 68 change in the axis board, on chips and a rigid axis."""
 
 import math
 

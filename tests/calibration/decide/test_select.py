@@ -105,9 +105,9 @@ def test_what_the_held_out_run_does_not_have_is_refused_when_it_makes_it_worse()
 
 
 def test_a_log_too_short_says_what_is_close_and_how_long_a_log_would_tell() -> None:
-    """Few blocks to fit and a drag that takes three fifths of the square."""
+    """Six blocks to fit and a drag that takes three fifths of the square."""
     rng = np.random.default_rng(12)
-    rows = round(7 / PERIOD_S)
+    rows = round(8 / PERIOD_S)
     x = rng.standard_normal((rows, 1))
     p = problem(1.2 * x[:, 0] + rng.standard_normal(rows))
     coloured = select(p, [term("drag", x)], rng)

@@ -46,6 +46,13 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], str]] = [
         "columns.time.unit: 'ms', must be s; give the file's unit as a factor",
     ),
     (ONE, {"columns.effort.format": "iso"}, "columns.effort.format: is for time; leave it out"),
+    (ONE, {"columns.effort.clock": "c"}, "columns.effort.clock: is for time; leave it out"),
+    (ONE, {"columns.time.clock": "c"}, "columns.time: clock needs format, such as iso"),
+    (
+        ONE,
+        {"columns.joint": {"column": "q", "unit": "deg"}, "estimate": ["gravity"]},
+        "columns.joint.unit: must be the position's",
+    ),
     (ONE, {"columns.effort.column": GONE}, "columns.effort: 'column' is missing; without one give files"),
     (
         ONE,
