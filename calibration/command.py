@@ -22,7 +22,7 @@ from calibration.report.jsonreport import report_of
 from calibration.report.pictures import Picture, pictures
 from calibration.report.rigview import show_rig
 from calibration.report.terminal import show
-from plant.reading import nearest
+from plant.yamltext import nearest
 
 __all__ = ["calibrate", "draft", "show_rig"]
 

@@ -14,7 +14,7 @@ from plant.effects.targets import DOMAINS, TARGETS
 from plant.effects.unknown import KINDS, STOPS
 from plant.parts import AxisModel, EffectModel, Function, Number, Stops
 from plant.units import UNITS, factor
-from plant.yamltext import nearest as nearest
+from plant.yamltext import nearest
 
 MAX_KNOTS = 32
 MAX_EFFECTS = 100

@@ -145,12 +145,14 @@ def _summary(
 
 
 def _speed(columns: Columns, wall_s: float, made: int) -> dict[str, Any]:
-    simulated = numbers(columns, "simulated_s") if "simulated_s" in columns else np.zeros(1)
+    def known(name: str) -> Any:  # a table that is resumed may be of an older program
+        return numbers(columns, name) if name in columns else np.zeros(1)
+
     return {
         "wall_s": wall_s,
         "made": made,
-        "cpu_s": float(np.nanmedian(numbers(columns, "cpu_s"))),
-        "simulated_h": float(np.nansum(simulated)) / 3600.0,
-        "machines": sorted({str(each) for each in columns["machine"] if each}),
-        "compiled": sum(map(bool, columns["compiled"])),
+        "cpu_s": float(np.nanmedian(known("cpu_s"))),
+        "simulated_h": float(np.nansum(known("simulated_s"))) / 3600.0,
+        "machines": sorted({str(each) for each in columns.get("machine", []) if each}),
+        "compiled": sum(map(bool, columns.get("compiled", []))),
     }
