@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, closing, contextmanager, suppress
 from datetime import datetime
 from heapq import merge
 from math import isfinite
@@ -57,15 +57,16 @@ class Entry(NamedTuple):
     values: dict[str, Any]
 
 
-def sources(folder: Path, summary: dict[str, Any]) -> list[Iterator[Entry]]:
-    """All that is there; each one sorted by time. Raises ValueError, here or on the way, with the file that
-    is broken."""
+def sources(folder: Path, summary: dict[str, Any], files: ExitStack) -> list[Iterator[Entry]]:
+    """All that is there; each one sorted by time. What is open of them is closed with `files`. Raises
+    ValueError, here or on the way, with the file that is broken."""
     logs = [(_frames, path) for path in (folder / "can.log", folder / "can.log.zst") if path.exists()][:1]
     logs += [(_axis_log, path) for path in sorted(folder.glob("axis-*.csv"))]
     logs += [(_parquet, path) for path in sorted(folder.glob("*.parquet"))]
     logs += [(_lines, path) for name in _LINE_LOGS if (path := folder / f"{name}.log").exists()]
     with _named(folder / SUMMARY):
-        return [*(_told(read, path) for read, path in logs), *_of_summary(summary)]
+        rows = [files.enter_context(closing(_told(read, path))) for read, path in logs]
+        return [*rows, *_of_summary(summary)]
 
 
 @contextmanager
@@ -77,7 +78,7 @@ def _named(path: Path) -> Iterator[None]:
         raise ValueError(f"{path}: is not as a run has left it ({type(error).__name__}: {error})") from None
 
 
-def _told(read: Callable[[Path], Iterator[Entry]], path: Path) -> Iterator[Entry]:
+def _told(read: Callable[[Path], Iterator[Entry]], path: Path) -> Generator[Entry, None, None]:
     with _named(path):
         yield from read(path)
 
@@ -190,11 +191,11 @@ def export(folder: Path, file: Path) -> int:
     channels: dict[str, int] = {}
     count = 0
     try:
-        with file.open("wb") as stream:
+        with file.open("wb") as stream, ExitStack() as files:
             writer = Writer(stream)
             writer.start(library="schmidt")
             writer.add_metadata("run", about)
-            for entry in merge(*sources(folder, summary), key=lambda each: each.t_ns):
+            for entry in merge(*sources(folder, summary, files), key=lambda each: each.t_ns):
                 topic = entry.source.topic
                 if topic not in channels:
                     channels[topic] = _channel(writer, entry.source)
