@@ -17,13 +17,13 @@ from typing import Final
 
 from boards.axis.pi import IncrementalPi
 from boards.core.widths import INT32_TOP, saturate
+from bus.protocol import OBSERVER_CELLS
 from bus.protocol.scales import TICKS_PER_S, rate_q16
 
 SECTIONS: Final = 4
 PER_SECTION: Final = 6
-"""trace, determinant; of the effort and of the angle the numerator's two."""
-COEFFICIENTS: Final = SECTIONS * PER_SECTION + 1
-"""The last one goes straight from the angle to the effort."""
+"""trace, determinant; of the effort and of the angle the numerator's two. Behind all of them stands one that
+goes straight from the angle to the effort."""
 EFFORT_SHIFT: Final = 28
 ANGLE_SHIFT: Final = 24
 SLOWEST_Q16: Final = rate_q16(5.0)
@@ -49,7 +49,7 @@ class Observer:
     """coefficients: of the sections one after the other. driving: the last effort was its own."""
 
     def __init__(self) -> None:
-        self.coefficients = [0] * COEFFICIENTS
+        self.coefficients = [0] * OBSERVER_CELLS
         self.on = 0
         self.start()
 

@@ -19,12 +19,12 @@ from boards.axis.config import (
     SHARE_CYCLES,
 )
 from boards.axis.motion import Motion
-from boards.axis.observer import COEFFICIENTS, Observer
+from boards.axis.observer import Observer
 from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.core import InterruptController, Parameter
 from boards.core.commands import kept
 from boards.silicon.pwm import MotorPwm
-from bus.protocol import HARMONICS, AxisParameter
+from bus.protocol import HARMONICS, OBSERVER_CELLS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
 
 _HALF: Final = 1 << 15
@@ -217,4 +217,4 @@ def observer_parameters(observer: Observer, output: FineOutput) -> list[Paramete
         )
 
     on = Parameter(AxisParameter.OBSERVER, "observer", 0, 1, lambda: observer.on, switch)
-    return [on, *map(cell, range(COEFFICIENTS))]
+    return [on, *map(cell, range(OBSERVER_CELLS))]

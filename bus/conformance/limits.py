@@ -7,7 +7,7 @@ from bus.conformance.boards import Board
 from bus.conformance.commands import Command, asked
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import HARMONICS, AxisParameter, Opcode, Reply, Result, pack_command
+from bus.protocol import HARMONICS, OBSERVER_CELLS, AxisParameter, Opcode, Reply, Result, pack_command
 from bus.protocol.nodes import kind_of
 from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 
@@ -20,8 +20,6 @@ _SUPPLY_Q8: Final = 3000 << 8
 """All of the supply, PWM steps in Q8 (paper, section 3.3)."""
 _I32: Final = 1 << 31
 
-_OBSERVER_END: Final = 69
-"""Behind the observer's last coefficient (docs/reference/protocol.md)."""
 _CELLS = ((0, _I32 - 1), (-_SUPPLY_Q8, _SUPPLY_Q8), (-_SUPPLY_Q8, _SUPPLY_Q8))
 _SOFT_LIMITS = {4: (0, _LAST_STEP), 5: (0, _LAST_STEP)}
 PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
@@ -40,7 +38,7 @@ PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
         AxisParameter.COUNTER_BIAS_Q8: (0, 300 << 8),
         AxisParameter.RATE_LOCK: (0, 1),
         AxisParameter.POSITION_BLEND: (0, 15),
-        **dict.fromkeys(range(AxisParameter.OBSERVER_FIRST, _OBSERVER_END), (1 - _I32, _I32 - 1)),
+        **{AxisParameter.OBSERVER_FIRST + at: (1 - _I32, _I32 - 1) for at in range(OBSERVER_CELLS)},
     },
     "POSITION": _SOFT_LIMITS,
 }

@@ -29,6 +29,7 @@ from bus.protocol.names import (
     HEARTBEAT_BASE,
     HEARTBEAT_KIND,
     MEASUREMENT_BASE,
+    OBSERVER_CELLS,
     REPLY_BASE,
     SUMMARY_BASE,
     SUMMARY_KIND,
@@ -57,9 +58,9 @@ from bus.protocol.position import (
 
 __all__ = [
     "AGE_UNIT_NS", "COMMAND_BASE", "FRAME_BYTES", "HARMONICS", "HEARTBEAT_BASE", "HEARTBEAT_KIND",
-    "MEASUREMENT_BASE", "REPLY_BASE", "SUMMARY_BASE", "SUMMARY_KIND", "AxisMode", "AxisParameter",
-    "CommandError", "Device", "Focus", "FocusFlag", "Health", "Heartbeat", "Motion", "MotionFlag",
-    "Opcode", "Position", "PositionFlag", "Reply", "Result", "SpeedClass", "State", "Summary", "Tach",
+    "MEASUREMENT_BASE", "OBSERVER_CELLS", "REPLY_BASE", "SUMMARY_BASE", "SUMMARY_KIND", "AxisMode",
+    "AxisParameter", "CommandError", "Device", "Focus", "FocusFlag", "Health", "Heartbeat", "Motion",
+    "MotionFlag", "Opcode", "Position", "PositionFlag", "Reply", "Result", "SpeedClass", "State", "Summary", "Tach",
     "Target", "layout_of", "opcodes", "pack_command", "pack_focus", "pack_heartbeat", "pack_motion",
     "pack_position", "pack_reply", "pack_summary", "pack_tach", "pack_target", "unpack_command",
     "unpack_focus", "unpack_heartbeat", "unpack_motion", "unpack_position", "unpack_reply",

@@ -185,8 +185,10 @@ class AxisParameter(IntEnum):
     OBSERVER = 43
     """1: a state observer in place of the PI near the tracking rate; it stays 0 with unsound coefficients."""
     OBSERVER_FIRST = 44
-    """Its coefficients up to 68, four sections of six and one more: `boards/axis/observer.py`."""
+    """Its coefficients up to 68: `boards/axis/observer.py`."""
 
 
 HARMONICS: Final = 8
 """Lines of the compensation table."""
+OBSERVER_CELLS: Final = 25
+"""Coefficients of the observer: four sections of six, and one more."""

@@ -55,7 +55,7 @@ To the gateway: up to eight COMMANDs, each sent as frame `0x080 + device type`, 
 _PACKETS = f"""
 ## RS232 packets
 
-`115200` baud, `8N1`, little endian. Every `250` ms a packet of `{SAMPLES}` samples, `10` ms apart:
+`115200` baud, `8N1`, little endian. A packet of `{SAMPLES}` samples, `10` ms apart; each leaves once taken:
 
 | bytes | what |
 |---|---|

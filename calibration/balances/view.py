@@ -5,6 +5,7 @@ without bias. Rates are plain differences of the position, smoothed afterwards l
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ class View:
         """Of the position."""
         return self.rig.columns["position"].unit
 
-    @property
+    @cached_property
     def noise(self) -> float:
         """rms of the position's noise and rounding, position units."""
         return position_noise(self.x, self.file, self.quanta.get("position"))

@@ -62,8 +62,9 @@ class Selection:
     @property
     def worth(self) -> list[float]:
         """Share of the held-out mean square that each effect takes off beside the others."""
+        now, whole = self.held.after**2, self.held.before**2
         left = [self.without(k).held.after ** 2 for k in range(len(self.chosen))]
-        return [(x - self.held.after**2) / (self.held.before**2 or 1.0) for x in left]
+        return [(x - now) / whole if whole > 0 else 0.0 for x in left]  # no rows held out: not a number
 
     def put(self, k: int, other: Contender) -> Selection:
         """The same with another effect in the place of `k`."""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import erfa
 import numpy as np
 
+from host.logs.files import reason
 from host.sky.angles import parse_declination, parse_right_ascension
 from host.sky.apparent import terrestrial
 from host.sky.catalogue import STARS, Star
@@ -47,7 +48,7 @@ def read(path: Path) -> list[Listed]:
             raise ValueError(f"{path}: is longer than {_LONGEST} bytes")
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise ValueError(f"{path}: cannot be read: {reason(error)}") from None
     notes = next((k for k, line in enumerate(lines) if not line.startswith("#")), 0)
     rows = csv.DictReader(lines[notes:], restval="")
     found = []

@@ -9,6 +9,7 @@ import stat
 from pathlib import Path
 
 from boards.silicon.hid import REPORT_BYTES
+from host.logs.files import reason
 from scenarios.doors.clients import Client, Clients
 from scenarios.doors.door import DoorError, counted
 from scenarios.doors.livenetwork import LiveNetwork
@@ -40,8 +41,7 @@ class UnixDoor:
             listener.setblocking(False)
         except (OSError, ValueError) as error:
             listener.close()
-            reason = getattr(error, "strerror", None) or str(error)
-            raise DoorError(f"--hid unix: {self._path}: {reason}") from None
+            raise DoorError(f"--hid unix: {self._path}: {reason(error)}") from None
         self._clients.listen(listener)
         self._plug = self._served.usb.plug(self.name)
 

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from host.logs.files import reason
 from plant.model import load as load_plant
 from plant.yamltext import TextError, check_regular, read_text
 from scenarios.doors.livenetwork import LiveNetwork
@@ -111,8 +112,7 @@ def _facts(folder: Path) -> dict[str, Any]:
         ):
             raise ValueError("fields are missing, or of another type")
     except (OSError, ValueError, KeyError, TypeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {reason}") from None
+        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {reason(error)}") from None
     return facts
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from boards.core.debug import DebugPort
+from host.logs.files import reason
 from scenarios.doors.door import DoorError, counted
 from scenarios.doors.livenetwork import LiveNetwork
 
@@ -128,8 +129,7 @@ class PtyDoor:
             self.close()
             if isinstance(error, DoorError):
                 raise
-            reason = getattr(error, "strerror", None) or error
-            raise DoorError(f"{self.option.rstrip(': ')}: {self._folder}: {reason}") from None
+            raise DoorError(f"{self.option.rstrip(': ')}: {self._folder}: {reason(error)}") from None
 
     def _names(self) -> Iterable[str]:
         """Boards that have a port."""
