@@ -18,3 +18,14 @@ def test_every_name_has_a_place_in_an_axis_log(name: str) -> None:
     view = replace(view, columns={**view.columns, "effort": effort, "current": effort})
     x, label = place_of(view, candidate(name, np.ones((len(view.rows), 1)), ("size", "1")))
     assert len(x) == len(view.rows) and label
+
+
+def test_a_line_is_drawn_over_the_phase_of_its_refined_frequency_and_a_mode_over_time() -> None:
+    view = scene(2).view
+    columns = np.ones((len(view.rows), 1))
+    line = candidate("command_disturbance", columns, ("size", "1"), frequency=2.3)
+    line = replace(line, fixed={"frequency": (2.5, "Hz")})
+    x, label = place_of(view, line)
+    assert label == "phase of 2.5 Hz, turns" and x == pytest.approx((2.5 * view.t[view.rows]) % 1.0)
+    mode = replace(line, name="structural_mode", fixed={**line.fixed, "damping": (0.02, "1")})
+    assert place_of(view, mode)[1] == "time, s"
