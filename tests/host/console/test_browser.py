@@ -58,7 +58,7 @@ def test_a_night_by_hand(browser: Any, served: Consoles) -> None:
     press(page, "Health check")
     page.get_by_text("healthy").first.wait_for()
     press(page, "Power on")
-    page.get_by_text("motors on").first.wait_for()
+    page.get_by_text("motors on", exact=True).first.wait_for()
     choose(page, "Name", "Capella")
     press(page, "Go")
     state(page, "Capella")  # slewing, or there already when the browser is held up
@@ -79,9 +79,9 @@ def test_a_night_by_hand(browser: Any, served: Consoles) -> None:
     press(page, "Park")
     state(page, "parked")
     press(page, "Unpark")
-    page.get_by_text("motors on").first.wait_for()
+    page.get_by_text("motors on", exact=True).first.wait_for()
     press(page, "Power off")
-    page.get_by_text("motors off").first.wait_for()
+    page.get_by_text("motors off", exact=True).first.wait_for()
     shot(page, "main-after-a-night")
     left = used.untouched(page)
     page.close()
@@ -197,7 +197,7 @@ def tracking(browser: Any, served: Consoles) -> Any:
     """The main console of a telescope that tracks; Track has the focus."""
     page = opened(browser, served, "/")
     press(page, "Power on")
-    page.get_by_text("motors on").first.wait_for()
+    page.get_by_text("motors on", exact=True).first.wait_for()
     press(page, "Track")
     state(page, "^tracking")
     return page
@@ -355,7 +355,7 @@ def test_a_recorded_run_goes_to_the_finder_and_its_report_is_shown(browser: Any,
 def test_a_browser_that_vanishes_lets_go_of_the_paddle(browser: Any, served: Consoles) -> None:
     page = opened(browser, served, "/")
     press(page, "Power on")
-    page.get_by_text("motors on").first.wait_for()
+    page.get_by_text("motors on", exact=True).first.wait_for()
     page.get_by_label("Move W →").hover()
     page.mouse.down()
     state(page, "moved by hand")

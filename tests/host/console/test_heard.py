@@ -135,7 +135,7 @@ def test_the_host_by_itself_has_the_consoles(browser: Any, program: Any) -> None
             time.sleep(0.2)
     page = opened(browser, served, "/")
     press(page, "Power on")
-    page.get_by_text("motors on").first.wait_for()
+    page.get_by_text("motors on", exact=True).first.wait_for()
     page.get_by_role("link", name="Bus").click()
     page.get_by_text("no emulated bus").wait_for()
     page.wait_for_function("/[1-9].* %\\s+of the last second/.test(document.body.innerText)")

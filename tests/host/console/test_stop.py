@@ -24,7 +24,7 @@ def stop_s(browser: Any, folder: Path, speed: float) -> tuple[float, float]:
     with Consoles(folder, 5.0) as served:
         page = opened(browser, served, "/")
         press(page, "Power on")
-        page.get_by_text("motors on").first.wait_for()
+        page.get_by_text("motors on", exact=True).first.wait_for()
         served.ask(f"speed {speed}")
         page.get_by_label("Move W →").hover()
         page.mouse.down()
