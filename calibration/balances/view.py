@@ -17,7 +17,7 @@ from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.run import Run, numbers, quantum
+from calibration.inputs.run import Run, quantum, step_of
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z
@@ -169,7 +169,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     heavy = "inertia" in (*rig.estimate, *rig.constants)
     dynamic = response.is_force and (heavy or response.channel == "acceleration")
     # as they were logged: on a grid of its own a column has none
-    quanta = {k: step for k in columns if (step := quantum(numbers(records, k))) is not None}
+    quanta = {k: step for k in columns if (step := step_of(records, k)) is not None}
     noise = position_noise(columns["position"], file, quanta.get("position"))
     sigma = _sigma(columns["position"], file, noise, period, rig, dynamic)
     if dynamic:

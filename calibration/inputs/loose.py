@@ -114,7 +114,7 @@ def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str])
     long = {"name": name, "value": str(value)}
     stamps = {str(time): (ISO, "")} if found.stamp == time else {}
     timed = Long(name, str(time), str(value), compete=len(signals))
-    columns = read_long(path, text, [*signals, time], timed, stamps)
+    columns, _ = read_long(path, text, [*signals, time], timed, stamps)
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 

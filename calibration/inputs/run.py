@@ -42,7 +42,8 @@ class Run:
     `columns` of an axis hold SI units. Motion: `t` s, `position`/`aux` rad (unwrapped), `velocity` rad/s at
     the axis, `motor_a/b` rad/s at the motor, `setpoint` rad/s. Electrical: `effort` as a signed fraction of
     the supply, `current_a/b` A, `supply` V. Also `temperature` degree C. `columns` of a table hold the rig's
-    units. `raw` keeps the columns as logged. `start_s` is where `t` is 0 on the clock that all files share,
+    units. `raw` keeps the columns as logged. `logged`: those that were put on another clock, before, in rig units
+    (their steps are the sensor's). `start_s` is where `t` is 0 on the clock that all files share,
     of any epoch; None: not known.
     """
 
@@ -52,6 +53,7 @@ class Run:
     columns: dict[str, Array]
     raw: dict[str, Array] = field(default_factory=dict)
     header: dict[str, str] = field(default_factory=dict)
+    logged: dict[str, Array] = field(default_factory=dict)
     scales: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     signals: dict[str, Signal] = field(default_factory=dict)
@@ -96,6 +98,12 @@ def numbers(records: Iterable[Run], channel: str) -> Array:
     """All numbers of a channel, one record's after the other's; none where no record has it."""
     logged = (r.columns[channel] for r in records if channel in r.columns)
     return np.concatenate([np.zeros(0), *(x[np.isfinite(x)] for x in logged)])
+
+
+def step_of(records: Iterable[Run], channel: str) -> float | None:
+    """Smallest step of a channel over all records, as it was logged."""
+    logged = (r.logged.get(channel, r.columns.get(channel, np.zeros(0))) for r in records)
+    return quantum(np.concatenate([x[np.isfinite(x)] for x in logged]))
 
 
 def signal_of(channel: str, column: str, unit: str, x: Array, wraps: int) -> Signal:

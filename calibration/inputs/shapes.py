@@ -100,10 +100,10 @@ def with_seconds(
 
 def wide(
     path: Path, names: list[str], stamps: Array, values: Array, wanted: list[str], compete: int
-) -> dict[str, Array]:
-    """Columns of a long table on the stamps of one signal, which are key ""; NaN beyond a signal's own stamps
-    and in its gaps. The one is the first of `wanted` that is logged as often as any of the first that
-    `compete`."""
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Columns of a long table on the stamps of one signal, which are key "", and each as it was logged. NaN
+    beyond a signal's own stamps and in its gaps. The one is the first of `wanted` that is logged as often as
+    any of the first that `compete`."""
     which = np.array(names)
     known = np.isfinite(stamps) & np.isfinite(values)
     rows = {name: np.flatnonzero((which == name) & known) for name in wanted}
@@ -123,4 +123,4 @@ def wide(
         inside = (base != t[after]) & (base != t[after + 1])
         found[inside & (step[after] > longest_step(step, float(np.median(step))))] = np.nan
         out[name] = found
-    return out
+    return out, {name: values[mine] for name, mine in rows.items()}

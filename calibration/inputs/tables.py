@@ -35,6 +35,7 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
         wanted.append(rig.runs["column"])
     stamp = rig.columns.get("time")
     stamps = {str(stamp.column): (stamp.format, stamp.clock)} if stamp is not None and stamp.format else {}
+    logged: dict[str, Array] = {}
     if reader := READERS.get(path.suffix.lower()):
         found = reader(path, [str(c) for c in wanted])
     else:
@@ -42,15 +43,21 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
         if rig.long and stamp is not None:
             compete = 2 if any(r.is_force for r in rig.responses) else 1  # a force and its position
             long = Long(rig.long["name"], str(stamp.column), rig.long["value"], compete)
-            found = [read_long(path, text, wanted, long, stamps, (rig.names, rig.delimiter))]
+            one, logged = read_long(path, text, wanted, long, stamps, (rig.names, rig.delimiter))
+            found = [one]
         else:
             found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
-    return [_run(path, rig, raw, name) for raw, name in zip(found, names, strict=True)]
+    return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
 
 
-def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
+def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[str, Array]) -> Run:
     columns: dict[str, Array] = {}
+    counted = {
+        channel: logged[label] * of_file(path, where, label) * where.scale
+        for channel, where in rig.columns.items()
+        if (label := str(where.column)) in logged
+    }
     wraps: dict[str, int] = {}
     rows = len(next(iter(raw.values())))
     for channel, where in sorted(rig.columns.items(), key=lambda item: item[0] != "time"):  # the time first
@@ -79,10 +86,11 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str) -> Run:
     columns["t"] = t - t[0]
     for channel, where in rig.columns.items():  # a column that is late by delay_s tells of earlier times
         if where.delay_s and channel != "time":
+            counted.setdefault(channel, columns[channel])
             columns[channel] = np.interp(columns["t"] + where.delay_s, columns["t"], columns[channel])
     if "column" in rig.runs:
         columns["run"] = raw[str(rig.runs["column"])]
-    run = Run(name, path, name, columns, raw, {"rig": rig.name}, start_s=_start(path, rig, float(t[0])))
+    run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=_start(path, rig, float(t[0])))
     run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0
     run.signals = {
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))

@@ -185,8 +185,8 @@ def read_long(
     long: Long,
     stamps: Mapping[str, tuple[str, str | int]],
     shape: tuple[tuple[str, ...], str | None] = ((), None),
-) -> dict[str, Array]:
-    """The wanted signals of a long table on the stamps of one of them, as `wide` has it.
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The wanted signals of a long table on the stamps of one of them and as logged, as `wide` has it.
 
     shape: names of the columns of a file without a header row, delimiter.
     """
@@ -195,8 +195,8 @@ def read_long(
     place = _place(path, long.name, fields, True, at + 1)
     names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[long.time])]
     signals = [str(c) for c in wanted if str(c) != long.time]
-    found = wide(path, names, got[long.time], got[long.value], signals, long.compete)
-    return {long.time: found.pop(""), **found}
+    found, logged = wide(path, names, got[long.time], got[long.value], signals, long.compete)
+    return {long.time: found.pop(""), **found}, logged
 
 
 def _place(path: Path, column: str | int, fields: list[str], header: bool, line: int) -> int:

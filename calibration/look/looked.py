@@ -108,6 +108,11 @@ class Balance:
         return float(self.selection.held.after / floor) if self.held_out and floor else 0.0
 
     @property
+    def fitted_times(self) -> float:
+        """Floors that are left on the rows that were fitted; 0 where the floor is not known."""
+        return float(np.sqrt(self.selection.fitted_square)) / self.floor if self.error["floor"] else 0.0
+
+    @property
     def still(self) -> str:
         """What is missing, as the report says it; empty where nothing is."""
         if (m := self.missing) is None:
@@ -190,10 +195,12 @@ def unnamed_where_missing(
     """What stays far above the floor without any name is `unknown`, else a need.
 
     It is so over its domain; of a force over time, where it is much and hangs on nothing that the log holds.
+    What is much on the fitted rows, too, is no luck of a log that is too short for something.
     """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
-    if not effects and not needs:
-        over = [(b, m.domain or ("time" if b.key == "T" and b.times > EFFECT else "")) for b, m in large]
+    if not effects:
+        sure = large if not needs else [(b, m) for b, m in large if b.fitted_times > EFFECT]
+        over = [(b, m.domain or ("time" if b.key == "T" and b.times > EFFECT else "")) for b, m in sure]
         effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))

@@ -108,10 +108,11 @@ def _select(
 
 def _takes_more(one: Selection, other: Selection) -> bool:
     """Whether a shape alone takes clearly more off the held-out error than all names, which it would replace
-    where they leave more than the floor."""
+    where they leave more than the floor, or it shows below a floor that coarse steps make."""
     more = AS_MUCH * one.held.taken > other.held.taken
     fraction = other.held.after > STILL_MISSING * one.held.after
-    return bool(one.chosen) and (more or fraction) and other.held.after > other.problem.floor
+    shows = other.held.after > other.problem.floor or rules.clear(one)
+    return bool(one.chosen) and (more or fraction) and shows
 
 
 def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:

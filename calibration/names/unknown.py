@@ -1,5 +1,6 @@
 """Smooth functions of every domain: what an effect outside the catalogue enters the plant as."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from calibration.balances.candidate import waves
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
 from calibration.finding import UNKNOWN, Finding, of_columns
+from calibration.names.command_disturbance import lines
 from calibration.names.gravity_imbalance import gravity
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene
@@ -88,11 +90,11 @@ def smooth_functions(s: Scene) -> list[Candidate]:
 
 def columns(s: Scene) -> list[Candidate]:
     """Columns beside the names because they would follow it: a scale that moves with time, a spring, lost
-    motion. Of a pair: any function of speed and travel, and lines at fixed Hz. Of volts: brushes."""
+    motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed Hz. Of volts: brushes."""
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
-        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s)]
+        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s), *_swings(s)]
     return [*_torques(s), *_fixed_lines(s)] if s.force else []
 
 
@@ -138,6 +140,14 @@ def _torques(s: Scene) -> list[Candidate]:
             for r, one in zip(LOOPS, held.T, strict=True)
         ),
     ]
+
+
+def _swings(s: Scene) -> list[Candidate]:
+    """Lines at a fixed frequency between two sensors: a bracket that swings."""
+    if s.force or not s.both:
+        return []
+    found = lines(s, s.declared_part)
+    return [replace(c, name=UNKNOWN, domain="time", twins=()) for c in found if c.width == 2 * len(np.unique(s.problem.session))]
 
 
 def _fixed_lines(s: Scene) -> list[Candidate]:
