@@ -6,6 +6,7 @@ from scipy.stats import norm
 from calibration.arrays import Array, Mask
 from calibration.balances.balance import response_of
 from calibration.balances.filters import Filter, smooth
+from calibration.balances.friction import sliding_of
 from calibration.balances.motion import Motion
 from calibration.balances.noise import ROUNDING, column_noise, position_noise, rough
 from calibration.balances.problem import Problem
@@ -114,7 +115,7 @@ def _of_force(view: View, p: Problem) -> tuple[float | None, Array | None]:
         return known, None
     # the chance that noise of two places, here and where it turned, hides the way; friction is then twice off
     wrong = norm.cdf(-np.abs(view.since) / (np.sqrt(2.0) * noise))
-    column = 2 * coulomb * view.at(np.sqrt(wrong))
+    column = 2 * coulomb * view.at(np.sqrt(wrong) * sliding_of(view).steady)
     # of all rows that are judged: what is refitted on held-out rows is not told by the others
     beta = np.linalg.lstsq(p.base[p.valid], column[p.valid], rcond=None)[0]
     return known, np.asarray(column - p.base @ beta)

@@ -14,6 +14,7 @@ from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
+from calibration.decide.heldout import HeldOut
 from calibration.decide.parameters import parameters_of
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
@@ -262,13 +263,28 @@ def clear(s: Selection) -> bool:
     return s.held.share > limits.CLEAR_SHARE and s.held.z > limits.CLEAR_Z
 
 
+def of_the_steps(s: Selection) -> tuple[int, str] | None:
+    """Names that hardly take anything off the rows which a sensor's coarse steps do not spoil."""
+    held = _off_the_steps(s)
+    if held is None or not held.share <= limits.NOISE_SHARE:
+        return None
+    return len(s.chosen) - 1, "only rows that the position's steps spoil have it"
+
+
+def _off_the_steps(s: Selection) -> HeldOut | None:
+    """Held-out errors on rows that coarse steps do not spoil; None where no steps do, or too few are left."""
+    if s.problem.resolved is None:
+        return None
+    clean = replace(s.problem, valid=s.problem.resolved[0])
+    return s.held_on(clean) if clean.test.sum() >= limits.FEWEST_TOLD else None
+
+
 def _clear_of_steps(s: Selection) -> bool:
     """Whether names explain the rows that coarse steps do not spoil: reversals alone raised the floor."""
-    if s.problem.resolved is None:
+    held = _off_the_steps(s)
+    if held is None or s.problem.resolved is None:
         return False
-    rows, floor = s.problem.resolved
-    held = s.held_on(replace(s.problem, valid=rows))
-    return held.before > floor and held.z > SURE_Z and held.share > limits.CLEAR_SHARE
+    return held.before > s.problem.resolved[1] and held.z > SURE_Z and held.share > limits.CLEAR_SHARE
 
 
 def _each_left_out(s: Selection) -> list[Selection]:

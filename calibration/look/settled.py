@@ -44,8 +44,10 @@ def _quick_waves_show(view: View, p: Problem) -> bool:
     turns = view.x[view.rows]
     shared = view.rig.runs.get("origin") == "shared"
     session = np.zeros_like(p.session) if shared else p.session
-    beside = np.hstack([p.base, *[sine_columns(turns * k, session) for k in quick]])
-    return cross_validate(p, p.base, beside, p.fit().whitener).sure
+    second = view.second(view.x)  # what the wider filter takes off the acceleration is no wave
+    known = np.column_stack([p.base, view.at(second - view.smoothed(second))])
+    beside = np.hstack([known, *[sine_columns(turns * k, session) for k in quick]])
+    return cross_validate(p, known, beside, p.fit(known).whitener).sure
 
 
 def sharpest(view: View, made: Make, known: Timed | None = None) -> float:

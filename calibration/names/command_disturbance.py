@@ -21,7 +21,7 @@ PASSED = "bearing_pass"  # at an order of no stage
 EFFORTS = ("effort", "current", "force", "voltage")  # responses behind which something may be added
 # cycles within the log before a frequency is a frequency. ASSUMPTION
 TURNS = 6.0
-# likewise within a file: fewer are a walk. ASSUMPTION
+# likewise within the longest file: fewer are a walk. ASSUMPTION
 IN_A_FILE = 3.0
 # harmonics of a square wave. definition
 ODD = (1, 3, 5, 7, 9)
@@ -60,7 +60,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     files = s.problem.session
     t = v.t[v.rows]
     lengths = [float(t[files == k].max()) for k in np.unique(files)]
-    length, train = min(lengths), s.problem.train
+    length, train = max(lengths), s.problem.train
     fitted = max((float(np.ptp(t[train & (files == k)])) for k in np.unique(files[train])), default=0.0)
     if fitted <= 0:
         return []
