@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
 from calibration.balances.candidate import Candidate
@@ -96,7 +97,7 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
         over = float(np.average(each, weights=weight)) if sum(weight) > 0 else 0.0
         return max(domain_share(z, x, p.once.train & rows, test), over)
 
-    shapes = {"": e, ", against the motion": against, ", in size": _size(e, rows)}
+    shapes = {"": e, ", against the motion": against, ", in size": _size(e, rows, p.session)}
     v: View = scene.view
     places = [Place(name.replace("_", " "), name, x) for name, x in domains(scene)]
     turns = [(g.name, g.period) for g in v.rig.stages if g.period]
@@ -116,16 +117,20 @@ def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[s
     mine = np.arange(len(e)) // (len(e) // stacked)
     worst = max(range(stacked), key=lambda k: float(np.sum(e[p.test & (mine == k)] ** 2)))
     train, test = p.train & (mine == worst), p.test & (mine == worst)
-    shapes = {"": e, ", in size": _size(e, train)}
+    shapes = {"": e, ", in size": _size(e, train, p.session)}
     most, place, how = _most(shapes, places, lambda z, x: domain_share(z, x, train, test))
     if most < limits.SHOWN:
         return None, 0.0, "in none of " + ", ".join(x.words for x in places)
     return place.domain, most, f"over {place.words}{how}"
 
 
-def _size(e: Array, rows: Mask) -> Array:
-    """Less its mean over `rows`."""
-    return np.abs(e) - float(np.mean(np.abs(e)[rows])) if rows.any() else e
+def _size(e: Array, rows: Mask, file: NDArray[np.int64]) -> Array:
+    """Less its mean over each file's `rows`: a file that is louder says nothing of its one speed."""
+    size = np.abs(e)
+    for k in np.unique(file):
+        mine = file == k
+        size[mine] -= float(np.mean(size[mine & rows])) if (mine & rows).any() else 0.0
+    return size
 
 
 def _most(

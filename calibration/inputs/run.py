@@ -53,13 +53,13 @@ class Run:
     columns: dict[str, Array]
     raw: dict[str, Array] = field(default_factory=dict)
     header: dict[str, str] = field(default_factory=dict)
-    logged: dict[str, Array] = field(default_factory=dict)
     scales: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     signals: dict[str, Signal] = field(default_factory=dict)
     period_s: float = 0.0
     start_s: float | None = None
     repairs: list[Repair] = field(default_factory=list)
+    logged: dict[str, Array] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:

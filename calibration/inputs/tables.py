@@ -74,8 +74,8 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         if where.sign_bit is not None:
             values = signed(path, values, where.sign_bit, label)
         if where.wrap:
-            logged, values = values, unwrap(values, where.wrap)
-            wraps[channel] = count_wraps(logged, values, where.wrap)
+            counted_up = unwrap(values, where.wrap)
+            wraps[channel], values = count_wraps(values, counted_up, where.wrap), counted_up
         values = values * of_file(path, where, label) * where.scale + where.offset
         if where.steps or where.integrated:
             values = over_time(where, columns.get("t", _even(rig, rows)), values)

@@ -34,7 +34,7 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
 
     Held-out rows lie between fitted ones: a jump is not seen again. when: the time of a row, told.
     """
-    p, places = s.problem, jumps_of(s)
+    p, places = s.problem, jumps_of(s, CLEAR)
     if not places:
         return s, []
     steps, sizes = np.column_stack(_steps_at(p, places)), [("size", p.unit)] * len(places)
@@ -58,16 +58,16 @@ def _steps_at(p: Problem, places: list[int]) -> list[Array]:
     return [((rows >= at) & (p.run == p.run[at])).astype(float) for at in places]
 
 
-def jumps_of(s: Selection) -> list[int]:
-    """Rows where what is left jumps by far more than elsewhere, found one by one; none, where there are more
-    than MOST."""
+def jumps_of(s: Selection, least: float) -> list[int]:
+    """Rows where what is left jumps by `least` robust standard errors or more, found one by one; none, where
+    there are more than MOST."""
     p, places = s.problem, list[int]()
     while len(places) <= MOST:
         x = np.column_stack([s.columns, *_steps_at(p, places)])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
-        if clear < CLEAR:
+        if clear < least:
             return sorted(places)
         places.append(at)
     return []

@@ -110,7 +110,8 @@ class Balance:
     @property
     def fitted_times(self) -> float:
         """Floors that are left on the rows that were fitted; 0 where the floor is not known."""
-        return float(np.sqrt(self.selection.fitted_square)) / self.floor if self.error["floor"] else 0.0
+        floor = self.error["floor"]
+        return float(np.sqrt(self.selection.fitted_square) / floor) if floor else 0.0
 
     @property
     def still(self) -> str:

@@ -30,6 +30,8 @@ from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
 from calibration.statistics.thresholds import SURE_Z
 
+# robust standard errors of a slip that is tried: steps of an offset that walks have 4.9 (tests/calibration)
+CLEAR = 5.0
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
 # fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
@@ -44,7 +46,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     s, scene, bounds = found
     # where a file begins, columns that look back are no measurement
     begins = maximum_filter1d(np.diff(s.problem.session, prepend=-1) != 0, 2 * SIDES[-1] + 1)
-    places, turns = [at for at in jumps_of(s) if not begins[at]], _turns(view, s.problem)
+    places, turns = [at for at in jumps_of(s, CLEAR) if not begins[at]], _turns(view, s.problem)
     turning = {at for at in places if np.any(np.abs(turns - at) <= SIDES[0])}
     if len(turning) > PLAYS * len(turns):
         places = [at for at in places if at not in turning]

@@ -21,10 +21,11 @@ class Gains:
 
 
 def identify(frame: Frame, rows: Mask) -> Gains | None:
-    """Gains of U(t) - U(t - L) = Kp (e(t) - e(t - L)) + Ki S.
+    """Gains of U(t) - U(t - L) = Kp (e(t) - e(t - L)) + Ki (S - r X).
 
     S is the sum of e over both ticks of every row between. This sum follows from the absolute encoder, so
-    no difference of quantised counts is needed. None where `rows` hold too little closed loop in motion.
+    no difference of quantised counts is needed. X is the way in counts, r what the roller that the loop
+    counts has of it too much. None where `rows` hold too little closed loop in motion.
     """
     setpoint, velocity = frame.get("setpoint"), frame.get("velocity")
     if setpoint is None or velocity is None:
@@ -43,7 +44,7 @@ def identify(frame: Frame, rows: Mask) -> Gains | None:
         return np.asarray(x[lag:] - x[:-lag])
 
     y = over(effort)
-    x = np.column_stack([over(error), over(wanted - position) / count])
+    x = np.column_stack([over(error), over(wanted - position) / count, over(position) / count])
     good = np.isfinite(y) & np.isfinite(x).all(axis=1) & (over(busy) == 0)
     good &= (frame.run[lag:] == frame.run[:-lag]) & rows[lag:] & rows[:-lag]
     good &= (np.abs(over(np.nan_to_num(setpoint))) < 0.5 * count / window) & (effort[lag:] != 0)
@@ -56,5 +57,5 @@ def identify(frame: Frame, rows: Mask) -> Gains | None:
         if inside.sum() < LEAST_LOOP_ROWS:
             return None
         beta = solve(x[inside], y[inside])
-    found = Gains(*map(float, beta))
+    found = Gains(*map(float, beta[:2]))
     return found if 0.0 < found.kp < LARGEST_GAIN and 0.0 < found.ki < LARGEST_GAIN else None

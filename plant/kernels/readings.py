@@ -31,7 +31,7 @@ def read(w: Floats) -> None:
     w[o + at.OUT_INCREMENTAL + 1] = rate * NANO * w[at.INCREMENTAL_SCALE]
     w[o + at.OUT_ABSOLUTE] = absolute * w[at.ABSOLUTE_SCALE]
     w[o + at.OUT_ABSOLUTE + 1] = rate * NANO * w[at.ABSOLUTE_SCALE]
-    w[o + at.OUT_AUXILIARY] = (auxiliary - w[at.AUXILIARY_ZERO]) * w[at.AUXILIARY_SCALE]
+    w[o + at.OUT_AUXILIARY] = auxiliary * w[at.AUXILIARY_SCALE]
     w[o + at.OUT_AUXILIARY + 1] = rate * NANO * w[at.AUXILIARY_SCALE]
     for m in range(2):
         motor = at.MOTORS + m * at.MOTOR_SIZE

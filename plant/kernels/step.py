@@ -17,6 +17,7 @@ from plant.kernels.stage import rail
 TRANSMISSION = at.SUMS + int(Hook.TRANSMISSION)
 AXIS_TORQUE = at.SUMS + int(Hook.AXIS_TORQUE)
 SUPPLY = at.SUMS + int(Hook.SUPPLY)
+INCREMENTAL = at.SUMS + int(Hook.INCREMENTAL)
 
 
 @inner
@@ -49,6 +50,9 @@ def axis_step(w: Floats, t: float, h: float) -> None:
     effects = w[at.ROWS_ALL] > 0.0
     if effects:
         evaluate(w, t + 0.5 * h, h)
+        if w[at.AWAKE] == 0.0:  # a counter counts from where it wakes up, whatever its error is there
+            w[at.INCREMENTAL_ZERO] += w[INCREMENTAL]
+            w[at.AWAKE] = 1.0
         friction = at.FRICTION_NOW
         voltage += w[SUPPLY]
     drive = gears(w, middle, w[TRANSMISSION])

@@ -259,6 +259,21 @@ def test_gravity_imbalance_wants_more_current_up_than_down() -> None:
     assert speeds[1] > 100 * ARCSEC  # and, in the other direction, held back
 
 
+def test_a_counter_does_not_jump_where_it_wakes_up_away_from_zero() -> None:
+    """A scale of 500 ppm makes 2 arcsec of a degree, never of the angle that the axis starts at."""
+    ratio = EffectModel("roller_ratio", parameters={"error": Number(500, "ppm", "t")})
+    plain, other = (Plant(m, 1, {"ra": 2.0**27}) for m in (bare(), with_effect(ratio)))
+    turned = []
+    for plant in (plain, other):
+        assert plant.ra.incremental(0) == 0
+        plant.advance(SECOND // 100)
+        assert plant.ra.incremental(SECOND // 100) == 0
+        plant.ra.drive(SECOND // 100, 0.6, 0.06)
+        plant.advance(5 * SECOND)
+        turned.append(plant.ra.incremental(5 * SECOND))
+    assert turned[1] / turned[0] == pytest.approx(1 + 500e-6, abs=2 / turned[0])
+
+
 def test_diode_braking_slows_the_slew() -> None:
     plain, braked = (Plant(m, 1) for m in (bare(), with_effect(instance("diode_braking"))))
     rates = []
