@@ -52,6 +52,7 @@ class Problem:
     base_phases: tuple[slice, ...] = ()  # columns of `base` whose phase is every run's own
     turned: Mask | None = None
     slow: bool = False  # declared terms are nuisances, fitted on all rows
+    untold: float = 0.0  # of the rows held out, that are not judged as no fitted row is like them
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property
@@ -91,7 +92,9 @@ class Problem:
 
     def told(self) -> Problem:
         """With held-out rows of which the fitted ones tell the declared terms: no others are judged."""
-        return replace(self, valid=self.valid & (~self.held | self._told))
+        here = self._told
+        untold = 1.0 - float(here.sum()) / max(int(self.test.sum()), 1)
+        return replace(self, valid=self.valid & (~self.held | here), untold=untold)
 
     @property
     def _told(self) -> Mask:

@@ -12,6 +12,7 @@ from calibration.finding import UNKNOWN
 from calibration.statistics.tails import wald_log10
 
 SHORT = "the log is too short for it"
+FEW = "too few rows to test it on"
 
 
 def scores(others: Selection, contender: Contender) -> tuple[HeldOut, HeldOut]:
@@ -34,7 +35,7 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
     if contender.bayes <= 0:
         return "gains less than its parameters cost"
     if not np.isfinite(inside.after):
-        return "too few rows to test it on"
+        return FEW
     named = contender.candidate.name != UNKNOWN
     least = margin if named else max(limits.HANDICAP, margin)
     # a steady effect is in the noise's filter, which is made of what it leaves
@@ -51,6 +52,8 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
     c = contender.candidate
     free = c.kind == "line" and c.stage is None  # the best of a spectrum
     least = c.least or needed(max(tried, limits.SPECTRUM) if free else tried)
+    if named and held.sure and held.share > limits.CLEAR_SHARE:
+        least += limits.BY_HELD_OUT_ROWS
     if contender.evidence >= least:
         return ""
     times = next((k for k in range(2, limits.MOST_TIMES + 1) if contender.after(k) >= least), 0)

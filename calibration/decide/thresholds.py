@@ -20,6 +20,9 @@ HANDICAP = 0.12
 # -log10 p of the best of all candidates: by luck in one of 1e4 logs (arithmetic). Of 1e3 candidates, each
 # needs 7; of two, as a mount with its worm declared has, 4.3
 LEAST_EVIDENCE = 4.0
+# log10 of the chance that rows which nothing was fitted to gain by luck, at LUCK_Z: arithmetic. The chance of
+# both by luck is the product
+BY_HELD_OUT_ROWS = -1.64
 # lines among which a line of no stage is the best: those that a spectrum's peaks stand out of. ASSUMPTION
 SPECTRUM = 1000
 # times its length, that a log is said to be too short by at most. ASSUMPTION

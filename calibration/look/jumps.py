@@ -13,7 +13,7 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding
-from calibration.look.worm import FREE_GAIN
+from calibration.look.worm import PART_GAIN
 from calibration.names.candidates import candidate
 from calibration.statistics.regression import solve
 
@@ -44,7 +44,7 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
     again = s.keep([*s.chosen, one])
     last = s.held.after if s.chosen else again.held.before
     share = 1 - (again.held.after / last) ** 2
-    if not share > FREE_GAIN:
+    if not share > PART_GAIN:
         return s, []
     k = len(s.chosen)
     again = s.keep([*s.chosen, replace(one, held=replace(again.held, share=share))])

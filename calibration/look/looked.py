@@ -12,7 +12,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.slowoffset import SLOW
-from calibration.decide.accept import SHORT, least_share
+from calibration.decide.accept import FEW, SHORT, least_share
 from calibration.decide.parameters import interval
 from calibration.decide.residual import Left, Place, lives_in, part_left
 from calibration.decide.selection import Selection
@@ -27,6 +27,8 @@ from calibration.look.axis_result import AxisResult
 EFFECT = 5.0
 # of the mean square: a log in which only more could be named has shown nothing. ASSUMPTION, half by that word
 WEAK = 0.5
+# of the rows held out, that are not judged, before the others say "nothing". ASSUMPTION: most of them
+UNTOLD = 0.5
 # of what is left, over one domain: fewer floors are an effect, too. The same sound logs have 0.29 at most, a
 # drag with the square of the speed 0.49 (development seed 1061)
 MOST = 0.4
@@ -131,6 +133,8 @@ class Balance:
         why_not = [] if s.chosen or at_the_floor else s.refused
         refused = [r for r in why_not if r.why.startswith(SHORT)]
         said = [*([few] if power > WEAK else []), *(f"{r.what}: {r.why}" for r in refused)]
+        if not s.chosen and p.untold > UNTOLD:
+            said.append(f"{100 * p.untold:.0f} % of the rows held out go where no fitted row did")
         return [f"channel {self.key}: {x}" for x in said]
 
 
@@ -200,7 +204,8 @@ def unnamed_where_missing(
     """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects:
-        sure = large if not needs else [(b, m) for b, m in large if b.fitted_times > EFFECT]
+        close = any(r.why.startswith((SHORT, FEW)) for b in balances for r in b.selection.refused)
+        sure = [(b, m) for b, m in large if not needs or (b.fitted_times > EFFECT and not close)]
         over = [(b, m.domain or ("time" if b.key == "T" and b.times > EFFECT else "")) for b, m in sure]
         effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]

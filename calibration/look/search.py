@@ -107,8 +107,8 @@ def _select(
 
 
 def _takes_more(one: Selection, other: Selection) -> bool:
-    """Whether a shape alone takes clearly more off the held-out error than all names, which it would replace
-    where they leave more than the floor, or it shows below a floor that coarse steps make."""
+    """Whether a shape alone takes clearly more off the held-out error than all names. It would replace them
+    where they leave more than the floor, or where it shows below a floor that coarse steps make."""
     more = AS_MUCH * one.held.taken > other.held.taken
     fraction = other.held.after > STILL_MISSING * one.held.after
     shows = other.held.after > other.problem.floor or rules.clear(one)

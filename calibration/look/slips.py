@@ -30,7 +30,7 @@ from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
 from calibration.statistics.thresholds import SURE_Z
 
-# robust standard errors of a slip that is tried: steps of an offset that walks have 4.9 (tests/calibration)
+# robust standard errors of a slip that is tried. ASSUMPTION: an offset that walks has steps of 4.9
 CLEAR = 5.0
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
