@@ -17,7 +17,7 @@ from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.run import Run, quantum, step_of
+from calibration.inputs.run import Run, step_of
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z

@@ -42,9 +42,9 @@ class Run:
     `columns` of an axis hold SI units. Motion: `t` s, `position`/`aux` rad (unwrapped), `velocity` rad/s at
     the axis, `motor_a/b` rad/s at the motor, `setpoint` rad/s. Electrical: `effort` as a signed fraction of
     the supply, `current_a/b` A, `supply` V. Also `temperature` degree C. `columns` of a table hold the rig's
-    units. `raw` keeps the columns as logged. `logged`: those that were put on another clock, before, in rig units
-    (their steps are the sensor's). `start_s` is where `t` is 0 on the clock that all files share,
-    of any epoch; None: not known.
+    units. `raw` keeps the columns as logged. `logged`: those that were put on another clock, before, in rig
+    units: their steps are the sensor's. `start_s` is where `t` is 0 on the clock that all files share, of any
+    epoch; None: not known.
     """
 
     name: str

@@ -90,7 +90,8 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
             columns[channel] = np.interp(columns["t"] + where.delay_s, columns["t"], columns[channel])
     if "column" in rig.runs:
         columns["run"] = raw[str(rig.runs["column"])]
-    run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=_start(path, rig, float(t[0])))
+    start_s = _start(path, rig, float(t[0]))
+    run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=start_s)
     run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0
     run.signals = {
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))

@@ -90,7 +90,8 @@ def smooth_functions(s: Scene) -> list[Candidate]:
 
 def columns(s: Scene) -> list[Candidate]:
     """Columns beside the names because they would follow it: a scale that moves with time, a spring, lost
-    motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed Hz. Of volts: brushes."""
+    motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed Hz.
+    Of volts: brushes."""
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
@@ -146,8 +147,9 @@ def _swings(s: Scene) -> list[Candidate]:
     """Lines at a fixed frequency between two sensors: a bracket that swings."""
     if s.force or not s.both:
         return []
-    found = lines(s, s.declared_part)
-    return [replace(c, name=UNKNOWN, domain="time", twins=()) for c in found if c.width == 2 * len(np.unique(s.problem.session))]
+    sines = 2 * len(np.unique(s.problem.session))
+    found = (c for c in lines(s, s.declared_part) if c.width == sines)
+    return [replace(c, name=UNKNOWN, domain="time", twins=()) for c in found]
 
 
 def _fixed_lines(s: Scene) -> list[Candidate]:
