@@ -19,7 +19,7 @@ from calibration.statistics.regression import solve
 # cells before a jump and as many behind it, over which it is measured beside a slope: quiet air shows it over
 # few, seeing over many. ASSUMPTION
 SIDES = (6, 12, 24)
-# robust standard errors of a jump that is tried; held-out rows decide. Jumps of 40 sound guide logs and tables
+# robust standard errors of a jump that is tried; held-out rows decide. Jumps of 40 sound logs of the sky
 # take 0.8 % of the held-out square at most, real ones 28 to 97 % (seeds 1969 to 1982)
 CLEAR = 4.0
 # of the held-out square, that jumps take together. ASSUMPTION, a quarter: gusts of two measured nights take

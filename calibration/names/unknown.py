@@ -90,8 +90,8 @@ def smooth_functions(s: Scene) -> list[Candidate]:
 
 def columns(s: Scene) -> list[Candidate]:
     """Columns beside the names because they would follow it: a scale that moves with time, a spring, lost
-    motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed Hz.
-    Of volts: brushes."""
+    motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed
+    Hz. Of volts: brushes."""
     if s.windings is not None:
         return of_volts(s)
     if s.pair is None:
