@@ -55,7 +55,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     # a slip that is past says nothing on held-out rows behind it, nor fitted rows of one among these: pieces
     # of all rows tell
     everywhere = replace(s.problem, held=np.zeros_like(s.problem.held))
-    steps = _sure(s, everywhere, _placed(s, places, view))
+    steps = _sure(s, everywhere, _placed(s, places, view), view)
     if not steps:
         return Timed(whole, found)
     beside = np.column_stack([s.columns, *steps.values()])
@@ -122,11 +122,12 @@ def _step(view: View, row: int) -> Array:
     return np.where(view.file[view.rows] == view.file[row], shape, 0.0)
 
 
-def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array]) -> dict[int, Array]:
-    """Those that are more than their own errors."""
+def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
+    """Those that are more than their own errors, and than a count: a drift through one looks like a slip."""
+    count = view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain)
     fit = everywhere.fit(np.column_stack([s.columns, *steps.values()])) if steps else s.after
     first = s.columns.shape[1]
-    clear = np.abs(fit.beta[first:]) > SURE_Z * fit.errors[first:]
+    clear = np.abs(fit.beta[first:]) > np.maximum(SURE_Z * fit.errors[first:], count)
     return {row: x for (row, x), good in zip(steps.items(), clear, strict=True) if good} if steps else {}
 
 
@@ -141,10 +142,12 @@ def _apart(p: Problem, steps: list[Array]) -> Problem:
 
 
 def _finding(s: Selection, rows: list[int], view: View, share: float) -> Finding:
-    """The largest slip, with those at all `rows` of full rate in the note."""
-    p = s.problem
+    """The largest slip, with those at all `rows` of full rate in the note. Sizes are those of all rows: one
+    that lies among the held-out ones has none on the others."""
+    p = replace(s.problem, held=np.zeros_like(s.problem.held), turned=None)
+    fit = p.fit(s.columns)
     first = [label for label, _ in p.base_labels].index(SLOW)
-    sizes, errors = (x[first:][: len(rows)] for x in (s.after.beta, s.after.errors))
+    sizes, errors = (x[first:][: len(rows)] for x in (fit.beta, fit.errors))
     each = zip(sizes, view.t[rows], view.file[rows], strict=True)
     told = [f"{x:.3g} {p.unit} at {t:.4g} s of file {k + 1}" for x, t, k in each]
     k = int(np.argmax(np.abs(sizes)))
