@@ -3,14 +3,16 @@
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
-from calibration.arrays import Array, Mask, by_median
+from calibration.arrays import Array, Mask
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FOR_A_DRIFT
 from calibration.errors import CalibrationInputError
 from calibration.inputs.run import Run
+from calibration.statistics.tails import rms
 
 # of the longest section: shorter ones only add an offset and a drift each. ASSUMPTION
 LEAST_PART = 0.25
@@ -84,8 +86,7 @@ def guide_problem(
         base = np.column_stack([base, dither - dither.mean()])
         labels.append(("guide_gain_error", "1"))
     whole = bool(hold_out) and all(r.start_s is not None for r in runs)
-    bent = np.diff(y, 2)  # of neighbouring cells: a worm moves from cell to cell, and hardly bends
-    bent = bent[np.isfinite(bent)]
+    block_s = max(12 * period, slowest_s / PER_BLOCK)
     problem = Problem(
         channel="K",
         unit=unit,
@@ -101,12 +102,27 @@ def guide_problem(
         slow=not hold_out,
         period_s=period,
         ar_order=3,
-        block_s=max(12 * period, slowest_s / PER_BLOCK),
+        block_s=block_s,
         fresh=fresh,
         domains={"clock": rows["clock"]} if whole else {},
-        floor=by_median(bent - np.median(bent)) / float(np.sqrt(6)) if len(bent) else 0.0,
+        floor=_air(y, run, round(block_s / period)),
     )
     return problem, names
+
+
+def _air(y: Array, run: NDArray[np.int64], side: int) -> float:
+    """rms of air and centroid: each row beside a parabola through `side` rows before and behind, which a worm
+    follows and air forgets. What of the noise the parabola takes along is given back, as if it were white."""
+    at = np.arange(-side, side + 1) / side
+    own = np.zeros(2 * side + 1)
+    own[side] = 1.0
+    weights = own - np.linalg.pinv(np.column_stack([np.ones_like(at), at, at**2]))[0]
+    if len(y) <= 2 * side:
+        return 0.0
+    window = sliding_window_view(run, 2 * side + 1)
+    left = (sliding_window_view(y, 2 * side + 1) @ weights)[window[:, 0] == window[:, -1]]
+    left = left[np.isfinite(left)]
+    return rms(left) / float(np.linalg.norm(weights)) if len(left) else 0.0
 
 
 def _unit(runs: list[Run]) -> str:
