@@ -23,10 +23,12 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     v, turn = s.view, s.turn
     spring = v.x - float(np.mean(v.x[v.ok]))
+    # between the runs of a session a bundle stays as it is; what the axis moved there moved it, too
+    memory = v.file if s.pair is None else s.pair.motion.frame.session
 
     def full(p: Array) -> Array:
         travel = max(float(p[0]), NARROWEST * turn)
-        parts = [spring, stop_operator(v.x, v.file, travel) / travel]
+        parts = [spring, stop_operator(v.x, memory, travel) / travel]
         return np.column_stack(parts if s.pair is None else [*parts, np.ones(len(v.x))])
 
     sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
