@@ -108,7 +108,8 @@ def _better(s: Selection, k: int, wrong: Candidate) -> bool:
 
 
 def _flipped(s: Selection, k: int) -> bool:
-    """True when the effect with its sign turned leaves less on held-out rows than no effect."""
+    """True when the effect with its sign turned leaves less on held-out rows than no effect, by more than
+    rounding of what the declared model leaves there: most of that may be the declared terms' size."""
     p, x = s.problem, s.columns
     if p.test.sum() < FEWEST_HELD:
         return False
@@ -117,4 +118,4 @@ def _flipped(s: Selection, k: int) -> bool:
         beta = s.after.beta.copy()
         beta[s.at(k)] *= factor
         left.append(float(np.mean(Model(x=x, beta=beta).residual(p.once, p.once.test) ** 2)))
-    return left[0] < (1 - ROUNDING) * left[1]
+    return left[0] < left[1] - ROUNDING * max(left[1], s.held.before**2)

@@ -30,9 +30,6 @@ CREEP = 1.5e-5
 REST_S = 3.0
 # rows of the analysis grid, 9 s, that slide in training. ASSUMPTION
 LEAST_MOVING = 300
-# of the held-out mean square, most of it: what is left beside such an effect is its remainder. A wind is not
-# known beforehand, so nothing takes it off there. ASSUMPTION
-EXPLAINS = 0.5
 # -log10 p of a torque effect that is accepted beside a broadband torque. ASSUMPTION
 SURE_IN_WIND = 120.0
 
@@ -132,4 +129,4 @@ def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:
 def beside_wind(f: Finding) -> bool:
     """Whether a torque effect stands beside a broadband torque, which may be no more than its remainder."""
     periodic = f.name == UNKNOWN and f.domain == "time"  # a wind has no period
-    return periodic or f.evidence > SURE_IN_WIND or f.share > EXPLAINS
+    return periodic or f.evidence > SURE_IN_WIND
