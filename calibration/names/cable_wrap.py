@@ -1,6 +1,7 @@
 """A cable bundle about an axis: a spring over its angle with a loop of its own."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.balances.recursions import stop_operator
 from calibration.names.candidates import Size, candidate, grid
@@ -23,8 +24,7 @@ def columns(s: Scene) -> list[Candidate]:
         return []
     v, turn = s.view, s.turn
     spring = v.x - float(np.mean(v.x[v.ok]))
-    # between the runs of a session a bundle stays as it is; what the axis moved there moved it, too
-    memory = v.file if s.pair is None else s.pair.motion.frame.session
+    memory = v.file if s.pair is None else _memory(v.x, s.pair.motion.frame.session, v.resolved)
 
     def full(p: Array) -> Array:
         travel = max(float(p[0]), NARROWEST * turn)
@@ -43,6 +43,15 @@ def columns(s: Scene) -> list[Candidate]:
     if s.pair is None and (weighed or s.span < LEAST_TURN * turn):
         looped.append(candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins))
     return looped
+
+
+def _memory(x: Array, session: NDArray[np.int64], resolved: float) -> NDArray[np.int64]:
+    """Labels (n,) of rows through which a bundle is followed. Between runs it stays as it is.
+
+    What the axis moved within a session moved it, too. Another session goes on where it begins at the same
+    place."""
+    elsewhere = (np.diff(session) != 0) & (np.abs(np.diff(x)) > resolved)
+    return np.concatenate([[0], np.cumsum(elsewhere)])
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

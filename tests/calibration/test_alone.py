@@ -42,6 +42,23 @@ def test_slips_have_their_sizes_and_the_rest_is_as_if_there_were_none(tmp_path: 
     assert error["after"] < 1.2 * error["floor"] < error["before"]
 
 
+def test_a_bracket_that_swings_is_a_line_over_time_between_two_sensors(tmp_path: Path) -> None:
+    t, x, y = sensors()
+    data = answer_of(tmp_path, SENSORS, (t, np.round(x, 5), y + 4e-7 * np.sin(2 * np.pi * 1.37 * t)))
+    (found,) = data["effects"]
+    assert (found["name"], found["domain"]) == ("unknown", "time")
+    assert found["frequency_Hz"] == pytest.approx(1.37, rel=0.002)
+    error = data["error"]["position"]
+    assert error["after"] < 1.2 * error["floor"]
+
+
+def test_no_slip_is_smaller_than_a_count(tmp_path: Path) -> None:
+    """A drift through one count of the second sensor looks like a step of it."""
+    t, x, y = sensors()
+    counts = np.round((y + 1e-5 * (t / t[-1]) ** 8) / 2e-5) * 2e-5
+    assert "roller_slip" not in [e["name"] for e in answer_of(tmp_path, SENSORS, (t, x, counts))["effects"]]
+
+
 def test_a_gap_that_every_reversal_crosses_is_no_slip(tmp_path: Path) -> None:
     t, x, y = sensors()
     way = np.sign(rate(x))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from calibration.balances.guide import _air
 from calibration.balances.mounts import SIDEREAL_DAY_S, known_mount
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
@@ -170,3 +171,16 @@ def test_two_turns_are_enough_for_a_worm_and_wander_over_three_is_none() -> None
     """Eight nights each, of slow quasi-periodic air; 6 arcsec of a worm stand out of it."""
     assert sum(bool(named(seed, 0.0, 3.3)) for seed in range(8)) <= 1
     assert sum(bool(named(seed, 6.0, 2.4)) for seed in range(8)) >= 6
+
+
+def test_the_floor_holds_the_colour_of_the_air() -> None:
+    """Seeing of 6 s of memory beside white noise; a worm of ten times that is no part of it."""
+    rng = np.random.default_rng(4)
+    t, keep = np.arange(0.0, 6000.0, 2.0), np.exp(-2.0 / 6.0)
+    air = np.zeros(len(t))
+    for k in range(1, len(t)):
+        air[k] = keep * air[k - 1] + np.sqrt(1 - keep**2) * rng.standard_normal()
+    seeing = 0.5 * (air + rng.standard_normal(len(t))) / np.sqrt(2.0)
+    for worm in (0.0, 5.0):
+        y = seeing + worm * np.sin(2 * np.pi * t / 480.0)
+        assert _air(y, np.zeros(len(t), dtype=np.int64), 20) == pytest.approx(0.5, rel=0.15)

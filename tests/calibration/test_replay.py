@@ -43,6 +43,19 @@ def test_gains_of_the_controller_come_out_of_the_log(frame: Frame) -> None:
     assert found.ki == pytest.approx(declared.ki.si, rel=0.02)
 
 
+def test_gains_and_replay_of_a_roller_of_another_size(tmp_path: Path) -> None:
+    """The loop counts the roller: what it has too much of the way is none of its integral."""
+    roller = effect("roller_ratio", error=(1300.0, "ppm"))
+    frame, declared = frame_of(tmp_path, roller), load(default_files()["low_preload"])
+    found = identify(frame, frame.run < 3)
+    assert found is not None
+    assert found.ki == pytest.approx(declared.controller.ki.si, rel=0.02)
+    plain = with_effects(declared, "ra", ())
+    again = replay(frame, frame.run == 3, plain, with_effects(plain, "ra", [roller]), PER_AMPERE)
+    assert again.rows["position"]["after"] < 0.1 * again.rows["position"]["before"]
+    assert again.rows["velocity"]["after"] < 1.5 * again.rows["velocity"]["floor"]
+
+
 def test_the_plant_that_made_the_log_replays_to_the_floor_and_one_without_the_effect_does_not(
     frame: Frame,
 ) -> None:

@@ -12,7 +12,7 @@ from calibration.balances.view import view_of
 from calibration.errors import CalibrationInputError
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.run import Run
+from calibration.inputs.run import Run, quantum, step_of
 from calibration.look.search import scene_of
 from calibration.names.lines import line, of_stage
 
@@ -123,6 +123,16 @@ def test_a_long_table_has_a_clock_per_signal(tmp_path: Path, as_json: bool) -> N
     inside = (late[0] <= T) & (late[-1] >= T) & ~((T > 0.984) & (T < 1.204))
     assert run.columns["effort"][inside] == pytest.approx(2.0 * T[inside])
     assert np.isnan(run.columns["effort"][[0, 110]]).all()  # before its first row, and in its gap
+
+
+def test_a_sensor_has_its_own_step_on_the_stamps_of_another(tmp_path: Path) -> None:
+    """Counts of 0.01 between which the effort's stamps lie, and as they were logged."""
+    counts = np.round(np.sin(T) / 0.01) * 0.01
+    found = [(t, "x", x) for t, x in zip(T, counts, strict=True)] + [(t + 0.003, "u", 2.0 * t) for t in T]
+    text = "t,signal,value\n" + "\n".join(f"{t:.6f},{name},{x:.9g}" for t, name, x in sorted(found))
+    run = read(tmp_path, text, COLUMNS, LONG)
+    assert quantum(run.columns["position"]) != pytest.approx(0.01, rel=1e-6)
+    assert step_of([run], "position") == pytest.approx(0.01, rel=1e-6)
 
 
 def test_a_signal_that_a_long_table_has_not_is_told(tmp_path: Path) -> None:
