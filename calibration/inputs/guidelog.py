@@ -159,8 +159,8 @@ class _Section:
         raw = complex(number("RARawDistance"), number("DECRawDistance"))
         ra, dec = number("RAGuideDistance"), number("DECGuideDistance")
         if not t >= self.time or not isfinite(t):
-            what = f"time goes backwards from {self.time:g} s to {t:g} s" if isfinite(t) else "is no time in s"
-            raise CalibrationInputError(self.path, what, line, "Time")
+            back = f"time goes backwards from {self.time:g} s to {t:g} s"
+            raise CalibrationInputError(self.path, back if isfinite(t) else "is no time in s", line, "Time")
         self.time = t
         if isfinite(raw.real) and not self.settling:
             star = raw + self.corrected + self.dithered
