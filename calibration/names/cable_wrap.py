@@ -45,11 +45,10 @@ def columns(s: Scene) -> list[Candidate]:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """The loop's travel is the Dahl width with the same area."""
-    stiffness = value(f, "stiffness")
+    stiffness, hysteresis = value(f, "stiffness"), value(f, "hysteresis")
     centre = facts.middle - value(f, "neutral_torque") / stiffness if stiffness else facts.middle
     width = float(np.degrees(value(f, "width", NARROW_RAD)))
-    sizes = {"stiffness": stiffness, "hysteresis": value(f, "hysteresis")}
-    return Made().add(f.name, facts, {**sizes, "centre": centre, "width": width})
+    return Made().added(f, facts, stiffness=stiffness, hysteresis=hysteresis, centre=centre, width=width)
 
 
 def lacks(s: Scene) -> str:

@@ -97,9 +97,8 @@ def folded(phase: Array, e: Array, keep: int) -> list[tuple[float, float]]:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """A raised cosine of full width w turns is a Gaussian of the same height and area."""
-    values = {"amplitude": value(f, "amplitude"), "phase": 2 * np.pi * value(f, "phase")}
-    values["width"] = 2 * np.pi * value(f, "width") / (2 * np.sqrt(2 * np.pi))
-    return Made().add(f.name, facts, values, f.stage, 1)
+    phase, width = 2 * np.pi * value(f, "phase"), 2 * np.pi * value(f, "width") / (2 * np.sqrt(2 * np.pi))
+    return Made().added(f, facts, amplitude=value(f, "amplitude"), phase=phase, width=width)
 
 
 def lacks(s: Scene) -> str:

@@ -45,7 +45,7 @@ def torque_kept(c: Candidate, size: float, clock: Array, quotient: float) -> Arr
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Of one motor, or of both from some time on."""
-    made = Made().add(f.name, facts, {"loss": value(f, "loss"), "motor": value(f, "motor")})
+    made = Made().added(f, facts, loss=value(f, "loss"), motor=value(f, "motor"))
     if "start" in f.parameters:
         since = f"the loss found from {value(f, 'start'):.0f} s on is there from the start"
         made.remarks.append(f"magnet_weakening: the plant's magnets do not know the time, {since}")

@@ -129,8 +129,6 @@ NAME = Name(
     "compliance a line",
     lacks=both_ways,
     # the motors are compared with the absolute encoder, so its coupling has the gap
-    to_plant=lambda f, facts: Made().add(
-        f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)}
-    ),
+    to_plant=lambda f, facts: Made().added(f, facts, gap=value(f, "gap"), encoder=value(f, "encoder", 1.0)),
     loop=("gap",),
 )

@@ -12,15 +12,7 @@ from calibration.names.gravity_imbalance import gravity
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene
 from calibration.names.spline import spline_columns
-from calibration.names.unknown_shapes import (
-    bend,
-    each,
-    loops,
-    lost_motion,
-    moving_scale,
-    over,
-    spring,
-)
+from calibration.names.unknown_shapes import bend, each, loops, lost_motion, moving_scale, over, spring
 from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
@@ -162,9 +154,8 @@ def clock_jumps(frame: Frame) -> Finding | None:
     if not frame.jumps:
         return None
     sizes = np.abs(frame.jumps)
-    note = (
-        f"{len(sizes)} stamps jump while the position goes on by one row: the clock's fault, no row is lost"
-    )
+    jumps = f"{len(sizes)} stamps jump while the position goes on by one row"
+    note = f"{jumps}: the clock's fault, no row is lost"
     # of one row's travel in place of so many: the chance of each is one in as many rows
     evidence = float(np.log10(sizes / frame.period_s + 1.0).sum())
     return of_columns(UNKNOWN, {"jump": middle(sizes, "s")}, evidence, note=note)
