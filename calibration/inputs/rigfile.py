@@ -42,8 +42,7 @@ def load_rig(path: Path) -> Rig:
 
     data, text = _read(path)
     if not isinstance(data, dict):
-        what = "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed"
-        raise CalibrationInputError(path, what)
+        raise CalibrationInputError(path, "is no rig file: 'rig', 'columns' and 'response' are needed")
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     errors = [_innermost(e) for e in Draft202012Validator(schema).iter_errors(data)]
     if errors:  # a rule that the schema says in its own words holds for fields that are sound
