@@ -91,7 +91,8 @@ def draft(path: Path) -> str:
     loose = read_loose(path)
     finite = {c: np.where(np.abs(x) <= LARGEST_NUMBER, x, np.nan) for c, x in loose.columns.items()}
     columns = {c: x for c, x in finite.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}
-    d = _Draft({c: _filled(x) for c, x in columns.items()})
+    good = {c: np.flatnonzero(np.isfinite(x)) for c, x in columns.items()}
+    d = _Draft({c: np.interp(np.arange(len(x)), good[c], x[good[c]]) for c, x in columns.items()})
     d.unsaid += [f"{c!r} holds one number, or none" for c in loose.columns if c not in columns]
     d.unsaid += [f"{c!r} holds words" for c in loose.words]
     _clock(d, loose)
@@ -102,28 +103,18 @@ def draft(path: Path) -> str:
     _by_motion(d)
     _response(d)
     d.unsaid += [f"{c!r}: a channel for it; it is left out" for c in d.left]
+    lines = [
+        f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."
+    ]
+    lines += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
+    lines += [role.line(channel) for channel, role in d.roles.items()]
     told = {k: (v, "") for k, v in loose.fields.items()} | d.fields
-    return "\n".join(
-        [
-            f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'.",
-            *(f"# could not say: {x}" for x in d.unsaid),
-            _flow("rig", path.stem, ""),
-            "columns:",
-            *(role.line(channel) for channel, role in d.roles.items()),
-            *(_flow(k, v, why) for k, (v, why) in told.items()),
-            "",
-        ]
-    )
+    return "\n".join([*lines, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
 
 
 def _flow(key: str, value: Any, why: str) -> str:
     text = yaml.safe_dump(value, default_flow_style=True, width=np.inf, allow_unicode=True, sort_keys=False)
     return f"{key}: {text.removesuffix('...' + chr(10)).strip()}" + (f"   # guessed: {why}" if why else "")
-
-
-def _filled(x: Array) -> Array:
-    good = np.isfinite(x)
-    return np.interp(np.arange(len(x)), np.flatnonzero(good), x[good])
 
 
 def _clock(d: _Draft, loose: Loose) -> None:
@@ -164,9 +155,8 @@ def _by_name(d: _Draft) -> None:
             d.put("effort", column, says.unit, says.scale, "asked for, but no other column is a force")
         elif (says.asked and channel != "reference") or channel in ("count", "label", "time"):
             d.left.pop(column)
-            d.unsaid.append(
-                f"{column!r}: {'asked for, not measured' if says.asked else channel}; it is left out"
-            )
+            why = "asked for, not measured" if says.asked else channel
+            d.unsaid.append(f"{column!r}: {why}; it is left out")
         elif channel and channel not in d.roles:
             d.put(channel, column, says.unit, says.scale)
 
@@ -186,8 +176,9 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        # friction goes with it, too
-        by_side, _ = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))
+        by_side, _ = _like(
+            gaussian_filter1d(d.left[column], SOFT), np.sign(rate)
+        )  # friction goes with it, too
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:
@@ -239,10 +230,8 @@ def _unit(d: _Draft, p: _Role) -> None:
     if not units_per_turn(p.unit) and length:
         d.fields["turn"] = length, "the counter's length is a turn"
     if turn and np.ptp(p.x) > TURNS * turn:
-        d.fields["stages"] = (
-            [{"name": "shaft", "period": float(turn), "harmonics": 12, "kind": GUESSED}],
-            "one turn of the position; give the gear table",
-        )
+        shaft = {"name": "shaft", "period": float(turn), "harmonics": 12, "kind": GUESSED}
+        d.fields["stages"] = [shaft], "one turn of the position; give the gear table"
     else:
         d.unsaid.append("the gear table (stages)")
 

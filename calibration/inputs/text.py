@@ -89,12 +89,10 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     if is_json(text):
         text, delimiter = table_of_json(path, text), "\t"
     lines = text.splitlines()
-    skip = 0
-    while skip < len(lines) and (lines[skip].startswith(("#", "%")) or not lines[skip].strip()):
-        skip += 1
-    if skip >= len(lines):
+    rows = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(("#", "%"))]
+    if not rows:
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
-    skip = _behind_remarks(lines, skip, delimiter)
+    skip = _behind_remarks(lines, rows[0], delimiter)
     mark = delimiter or _mark(lines[skip])
     if mark == " ":  # aligned columns are parted by any number of blanks
         lines = [" ".join(line.split()) for line in lines]
@@ -105,9 +103,8 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
         fields, first = list(names) or said or [str(k) for k in range(len(fields))], skip
     if first >= len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
-    rows = len(lines[first].split(mark))
-    if len(fields) != rows:
-        raise CalibrationInputError(path, f"{rows} fields, {len(fields)} names", first + 1)
+    if len(fields) != (width := len(lines[first].split(mark))):
+        raise CalibrationInputError(path, f"{width} fields, {len(fields)} names", first + 1)
     return Heading(lines, fields, first, mark, skip - 1 if fields == said else skip)
 
 

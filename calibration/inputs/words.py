@@ -29,9 +29,8 @@ def read_signed(runs: list[Run], rig: Rig) -> None:
                 r.columns[channel] = np.where(x > length / 2, x - length, x) * where.scale + where.offset
                 name = str(where.column) or channel
                 r.signals[channel] = signal_of(channel, name, where.unit, r.columns[channel], 0)
-                r.repairs.append(
-                    Repair("signed", channel, count, length * abs(where.scale), signed_note(length))
-                )
+                note = signed_note(length)
+                r.repairs.append(Repair("signed", channel, count, length * abs(where.scale), note))
 
 
 def word_length(x: Array) -> float:
