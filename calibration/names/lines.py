@@ -215,11 +215,9 @@ def movable(s: Scene, rate: float, within: tuple[float, float]) -> list[Candidat
 
 
 def _waves(s: Scene, turns: Array, order: float) -> Array:
-    """What the axis gets of a torque on a rotor: its cos and sin (n, 2) at `order` per axis turn.
-
-    The torque's angle has made `turns` periods. The filter dims the wave. The rotor on its train turns it:
-    a line comes near their resonance while the motor is quick. Quasi-static in the speed.
-    """
+    """What the axis gets of a torque on a rotor: its cos and sin (n, 2) at `order` per axis turn. The
+    torque's angle has made `turns` periods. The filter dims the wave. The rotor on its train turns it: a line
+    comes near their resonance while the motor is quick. Quasi-static in the speed."""
     assert s.pair is not None
     speed = np.asarray(s.view.speed[s.view.rows] / s.turn)
     dim, softness = s.view.filter.gain(speed * order * s.view.period_s), s.pair.softness_s2

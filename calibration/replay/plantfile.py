@@ -35,10 +35,8 @@ def calibrate_model(
 
 
 def _with_rules(model: PlantModel, declared: PlantModel, axis: str, name: str) -> PlantModel:
-    """What no log tells keeps the rule it was declared by.
-
-    sigma1 keeps its share of the passivity bound, the gears' damping its share of the critical one.
-    """
+    """What no log tells keeps the rule it was declared by. sigma1 keeps its share of the passivity bound, the
+    gears' damping its share of the critical one."""
     f, g = (getattr(model.axes, axis), getattr(declared.axes, axis))
     bounds = [
         x.friction.viscous.si * x.friction.coulomb.si / (x.friction.stiction.si - x.friction.coulomb.si)

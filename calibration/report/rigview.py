@@ -61,10 +61,8 @@ def _declaration(rig: Rig) -> str:
 
 
 def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
-    """What a log of these rows could show of a response: its filter, and how often it passes each stage.
-
-    Also the smallest line that would have a name beside a rest as large as the response is now.
-    """
+    """What a log of these rows could show of a response: its filter, and how often it passes each stage. Also
+    the smallest line that would have a name beside a rest as large as the response is now."""
     if rig.motors is not None or rig.drifts or not all(r.rows >= FEWEST_ROWS for r in records):
         return
     view = view_of(records, rig, response)
