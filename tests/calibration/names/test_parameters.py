@@ -25,7 +25,7 @@ MADE = {
     "look/controllerlaw.py": (UNKNOWN, "command_disturbance"),
     "names/columns.py": ("log_wrap", "sample_loss", "clock_jitter"),
     "names/unknown_bits.py": (UNKNOWN,),
-    "names/unknown_volts.py": (UNKNOWN,),
+    "names/unknown_shapes.py": (UNKNOWN,),
     "names/lines.py": ("bearing_pass",),
 }
 
