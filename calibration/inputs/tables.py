@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
-from calibration.inputs.counters import count_wraps, unwrap
+from calibration.inputs.counters import count_wraps, read_signed, unwrap
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
 from calibration.inputs.recordings import RECORDINGS
@@ -18,7 +18,6 @@ from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import Long, load_utf8, read_columns, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
-from calibration.inputs.words import read_signed
 
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calibration.inputs.words import word_length
+from calibration.inputs.counters import word_length
 
 
 @settings(max_examples=50, deadline=None)
