@@ -3,11 +3,10 @@
 import numpy as np
 
 from calibration.balances.recursions import stop_operator
-from calibration.names.candidates import Size, candidate, grid
 from calibration.names.gravity_imbalance import LEAST_TURN
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways, candidate, grid
 
 # of a turn, in which the loop closes: the plant's widths are among them. ASSUMPTION
 TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)
@@ -29,8 +28,8 @@ def columns(s: Scene) -> list[Candidate]:
         parts = [spring, stop_operator(v.x, v.file, travel) / travel]
         return np.column_stack(parts if s.pair is None else [*parts, np.ones(len(v.x))])
 
-    sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
-    sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
+    sizes = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
+    sizes += [("neutral_torque", s.unit)] * (s.pair is not None)  # a rig's base has an offset
     travels = [travel for part in TRAVELS if v.resolved < (travel := part * turn) < s.span]
     weighed = "gravity_cos" in s.declared
     alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again

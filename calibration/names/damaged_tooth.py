@@ -4,10 +4,8 @@ import numpy as np
 
 from calibration.inputs.declaration import Stage
 from calibration.inputs.train import MESH, SHAFT
-from calibration.names.candidates import tried
-from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, SPEED, Array, Beside, Candidate, Finding, Name
-from calibration.names.scene import Scene
+from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, tried, value
+from calibration.names.scene import FORCE, SPEED
 
 # turns of the part. ASSUMPTION
 ENOUGH = 0.9

@@ -10,8 +10,8 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.finding import UNKNOWN, Finding
 from calibration.inputs.declaration import Stage
-from calibration.names.candidates import Size, candidate
 from calibration.names.inplant import SIDES, Facts, Made, motor_of, value
+from calibration.names.name import Size, candidate
 from calibration.names.scene import MOTOR, Scene
 from calibration.statistics.orders import PER_ROW, Wanted, standing_out
 

@@ -4,8 +4,9 @@ import numpy as np
 
 from calibration.balances.candidate import ramp
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, Scene, candidate
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, candidate
 from calibration.names.onsets import steps
+from calibration.names.scene import FORCE, VOLTS
 
 # part of the time, that the fall may take at first. ASSUMPTION, as of every slow change
 LENGTHS = (0.02, 0.2, 0.5, 1.0)

@@ -9,10 +9,8 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.inputs.declaration import Stage
-from calibration.names.candidates import STEP
-from calibration.names.candidates import tried as first_value
-from calibration.names.name import Name
-from calibration.names.scene import Scene
+from calibration.names.name import STEP, Name, Scene
+from calibration.names.name import tried as first_value
 from plant.effects import REGISTRY
 from plant.effects import signals as column
 from plant.effects.base import MESHES, STAGES, Effect

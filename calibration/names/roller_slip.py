@@ -8,8 +8,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from calibration.balances.motion import acceleration_of, rate_of
-from calibration.names.name import Array, Candidate, Name, tried
-from calibration.names.scene import RATES, SENSORS, Scene
+from calibration.names.name import RATES, SENSORS, Array, Candidate, Name, Scene, tried
 from plant.units import ARCSEC
 
 # rad/s2, limits that are tried: the axis is asked for 2 deg/s2 (paper)
