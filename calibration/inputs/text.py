@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -225,18 +225,12 @@ def read_numbers(
     keep = {k: str(k) for k in (range(len(names)) if wanted is None else sorted(wanted))}
     if body.startswith("\ufeff"):  # the reader would pass over it; here it is no beginning of a file
         return _slowly(path, body, names, first_line, mark, keep)
+    reading = csv.ReadOptions(column_names=[str(k) for k in range(len(names))], use_threads=False)
+    empty: dict[str, Any] = {"null_values": ["", "nan", "NaN"], "strings_can_be_null": True}
+    types = dict.fromkeys(keep.values(), float64())
+    turned = csv.ConvertOptions(column_types=types, include_columns=list(keep.values()), **empty)
     try:
-        table = csv.read_csv(
-            io.BytesIO(body.encode()),
-            read_options=csv.ReadOptions(column_names=[str(k) for k in range(len(names))], use_threads=False),
-            parse_options=csv.ParseOptions(delimiter=mark),
-            convert_options=csv.ConvertOptions(
-                column_types=dict.fromkeys(keep.values(), float64()),
-                include_columns=list(keep.values()),
-                null_values=["", "nan", "NaN"],
-                strings_can_be_null=True,
-            ),
-        )
+        table = csv.read_csv(io.BytesIO(body.encode()), reading, csv.ParseOptions(delimiter=mark), turned)
     except ArrowInvalid:
         return _slowly(path, body, names, first_line, mark, keep)
     return {k: np.asarray(table[name].to_numpy(), dtype=float) for k, name in keep.items()}

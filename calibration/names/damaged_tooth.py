@@ -1,5 +1,7 @@
 """A short pulse once per turn of one part: a damaged tooth."""
 
+from typing import Any
+
 import numpy as np
 
 from calibration.inputs.declaration import Stage
@@ -52,20 +54,13 @@ def _on(s: Scene, stage: Stage, rate: float) -> list[Candidate]:
     def full(q: Array) -> Array:  # what the response has beside it is minus what acts on the axis
         return -pulse(phase, float(q[0]), max(float(q[1]), 0.002), row)
 
-    return [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            ("amplitude", s.unit),
-            at={"phase": (centre, "turn"), "width": (width, "turn")},
-            steps=(STEP_TURN, STEP_WIDTH * width),
-            domain="motor_angle" if of_motor else None,
-            stage=stage.name,
-            order=rate * s.turn,
-            least=LEAST,
-        )
-        for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP)
-    ]
+    place: dict[str, Any] = {"stage": stage.name, "order": rate * s.turn, "least": LEAST}
+    place["domain"] = "motor_angle" if of_motor else None
+    out, size = [], ("amplitude", s.unit)
+    for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP):
+        at, steps = {"phase": (centre, "turn"), "width": (width, "turn")}, (STEP_TURN, STEP_WIDTH * width)
+        out.append(tried(NAME.name, s.shaped(full), size, at=at, steps=steps, **place))
+    return out
 
 
 def pulse(phase_turns: Array, centre: float, width: float, reach: Array) -> Array:

@@ -46,19 +46,12 @@ def columns(s: Scene) -> list[Candidate]:
         chatter = float(np.clip(abs(p[1]), 1e-6, MOST_CHATTER * limit))
         return np.asarray(-m.at(lost(rate, acceleration, limit, chatter))[:, None] / ARCSEC)
 
-    return [
-        tried(
-            "roller_slip",
-            partial(shape, lost),
-            size,
-            at={"threshold": (limit, "rad/s2"), "chatter": (part * limit, "rad/s2")},
-            steps=(STEPS[0] * limit, STEPS[1] * part * limit),
-            searched=0,
-            sign=1,
-            stage=roller,
-        )
-        for limit, (size, lost), part in itertools.product(limits, forms.items(), (CHATTER, MOST_CHATTER))
-    ]
+    out: list[Candidate] = []
+    for limit, (size, lost), part in itertools.product(limits, forms.items(), (CHATTER, MOST_CHATTER)):
+        at = {"threshold": (limit, "rad/s2"), "chatter": (part * limit, "rad/s2")}
+        steps, lose = (STEPS[0] * limit, STEPS[1] * part * limit), partial(shape, lost)
+        out.append(tried("roller_slip", lose, size, at=at, steps=steps, searched=0, sign=1, stage=roller))
+    return out
 
 
 def _share(rate: Array, acceleration: Array, limit: float, chatter: float) -> Array:
