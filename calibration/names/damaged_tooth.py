@@ -58,7 +58,8 @@ def _on(s: Scene, stage: Stage, rate: float) -> list[Candidate]:
     place["domain"] = "motor_angle" if of_motor else None
     out, size = [], ("amplitude", s.unit)
     for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP):
-        at, steps = {"phase": (centre, "turn"), "width": (width, "turn")}, (STEP_TURN, STEP_WIDTH * width)
+        at = {"phase": (centre, "turn"), "width": (width, "turn")}
+        steps = (STEP_TURN, STEP_WIDTH * width)
         out.append(tried(NAME.name, s.shaped(full), size, at=at, steps=steps, **place))
     return out
 
