@@ -140,7 +140,8 @@ def _check_values(path: Path, raw: dict[str, Array], full: float, first: int) ->
         _refuse(path, np.isinf(values), "is infinite", first, name)
     position, effort = raw["position"], raw["effort"]
     for name in ("effort", "position"):
-        _refuse(path, ~np.isfinite(raw[name]).any(keepdims=True), "holds no number in any row", first, name)
+        if not np.isfinite(raw[name]).any():
+            raise CalibrationInputError(path, "holds no number in any row", first, name)
     _refuse(path, np.abs(position) > limits.LARGEST_COUNT, "is beyond any 29-bit counter", first, "position")
     beyond = np.abs(effort) > limits.OVER_FULL * full
     _refuse(path, beyond, f"is beyond full scale ({full:g})", first, "effort")

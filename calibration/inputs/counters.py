@@ -78,8 +78,8 @@ def word_length(x: Array) -> float:
     """
     x = x[np.isfinite(x)]
     whole = np.round(x)
-    near = {"rtol": limits.WHOLE_COUNT, "atol": limits.WHOLE_COUNT}
-    if len(x) < limits.FEWEST_SAMPLES or not np.allclose(x, whole, **near):
+    near = limits.WHOLE_COUNT
+    if len(x) < limits.FEWEST_SAMPLES or not np.allclose(x, whole, rtol=near, atol=near):
         return 0.0
     length = next((w for w in LENGTHS if whole.max() < w), 0.0)
     lower, upper = whole[whole < length * 3 / 8], whole[whole >= length * 5 / 8]

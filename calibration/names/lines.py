@@ -155,10 +155,8 @@ def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = N
     pair = s.at(np.column_stack([w * np.cos(phase), w * np.sin(phase)]))
     passes = s.view.filter.gain(s.view.speed[s.view.rows] * rate * s.view.period_s)
     pair = pair * (passes > 0)[:, None]  # elsewhere a log has nothing of the line, and its columns alias
-    return [
-        replace(blank, columns=np.hstack([pair * mask[:, None] for mask in parts]), per_run=own)
-        for parts, own in s.zeros
-    ]
+    zeros = ((np.hstack([pair * rows[:, None] for rows in parts]), own) for parts, own in s.zeros)
+    return [replace(blank, columns=columns, per_run=own) for columns, own in zeros]
 
 
 def as_one(mine: list[Candidate]) -> list[Candidate]:

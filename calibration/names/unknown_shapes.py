@@ -62,16 +62,11 @@ def moving_scale(s: Scene) -> list[Candidate]:
     span = float(np.ptp(t)) or 1.0
     drift, knots = ((t - t.min()) / span)[:, None], spline_columns(t, SLOW)
     per_place = f"{s.unit}/{s.angle_unit}"
-    return [
-        over(
-            "time",
-            np.hstack([shape * x[:, None], shape]),
-            *each(f"scale_{name}", shape, per_place),
-            *each(f"offset_{name}", shape, s.unit),
-        )
-        for name, shape in (("drift", drift), ("knot", knots))
-        if shape.shape[1]
-    ]
+    out = []
+    for name, shape in (("drift", drift), ("knot", knots)):
+        sizes = (*each(f"scale_{name}", shape, per_place), *each(f"offset_{name}", shape, s.unit))
+        out += [over("time", np.hstack([shape * x[:, None], shape]), *sizes)] if sizes else []
+    return out
 
 
 def lost_motion(s: Scene) -> list[Candidate]:
