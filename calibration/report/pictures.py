@@ -17,6 +17,8 @@ from calibration.report.plots import BLUE, GREY, RED, figure, png
 from calibration.report.thresholds import MOST_PICTURES, WHOLE, WINDOW_S
 
 Picture = dict[str, str]
+TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
+SPECTRUM = "Fitted rows; dotted: known parts, short marks: what was found"
 
 
 def pictures(found: Looked, again: Replay) -> list[Picture]:
@@ -33,10 +35,10 @@ def of_balance(b: Balance) -> list[Picture]:
     if b.spectrum is not None:
         over = "period" if b.spectrum.periods else "order"
         image = plots.spectrum_plot(s, b.spectrum, f"Amplitude over {over}, {name}")
-        out.append({"image": image, "alt": plots.SPECTRUM})
+        out.append({"image": image, "alt": SPECTRUM})
     trace = plots.trace_plot(s, b.declared or s, f"Held-out residual before and after, {name}")
     gate = plots.gate_plot(s, f"Is anything there at all? {name}")
-    return [*out, {"image": trace, "alt": plots.TRACE}, {"image": gate, "alt": plots.GATE}]
+    return [*out, {"image": trace, "alt": TRACE}, {"image": gate, "alt": plots.GATE}]
 
 
 def _effect(b: Balance, k: int) -> Picture:

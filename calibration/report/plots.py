@@ -15,8 +15,6 @@ from calibration.statistics.orders import order_spectrum
 
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
 
-TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
-SPECTRUM = "Fitted rows; dotted: known parts, short marks: what was found"
 GATE = "The largest score of all candidates, in this log and in copies of its residual that hold nothing"
 
 
