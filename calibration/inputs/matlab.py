@@ -115,7 +115,7 @@ def _field(value: Any, field: str) -> Any:
     names = (getattr(getattr(value, "dtype", None), "names", None) or ()) if struct else value
     if field not in names:
         have = ", ".join(k for k in names if not k.startswith("__")) or "none"
-        raise LookupError(f"no {'field' if struct else 'variable'} '{field}': there are {have}")
+        raise LookupError(f"no such {'field' if struct else 'variable'} ('{field}'); there are {have}")
     if struct and value.size != 1:
         raise LookupError(f"is an array of {value.size} structs: index it")
     return value.ravel()[0][field] if struct else value[field]
