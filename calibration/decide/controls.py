@@ -110,7 +110,7 @@ def _better(s: Selection, k: int, wrong: Candidate) -> bool:
 def _flipped(s: Selection, k: int) -> bool:
     """True when the effect with its sign turned leaves less on held-out rows than no effect.
 
-    Less by more than rounding of the declared model's error there, which the declared terms alone may make."""
+    Less by more than rounding of the declared model's error there: the declared terms alone may make that."""
     p, x = s.problem, s.columns
     if p.test.sum() < FEWEST_HELD:
         return False

@@ -1,6 +1,7 @@
 """Axis log, version 1 (log-format.md): header, CSV, counters unwrapped, counts turned into SI units."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from math import pi
@@ -91,18 +92,11 @@ def read_axis_log(path: Path, text: str | None = None) -> Run:
     joined = {n: unwrap(x, COLUMNS[n].wrap) if COLUMNS[n].wrap else x for n, x in raw.items()}
     si = {COLUMNS[n].called or n: x * factors[n] for n, x in joined.items()}
     scales["adc_end_A"] = limits.LAST_COUNT * scales["adc_A_per_count"]
-    began = _began(header["start_utc"])
-    run = Run(path.stem, path, header["session"], si, raw, header, scales, start_s=began)
+    run = Run(path.stem, path, header["session"], si, raw, header, scales)
+    with suppress(ValueError):  # else only the files' order is known
+        run.start_s = datetime.fromisoformat(header["start_utc"]).timestamp()
     check_counted(run, factors, first)
     return run
-
-
-def _began(told: str) -> float | None:
-    """When the log began, s; None for what is no time."""
-    try:
-        return datetime.fromisoformat(told).timestamp()
-    except ValueError:
-        return None
 
 
 def _check_names(path: Path, names: list[str], line: int) -> None:
@@ -158,10 +152,8 @@ def _check_values(path: Path, raw: dict[str, Array], full: float, first: int) ->
         raise CalibrationInputError(path, what, first, "position")
     most, moved = float(np.nanmax(np.abs(effort))), float(np.nanmax(position) - np.nanmin(position))
     if _fractions(effort) and most < limits.LEAST_EFFORT and moved > limits.LEAST_TRAVEL:
-        what = (
-            f"never exceeds {most:.3g}: it is logged in 1/{full:g} of the supply, not in V or as a fraction"
-        )
-        raise CalibrationInputError(path, what, first, "effort")
+        must = f"it is logged in 1/{full:g} of the supply, not in V or as a fraction"
+        raise CalibrationInputError(path, f"never exceeds {most:.3g}: {must}", first, "effort")
 
 
 def _fractions(values: Array) -> bool:

@@ -82,27 +82,18 @@ def declared_model(header: dict[str, str], base: Path | None) -> tuple[PlantMode
     return load(base or files[named or f"{header.get('preload', 'low')}_preload"]), base is not None or own
 
 
-def _train_stiffness(runs: list[Run]) -> str | None:
-    """As the headers declare it, in all of them or in none of them another one."""
-    said = {r.header[TRAIN_STIFFNESS]: r.path for r in runs if TRAIN_STIFFNESS in r.header}
-    if len(set(map(float, said))) > 1:
+def _from_rig(rig: Rig, runs: list[Run]) -> Declared:
+    """The rig file's numbers for a state of the friction, and the headers' word on the trains' stiffness."""
+    assert rig.motors is not None
+    m, preload = rig.motors, runs[0].header.get("preload", "low")
+    f = next((f for f in rig.friction if f.state == preload), rig.friction[0])
+    said = {float(r.header[TRAIN_STIFFNESS]): r.path for r in runs if TRAIN_STIFFNESS in r.header}
+    if len(said) > 1:
         what = f"'{TRAIN_STIFFNESS}' is another one in another log: one drive has one"
         raise CalibrationInputError(list(said.values())[-1], what)
-    return next(iter(said), None)
-
-
-def _from_rig(rig: Rig, preload: str, stiffness: str | None) -> Declared:
-    """The rig file's numbers for a state of the friction, and a header's word on the trains' stiffness."""
-    assert rig.motors is not None
-    f = next((f for f in rig.friction if f.state == preload), rig.friction[0])
-    return made(
-        Declared,
-        vars(f),
-        stiffness=float(stiffness) if stiffness else rig.motors.train_stiffness,
-        torque_constant=rig.motors.torque_constant,
-        resistance=rig.motors.resistance,
-        readings=(1.0,) if stiffness else rig.motors.stiffness_readings,
-    )
+    stiffness, readings = next(iter(said), m.train_stiffness), (1.0,) if said else m.stiffness_readings
+    motors = {"torque_constant": m.torque_constant, "resistance": m.resistance}
+    return made(Declared, vars(f), stiffness=stiffness, readings=readings, **motors)
 
 
 def declared_numbers(runs: list[Run], plant: Path | None, rig: Rig | None = None) -> Declared:
@@ -114,7 +105,7 @@ def declared_numbers(runs: list[Run], plant: Path | None, rig: Rig | None = None
     header = runs[0].header
     axis, own = header["axis"], header.get("note", "").lower().startswith(OWN)
     if plant is None and not own:
-        return _from_rig(rig or telescope(axis), header.get("preload", "low"), _train_stiffness(runs))
+        return _from_rig(rig or telescope(axis), runs)
     model, _ = declared_model(header, plant)
     part = getattr(model.axes, axis)
     gear, motor = part.gear, part.motor

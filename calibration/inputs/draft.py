@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import GUESSED
-from calibration.inputs.loose import Loose, Said, read_loose, said
+from calibration.inputs.loose import Loose, read_loose, said
 from calibration.inputs.repair import counter_length
 from calibration.inputs.run import quantum
 from calibration.inputs.thresholds import GAP, LARGEST_NUMBER
@@ -91,7 +91,8 @@ def draft(path: Path) -> str:
     loose = read_loose(path)
     finite = {c: np.where(np.abs(x) <= LARGEST_NUMBER, x, np.nan) for c, x in loose.columns.items()}
     columns = {c: x for c, x in finite.items() if np.isfinite(x).sum() > SOFT and np.nanstd(x) > 0}
-    d = _Draft({c: _filled(x) for c, x in columns.items()})
+    good = {c: np.flatnonzero(np.isfinite(x)) for c, x in columns.items()}
+    d = _Draft({c: np.interp(np.arange(len(x)), good[c], x[good[c]]) for c, x in columns.items()})
     d.unsaid += [f"{c!r} holds one number, or none" for c in loose.columns if c not in columns]
     d.unsaid += [f"{c!r} holds words" for c in loose.words]
     _clock(d, loose)
@@ -102,18 +103,13 @@ def draft(path: Path) -> str:
     _by_motion(d)
     _response(d)
     d.unsaid += [f"{c!r}: a channel for it; it is left out" for c in d.left]
+    lines = [
+        f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."
+    ]
+    lines += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
+    lines += [role.line(channel) for channel, role in d.roles.items()]
     told = {k: (v, "") for k, v in loose.fields.items()} | d.fields
-    return "\n".join(
-        [
-            f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'.",
-            *(f"# could not say: {x}" for x in d.unsaid),
-            _flow("rig", path.stem, ""),
-            "columns:",
-            *(role.line(channel) for channel, role in d.roles.items()),
-            *(_flow(k, v, why) for k, (v, why) in told.items()),
-            "",
-        ]
-    )
+    return "\n".join([*lines, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
 
 
 def _flow(key: str, value: Any, why: str) -> str:
@@ -121,22 +117,17 @@ def _flow(key: str, value: Any, why: str) -> str:
     return f"{key}: {text.removesuffix('...' + chr(10)).strip()}" + (f"   # guessed: {why}" if why else "")
 
 
-def _filled(x: Array) -> Array:
-    good = np.isfinite(x)
-    return np.interp(np.arange(len(x)), np.flatnonzero(good), x[good])
-
-
 def _clock(d: _Draft, loose: Loose) -> None:
     """The time: by its name, else a column that goes on evenly."""
     steps = {c: np.diff(x) for c, x in d.left.items() if np.isfinite(loose.columns[c]).all()}
     forward = {c: s for c, s in steps.items() if (s >= 0).all() and np.median(s) > 0}
-    named = [c for c in forward if c == loose.stamp or _said(c).channel == "time"]
-    even = [c for c, s in forward.items() if not _said(c).channel and np.quantile(s, 0.9) < 3 * np.median(s)]
+    named = [c for c in forward if c == loose.stamp or said(c).channel == "time"]
+    even = [c for c, s in forward.items() if not said(c).channel and np.quantile(s, 0.9) < 3 * np.median(s)]
     if not (found := [*named, *even]):
         d.fields["sample_period_s"] = 1.0, "the log has no time; give the s between two rows"
         return
     column = found[0]
-    forward_steps, says = forward[column], _said(column)
+    forward_steps, says = forward[column], said(column)
     step = float(np.median(forward_steps))
     scale, why = (says.scale, "") if says.channel == "time" and says.unit else (1.0, "")
     if not says.unit and column != loose.stamp:
@@ -151,13 +142,9 @@ def _clock(d: _Draft, loose: Loose) -> None:
         d.fields["wall_time"] = {"from": "time"}, ""
 
 
-def _said(column: str | int) -> Said:
-    return said(column) if isinstance(column, str) else Said()
-
-
 def _by_name(d: _Draft) -> None:
-    for column, x in sorted(d.left.items(), key=lambda item: _said(item[0]).asked):
-        says = _said(column)
+    for column, x in sorted(d.left.items(), key=lambda item: said(item[0]).asked):
+        says = said(column)
         channel = "reference" if says.asked and says.channel in ("", "position") else says.channel
         if channel == "supply" and np.std(x) > STEADY * abs(np.mean(x)):
             channel = "effort"
@@ -168,9 +155,8 @@ def _by_name(d: _Draft) -> None:
             d.put("effort", column, says.unit, says.scale, "asked for, but no other column is a force")
         elif (says.asked and channel != "reference") or channel in ("count", "label", "time"):
             d.left.pop(column)
-            d.unsaid.append(
-                f"{column!r}: {'asked for, not measured' if says.asked else channel}; it is left out"
-            )
+            why = "asked for, not measured" if says.asked else channel
+            d.unsaid.append(f"{column!r}: {why}; it is left out")
         elif channel and channel not in d.roles:
             d.put(channel, column, says.unit, says.scale)
 
@@ -190,8 +176,9 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        # friction goes with it, too
-        by_side, _ = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))
+        by_side, _ = _like(
+            gaussian_filter1d(d.left[column], SOFT), np.sign(rate)
+        )  # friction goes with it, too
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:
@@ -215,10 +202,10 @@ def _smoothest(d: _Draft) -> tuple[str | int, str, float, str]:
     pairs = [(_like(soft[b], d.rate(a)), c) for c, a in d.left.items() for b in soft if b != c]
     for (share, slope), column in sorted(pairs, key=lambda pair: -pair[0][0])[:1]:
         if share > IS_RATE and slope > 0:
-            return column, _said(column).unit, 1.0, "another column is its rate"
+            return column, said(column).unit, 1.0, "another column is its rate"
     joined = {c: np.unwrap(x, period=counter_length(x) or 4 * np.ptp(x)) for c, x in d.left.items()}
     column = min(joined, key=lambda c: float(np.std(np.diff(joined[c])) / np.ptp(joined[c])))
-    return column, _said(column).unit, 1.0, "the smoothest column"
+    return column, said(column).unit, 1.0, "the smoothest column"
 
 
 def _like(y: Array, x: Array) -> tuple[float, float]:
@@ -237,16 +224,14 @@ def _unit(d: _Draft, p: _Role) -> None:
             parts = np.log2(PER_TURN[unit] / step) if step else 0.5
             if parts > LEAST_BITS and abs(parts - round(parts)) < WHOLE_BITS:
                 p.unit, p.why = unit, f"its unit: a turn is {2 ** round(parts)} of its steps"
-        if p.unit == "units" and _said(p.column).angle and np.ptp(p.x) < 2 * PER_TURN["rad"]:
+        if p.unit == "units" and said(p.column).angle and np.ptp(p.x) < 2 * PER_TURN["rad"]:
             p.unit, p.why = "rad", "its unit, as the name is an angle's"
     turn = units_per_turn(p.unit) or length
     if not units_per_turn(p.unit) and length:
         d.fields["turn"] = length, "the counter's length is a turn"
     if turn and np.ptp(p.x) > TURNS * turn:
-        d.fields["stages"] = (
-            [{"name": "shaft", "period": float(turn), "harmonics": 12, "kind": GUESSED}],
-            "one turn of the position; give the gear table",
-        )
+        shaft = {"name": "shaft", "period": float(turn), "harmonics": 12, "kind": GUESSED}
+        d.fields["stages"] = [shaft], "one turn of the position; give the gear table"
     else:
         d.unsaid.append("the gear table (stages)")
 
@@ -344,5 +329,5 @@ def _unnamed(d: _Draft, rate: Array) -> list[str]:
     if best is None or shares[best] < IS_FORCE:
         return []
     why = f"rate, direction and acceleration explain {100 * shares[best]:.0f} % of it"
-    d.put("effort", best, _said(best).unit, 1.0, why)
+    d.put("effort", best, said(best).unit, 1.0, why)
     return ["effort"]

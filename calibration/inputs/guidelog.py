@@ -17,7 +17,7 @@ import numpy as np
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.run import Run
-from calibration.inputs.text import load_text, plain, split
+from calibration.inputs.text import COMMAS, load_text, plain, split
 from calibration.inputs.thresholds import LARGEST_FIELD, PIXEL_SCALES, SAME_PX
 
 _PX = r"([+-]?(?:[0-9]{1,9}(?:\.[0-9]*)?|\.[0-9]+))(?![0-9.])"
@@ -43,8 +43,7 @@ def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
     Sections without frames are skipped. Without a pixel scale (a bare table) the unit is pixels;
     `header['unit']` says so. Raises CalibrationInputError with line and column.
     """
-    if text is None:
-        text, _ = load_text(path)
+    text = load_text(path)[0] if text is None else text
     lines = text.splitlines()
     sections = [_Section(path, bool(_TABLE.match(text)))]
     for number, line in enumerate(lines, 1):
@@ -57,17 +56,15 @@ def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
             now.begin(number, split(line, ","))
         elif line.startswith("INFO"):
             now.event(line)
-        elif now.where and now.guiding and line[:1].isdigit():
+        elif now.columns and now.guiding and line[:1].isdigit():
             cut = number == len(lines) and not text.endswith(("\n", "\r"))
-            if cut and line.count(",") < now.width - 1:
+            if cut and line.count(",") < len(now.columns) - 1:
                 break  # the log was copied while PHD2 was writing it
             now.frame(number, line.split(","))
         else:
             now.head.append(line)
-    runs: list[Run] = []
-    for section in sections:
-        if section.rows:
-            runs.append(section.run(path.stem if not runs else f"{path.stem}#{len(runs) + 1}"))
+    told = enumerate((section for section in sections if section.rows), 1)
+    runs = [section.run(path.stem if k == 1 else f"{path.stem}#{k}") for k, section in told]
     if not runs:
         other = {mark for section in sections for mark in section.other}
         raise CalibrationInputError(path, _empty(text, other), len(lines))
@@ -77,10 +74,8 @@ def read_guide_log(path: Path, text: str | None = None) -> list[Run]:
 def _empty(text: str, other: set[str]) -> str:
     """Why there is nothing to read."""
     if "AO" in other:
-        return (
-            "holds frames of an adaptive-optics unit (mount 'AO') only: it moves the star without the mount,"
-            " so the drive's error cannot be summed up"
-        )
+        unit = "an adaptive-optics unit (mount 'AO') only: it moves the star without the mount"
+        return f"holds frames of {unit}, so the drive's error cannot be summed up"
     if other:
         return f"every frame is marked {', '.join(sorted(other))}: the star was never measured"
     if "Calibration Begins" in text and "Guiding Begins" not in text:
@@ -98,8 +93,7 @@ class _Section:
     path: Path
     guiding: bool
     head: list[str] = field(default_factory=list)
-    where: dict[str, int] = field(default_factory=dict)  # column -> place
-    width: int = 0
+    columns: list[str] = field(default_factory=list)
     first: int = 0  # line of the first frame
     rows: list[tuple[float, float, float, float, float]] = field(default_factory=list)
     other: set[str] = field(default_factory=set)  # marks of frames that are no measurement of the mount
@@ -114,7 +108,7 @@ class _Section:
         """The header row of the table."""
         if missing := [c for c in COLUMNS if c not in columns]:
             raise CalibrationInputError(self.path, f"the column '{missing[0]}' is missing", line)
-        self.where, self.width = {c: k for k, c in enumerate(columns)}, len(columns)
+        self.columns = columns
 
     def event(self, text: str) -> None:
         """A dither, a new lock position (PHD2 writes the old one before a dither), or settling."""
@@ -135,35 +129,43 @@ class _Section:
     def frame(self, line: int, fields: list[str]) -> None:
         """One row of the table."""
         self.first = self.first or line
-        needed = max(self.where[c] for c in COLUMNS)
-        mark = fields[self.where["mount"]].strip().strip('"') if len(fields) > needed else ""
-        if len(fields) <= needed:
-            raise CalibrationInputError(self.path, self._wide(fields), line)
+        row = dict(zip(self.columns, fields, strict=False))
+        wide = f"{len(fields)} fields, the header row has {len(self.columns)}"
+
+        def number(name: str) -> float:  # 0 where the table has no such column
+            if name in self.columns and name not in row:
+                raise CalibrationInputError(self.path, wide, line)
+            found = plain(row.get(name, "0").strip())
+            if found is None or abs(found) > LARGEST_FIELD:
+                raise CalibrationInputError(self.path, f"'{row[name][:40]}' is not a number", line, name)
+            return found
+
+        def sent(duration: str, guided: float) -> float:  # 0 where no pulse was; a table without is trusted
+            pulse = row.get(duration, "").strip() not in ("0", "0.0")
+            return guided if isfinite(guided) and pulse else 0.0
+
+        if not row.keys() >= {*COLUMNS}:
+            raise CalibrationInputError(self.path, wide, line)
+        mark = row["mount"].strip().strip('"')
         if mark not in MARKS:
-            what = f"'{mark}' is none of {', '.join(MARKS)} (decimal commas? write points)"
+            what = f"'{mark}' is none of {', '.join(MARKS)}{COMMAS}"
             raise CalibrationInputError(self.path, what, line, "mount")
         if mark != "Mount":
             self.other.add(mark)
             return
-        if len(fields) > self.width + 1:
-            what = f"{self._wide(fields)}: decimal commas? write points"
-            raise CalibrationInputError(self.path, what, line)
-        t = self._number(line, fields, "Time")
-        raw, guided = (
-            complex(*(self._number(line, fields, f"{axis}{kind}Distance") for axis in ("RA", "DEC")))
-            for kind in ("Raw", "Guide")
-        )
-        if not isfinite(t):
-            raise CalibrationInputError(self.path, "is no time in s", line, "Time")
-        if t < self.time:
-            what = f"time goes backwards from {self.time:g} s to {t:g} s"
-            raise CalibrationInputError(self.path, what, line, "Time")
+        if len(fields) > len(self.columns) + 1:
+            raise CalibrationInputError(self.path, wide + COMMAS, line)
+        t = number("Time")
+        raw = complex(number("RARawDistance"), number("DECRawDistance"))
+        ra, dec = number("RAGuideDistance"), number("DECGuideDistance")
+        if not t >= self.time or not isfinite(t):
+            back = f"time goes backwards from {self.time:g} s to {t:g} s"
+            raise CalibrationInputError(self.path, back if isfinite(t) else "is no time in s", line, "Time")
         self.time = t
         if isfinite(raw.real) and not self.settling:
             star = raw + self.corrected + self.dithered
             self.rows.append((t, star.real, star.imag, float(self.jumps), self.dithered.real))
-        sent = (self._sent(fields, *x) for x in (("RADuration", guided.real), ("DECDuration", guided.imag)))
-        self.corrected += complex(*sent)
+        self.corrected += complex(sent("RADuration", ra), sent("DECDuration", dec))
 
     def run(self, name: str) -> Run:
         """The section's frames, in arcsec where the head gives the pixel scale."""
@@ -188,27 +190,6 @@ class _Section:
         columns = dict(zip(("t", "ra", "dec", "segment", "dither"), scaled, strict=True))
         notes = [] if scale else ["no pixel scale in the file: distances are in pixels"]
         return Run(name, self.path, name, columns, header=header, notes=notes, start_s=start_s)
-
-    def _number(self, line: int, fields: list[str], name: str) -> float:
-        """A field of a row, 0 where the table has no such column."""
-        if name not in self.where:
-            return 0.0
-        if self.where[name] >= len(fields):
-            raise CalibrationInputError(self.path, self._wide(fields), line)
-        value = fields[self.where[name]]
-        found = plain(value.strip())
-        if found is None or abs(found) > LARGEST_FIELD:
-            raise CalibrationInputError(self.path, f"'{value[:40]}' is not a number", line, name)
-        return found
-
-    def _wide(self, fields: list[str]) -> str:
-        return f"{len(fields)} fields, the header row has {self.width}"
-
-    def _sent(self, fields: list[str], duration: str, guided: float) -> float:
-        """px that a pulse moved the mount by; 0 when none was sent. A table without durations is trusted."""
-        at = self.where.get(duration, len(fields))
-        sent = at >= len(fields) or fields[at].strip() not in ("0", "0.0")
-        return guided if isfinite(guided) and sent else 0.0
 
 
 def _px(pattern: re.Pattern[str], text: str) -> complex | None:

@@ -27,10 +27,7 @@ SCALES: dict[str, tuple[float, str]] = {
     "velocity_window_s": (0.005, "s over which `velocity` counts; paper 3.3, 5 ms interrupt"),
     "tach_window_s": (0.010, "s over which `tach_a/b` count; log-format.md"),
     "position_arcsec_per_count": (ARCSEC_PER_TURN / 2**29, "arcsec; 29-bit absolute encoder"),
-    "velocity_arcsec_per_count": (
-        ARCSEC_PER_TURN / (4.608e6 * 735.0 / 30.0),
-        "arcsec; roller 735:30, 4.608 M counts",
-    ),
+    "velocity_arcsec_per_count": (ARCSEC_PER_TURN / (4.608e6 * 735 / 30), "arcsec; roller 735:30, 4.608 M"),
     "adc_A_per_count": (0.0061, "A; log-format.md"),
     "tach_counts_per_turn": (4096.0, "counts per motor turn; log-format.md"),
     "aux_arcsec_per_count": (ARCSEC_PER_TURN / (2**17 * 10.8), "arcsec; 17 bit through 10.8:1"),

@@ -103,10 +103,8 @@ def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
         if not text.strip():
             raise CalibrationInputError(path, "is empty", 1)
     if rig is None or rig.format != "table":
-        what = (
-            "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log. "
-            f"Another drive's file needs --rig FILE; schmidt rig --new {path.name} drafts one"
-            + (", of format: table" if rig is not None else "")
-        )
+        neither = "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log"
+        drafts = f"schmidt rig --new {path.name} drafts one" + ", of format: table" * (rig is not None)
+        what = f"{neither}. Another drive's file needs --rig FILE; {drafts}"
         raise CalibrationInputError(path, what, 1)
     return "table", read_table(path, rig, text)

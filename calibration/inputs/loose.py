@@ -65,20 +65,17 @@ def read_loose(path: Path) -> Loose:
         names = columns_of(path)
         return Loose(dict(read_matlab(path, names)[0].items()) if names else {})
     if path.suffix.lower() in RECORDINGS:
-        raise CalibrationInputError(
-            path, "is a recording: give its channels in a rig file, nothing is drafted of it"
-        )
+        raise CalibrationInputError(path, "is a recording: give its channels in a rig file, none is drafted")
     text = load_utf8(path)
     if is_axis_log(text) or is_guide_log(text):
-        raise CalibrationInputError(
-            path, f"says itself what it holds: schmidt calibrate {path.name} --out DIR"
-        )
+        what = f"says itself what it holds: schmidt calibrate {path.name} --out DIR"
+        raise CalibrationInputError(path, what)
     text = table_of_json(path, text) if is_json(text) else text
     h = heading(path, text)
-    if h.first == h.at or all(plain(f) is not None or _is_stamp(f) for f in h.fields):
-        names = [f"column{k + 1}" for k in range(len(h.fields))]
-        return _of_text(path, text, h._replace(fields=names, first=h.at), {"names": names})
-    return _of_text(path, text, h, {})
+    if h.first != h.at and any(plain(f) is None and not _is_stamp(f) for f in h.fields):
+        return _of_text(path, text, h, {})
+    names = [f"column{k + 1}" for k in range(len(h.fields))]
+    return _of_text(path, text, h._replace(fields=names, first=h.at), {"names": names})
 
 
 def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose:
@@ -138,8 +135,10 @@ def _table() -> dict[str, dict[str, Any]]:
     return dict(yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8")))
 
 
-def said(name: str) -> Said:
-    """What a header says: "Position [mm]", "torque_Nm", "goalPos (deg)"."""
+def said(name: str | int) -> Said:
+    """What a header says: "Position [mm]", "torque_Nm", "goalPos (deg)"; a place says nothing."""
+    if isinstance(name, int):
+        return Said()
     words, units = _table()["words"], _table()["units"]
     bracket = _UNIT.search(name)
     inside = "" if not bracket or bracket[1][:1].isdigit() or bracket[1].startswith(":") else bracket[1]

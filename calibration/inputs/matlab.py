@@ -15,6 +15,8 @@ from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 
 TOKEN = re.compile(r"\.?([A-Za-z]\w*)|\{(\d+|\*)\}|\(([^()]*)\)")
+# one element (2), one row (2,:), one column (:,2)
+PLACE = re.compile(r"\s*(?:([1-9]\d*)|([1-9]\d*)\s*,\s*:|:\s*,\s*([1-9]\d*))\s*")
 
 
 def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
@@ -30,9 +32,8 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     for name, values in found.items():
         if len(values) not in (1, count):
             raise CalibrationInputError(path, f"has {len(values)} cells, others {count}", None, name)
-    runs = [{name: v[k if len(v) > 1 else 0] for name, v in found.items()} for k in range(count)]
-    for run in runs:
-        lengths = {name: len(v) for name, v in run.items()}
+    runs = [{name: v[k % len(v)] for name, v in found.items()} for k in range(count)]
+    for lengths in ({name: len(v) for name, v in run.items()} for run in runs):
         if len(set(lengths.values())) > 1:
             raise CalibrationInputError(path, f"the variables have different lengths: {lengths}")
     return runs
@@ -40,18 +41,15 @@ def read_matlab(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
 
 def _content(path: Path) -> dict[str, Any]:
     """Variables by their names. Raises CalibrationInputError for what is no such file."""
-    return _arrays(path) if path.suffix.lower() == ".npz" else _variables(path)
-
-
-def _variables(path: Path) -> dict[str, Any]:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
+    if path.suffix.lower() == ".npz":
+        return _arrays(path)
     try:
         return dict(loadmat(path))
     except NotImplementedError:
-        what = "is a MATLAB 7.3 file (HDF5); save it with save(..., '-v7')"
-        raise CalibrationInputError(path, what) from None
+        raise CalibrationInputError(path, "is MATLAB 7.3 (HDF5); save it with save(..., '-v7')") from None
     except (OSError, ValueError, TypeError, MatReadError) as error:
         text = " ".join(str(error).split())
         raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({text})") from None
@@ -104,54 +102,47 @@ def _resolve(content: dict[str, Any], name: str) -> list[Any]:
         raise LookupError("is not a name in MATLAB's words, such as q, log.q, x(:,2), Y{2}(1,:)")
     values: list[Any] = [content]
     for field, cell, index in TOKEN.findall(name):
-        if field:
-            values = [_field(v, field) for v in values]
-        elif cell:
+        if cell:
             values = [x for v in values for x in _cells(v, cell)]
         else:
-            values = [_index(v, index) for v in values]
+            values = [_field(v, field) if field else _index(v, index) for v in values]
     return values
 
 
 def _field(value: Any, field: str) -> Any:
-    if isinstance(value, dict):
-        if field not in value:
-            have = ", ".join(k for k in value if not k.startswith("__"))
-            raise LookupError(f"no such variable; the file has {have}")
-        return value[field]
-    names = getattr(getattr(value, "dtype", None), "names", None)
-    if not names or field not in names:
-        what = f"a struct with {', '.join(names)}" if names else "no struct"
-        raise LookupError(f"no field '{field}': it is {what}")
-    if value.size != 1:
+    """A variable of the file, or a field of a struct."""
+    struct = not isinstance(value, dict)
+    names = (getattr(getattr(value, "dtype", None), "names", None) or ()) if struct else value
+    if field not in names:
+        have = ", ".join(k for k in names if not k.startswith("__")) or "none"
+        raise LookupError(f"no such {'field' if struct else 'variable'} ('{field}'); there are {have}")
+    if struct and value.size != 1:
         raise LookupError(f"is an array of {value.size} structs: index it")
-    return value.ravel()[0][field]
+    return value.ravel()[0][field] if struct else value[field]
 
 
 def _cells(value: Any, cell: str) -> list[Any]:
     if getattr(value, "dtype", None) != np.dtype(object):
         raise LookupError("{} is for cells; this is no cell array")
     cells = list(value.ravel(order="F"))
-    if cell == "*":
-        return cells
-    if not 1 <= int(cell) <= len(cells):
+    if cell != "*" and not 1 <= int(cell) <= len(cells):
         raise LookupError(f"there are {len(cells)} cells, counted from 1")
-    return [cells[int(cell) - 1]]
+    return cells if cell == "*" else [cells[int(cell) - 1]]
 
 
 def _index(value: Any, index: str) -> Any:
     """A row or column, counted from 1, or one element of a struct array."""
-    parts = [p.strip() for p in index.split(",")]
+    form = PLACE.fullmatch(index)
+    if form is None:
+        raise LookupError(f"({index}): give one row (2,:), one column (:,2) or one element (2)")
+    element, row, column = (int(k or 0) for k in form.groups())
     array = np.asarray(value)
     try:
-        if len(parts) == 1 and parts[0].isdigit():
-            return array.ravel(order="F")[int(parts[0]) - 1 : int(parts[0])]
-        if len(parts) == 2 and sorted(p.isdigit() for p in parts) == [False, True] and ":" in parts:
-            row = parts[0].isdigit()
-            return array[int(parts[0]) - 1, :] if row else array[:, int(parts[1]) - 1]
+        if element:
+            return array.ravel(order="F")[element - 1 : element]
+        return array[row - 1, :] if row else array[:, column - 1]
     except IndexError:
         raise LookupError(f"({index}) is outside of its {array.shape}") from None
-    raise LookupError(f"({index}): give one row (2,:), one column (:,2) or one element (2)")
 
 
 def _numbers(value: Any) -> Array:
@@ -160,8 +151,7 @@ def _numbers(value: Any) -> Array:
         kind = f"a struct with {', '.join(array.dtype.names)}" if array.dtype.names else "a cell array"
         raise LookupError(f"is {kind}: name the part, such as .q or {{1}}")
     if array.ndim == 2 and min(array.shape) > 1:
-        size = f"{array.shape[0]} x {array.shape[1]}"
-        raise LookupError(f"is a matrix of {size}: name a row or a column")
+        raise LookupError(f"is a matrix of {array.shape}: name a row or a column")
     if np.iscomplexobj(array):
         raise LookupError("holds complex numbers")
     try:

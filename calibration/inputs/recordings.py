@@ -77,11 +77,8 @@ def _inside(content: Any, words: list[str]) -> float | None:
 
 def _joined(path: Path, wanted: list[str], columns: Columns, have: list[str]) -> dict[str, Array]:
     """One row per sample of the first column; raises CalibrationInputError for a column that is not there."""
-    for name in wanted:
-        if name != TIME and name not in columns:
-            raise CalibrationInputError(
-                path, f"is not in the file, which has {', '.join(have[:20])}", None, name
-            )
+    for name in (name for name in wanted if name not in (TIME, *columns)):
+        raise CalibrationInputError(path, f"is not in the file, which has {', '.join(have[:20])}", None, name)
     if not columns:
         raise CalibrationInputError(path, "needs a column beside time")
     t = np.asarray(columns[next(name for name in wanted if name != TIME)][0], dtype=float)
@@ -91,15 +88,12 @@ def _joined(path: Path, wanted: list[str], columns: Columns, have: list[str]) ->
             numbers = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
             raise CalibrationInputError(path, "holds no numbers", None, name) from None
-        if np.array_equal(times, t):
-            found[name] = numbers
-        else:
-            at = np.searchsorted(times, t, side="right") - 1
-            found[name] = np.where(at >= 0, numbers[np.maximum(at, 0)], np.nan)
+        at = np.searchsorted(times, t, side="right") - 1
+        held = np.where(at >= 0, numbers[np.maximum(at, 0)], np.nan)
+        found[name] = numbers if np.array_equal(times, t) else held
     return {name: found[name] for name in wanted}
 
 
-RECORDINGS: Final[dict[str, Callable[[Path, list[str]], list[dict[str, Array]]]]] = {
-    ".mf4": read_mf4, ".mcap": read_mcap
-}  # fmt: skip
+Reader = Callable[[Path, list[str]], list[dict[str, Array]]]
+RECORDINGS: Final[dict[str, Reader]] = {".mf4": read_mf4, ".mcap": read_mcap}
 """By the ending of a file's name."""

@@ -43,11 +43,10 @@ def _wraps(run: Run, channel: str, where: Column) -> None:
         return
     joined = np.unwrap(x, period=length)
     turns = np.round((joined - x) / length)
-    stretches = np.diff(np.flatnonzero(np.concatenate([[True], np.diff(turns) != 0, [True]])))
+    stretches = np.diff(np.flatnonzero(np.concatenate([[True], np.diff(turns) != 0, [True]])))[1:-1]
     # there and back in a row or two is a spike, not a wrap
-    if len(stretches) > 2 and np.max(stretches[1:-1]) <= 2 and stretches[1:-1].sum() < 0.01 * len(x):
-        return
-    if np.abs(np.diff(joined)).max() > 0.5 * float(x.max() - x.min()):
+    spike = len(stretches) > 0 and np.max(stretches) <= 2 and stretches.sum() < 0.01 * len(x)
+    if spike or np.abs(np.diff(joined)).max() > 0.5 * float(x.max() - x.min()):
         return
     kind, note = "wrap", f"a counter of {length:g} wraps: joined"
     if np.allclose(x, np.round(x)) and channel not in MOVING and np.ptp(turns) == 1:
@@ -91,8 +90,7 @@ def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:
 
 
 def _least_step(step: Array) -> float:
-    some = np.abs(step[step != 0])
-    return float(some.min()) if len(some) else 0.0
+    return float(np.min(np.abs(step[step != 0]), initial=np.inf)) if np.any(step != 0) else 0.0
 
 
 def _leaps(run: Run, channel: str) -> None:
@@ -118,14 +116,11 @@ def _leaps(run: Run, channel: str) -> None:
 def _spikes(run: Run, channel: str) -> None:
     """Leave out rows far off the line through their neighbours, which agree with each other."""
     x = run.columns[channel]
-    n = len(x)
-    bad = np.zeros(n, dtype=bool)
-    if n >= limits.FEWEST_SAMPLES:
-        for width in (1, 2):  # single rows, then pairs
-            bad |= _far_off(x, width)
+    if len(x) < limits.FEWEST_SAMPLES:
+        return
     gap = np.concatenate([[False], np.diff(run.columns["t"]) > run.gap_s])
-    bad &= ~(gap | np.roll(gap, -1))
-    if not 0 < bad.sum() <= max(3, limits.MOST_SPIKES * n):
+    bad = (_far_off(x, 1) | _far_off(x, 2)) & ~(gap | np.roll(gap, -1))  # single rows, and pairs
+    if not 0 < bad.sum() <= max(3, limits.MOST_SPIKES * len(x)):
         return
     rows = ", ".join(str(k + 1) for k in np.flatnonzero(bad)[: limits.TOLD_ROWS])
     more = " …" if bad.sum() > limits.TOLD_ROWS else ""

@@ -44,11 +44,9 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
             yield f"response: '{r.channel}' is given twice"
     if "position" in channels and len(channels) > 1:
         yield "response: a position at constant rate is explained alone; leave the others out"
-    period, why = (
-        ("period", "at constant rate the clock counts; give period_s")
-        if rig.drifts
-        else ("period_s", "period_s is for a drive at constant rate (response: position); give period")
-    )
+    period, why = "period_s", "period_s is for a drive at constant rate (response: position); give period"
+    if rig.drifts:
+        period, why = "period", "at constant rate the clock counts; give period_s"
     for stage in data.get("stages", []):
         if period in stage:
             yield f"stages.{stage['name']}: {why}"
@@ -65,11 +63,10 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
         yield f"constants.{min(both)}: is estimated too; a number is known or estimated"
     if "acceleration" in channels and "inertia" in estimated | known:
         yield "inertia: a response of acceleration is a balance per unit of inertia; leave it out"
-    used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference"}
+    used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference", "applied"}
     used |= {*channels} | {r.divide_by for r in responses if r.divide_by}
     used |= {"effort", "force", "current"} if "position2" in channels else set()
     used |= {"load", *JOINTS} if "gravity" in estimated else set()
-    used |= {"applied"}
     used |= {"effort"} if "controller" in data else set()
     used |= {"voltage", "duty", "current"} if {"voltage", "duty"} & set(columns) else set()
     for name, where in columns.items():

@@ -42,8 +42,7 @@ def load_rig(path: Path) -> Rig:
 
     data, text = _read(path)
     if not isinstance(data, dict):
-        what = "is no rig file: a mapping with 'rig', 'columns' and 'response' is needed"
-        raise CalibrationInputError(path, what)
+        raise CalibrationInputError(path, "is no rig file: 'rig', 'columns' and 'response' are needed")
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     errors = [_innermost(e) for e in Draft202012Validator(schema).iter_errors(data)]
     if errors:  # a rule that the schema says in its own words holds for fields that are sound
@@ -99,12 +98,12 @@ def _words(error: Any) -> list[str]:
 
 def _complaint(data: dict[str, Any], text: str, error: Any, word: str) -> tuple[str, int | None]:
     """One mistake: field, what is wrong, the nearest word that would be right; and its line."""
-    names, keys, at = [], [], data
+    names, at = [], data
     for step in error.absolute_path:
         at = at[step]
         name = at.get("name") if isinstance(step, int) and isinstance(at, dict) else None
         names.append(name if isinstance(name, str) else str(step))
-        keys += [step] if isinstance(step, str) else [name] if isinstance(name, str) else []
+    keys = [name for name in names if not name.isdecimal()]  # places of a list are no words of the file
     place = ".".join(names) or "top level"
     message, choices = str(error.message), []
     if error.validator == "additionalProperties" and isinstance(error.instance, dict):

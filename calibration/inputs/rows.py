@@ -44,9 +44,7 @@ def repeated_rows(run: Run, rig: Rig) -> None:
     present = [c for c in rig.columns if c in run.columns and c not in STILL]
     if len(present) < 2 or run.rows < limits.FEWEST_ROWS:
         return
-    same = np.ones(run.rows - 1, dtype=bool)
-    for c in present:
-        same &= np.diff(run.columns[c]) == 0
+    same = np.all([np.diff(run.columns[c]) == 0 for c in present], axis=0)
     x = run.columns["position"]
     usual = float(np.nanmedian(np.abs(np.diff(x))))
     step = quantum(x[np.isfinite(x)]) or 0.0
@@ -113,13 +111,11 @@ def _bends(t: Array, x: Array) -> Array:
 
 def _quick(place: Array, x: Array) -> Mask:
     """Rows between two neighbours, quicker than most: there the sensor's own steps matter least."""
-    whole = np.zeros(len(x), dtype=bool)
-    whole[1:-1] = (np.diff(place)[:-1] == 1) & (np.diff(place)[1:] == 1)
-    speed = np.abs(np.gradient(x))
+    one, speed = np.diff(place) == 1, np.abs(np.gradient(x))
+    whole = np.concatenate([[False], one[:-1] & one[1:], [False]])
     whole &= np.isfinite(speed) & np.isfinite(_bends(place, x))
-    if not whole.any():
-        return whole
-    return np.asarray(whole & (speed > np.quantile(speed[whole], limits.QUICK_SHARE)))
+    least = np.quantile(speed[whole], limits.QUICK_SHARE) if whole.any() else np.inf
+    return np.asarray(whole & (speed > least))
 
 
 def jumps_of_clock(x: Array, steps: NDArray[np.int64]) -> Mask:

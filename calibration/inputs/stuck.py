@@ -43,8 +43,7 @@ def check_stuck(records: list[Run], rig: Rig) -> None:
     if np.ptp(position) <= limits.MOVED * float(np.abs(position).max()):
         return
     wanted = [r.channel for r in rig.responses if r.channel != "position"]
-    wanted += ["velocity", "acceleration", "motor_a", "motor_b"]
-    wanted += ["effort"] if rig.motors is not None else []
+    wanted += ["velocity", "acceleration", "motor_a", "motor_b", *["effort"] * (rig.motors is not None)]
     for channel in dict.fromkeys(wanted):
         if channel in rig.columns and (held := _held(numbers(records, channel))) is not None:
             _refuse(records[0].path, held, str(rig.columns[channel].column))
@@ -82,13 +81,11 @@ def piled_at(x: Array, effort: Array, end: float, before: float) -> tuple[int, i
 
 def converter_end(runs: Sequence[Run], names: Sequence[str]) -> float | None:
     """What the currents `names` of two motors stop at in all runs; None where they pile up nowhere."""
-    have = [n for n in names if all(n in r.columns for r in runs)]
-    if not have:
-        return None
-    x = np.concatenate([r.columns[n] for n in have for r in runs])
-    effort = np.concatenate([r.columns["effort"] for _ in have for r in runs])
-    good = np.isfinite(x) & np.isfinite(effort)
-    x, effort = x[good], effort[good]
+    have = [
+        (r.columns[n], r.columns["effort"]) for n in names if all(n in r.columns for r in runs) for r in runs
+    ]
+    both = np.hstack([np.zeros((2, 0)), *map(np.array, have)])
+    x, effort = both[:, np.isfinite(both).all(axis=0)]
     below = x[x < x.max(initial=-np.inf)]
     if not len(below):  # nothing, or one number, which has no end
         return None

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.arrays import Array
+from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
-from calibration.inputs.counters import count_wraps, unwrap
+from calibration.inputs.counters import count_wraps, read_signed, unwrap
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
 from calibration.inputs.recordings import RECORDINGS
@@ -18,7 +18,6 @@ from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import Long, load_utf8, read_columns, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
-from calibration.inputs.words import read_signed
 
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
@@ -65,12 +64,8 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         values = np.array(raw[label], dtype=float) if where.column != "" else np.ones(rows)
         if not np.isfinite(values).any():
             raise CalibrationInputError(path, "holds no number in any row", None, label)
-        if np.isinf(values).any():
-            what = f"is infinite in data row {int(np.argmax(np.isinf(values))) + 1}"
-            raise CalibrationInputError(path, what, None, label)
-        if (big := np.abs(values) > LARGEST_NUMBER).any():
-            what = f"is beyond {LARGEST_NUMBER:g} in data row {int(np.argmax(big)) + 1}"
-            raise CalibrationInputError(path, what, None, label)
+        _refuse(path, np.isinf(values), "is infinite", label)
+        _refuse(path, np.abs(values) > LARGEST_NUMBER, f"is beyond {LARGEST_NUMBER:g}", label)
         if where.sign_bit is not None:
             values = signed(path, values, where.sign_bit, label)
         if where.wrap:
@@ -114,15 +109,18 @@ def _even(rig: Rig, rows: int) -> Array:
     return np.arange(rows) * np.float64(rig.sample_period_s or 1.0)
 
 
+def _refuse(path: Path, bad: Mask, why: str, name: str) -> None:
+    """Raise CalibrationInputError for the first row that is `bad` (n,)."""
+    if bad.any():
+        raise CalibrationInputError(path, f"{why} in data row {int(np.argmax(bad)) + 1}", None, name)
+
+
 def _check_clock(path: Path, t: Array, name: str) -> None:
     """Refuse a clock that does not go forward."""
-    if not np.isfinite(t).all():
-        what = f"is empty in data row {int(np.argmax(~np.isfinite(t))) + 1}"
-        raise CalibrationInputError(path, what, None, name)
+    _refuse(path, ~np.isfinite(t), "is empty", name)
     if len(t) > 1 and not np.median(np.diff(t)) > 0:
         raise CalibrationInputError(path, "does not advance", None, name)
-    if (np.diff(t) < 0).any():
-        k = int(np.argmax(np.diff(t) < 0))
+    for k in np.flatnonzero(np.diff(t) < 0)[:1]:
         raise CalibrationInputError(path, f"time goes backwards from {t[k]:g} to {t[k + 1]:g}", k + 2, name)
 
 
@@ -167,12 +165,10 @@ def signed(path: Path, words: Array, bit: int, label: str) -> Array:
 
 def of_file(path: Path, where: Column, label: str) -> float:
     """The number of this file, by its name without the ending; 1 where no file has one."""
-    if not where.files:
-        return 1.0
-    number = next((x for name, x in where.files.items() if fnmatch(path.stem, name)), None)
-    if number is None:
+    numbers = [x for name, x in (where.files or {"*": 1.0}).items() if fnmatch(path.stem, name)]
+    if not numbers:
         raise CalibrationInputError(path, f"'files' has no number for {path.stem}", None, label)
-    return number
+    return numbers[0]
 
 
 def over_time(where: Column, t: Array, values: Array) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -89,12 +89,10 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     if is_json(text):
         text, delimiter = table_of_json(path, text), "\t"
     lines = text.splitlines()
-    skip = 0
-    while skip < len(lines) and (lines[skip].startswith(("#", "%")) or not lines[skip].strip()):
-        skip += 1
-    if skip >= len(lines):
+    rows = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(("#", "%"))]
+    if not rows:
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
-    skip = _behind_remarks(lines, skip, delimiter)
+    skip = _behind_remarks(lines, rows[0], delimiter)
     mark = delimiter or _mark(lines[skip])
     if mark == " ":  # aligned columns are parted by any number of blanks
         lines = [" ".join(line.split()) for line in lines]
@@ -105,9 +103,8 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
         fields, first = list(names) or said or [str(k) for k in range(len(fields))], skip
     if first >= len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
-    rows = len(lines[first].split(mark))
-    if len(fields) != rows:
-        raise CalibrationInputError(path, f"{rows} fields, {len(fields)} names", first + 1)
+    if len(fields) != (width := len(lines[first].split(mark))):
+        raise CalibrationInputError(path, f"{width} fields, {len(fields)} names", first + 1)
     return Heading(lines, fields, first, mark, skip - 1 if fields == said else skip)
 
 
@@ -228,18 +225,12 @@ def read_numbers(
     keep = {k: str(k) for k in (range(len(names)) if wanted is None else sorted(wanted))}
     if body.startswith("\ufeff"):  # the reader would pass over it; here it is no beginning of a file
         return _slowly(path, body, names, first_line, mark, keep)
+    reading = csv.ReadOptions(column_names=[str(k) for k in range(len(names))], use_threads=False)
+    empty: dict[str, Any] = {"null_values": ["", "nan", "NaN"], "strings_can_be_null": True}
+    types = dict.fromkeys(keep.values(), float64())
+    turned = csv.ConvertOptions(column_types=types, include_columns=list(keep.values()), **empty)
     try:
-        table = csv.read_csv(
-            io.BytesIO(body.encode()),
-            read_options=csv.ReadOptions(column_names=[str(k) for k in range(len(names))], use_threads=False),
-            parse_options=csv.ParseOptions(delimiter=mark),
-            convert_options=csv.ConvertOptions(
-                column_types=dict.fromkeys(keep.values(), float64()),
-                include_columns=list(keep.values()),
-                null_values=["", "nan", "NaN"],
-                strings_can_be_null=True,
-            ),
-        )
+        table = csv.read_csv(io.BytesIO(body.encode()), reading, csv.ParseOptions(delimiter=mark), turned)
     except ArrowInvalid:
         return _slowly(path, body, names, first_line, mark, keep)
     return {k: np.asarray(table[name].to_numpy(), dtype=float) for k, name in keep.items()}

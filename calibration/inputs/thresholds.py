@@ -130,7 +130,7 @@ MOST_JUMPS_WHOLE = 0.9
 # values below zero, before a column is read with a sign. ASSUMPTION: one or two mark failed readings
 FEWEST_SIGNED = 3
 # of a count, by which a scale there and back may miss a whole one. arithmetic
-ROUNDED = 1e-6
+WHOLE_COUNT = 1e-6
 # of the empty middle of a word: how far its values may stay off zero. ASSUMPTION
 ABOUT_ZERO = 0.1
 

@@ -62,12 +62,10 @@ def stages_of(path: Path, items: list[dict[str, Any]]) -> list[Stage]:
         if name in known:
             raise CalibrationInputError(path, f"stages: '{name}' is given twice")
         if "teeth" in item:
-            other = known.get(item["of"])
-            if other is None:
+            if item["of"] not in known:
                 raise CalibrationInputError(path, f"stages.{name}: 'of' must name a stage given before it")
-            factor = item["teeth"][1] / item["teeth"][0]
-            period = other.period * factor if other.period else None
-            period_s = other.period_s * factor if other.period_s else None
+            other, factor = known[item["of"]], item["teeth"][1] / item["teeth"][0]
+            period, period_s = (x * factor if x else None for x in (other.period, other.period_s))
         given = item.get("harmonics", HARMONICS)
         listed = tuple(given) if isinstance(given, list) else ()
         known[name] = Stage(name, period, period_s, max(listed, default=given), item.get("kind"), listed)

@@ -36,10 +36,8 @@ def runs_of(records: list[Run], rig: Rig) -> list[Run]:
             steps[called] = signal.quantum * (factor or 1.0) if signal.quantum else finest
         for name in CURRENTS:
             if name in si and float(np.nanmin(si[name])) < -3 * steps[name]:
-                what = (
-                    "is negative. A motor pulls one way only here, and its current counts as it pulls. Give a"
-                    " scale of -1 or leave the column out"
-                )
+                pulls = "A motor pulls one way only here, and its current counts as it pulls"
+                what = f"is negative. {pulls}. Give a scale of -1 or leave the column out"
                 raise CalibrationInputError(r.path, what, None, r.signals[name].column)
         # files that share the position's zero are one session
         session = rig.name if rig.runs.get("origin") == "shared" else r.name

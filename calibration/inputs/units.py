@@ -4,20 +4,9 @@ from math import pi
 
 from plant.units import ARCSEC_PER_TURN
 
-PER_TURN: dict[str, float] = {
-    "rad": 2 * pi,
-    "radian": 2 * pi,
-    "mrad": 2000 * pi,
-    "deg": 360.0,
-    "degree": 360.0,
-    "°": 360.0,
-    "arcmin": 21600.0,
-    "arcsec": ARCSEC_PER_TURN,
-    "gon": 400.0,
-    "turn": 1.0,
-    "rev": 1.0,
-    "revolution": 1.0,
-}
+PER_TURN: dict[str, float] = {"rad": 2 * pi, "radian": 2 * pi, "mrad": 2000 * pi, "gon": 400.0}
+PER_TURN |= {"arcmin": 21600.0, "arcsec": ARCSEC_PER_TURN}
+PER_TURN |= dict.fromkeys(("deg", "degree", "°"), 360.0) | dict.fromkeys(("turn", "rev", "revolution"), 1.0)
 
 
 def units_per_turn(unit: str) -> float | None:

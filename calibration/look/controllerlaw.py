@@ -19,10 +19,10 @@ from calibration.decide.thresholds import FEWEST_TOLD, NOISE_SHARE
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
-from calibration.names.candidates import tried
 from calibration.names.command_disturbance import NAME as DISTURBANCE
 from calibration.names.command_disturbance import lines
 from calibration.names.lines import ON_CLOCK
+from calibration.names.name import tried
 from calibration.names.scene import Scene, since_first
 from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve

@@ -13,7 +13,7 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding
-from calibration.names.candidates import candidate
+from calibration.names.name import candidate
 from calibration.statistics.regression import solve
 
 # cells before a jump and as many behind it, over which it is measured beside a slope: quiet air shows it over

@@ -18,7 +18,7 @@ from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding
-from calibration.names.candidates import candidate
+from calibration.names.name import candidate
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
 # fitted turns of a section for its own phase to mean anything. ASSUMPTION

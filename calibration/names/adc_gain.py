@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, VOLTS, Beside, Candidate, Finding, Name, candidate
-from calibration.names.scene import MOTOR, Scene
+from calibration.names.name import FORCE, MOTOR, VOLTS, Beside, Candidate, Made, Name, Scene, candidate, value
 
 # share of a current: one motor's torque is most of the torque, and would explain itself. ASSUMPTION
 LARGEST = 0.5
@@ -22,11 +20,6 @@ def columns(s: Scene) -> list[Candidate]:
     return [candidate(NAME.name, one, "gain", most=LARGEST, fixed=motor) for one, motor in torques]
 
 
-def to_plant(f: Finding, facts: Facts) -> Made:
-    """The residual g i is what the reading has too much."""
-    return Made().add(f.name, facts, {"gain": 1.0 / (1.0 - value(f, "gain")), "motor": value(f, "motor")})
-
-
 NAME = Name(
     name="adc_gain",
     channels=(FORCE, VOLTS),
@@ -36,6 +29,9 @@ NAME = Name(
     # a motor draws no more than its current really is
     torque_kept=lambda _, size, clock, __: np.full(len(clock), 1.0 - size),
     torque_doubt=0.5,  # volts show that two readings differ, and hardly which of them is right
-    to_plant=to_plant,
+    # the residual g i is what the reading has too much
+    to_plant=lambda f, facts: Made().added(
+        f, facts, gain=1.0 / (1.0 - value(f, "gain")), motor=value(f, "motor")
+    ),
     beside=Beside(settled_by=("magnet_weakening",)),
 )

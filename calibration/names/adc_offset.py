@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from calibration.names.name import FORCE, VOLTS, Candidate, Facts, Finding, Made, Name, candidate, value
-from calibration.names.scene import Scene
+from calibration.names.inplant import Facts, Made, value
+from calibration.names.name import FORCE, VOLTS, Candidate, Finding, Name, Scene, candidate
 
 EACH = ("offset_a", "offset_b")  # of two motors' readings at once: one effect of the plant each
 

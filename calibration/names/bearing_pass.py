@@ -7,19 +7,9 @@ import numpy as np
 
 from calibration.inputs.declaration import GUESSED, Stage
 from calibration.inputs.train import MESH, OF_A_GUESS, SHAFT
-from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import OWN, cell, has_train, movable, peaks_over_place, seen
-from calibration.names.name import (
-    FORCE,
-    SEARCHED_WORTH,
-    SENSORS,
-    SPEED,
-    Array,
-    Candidate,
-    Finding,
-    Name,
-    Scene,
-)
+from calibration.names.name import SEARCHED_WORTH, Array, Candidate, Finding, Made, Name, value
+from calibration.names.scene import FORCE, SENSORS, SPEED, Scene
 from calibration.statistics.orders import order_spectrum, peaks
 from plant.effects import REGISTRY
 
@@ -74,12 +64,9 @@ def strongest(s: Scene, weight: Array, taken: Array | None = None) -> list[float
 def between(rate: float, known: Array, span: float) -> tuple[float, float]:
     """How far a rate may be moved: within its resolution cell, and not to where a stage's begins."""
     low, high = cell(rate, span)
-    for stage in known[np.abs(known - rate) < 1.0 / span]:
-        if stage >= rate:
-            high = min(high, float(stage) - OWN / span)
-        else:
-            low = max(low, float(stage) + OWN / span)
-    return low, max(low, high)
+    near = known[np.abs(known - rate) < 1.0 / span]
+    low = max([low, *(near[near < rate] + OWN / span).tolist()])
+    return low, max(low, min([high, *(near[near >= rate] - OWN / span).tolist()]))
 
 
 def of_no_stage(f: Finding, s: Scene) -> Finding:
@@ -94,13 +81,13 @@ def of_no_stage(f: Finding, s: Scene) -> Finding:
         return f
     name = _called(stage, f)
     alike = [x for x in dict.fromkeys([*f.equivalent, *_others(f), NAME.name]) if x != name]
+    f = replace(f, name=name, equivalent=alike)
     if stage is None:
-        gears = replace(f, name=name, stage=None, equivalent=alike)
         declared = f"{'every' if slow else 'no'} declared stage turns quicker"
         table = declared if s.view.rig.stages else "no gear table was given"
-        return gears.noted(f"{table}, so its stage cannot be named")
+        return replace(f, stage=None).noted(f"{table}, so its stage cannot be named")
     sizes = {k: p for k, p in f.parameters.items() if k != "order"}  # the stage and its harmonic say it
-    shaft = replace(f, name=name, stage=stage.name, harmonic=harmonic, equivalent=alike, parameters=sizes)
+    shaft = replace(f, stage=stage.name, harmonic=harmonic, parameters=sizes)
     return shaft.noted(f"the order's interval holds {harmonic} times that of {stage.name}")
 
 
@@ -134,19 +121,16 @@ def _called(stage: Stage | None, f: Finding) -> str:
     return effect.name if effect is not None and effect.channel == f.channel else SHAFT
 
 
-def to_plant(f: Finding, facts: Facts) -> Made:
-    """The motors give A cos(x + phase); the axis has minus that."""
-    values = {"amplitude": value(f, "amplitude"), "phase": value(f, "phase") - pi / 2}
-    return Made().add(f.name, facts, values | {"order": f.order or 0.0})
-
-
 NAME = Name(
     name="bearing_pass",
     searched=True,
     channels=(FORCE, SENSORS, SPEED),
     # lines that stand out of the residual's spectrum over position; of a pair of its torque
     columns=lambda s: free_lines(s) if s.pair is None or s.force else [],
-    to_plant=to_plant,
+    # the motors give A cos(x + phase); the axis has minus that
+    to_plant=lambda f, facts: Made().added(
+        f, facts, amplitude=value(f, "amplitude"), phase=value(f, "phase") - pi / 2, order=f.order or 0.0
+    ),
     experiment="twice the travel: the order stands clear of every gear, or declare the gears",
     worth=SEARCHED_WORTH,
 )

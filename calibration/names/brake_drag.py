@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 from calibration.finding import UNKNOWN, Parameter
-from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import Beside, Finding, Name, Scene
+from calibration.names.name import Beside, Facts, Finding, Made, Name, Scene, as_found, value
 from calibration.names.onsets import steps
 
 # s: longer than any log. ASSUMPTION

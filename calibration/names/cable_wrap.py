@@ -4,11 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.balances.recursions import stop_operator
-from calibration.names.candidates import Size, candidate, grid
 from calibration.names.gravity_imbalance import LEAST_TURN
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways, candidate, grid
 
 # of a turn, in which the loop closes: the plant's widths are among them. ASSUMPTION
 TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)
@@ -31,8 +30,8 @@ def columns(s: Scene) -> list[Candidate]:
         parts = [spring, stop_operator(v.x, memory, travel) / travel]
         return np.column_stack(parts if s.pair is None else [*parts, np.ones(len(v.x))])
 
-    sizes: list[Size] = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
-    sizes += [("neutral_torque", s.unit)] if s.pair is not None else []  # a rig's base has an offset
+    sizes = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
+    sizes += [("neutral_torque", s.unit)] * (s.pair is not None)  # a rig's base has an offset
     travels = [travel for part in TRAVELS if v.resolved < (travel := part * turn) < s.span]
     weighed = "gravity_cos" in s.declared
     alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again
@@ -56,11 +55,10 @@ def _memory(x: Array, session: NDArray[np.int64], resolved: float) -> NDArray[np
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """The loop's travel is the Dahl width with the same area."""
-    stiffness = value(f, "stiffness")
+    stiffness, hysteresis = value(f, "stiffness"), value(f, "hysteresis")
     centre = facts.middle - value(f, "neutral_torque") / stiffness if stiffness else facts.middle
     width = float(np.degrees(value(f, "width", NARROW_RAD)))
-    sizes = {"stiffness": stiffness, "hysteresis": value(f, "hysteresis")}
-    return Made().add(f.name, facts, {**sizes, "centre": centre, "width": width})
+    return Made().added(f, facts, stiffness=stiffness, hysteresis=hysteresis, centre=centre, width=width)
 
 
 def lacks(s: Scene) -> str:

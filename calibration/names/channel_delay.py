@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from calibration.finding import NORMAL, normal, of_columns
-from calibration.names.candidates import candidate, tried
 from calibration.names.inplant import Facts, Made, as_found, value
-from calibration.names.name import FORCE, OF_CLOCKS, SENSORS, Array, Beside, Candidate, Finding, Name, Scene
+from calibration.names.name import OF_CLOCKS, Array, Beside, Candidate, Finding, Name, candidate, tried
+from calibration.names.scene import FORCE, SENSORS, Scene
 
 # fitted rows, by which a column is more than a little late: each refined. ASSUMPTION
 ROWS = (1.0, 2.0, 4.0, 8.0)

@@ -9,10 +9,9 @@ import numpy as np
 from calibration.balances.candidate import sine_columns
 from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
-from calibration.names.candidates import tried
-from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, has_train, on_clock, spectral_lines
-from calibration.names.name import FORCE, SEARCHED_WORTH, SPEED, VOLTS, Array, Candidate, Finding, Name, Scene
+from calibration.names.name import SEARCHED_WORTH, Array, Candidate, Facts, Finding, Made, Name, tried, value
+from calibration.names.scene import FORCE, SPEED, VOLTS, Scene
 from calibration.names.structural_mode import NAME as MODE
 from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve

@@ -1,13 +1,13 @@
 """A short pulse once per turn of one part: a damaged tooth."""
 
+from typing import Any
+
 import numpy as np
 
 from calibration.inputs.declaration import Stage
 from calibration.inputs.train import MESH, SHAFT
-from calibration.names.candidates import tried
-from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, SPEED, Array, Beside, Candidate, Finding, Name
-from calibration.names.scene import Scene
+from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, tried, value
+from calibration.names.scene import FORCE, SPEED
 
 # turns of the part. ASSUMPTION
 ENOUGH = 0.9
@@ -54,20 +54,14 @@ def _on(s: Scene, stage: Stage, rate: float) -> list[Candidate]:
     def full(q: Array) -> Array:  # what the response has beside it is minus what acts on the axis
         return -pulse(phase, float(q[0]), max(float(q[1]), 0.002), row)
 
-    return [
-        tried(
-            NAME.name,
-            s.shaped(full),
-            ("amplitude", s.unit),
-            at={"phase": (centre, "turn"), "width": (width, "turn")},
-            steps=(STEP_TURN, STEP_WIDTH * width),
-            domain="motor_angle" if of_motor else None,
-            stage=stage.name,
-            order=rate * s.turn,
-            least=LEAST,
-        )
-        for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP)
-    ]
+    place: dict[str, Any] = {"stage": stage.name, "order": rate * s.turn, "least": LEAST}
+    place["domain"] = "motor_angle" if of_motor else None
+    out, size = [], ("amplitude", s.unit)
+    for centre, width in folded(phase[v.rows][ok], s.residual[ok], KEEP):
+        at = {"phase": (centre, "turn"), "width": (width, "turn")}
+        steps = (STEP_TURN, STEP_WIDTH * width)
+        out.append(tried(NAME.name, s.shaped(full), size, at=at, steps=steps, **place))
+    return out
 
 
 def pulse(phase_turns: Array, centre: float, width: float, reach: Array) -> Array:
@@ -97,9 +91,8 @@ def folded(phase: Array, e: Array, keep: int) -> list[tuple[float, float]]:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """A raised cosine of full width w turns is a Gaussian of the same height and area."""
-    values = {"amplitude": value(f, "amplitude"), "phase": 2 * np.pi * value(f, "phase")}
-    values["width"] = 2 * np.pi * value(f, "width") / (2 * np.sqrt(2 * np.pi))
-    return Made().add(f.name, facts, values, f.stage, 1)
+    phase, width = 2 * np.pi * value(f, "phase"), 2 * np.pi * value(f, "width") / (2 * np.sqrt(2 * np.pi))
+    return Made().added(f, facts, amplitude=value(f, "amplitude"), phase=phase, width=width)
 
 
 def lacks(s: Scene) -> str:

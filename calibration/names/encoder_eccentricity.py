@@ -33,12 +33,11 @@ def columns(s: Scene) -> list[Candidate]:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Of the roller's encoder, or of the absolute one."""
-    made, stage = Made(), f.stage or "axis"
+    stage = f.stage or "axis"
     turned = OF_ABSOLUTE if stage != "roller" else -OF_ABSOLUTE
     values = {name: value(f, name) for name in ("amplitude", "second")}
     values |= {name: value(f, name) + turned for name in ("phase", "second_phase")}
-    made.add(f.name, facts, values, stage, f.harmonic or 1 if stage != "axis" else 1)
-    return made
+    return Made().add(f.name, facts, values, stage, f.harmonic or 1 if stage != "axis" else 1)
 
 
 NAME = Name(

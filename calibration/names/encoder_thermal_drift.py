@@ -34,17 +34,13 @@ def lacks(s: Scene) -> str:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Per kelvin, or arcsec over the log through the plant's own warming."""
-    made = Made()
     found = f.parameters["drift"]
     if found.unit == "arcsec/K":
-        made.add(f.name, facts, {"drift": found.value, "encoder": 1.0})
-    elif facts.warming:
-        per_kelvin = -found.value / (facts.duration_s * facts.warming)
-        made.add(f.name, facts, {"drift": per_kelvin, "encoder": 1.0})
-        made.remarks.append(f"{f.name}: the log has no temperature, the plant's own warming is used")
-    else:
-        made.remarks.append(f"{f.name}: left out, the plant's temperature does not change")
-    return made
+        return Made().added(f, facts, drift=found.value, encoder=1.0)
+    if not facts.warming:
+        return Made(remarks=[f"{f.name}: left out, the plant's temperature does not change"])
+    told = Made(remarks=[f"{f.name}: the log has no temperature, the plant's own warming is used"])
+    return told.added(f, facts, drift=-found.value / (facts.duration_s * facts.warming), encoder=1.0)
 
 
 NAME = Name(

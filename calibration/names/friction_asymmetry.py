@@ -14,11 +14,8 @@ def columns(s: Scene) -> list[Candidate]:
     parts of the declared friction, as in the plant file. More than the friction itself would push one way."""
     if s.pair is not None:
         one, speed = s.answer(s.view.direction * s.sliding.steady), np.abs(s.at(s.sliding.drag))
-        both = np.column_stack([one, speed])
-        return [
-            candidate(NAME.name, both, COULOMB, VISCOUS, most=(1.0, 1.0)),
-            candidate(NAME.name, one, COULOMB, most=1.0),
-        ]
+        both = candidate(NAME.name, np.column_stack([one, speed]), COULOMB, VISCOUS, most=(1.0, 1.0))
+        return [both, candidate(NAME.name, one, COULOMB, most=1.0)]
     if not s.both:
         return []
     sizes = ((COULOMB, s.unit), (VISCOUS, f"{s.unit} s/{s.angle_unit}"))

@@ -1,5 +1,7 @@
 """Friction that falls as the drive warms up."""
 
+from itertools import product
+
 import numpy as np
 
 from calibration.names.inplant import Facts, Made, as_found
@@ -24,12 +26,8 @@ def columns(s: Scene) -> list[Candidate]:
     session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.motion.frame.session
     clocks = [("time_constant", since_first(s.view.clock, session))]
     clocks += [("time_constant_in_run", x) for start, x in s.clocks.items() if start != "start"]
-    out = [
-        one
-        for of_coulomb in ((False, True) if known else (False,))
-        for name, since in clocks
-        for one in _cooling(s, name, since, of_coulomb)
-    ]
+    parts = product((False, True) if known else (False,), clocks)
+    out = [one for of_coulomb, clock in parts for one in _cooling(s, *clock, of_coulomb)]
     t = s.temperature
     if t is not None and s.pair is None:
         size = ("depth", "1/K")

@@ -9,7 +9,7 @@ import numpy as np
 from calibration.inputs.declaration import GUESSED, Stage
 from calibration.inputs.train import OF_A_GUESS, SHAFT
 from calibration.names.lines import SAME, line
-from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, value
+from calibration.names.name import Array, Beside, Candidate, Finding, Made, Name, Scene, value
 from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
@@ -27,9 +27,8 @@ def gravity(s: Scene) -> Array:
     load that is declared are per unit of it."""
     rows = signals(len(s.view.t), {ANGLE: s.view.x / s.turn * 2 * pi})
     carried = s.view.columns.get("load", 1.0)
-    return np.column_stack(
-        [carried * evaluate(NAME.name, rows, {"amplitude": 1.0, "phase": p}) for p in (0.0, pi / 2)]
-    )
+    sizes = ({"amplitude": 1.0, "phase": phase} for phase in (0.0, pi / 2))
+    return np.column_stack([carried * evaluate(NAME.name, rows, p) for p in sizes])
 
 
 def forces_once_a_turn(stages: Iterable[Stage], turn: float) -> tuple[str, ...]:
@@ -59,17 +58,10 @@ def columns(s: Scene) -> list[Candidate]:
     """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
-    twins = (
-        *forces_once_a_turn(s.view.rig.stages, s.turn),
-        *(("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()),
-    )
+    wound = ("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()
+    twins = (*forces_once_a_turn(s.view.rig.stages, s.turn), *wound)
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
     return [replace(one, columns=s.at(gravity(s)))]
-
-
-def to_plant(f: Finding, facts: Facts) -> Made:
-    """The motors give A cos(angle + phase); the axis has minus that, A cos(angle - phase)."""
-    return Made().add(f.name, facts, {"amplitude": value(f, "amplitude"), "phase": pi - value(f, "phase")})
 
 
 def lacks(s: Scene) -> str:
@@ -85,7 +77,10 @@ NAME = Name(
     name="gravity_imbalance",
     scaled=True,
     columns=columns,
-    to_plant=to_plant,
+    # the motors give A cos(angle + phase); the axis has minus that, A cos(angle - phase)
+    to_plant=lambda f, facts: Made().added(
+        f, facts, amplitude=value(f, "amplitude"), phase=pi - value(f, "phase")
+    ),
     experiment="move through at least 60 degrees slowly, there and back, another weight changes it, a "
     "spring stays",
     lacks=lacks,

@@ -69,6 +69,10 @@ class Made:
         )
         return self
 
+    def added(self, f: Finding, facts: Facts, /, **values: float) -> Self:
+        """`add` the effect of a finding, at its place."""
+        return self.add(f.name, facts, values, f.stage, f.harmonic or 1)
+
     def function(self, target: str, domain: str, knots: Knots, source: str, **more: Any) -> None:
         """Add an `unknown` effect: knots in SI units; `more`: other fields of `Function`."""
         fields: dict[str, Any] = {"interpolation": "cubic", "period": 0.0, **more}
@@ -87,8 +91,7 @@ def as_found(f: Finding, facts: Facts) -> Made:
         made.remarks.append(f"{f.name}: it comes in every run, the plant has it from its own start on")
     known = {p.name for p in REGISTRY[f.name].parameters}
     found = {name.removesuffix(IN_RUN): p.value for name, p in f.parameters.items()}
-    values = {name: x for name, x in found.items() if name in known}
-    return made.add(f.name, facts, values, f.stage, f.harmonic or 1)
+    return made.added(f, facts, **{name: x for name, x in found.items() if name in known})
 
 
 #: how far a motor's angle lies off the axis', times half the play: both motors, A, B. definition

@@ -108,10 +108,8 @@ def is_hold(f: Finding, period_s: float) -> bool:
 
 
 def _converge(s: Scene, late: Callable[[float], Array], more: Array) -> tuple[float, float]:
-    """The delay at which nothing of it is left, beside the declared terms and `more`; its standard error.
-
-    It begins at the one of STARTS that fits best: a step is a tangent, which from far off leads elsewhere.
-    """
+    """The delay at which nothing of it is left, beside the declared terms and `more`; its standard error. It
+    begins at the one of STARTS that fits best: a step is a tangent, which from far off leads elsewhere."""
     reach, rows = max(LONGEST * s.view.period_s, LONGEST_S), s.problem.train
     q, _ = np.linalg.qr(s.fitted(more)[0][rows])
 

@@ -10,8 +10,8 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.finding import UNKNOWN, Finding
 from calibration.inputs.declaration import Stage
-from calibration.names.candidates import Size, candidate
 from calibration.names.inplant import SIDES, Facts, Made, motor_of, value
+from calibration.names.name import Size, candidate
 from calibration.names.scene import MOTOR, Scene
 from calibration.statistics.orders import PER_ROW, Wanted, standing_out
 
@@ -155,10 +155,8 @@ def over_place(s: Scene, blank: Candidate, rate: float, weight: Array | None = N
     pair = s.at(np.column_stack([w * np.cos(phase), w * np.sin(phase)]))
     passes = s.view.filter.gain(s.view.speed[s.view.rows] * rate * s.view.period_s)
     pair = pair * (passes > 0)[:, None]  # elsewhere a log has nothing of the line, and its columns alias
-    return [
-        replace(blank, columns=np.hstack([pair * mask[:, None] for mask in parts]), per_run=own)
-        for parts, own in s.zeros
-    ]
+    zeros = ((np.hstack([pair * rows[:, None] for rows in parts]), own) for parts, own in s.zeros)
+    return [replace(blank, columns=columns, per_run=own) for columns, own in zeros]
 
 
 def as_one(mine: list[Candidate]) -> list[Candidate]:
@@ -215,11 +213,9 @@ def movable(s: Scene, rate: float, within: tuple[float, float]) -> list[Candidat
 
 
 def _waves(s: Scene, turns: Array, order: float) -> Array:
-    """What the axis gets of a torque on a rotor: its cos and sin (n, 2) at `order` per axis turn.
-
-    The torque's angle has made `turns` periods. The filter dims the wave. The rotor on its train turns it:
-    a line comes near their resonance while the motor is quick. Quasi-static in the speed.
-    """
+    """What the axis gets of a torque on a rotor: its cos and sin (n, 2) at `order` per axis turn. The
+    torque's angle has made `turns` periods. The filter dims the wave. The rotor on its train turns it: a line
+    comes near their resonance while the motor is quick. Quasi-static in the speed."""
     assert s.pair is not None
     speed = np.asarray(s.view.speed[s.view.rows] / s.turn)
     dim, softness = s.view.filter.gain(speed * order * s.view.period_s), s.pair.softness_s2

@@ -30,9 +30,4 @@ def lacks(s: Scene) -> str:
     return "" if have and s.view.dynamic else "a load beside friction: accelerations or a weight"
 
 
-NAME = Name(
-    name="load_friction",
-    columns=columns,
-    experiment="the same motion with two loads",
-    lacks=lacks,
-)
+NAME = Name(name="load_friction", columns=columns, experiment="the same motion with two loads", lacks=lacks)

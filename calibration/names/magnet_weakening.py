@@ -4,8 +4,9 @@ import numpy as np
 
 from calibration.balances.candidate import ramp
 from calibration.names.inplant import Facts, Made, value
-from calibration.names.name import FORCE, VOLTS, Array, Beside, Candidate, Finding, Name, Scene, candidate
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, candidate
 from calibration.names.onsets import steps
+from calibration.names.scene import FORCE, VOLTS
 
 # part of the time, that the fall may take at first. ASSUMPTION, as of every slow change
 LENGTHS = (0.02, 0.2, 0.5, 1.0)
@@ -45,7 +46,7 @@ def torque_kept(c: Candidate, size: float, clock: Array, quotient: float) -> Arr
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Of one motor, or of both from some time on."""
-    made = Made().add(f.name, facts, {"loss": value(f, "loss"), "motor": value(f, "motor")})
+    made = Made().added(f, facts, loss=value(f, "loss"), motor=value(f, "motor"))
     if "start" in f.parameters:
         since = f"the loss found from {value(f, 'start'):.0f} s on is there from the start"
         made.remarks.append(f"magnet_weakening: the plant's magnets do not know the time, {since}")

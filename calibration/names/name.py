@@ -1,19 +1,25 @@
-"""What a name is to the finder, and what its file is written with."""
+"""What a name is to the finder, and what its file is written with.
 
-from collections.abc import Callable, Mapping
+A name makes candidates: the domain of their columns and the units of their sizes are the plant's.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.frame import Frame
 from calibration.finding import UNKNOWN, Finding
-from calibration.names.candidates import candidate, grid, tried
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.scene import FORCE, FULL_RATES, MOTOR, RATES, SENSORS, SPEED, VOLTS, Scene
+from plant.effects import REGISTRY
 
-__all__ = ["FORCE", "FULL_RATES", "MOTOR", "OF_CLOCKS", "RATES", "SENSORS", "SPEED", "VOLTS", "Array"]
-__all__ += ["Beside", "Candidate", "Changed", "Facts", "Finding", "Made", "Name", "Scene", "as_found"]
-__all__ += ["beside_stated", "both_ways", "candidate", "grid", "tried", "value"]
+__all__ = ["FORCE", "FULL_RATES", "MOTOR", "RATES", "SENSORS", "SPEED", "VOLTS", "Array", "Candidate"]
+__all__ += ["Facts", "Finding", "Made", "Scene", "as_found", "value"]
 
 # share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
 WORTH = 0.01
@@ -24,6 +30,53 @@ SEARCHED_WORTH = 0.04
 TOLERANCE = 1.29
 #: what rows at a wrong time look like: steps and spikes
 OF_CLOCKS = ("roller_slip", "damaged_tooth", UNKNOWN)
+# of a value that is tried, a small change for its refinement. ASSUMPTION
+STEP = 0.1
+Size = str | tuple[str, str]
+"""A parameter of the effect; with a unit of its own where the balance's is another than the plant's."""
+
+
+def candidate(name: str, columns: Array, *sizes: Size, domain: str | None = None, **more: Any) -> Candidate:
+    """One place of an effect: `columns` (n,) or (n, k), one size each; `more`: `Candidate`'s fields."""
+    effect = REGISTRY[name]
+    labels = tuple((s, effect.parameter(s).unit) if isinstance(s, str) else s for s in sizes)
+    wide = columns[:, None] if columns.ndim == 1 else columns
+    return Candidate(name, domain or effect.domain, wide, labels, **more)
+
+
+def tried(
+    name: str,
+    shape: Callable[[Array], Array],
+    *sizes: Size,
+    at: Mapping[str, tuple[float, str]],
+    steps: tuple[float, ...] | None = None,
+    **more: Any,
+) -> Candidate:
+    """A first value of a search. `shape` gives columns (n, k) of the first len(steps) values of `at`, which
+    hold a number and a unit each. `steps` are small changes of them, STEP of the first one unless given. What
+    is searched for must pay, unless `more` says otherwise."""
+    values = [value for value, _ in at.values()]
+    steps = (STEP * values[0],) if steps is None else steps
+    more = {"fixed": dict(at), "shape": shape, "steps": steps, "searched": len(steps), **more}
+    return candidate(name, shape(np.array(values[: len(steps)])), *sizes, **more)
+
+
+def grid(
+    name: str,
+    shape: Callable[[Array], Array],
+    *sizes: Size,
+    along: tuple[str, Iterable[float], str],
+    step: float = STEP,
+    beside: Mapping[str, tuple[float, str]] = MappingProxyType({}),
+    **more: Any,
+) -> list[Candidate]:
+    """`tried` at every value `along` one parameter: its name, values and unit; `step` is a part of a value.
+
+    `beside`: parameters that are not searched for.
+    """
+    called, values, unit = along
+    at = ({called: (float(value), unit), **beside} for value in values)
+    return [tried(name, shape, *sizes, at=one, steps=(step * one[called][0],), **more) for one in at]
 
 
 def both_ways(s: Scene) -> str:

@@ -8,8 +8,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, ramp
-from calibration.names.candidates import tried
-from calibration.names.scene import Scene
+from calibration.names.name import Scene, tried
 
 # share of the time, at either end: a step there is how a run begins or ends. ASSUMPTION
 EDGE = 0.04

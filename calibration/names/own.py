@@ -3,16 +3,15 @@
 from collections.abc import Mapping
 from itertools import product
 from math import pi
+from typing import Any
 
 import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.inputs.declaration import Stage
-from calibration.names.candidates import STEP
-from calibration.names.candidates import tried as first_value
-from calibration.names.name import Name
-from calibration.names.scene import Scene
+from calibration.names.name import STEP, Name, Scene
+from calibration.names.name import tried as first_value
 from plant.effects import REGISTRY
 from plant.effects import signals as column
 from plant.effects.base import MESHES, STAGES, Effect
@@ -75,24 +74,17 @@ def own_candidates(
         torque = -np.asarray(evaluate(effect.name, rows, given))
         return (s.answer(torque * np.sign(rows[:, column.RATE])) if of_friction else s.at(torque))[:, None]
 
-    return [
-        first_value(
-            effect.name,
-            shape,
-            (size, s.unit if one.unit == "N m" else one.unit),
-            at={p.name: (v, p.unit) for p, v in zip(specs, values, strict=True)},
-            # of the way to the next tried value, or of the value itself where one is tried
-            steps=tuple(
-                STEP * min((abs(x - v) for x in row if x != v), default=abs(v))
-                for v, row in zip(values, tried.values(), strict=True)
-            ),
-            sign=1 if one.low >= 0 else 0,
-            stage=stage.name if stage is not None else None,
-            harmonic=1 if stage is not None else None,
-            order=order,
-        )
-        for values in product(*tried.values())
-    ]
+    place: dict[str, Any] = {"order": order, "sign": int(one.low >= 0)}
+    place |= {"stage": stage.name, "harmonic": 1} if stage is not None else {}
+    out, sized = [], (size, s.unit if one.unit == "N m" else one.unit)
+    for values in product(*tried.values()):
+        at = {p.name: (v, p.unit) for p, v in zip(specs, values, strict=True)}
+        # of the way to the next tried value, or of the value itself where one is tried
+        rows_of = zip(values, tried.values(), strict=True)
+        apart = (min((abs(x - v) for x in row if x != v), default=abs(v)) for v, row in rows_of)
+        steps = tuple(STEP * x for x in apart)
+        out.append(first_value(effect.name, shape, sized, at=at, steps=steps, **place))
+    return out
 
 
 def _friction(s: Scene, scale: float) -> dict[int, Array]:

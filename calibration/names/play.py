@@ -7,11 +7,9 @@ from numpy.typing import NDArray
 
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import acceleration
-from calibration.names.candidates import candidate, grid
-from calibration.names.inplant import Made, value
-from calibration.names.name import FORCE, SENSORS, Array, Candidate, Name, Scene, both_ways
+from calibration.names.name import Array, Candidate, Made, Name, Scene, both_ways, candidate, grid, value
 from calibration.names.presliding import NAME as BRISTLES
-from calibration.names.scene import FEWEST
+from calibration.names.scene import FEWEST, FORCE, SENSORS
 from calibration.names.shaft_compliance import NAME as WIND_UP
 from plant.units import ARCSEC
 
@@ -129,8 +127,6 @@ NAME = Name(
     "compliance a line",
     lacks=both_ways,
     # the motors are compared with the absolute encoder, so its coupling has the gap
-    to_plant=lambda f, facts: Made().add(
-        f.name, facts, {"gap": value(f, "gap"), "encoder": value(f, "encoder", 1.0)}
-    ),
+    to_plant=lambda f, facts: Made().added(f, facts, gap=value(f, "gap"), encoder=value(f, "encoder", 1.0)),
     loop=("gap",),
 )

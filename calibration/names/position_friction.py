@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from calibration.names.bearing_pass import strongest
-from calibration.names.candidates import tried
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.lines import STEP_OF_CELL, as_one, line, of_stage
-from calibration.names.name import Array, Candidate, Finding, Name, Scene, both_ways
+from calibration.names.name import Array, Candidate, Finding, Name, Scene, both_ways, tried
 from plant.gears import ORDERS
 
 # harmonics of the travelled range. ASSUMPTION

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from calibration.balances.motion import acceleration_of, rate_of
-from calibration.names.name import Array, Candidate, Name, tried
-from calibration.names.scene import RATES, SENSORS, Scene
+from calibration.names.name import RATES, SENSORS, Array, Candidate, Name, Scene, tried
 from plant.units import ARCSEC
 
 # rad/s2, limits that are tried: the axis is asked for 2 deg/s2 (paper)
@@ -47,19 +46,12 @@ def columns(s: Scene) -> list[Candidate]:
         chatter = float(np.clip(abs(p[1]), 1e-6, MOST_CHATTER * limit))
         return np.asarray(-m.at(lost(rate, acceleration, limit, chatter))[:, None] / ARCSEC)
 
-    return [
-        tried(
-            "roller_slip",
-            partial(shape, lost),
-            size,
-            at={"threshold": (limit, "rad/s2"), "chatter": (part * limit, "rad/s2")},
-            steps=(STEPS[0] * limit, STEPS[1] * part * limit),
-            searched=0,
-            sign=1,
-            stage=roller,
-        )
-        for limit, (size, lost), part in itertools.product(limits, forms.items(), (CHATTER, MOST_CHATTER))
-    ]
+    out: list[Candidate] = []
+    for limit, (size, lost), part in itertools.product(limits, forms.items(), (CHATTER, MOST_CHATTER)):
+        at = {"threshold": (limit, "rad/s2"), "chatter": (part * limit, "rad/s2")}
+        steps, lose = (STEPS[0] * limit, STEPS[1] * part * limit), partial(shape, lost)
+        out.append(tried("roller_slip", lose, size, at=at, steps=steps, searched=0, sign=1, stage=roller))
+    return out
 
 
 def _share(rate: Array, acceleration: Array, limit: float, chatter: float) -> Array:

@@ -41,12 +41,8 @@ def stamps(frame: Frame) -> Finding | None:
     half = NORMAL * np.sqrt(value * (1 - value) / max(packets, 1.0))
     share = Parameter(value, "1", max(value - half, 0.0), value + half)
     gone = f"{lost} rows missing in {len(gaps)} gaps ({100 * whole:.0f} % of whole packets)"
-    return of_columns(
-        NAME.name,
-        {"packet_loss" if lost else "repeats": share},
-        evidence=share_log10(value * packets, packets, LOST),
-        note=f"{gone}, {repeats} rows repeated",
-    )
+    sure, told = share_log10(value * packets, packets, LOST), {"packet_loss" if lost else "repeats": share}
+    return of_columns(NAME.name, told, evidence=sure, note=f"{gone}, {repeats} rows repeated")
 
 
 def _repeated(frame: Frame) -> Mask:
@@ -74,9 +70,8 @@ def _goes_on(p: Array, at: int, rows: int) -> bool:
     """Whether the row after `rows` unchanged ones from `at` has moved as if the axis had not come to rest."""
     before, after = p[max(at - 1, 0)], p[min(at + rows, len(p) - 1)]
     usual = np.nanmedian(np.abs(np.diff(p[max(at - 12, 0) : at + 1]))) if at > 1 else 0.0
-    return bool(
-        abs(after - before) > 0.3 * (rows + 1) * usual and usual > (MOVING if rows >= STANDS else QUICK)
-    )
+    least = MOVING if rows >= STANDS else QUICK
+    return bool(abs(after - before) > 0.3 * (rows + 1) * usual and usual > least)
 
 
 NAME = Name(

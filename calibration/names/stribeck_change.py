@@ -11,6 +11,7 @@ PARTS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
 CLEAR = 3.0
 # standard errors, of the numbers: a dip that is seen badly moves far at no cost. ASSUMPTION
 PRECISE = {"stiction": 0.1, "stribeck_speed": 0.15}
+NUMBERS = {"stiction": "stiction_factor", "stribeck_speed": "velocity_factor"}
 # share of the held-out mean square that leaving it out must add: less is how friction turns (seed 1011)
 AT_REST = 0.2
 
@@ -46,10 +47,6 @@ NAME = Name(
     columns=columns,
     experiment="slow ramps on both sides of the Stribeck speed",
     lacks=lacks,
-    changed=Changed(
-        numbers={"stiction": "stiction_factor", "stribeck_speed": "velocity_factor"},
-        seen="dip",
-        precise=PRECISE,
-    ),
+    changed=Changed(numbers=NUMBERS, seen="dip", precise=PRECISE),
     worth=AT_REST,
 )

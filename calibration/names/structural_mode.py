@@ -65,19 +65,12 @@ def columns(s: Scene) -> list[Candidate]:
         second = second_mass(a, v.file, v.period_s, frequency, damping)
         return (second[v.rows] if s.pair is not None else s.at(second - a))[:, None]
 
-    of_rig = s.pair is None
-    return [
-        tried(
-            NAME.name,
-            shape,
-            ("inertia", f"{s.unit} s2/{s.angle_unit}") if of_rig else "inertia",
-            at={"frequency": (float(f), "Hz"), "damping": (damping, "1")},
-            steps=(0.05 * float(f), 0.02) if of_rig else (0.01 * float(f), 0.3 * damping),
-            sign=1,
-            frequency=float(f),
-        )
-        for f, damping in modes
-    ]
+    out, size = [], "inertia" if s.pair is not None else ("inertia", f"{s.unit} s2/{s.angle_unit}")
+    for f, damping in ((float(f), z) for f, z in modes):
+        at = {"frequency": (f, "Hz"), "damping": (damping, "1")}
+        steps = (0.05 * f, 0.02) if s.pair is None else (0.01 * f, 0.3 * damping)
+        out.append(tried(NAME.name, shape, size, at=at, steps=steps, sign=1, frequency=f))
+    return out
 
 
 def second_mass(a: Array, file: NDArray[np.int64], dt: float, f: float, damping: float) -> Array:

@@ -9,21 +9,11 @@ from calibration.balances.candidate import waves
 from calibration.balances.frame import Frame
 from calibration.balances.recursions import stop_operator
 from calibration.finding import UNKNOWN, Finding, of_columns
+from calibration.names import unknown_shapes as shapes
 from calibration.names.command_disturbance import lines
 from calibration.names.gravity_imbalance import gravity
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene
-from calibration.names.spline import spline_columns
-from calibration.names.unknown_shapes import (
-    bend,
-    each,
-    loops,
-    lost_motion,
-    moving_scale,
-    over,
-    spring,
-)
-from calibration.names.unknown_volts import followed, of_volts
 from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
 from calibration.statistics.tails import middle
@@ -76,15 +66,15 @@ def smooth_functions(s: Scene) -> list[Candidate]:
     """`unknown` over every domain; over position and time also odd in direction."""
     out = []
     for domain, x in domains(s):
-        columns = spline_columns(x, KNOTS)
+        columns = shapes.spline_columns(x, KNOTS)
         if columns.shape[1] == 0:
             continue
-        shapes = [columns]
+        forms = [columns]
         if s.both and domain in ("axis_angle", "time"):
-            shapes.append(columns * s.view.direction[s.view.rows][:, None])
+            forms.append(columns * s.view.direction[s.view.rows][:, None])
         if s.force and s.view.dynamic and domain == "axis_angle":
-            shapes.append(columns * _declared_force(s)[:, None])
-        out += [over(domain, one, *each("knot", one, s.unit)) for one in shapes]
+            forms.append(columns * _declared_force(s)[:, None])
+        out += [shapes.over(domain, one, *shapes.each("knot", one, s.unit)) for one in forms]
     return out
 
 
@@ -93,9 +83,10 @@ def columns(s: Scene) -> list[Candidate]:
     motion, a sensor's bracket that swings. Of a pair: any function of speed and travel, and lines at fixed
     Hz. Of volts: brushes."""
     if s.windings is not None:
-        return of_volts(s)
+        return shapes.of_volts(s)
     if s.pair is None:
-        return [*moving_scale(s), *spring(s), *lost_motion(s), *bend(s), *_swings(s)]
+        found = [*shapes.moving_scale(s), *shapes.spring(s), *shapes.lost_motion(s), *shapes.bend(s)]
+        return [*found, *_swings(s)]
     return [*_torques(s), *_fixed_lines(s)] if s.force else []
 
 
@@ -112,7 +103,7 @@ def plain(s: Scene) -> Array:
     parts = [np.zeros((len(s.problem.y), 0))]
     if s.force and s.both:
         parts.append(s.at(np.column_stack([np.abs(v.direction), np.abs(v.speed)])))
-        parts.append(s.at(loops(v, [r * s.stroke for r in RADII])))
+        parts.append(s.at(shapes.loops(v, [r * s.stroke for r in RADII])))
     if s.force and v.turn:
         parts.append(s.at(gravity(s)))
     return np.hstack(parts)
@@ -130,14 +121,14 @@ def _torques(s: Scene) -> list[Candidate]:
     x, speed = s.view.x[s.view.rows], s.view.speed[s.view.rows]
     session = s.pair.motion.frame.session[s.view.rows]
     w = speed / (float(np.quantile(np.abs(speed), 0.95)) or 1.0)
-    knots = spline_columns(np.sign(speed) * np.log1p(np.abs(speed) / SLOW_RATE), SPEED_KNOTS)
+    knots = shapes.spline_columns(np.sign(speed) * np.log1p(np.abs(speed) / SLOW_RATE), SPEED_KNOTS)
     held = np.column_stack([stop_operator(x, session, r) / r for r in LOOPS])
     return [
-        over("velocity", np.column_stack([w * np.abs(w), w**3]), ("square", s.unit), ("cube", s.unit)),
-        over("velocity", knots, *each("knot", knots, s.unit)),
-        over("reversal", held, *each("loop", held, s.unit)),
+        shapes.over("velocity", np.column_stack([w * np.abs(w), w**3]), ("square", s.unit), ("cube", s.unit)),
+        shapes.over("velocity", knots, *shapes.each("knot", knots, s.unit)),
+        shapes.over("reversal", held, *shapes.each("loop", held, s.unit)),
         *(
-            over("reversal", one, ("loop", s.unit), fixed={"travel": (r, "rad")})
+            shapes.over("reversal", one, ("loop", s.unit), fixed={"travel": (r, "rad")})
             for r, one in zip(LOOPS, held.T, strict=True)
         ),
     ]
@@ -165,7 +156,7 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
         for count in sorted({1, most}):
             wave = waves(2 * np.pi * f0 * clock, range(1, count + 1))
             at: dict[str, Any] = {"frequency": f0, "fixed": {"frequency": (f0, "Hz")}}
-            out.append(over("time", wave, ("amplitude", s.unit), kind="line", **at))
+            out.append(shapes.over("time", wave, ("amplitude", s.unit), kind="line", **at))
     return out
 
 
@@ -174,9 +165,8 @@ def clock_jumps(frame: Frame) -> Finding | None:
     if not frame.jumps:
         return None
     sizes = np.abs(frame.jumps)
-    note = (
-        f"{len(sizes)} stamps jump while the position goes on by one row: the clock's fault, no row is lost"
-    )
+    jumps = f"{len(sizes)} stamps jump while the position goes on by one row"
+    note = f"{jumps}: the clock's fault, no row is lost"
     # of one row's travel in place of so many: the chance of each is one in as many rows
     evidence = float(np.log10(sizes / frame.period_s + 1.0).sum())
     return of_columns(UNKNOWN, {"jump": middle(sizes, "s")}, evidence, note=note)
@@ -187,7 +177,7 @@ NAME = Name(
     channels=(FORCE, SENSORS, VOLTS),
     columns=columns,
     experiment="repeat the run: what is fixed to angle, to time or to neither tells where to look",
-    told=followed,
+    told=shapes.followed,
     stamps=clock_jumps,
     to_plant=to_plant,
     beside=Beside(consequences={"T": ("wind_torque",)}),

@@ -6,8 +6,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.finding import UNKNOWN
-from calibration.names.candidates import tried
-from calibration.names.name import Candidate, Scene
+from calibration.names.name import Candidate, Scene, tried
 from calibration.names.scene import FEWEST
 from calibration.names.unknown_shapes import over
 

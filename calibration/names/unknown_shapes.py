@@ -1,20 +1,38 @@
 """Shapes of the catalogue's unknown: what an effect without a name looks like where physics says it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from calibration.balances.candidate import waves
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
-from calibration.finding import UNKNOWN
+from calibration.finding import UNKNOWN, Finding
+from calibration.names.lines import line, of_stage
 from calibration.names.name import Array, Candidate, Scene, candidate
-from calibration.names.spline import spline_columns
+from calibration.names.unnamed import HARMONICS
 
 # knots over time of a scale that moves. ASSUMPTION
 SLOW = 4
+# share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
+FOLLOWS = 2.0
 # part of the usual stroke, of the widest of several loops. ASSUMPTION
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)
+
+
+def spline_columns(x: Array, knots: int) -> Array:
+    """Cubic B-splines of x over its range, `knots` columns without the constant."""
+    from scipy.interpolate import BSpline
+
+    low, high = float(np.min(x)), float(np.max(x))
+    if high <= low:
+        return np.zeros((len(x), 0))
+    inner = np.linspace(low, high, knots - 2)
+    full = np.concatenate([[low] * 3, inner, [high] * 3])
+    columns = BSpline.design_matrix(np.clip(x, low, high), full, 3).toarray()
+    return np.asarray(columns[:, 1:])
 
 
 def over(domain: str, columns: Array, *sizes: tuple[str, str], **more: Any) -> Candidate:
@@ -44,16 +62,11 @@ def moving_scale(s: Scene) -> list[Candidate]:
     span = float(np.ptp(t)) or 1.0
     drift, knots = ((t - t.min()) / span)[:, None], spline_columns(t, SLOW)
     per_place = f"{s.unit}/{s.angle_unit}"
-    return [
-        over(
-            "time",
-            np.hstack([shape * x[:, None], shape]),
-            *each(f"scale_{name}", shape, per_place),
-            *each(f"offset_{name}", shape, s.unit),
-        )
-        for name, shape in (("drift", drift), ("knot", knots))
-        if shape.shape[1]
-    ]
+    out = []
+    for name, shape in (("drift", drift), ("knot", knots)):
+        sizes = (*each(f"scale_{name}", shape, per_place), *each(f"offset_{name}", shape, s.unit))
+        out += [over("time", np.hstack([shape * x[:, None], shape]), *sizes)] if sizes else []
+    return out
 
 
 def lost_motion(s: Scene) -> list[Candidate]:
@@ -84,3 +97,38 @@ def bend(s: Scene) -> list[Candidate]:
         return []
     part = s.view.speed / (s.view.top or 1.0)
     return [over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
+
+
+def of_volts(s: Scene) -> list[Candidate]:
+    """Columns of an electrical balance that have no name in the catalogue."""
+    w = s.windings
+    if w is None or w.counter is None or s.pair is None:
+        return _brushes(s)
+    c, (a, b) = w.counter, np.split(w.rate, 2)
+    # a lagging motor whose current follows the leading one's lacks that one's back-EMF, times its share
+    leading = np.tile(np.where(c.lagging[: len(a)] > 0, b, a), 2)
+    column = w.constant * w.at(c.share) * c.lagging * leading
+    following = over("current", column, ("following", "1"), sign=1, most=FOLLOWS)
+    # brushes over the angle of either motor, as a resistance and as a voltage
+    turned = waves(s.view.x[s.view.rows] * s.pair.train.ratio, range(1, HARMONICS + 1))
+    more: dict[str, Any] = {"kind": "line", "stage": "motor", "harmonic": 1}
+    brushes = [
+        over("motor_angle", turned * weight[:, None], ("amplitude", unit), fixed=motor, **more)
+        for rows, motor in s.motors
+        for weight, unit in ((rows, "V"), (rows * w.at(w.current), "ohm"))
+    ]
+    return [following, *brushes]
+
+
+def _brushes(s: Scene) -> list[Candidate]:
+    """A resistance over the declared motor's angle, harmonic by harmonic: a rig's zero may move."""
+    motors = [replace(g, harmonics=HARMONICS, listed=()) for g in s.view.rig.stages if g.of_motor]
+    blank = line(s, UNKNOWN, 0.0, ("amplitude", "ohm"), domain="motor_angle")
+    return [c for g in motors for c in of_stage(s, g, blank, s.view.columns["current"])]
+
+
+def followed(f: Finding) -> Finding:
+    """A current that follows the other motor's, said in words: the catalogue has no name for it."""
+    if "following" not in f.parameters:
+        return f
+    return replace(f, note="the lagging motor's current follows the leading one's, not its own duty")

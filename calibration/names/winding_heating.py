@@ -41,10 +41,8 @@ def _heated(w: Windings, clock: Array, name: str) -> list[Candidate]:
 
 def to_plant(f: Finding, facts: Facts) -> Made:
     """Fitted with the whole loop's resistance, of which the winding warms."""
-    share = facts.resistance / facts.winding
-    warms = value(f, "thermal_resistance") * share**2
-    values = {"thermal_resistance": warms, "time_constant": value(f, "time_constant")}
-    return Made().add(f.name, facts, values)
+    warms = value(f, "thermal_resistance") * (facts.resistance / facts.winding) ** 2
+    return Made().added(f, facts, thermal_resistance=warms, time_constant=value(f, "time_constant"))
 
 
 NAME = Name(

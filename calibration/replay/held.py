@@ -131,10 +131,8 @@ def _judge(
         before, unit = declared[channel][0], UNITS[channel]
         out[channel] = {"unit": unit, "before": before, "after": after, "floor": floor}
         if after > WORSE * before and after > NEAR * floor:
-            reasons.append(
-                f"{AGAIN}: the corrected plant is WORSE than the declared one in {channel}: "
-                f"{before:.3g} before, {after:.3g} {unit} after"
-            )
+            worse = f"the corrected plant is WORSE than the declared one in {channel}"
+            reasons.append(f"{AGAIN}: {worse}: {before:.3g} before, {after:.3g} {unit} after")
     if all_rows - rows > CHAOS_SHARE * all_rows:
         first, last = errors(pairs["before"]), errors(pairs["after"])
         told = ", ".join(f"{c} {first[c][0]:.3g} before, {last[c][0]:.3g} {UNITS[c]} after" for c in last)
@@ -152,10 +150,8 @@ def _beside(offsets: dict[str, list[float]]) -> list[str]:
     if not rms:
         return []
     said = ", ".join(f"{x:.3g} arcsec {key}" for key, x in rms.items())
-    return [
-        f"{AGAIN}: each of {len(offsets['after'])} transients moves it against the log by {said} (rms);"
-        " the set point of a transient takes that out"
-    ]
+    moves = f"each of {len(offsets['after'])} transients moves it against the log by {said} (rms)"
+    return [f"{AGAIN}: {moves}; the set point of a transient takes that out"]
 
 
 def _conditions(gains: Gains | None, left_out: set[str], frame: Frame) -> list[str]:

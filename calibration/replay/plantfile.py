@@ -25,20 +25,17 @@ def calibrate_model(
     for key, path in PATHS.items():
         if key not in calibrated or key in skip:
             continue
-        changed = _set(model, axis, path, _as_declared(model, axis, key, calibrated[key].value), name)
+        found = calibrated[key]
+        changed = _set(model, axis, path, _as_declared(model, axis, key, found.value), name)
         if changed is None:
-            found = calibrated[key]
             remarks.append(f"{key}: {found.value:.4g} {found.unit} is no number of a plant")
-        else:
-            model = changed
+        model = changed or model
     return _with_rules(model, declared, axis, name), remarks
 
 
 def _with_rules(model: PlantModel, declared: PlantModel, axis: str, name: str) -> PlantModel:
-    """What no log tells keeps the rule it was declared by.
-
-    sigma1 keeps its share of the passivity bound, the gears' damping its share of the critical one.
-    """
+    """What no log tells keeps the rule it was declared by. sigma1 keeps its share of the passivity bound, the
+    gears' damping its share of the critical one."""
     f, g = (getattr(model.axes, axis), getattr(declared.axes, axis))
     bounds = [
         x.friction.viscous.si * x.friction.coulomb.si / (x.friction.stiction.si - x.friction.coulomb.si)
@@ -103,8 +100,7 @@ def correct(
             changed = _set(model, axis, path, get(model, f"axes.{axis}.{path}").si + change, facts.name)
             if changed is None:
                 remarks.append(f"{f.name}: {path} cannot be changed by {change:.4g}")
-            else:
-                model = changed
+            model = changed or model
         for effect in made.effects:
             try:
                 _checked(with_effects(model, axis, [*rows, effect]))

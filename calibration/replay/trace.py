@@ -64,20 +64,17 @@ class Loop:
             wanted[: 2 * LEAD_ROWS] = np.nan
         per_count = scale["position_arcsec_per_count"] * ARCSEC
         rate = float(position[min(LEAD_ROWS, len(position) - 1)] - position[0]) / LEAD_ROWS / frame.period_s
-        log = simulate(
-            model,
-            self.axis,
-            len(position) * frame.period_s,
-            Excitation(
-                setpoint=wanted if closed.any() else None,
-                effort=effort * 3000.0,
-                start_steps=float(position[0]) / per_count + 0.5,
-                start_rate=rate / ARCSEC if abs(rate) > LEAST_RATE else 0.0,
-                start_s=start_s,
-                history=before_start(frame, rows),
-            ),
-            adc_counts_per_A=1.0 / scale["adc_A_per_count"],
+        command = Excitation(
+            setpoint=wanted if closed.any() else None,
+            effort=effort * 3000.0,
+            start_steps=float(position[0]) / per_count + 0.5,
+            start_rate=rate / ARCSEC if abs(rate) > LEAST_RATE else 0.0,
+            start_s=start_s,
+            history=before_start(frame, rows),
         )
+        per_ampere = 1.0 / scale["adc_A_per_count"]
+        duration_s = len(position) * frame.period_s
+        log = simulate(model, self.axis, duration_s, command, adc_counts_per_A=per_ampere)
         inductance = getattr(model.axes, self.axis).motor.inductance.si
         # A that the PWM's ripple adds to a current at the sampling edge, per d (1 - d) of the duty
         ripple = model.supply.voltage.si / (2.0 * inductance * model.controller.pwm_frequency.si)

@@ -20,11 +20,9 @@ PLACES = ("begin", "place")
 def summary(data: dict[str, Any]) -> str:
     """What was found, in one sentence."""
     effects, verdict = data["effects"], data["verdict"]
+    if verdict == "nothing" and any("still missing" in x for x in data["reasons"]):
+        return "No effect shows in this log, with a name or without, though more is left than sensors leave."
     if verdict == "nothing":
-        if any("still missing" in x for x in data["reasons"]):
-            return (
-                "No effect shows in this log, with a name or without, though more is left than sensors leave."
-            )
         return "Nothing is missing from the declared model that this log could show."
     if verdict == "cannot tell":
         lacks = data["separating_experiment"]
@@ -64,10 +62,8 @@ def _worth(data: dict[str, Any]) -> str:
     if not row:
         return ""
     floor = "not known" if row["floor"] is None else f"{row['floor']:.2g}"
-    return (
-        f" On data nothing was fitted to, the error goes from {row['before']:.3g} to {row['after']:.3g}"
-        f" {row['unit']} (floor {floor})."
-    )
+    change = f"from {row['before']:.3g} to {row['after']:.3g} {row['unit']} (floor {floor})"
+    return f" On data nothing was fitted to, the error goes {change}."
 
 
 def parameters(effect: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
@@ -80,12 +76,6 @@ def page(data: dict[str, Any], pictures: list[dict[str, str]], title: str, subti
     from jinja2 import Environment, FileSystemLoader
 
     env = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
-    return env.get_template("report.html.j2").render(
-        r=data,
-        plots=pictures,
-        title=title,
-        subtitle=subtitle,
-        summary=summary(data) + _worth(data),
-        parameters=parameters,
-        channels=CHANNELS,
-    )
+    more = {"summary": summary(data) + _worth(data), "parameters": parameters, "channels": CHANNELS}
+    template = env.get_template("report.html.j2")
+    return template.render(r=data, plots=pictures, title=title, subtitle=subtitle, **more)

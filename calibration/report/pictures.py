@@ -17,6 +17,8 @@ from calibration.report.plots import BLUE, GREY, RED, figure, png
 from calibration.report.thresholds import MOST_PICTURES, WHOLE, WINDOW_S
 
 Picture = dict[str, str]
+TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
+SPECTRUM = "Fitted rows; dotted: known parts, short marks: what was found"
 
 
 def pictures(found: Looked, again: Replay) -> list[Picture]:
@@ -33,14 +35,10 @@ def of_balance(b: Balance) -> list[Picture]:
     if b.spectrum is not None:
         over = "period" if b.spectrum.periods else "order"
         image = plots.spectrum_plot(s, b.spectrum, f"Amplitude over {over}, {name}")
-        out.append({"image": image, "alt": "Fitted rows; dotted: known parts, short marks: what was found"})
+        out.append({"image": image, "alt": SPECTRUM})
     trace = plots.trace_plot(s, b.declared or s, f"Held-out residual before and after, {name}")
-    out.append({"image": trace, "alt": TRACE})
-    out.append({"image": plots.gate_plot(s, f"Is anything there at all? {name}"), "alt": plots.GATE})
-    return out
-
-
-TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
+    gate = plots.gate_plot(s, f"Is anything there at all? {name}")
+    return [*out, {"image": trace, "alt": TRACE}, {"image": gate, "alt": plots.GATE}]
 
 
 def _effect(b: Balance, k: int) -> Picture:
@@ -95,7 +93,4 @@ def replay_picture(again: Replay) -> dict[str, str]:
         low.plot(t[use][: len(e)], e, ".", ms=1.2, color=color, label=f"{name}, {said}")
     low.set(xlabel="time in the run, s", ylabel="velocity error, arcsec/s")
     low.legend(frameon=False, fontsize=8, markerscale=6)
-    return {
-        "image": png(fig),
-        "alt": f"Closed loop replayed on {again.run}: measured, declared and corrected",
-    }
+    return {"image": png(fig), "alt": f"Closed loop replayed on {again.run}: measured, declared, corrected"}

@@ -25,16 +25,9 @@ def figure(width: float = 9.0, height: float = 3.4, rows: int = 1, **more: Any) 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    plt.rcParams.update(
-        {
-            "font.size": 9,
-            "axes.spines.top": False,
-            "axes.spines.right": False,
-            "axes.titlesize": 10,
-            "axes.titleweight": "bold",
-            "axes.formatter.limits": (-6, 6),  # beyond, a power of ten stands where the legend is
-        }
-    )
+    plt.rcParams.update({"font.size": 9, "axes.titlesize": 10, "axes.titleweight": "bold"})
+    plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
+    plt.rcParams["axes.formatter.limits"] = (-6, 6)  # beyond, a power of ten stands where the legend is
     return plt.subplots(rows, figsize=(width, height), constrained_layout=True, **more)
 
 
@@ -79,8 +72,9 @@ def domain_plot(
     rows = p.train
     if rows.sum() < FEWEST_DRAWN:
         return nothing_to_draw(title, "too few fitted rows to draw")
-    model = selection.effect(index) * (1.0 if odd is None else odd)
-    e = selection.after.residual * (1.0 if odd is None else odd) + model
+    sense = 1.0 if odd is None else odd
+    model = selection.effect(index) * sense
+    e = selection.after.residual * sense + model
     if selection.candidates[index].name == UNKNOWN:
         level = float(np.mean(model[rows]))  # the declared offset moves against the function's own level
         e, model = e - level, model - level
@@ -89,13 +83,11 @@ def domain_plot(
     xs, es, ms = x[rows], e[rows], model[rows]
     ax.plot(xs[::step], es[::step], ".", ms=1.5, color=GREY, alpha=0.4)
     ax.plot([], [], ".", ms=6, color=GREY, label="residual without the effect")
-    order, bins, fixed = np.argsort(xs), BINS, selection.candidates[index].fixed
-    if "width" in fixed:  # of a narrow pulse as many as put BINS_OF_A_PULSE on its width
-        bins = max(BINS, round(BINS_OF_A_PULSE / fixed["width"][0]))
-    cells = np.array_split(order, min(max(len(xs) // 20, 8), bins))
-    mid = np.array([np.median(xs[c]) for c in cells])
-    mean = np.array([np.mean(es[c]) for c in cells])
-    error = np.array([np.std(es[c]) / np.sqrt(max(len(c) / 10, 1)) for c in cells])
+    width = selection.candidates[index].fixed.get("width")  # of a narrow pulse: BINS_OF_A_PULSE lie on it
+    bins = max(BINS, round(BINS_OF_A_PULSE / width[0])) if width else BINS
+    cells = np.array_split(np.argsort(xs), min(max(len(xs) // 20, 8), bins))
+    mid, mean = ([f(z[c]) for c in cells] for f, z in ((np.median, xs), (np.mean, es)))
+    error = [np.std(es[c]) / np.sqrt(max(len(c) / 10, 1)) for c in cells]
     ax.errorbar(mid, mean, error, fmt="o", ms=3, color=BLUE, lw=1, label="mean of a bin, standard error")
     ax.plot(mid, [np.mean(ms[c]) for c in cells], color=RED, lw=1.8, label="effect as fitted")
     low, high = np.quantile(es, [0.002, 0.998])
@@ -194,16 +186,16 @@ def trace_plot(selection: Selection, declared: Selection, title: str) -> str:
     t, run = p.t[rows], p.run[rows]
     gap = (np.diff(t) > 5 * p.period_s) | (np.diff(t) < 0) | (np.diff(run) != 0)
     step = np.where(gap, 0.0, np.diff(t))
-    space = min(0.02, 0.1 / max(gap.sum(), 1)) * float(step.sum())
+    places = np.flatnonzero(gap)
+    space = min(0.02, 0.1 / max(len(places), 1)) * float(step.sum())
     at = np.concatenate([[0.0], np.cumsum(np.where(gap, space, step))])
     _, ax = figure()
     for e, color, name in ((before, GREY, "before"), (after, BLUE, "after")):
         label = f"{name}, rms {np.sqrt(np.mean(e**2)):.3g} {p.unit}"
-        broken = np.insert(e, np.flatnonzero(gap) + 1, np.nan)  # a line ends at a gap
-        ax.plot(np.insert(at, np.flatnonzero(gap) + 1, np.nan), broken, color=color, lw=0.8, label=label)
-    if gap.sum() <= MOST_MARKED:
-        for place in np.flatnonzero(gap):
-            ax.axvline((at[place] + at[place + 1]) / 2, color=GREY, lw=0.7, ls=":")
+        broken = (np.insert(x, places + 1, np.nan) for x in (at, e))  # a line ends at a gap
+        ax.plot(*broken, color=color, lw=0.8, label=label)
+    for place in places if len(places) <= MOST_MARKED else ():
+        ax.axvline((at[place] + at[place + 1]) / 2, color=GREY, lw=0.7, ls=":")
     closed = " (rows left out are not drawn to scale)" if gap.any() else ""
     spans = f"time in the held-out span{'s' if gap.any() else ''}, s{closed}"
     ax.set(xlabel=spans, ylabel=f"residual, {p.unit}")
@@ -214,20 +206,14 @@ def gate_plot(selection: Selection, title: str) -> str:
     """Surrogate maxima, threshold, and where the log's own maximum fell."""
     _, ax = figure(9.0, 2.4)
     s = selection.scores
-    # a log of one block has one score, but for rounding
-    largest = float(np.max(s.surrogate_max, initial=0.0))
-    most = max(largest, s.threshold) or 1.0
-    drawn_from = f"{len(s.surrogate_max)} surrogates of the residual"
-    ax.hist(s.surrogate_max, bins=30, range=(0.0, most), color=GREY, label=drawn_from)
-    ax.axvline(s.threshold, color=GREEN, lw=1.5, label=f"99 % threshold, {s.threshold:.2f}")
-    top = selection.statistic
+    largest, top = float(np.max(s.surrogate_max, initial=0.0)), selection.statistic
     limit = max(2.5 * s.threshold, 1.2 * largest)
-    ax.axvline(
-        min(top, limit),
-        color=RED,
-        lw=2,
-        label=f"this log, {top:.4g}" + (" (off scale)" if top > limit else ""),
-    )
+    beyond = " (off scale)" if top > limit else ""
+    label = f"{len(s.surrogate_max)} surrogates of the residual"
+    # a log of one block has one score, but for rounding: bins between given ends
+    ax.hist(s.surrogate_max, bins=30, range=(0.0, max(largest, s.threshold) or 1.0), color=GREY, label=label)
+    ax.axvline(s.threshold, color=GREEN, lw=1.5, label=f"99 % threshold, {s.threshold:.2f}")
+    ax.axvline(min(top, limit), color=RED, lw=2, label=f"this log, {top:.4g}{beyond}")
     ax.set_xlim(0, max(limit * 1.02, 1.0))
     ax.set(xlabel="largest score, -log10 p", ylabel="surrogates")
     return finish(ax, title)

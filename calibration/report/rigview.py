@@ -1,15 +1,16 @@
 """`schmidt rig`: what was understood of a drive's files, before anything is fitted."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader
 
 from calibration.balances.balance import problem_of
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import WINDOW, view_of
 from calibration.decide.accept import least_share
-from calibration.inputs.declaration import FrictionLaw, Response, Rig
+from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, Signal, signal_of
@@ -24,7 +25,7 @@ def show_rig(rig_file: Path, logs: list[Path], out: Path | None = None) -> str:
     Raises CalibrationInputError as `schmidt calibrate` would.
     """
     rig = load_rig(rig_file)
-    lines = list(_declaration(rig))
+    lines = _declaration(rig).splitlines()
     drive = read_drive(logs, rig) if logs else None
     records = drive.records if drive is not None else []
     if drive is not None and records:
@@ -50,59 +51,18 @@ SI |= dict.fromkeys(("velocity", "setpoint", "motor_a", "motor_b"), "rad/s")
 SI |= dict.fromkeys(("ra", "dec", "dither"), "arcsec")
 
 
-def _declaration(rig: Rig) -> Iterator[str]:
-    yield rig.name
+def _declaration(rig: Rig) -> str:
+    """What the rig file says of the drive."""
+    env = Environment(loader=FileSystemLoader(Path(__file__).parent), trim_blocks=True, lstrip_blocks=True)
+    env.filters["g"] = "{:g}".format
+    env.filters["listed"] = lambda numbers: ", ".join(f"{k} = {v:g}" for k, v in numbers.items())
     unit = rig.columns["position"].unit if "position" in rig.columns else "turns"
-    if rig.motors is not None:
-        m = rig.motors
-        yield (
-            f"two motors: {m.torque_constant:g} N m/A, {m.resistance:g} ohm, trains of"
-            f" {m.train_stiffness:g} N m/rad, counter torque {100 * m.counter_torque:g} %"
-        )
-        yield "explains torque, volts, encoders and command of the axis, as far as it has the columns"
-        for f in rig.friction:
-            yield (
-                f"friction{f' ({f.state})' if f.state else ''}: Coulomb {f.coulomb:g} N m, stiction"
-                f" {f.stiction:g} N m, Stribeck {f.stribeck_rate:g} rad/s, viscous {f.viscous:g} N m s/rad,"
-                f" bristles {f.bristle_stiffness:g} N m/rad"
-            )
-    elif rig.drifts:
-        yield "explains a position at constant rate over time"
-    else:
-        gains = (f", times {r.gain:g}" if r.gain != 1 else "" for r in rig.responses)
-        over = (f", over {r.divide_by}" if r.divide_by else "" for r in rig.responses)
-        what = zip(rig.responses, gains, over, strict=True)
-        yield f"explains {'; '.join(f'{r.channel} in {r.unit}{times}{by}' for r, times, by in what)}"
-        yield f"estimates {', '.join(rig.estimate) or 'its usual terms'}"
-    if rig.constants:
-        yield f"knows {_listed(rig.constants)}"
-    if rig.friction_law is not None:
-        yield _friction_law(rig.friction_law, unit)
-    if rig.stages:
-        turns = (
-            f"{g.name} {g.period:g} {unit}" if g.period else f"{g.name} {g.period_s:g} s" for g in rig.stages
-        )
-        yield f"stages {', '.join(turns)}"
-    if rig.controller is not None:
-        yield f"controlled by a {rig.controller.law}, {_listed(rig.controller.gains)}"
-
-
-def _listed(numbers: Mapping[str, float]) -> str:
-    return ", ".join(f"{k} = {v:g}" for k, v in numbers.items())
-
-
-def _friction_law(law: FrictionLaw, unit: str) -> str:
-    dip = f"{law.stiction_ratio:g} times Coulomb's from rest, Stribeck {law.stribeck_speed:g} {unit}/s"
-    dip += f" to the power {law.stribeck_exponent:g}" if law.stribeck_exponent != 2.0 else ""
-    bristles = f"bristles of {law.bristle_travel:g} {unit}" if law.bristle_travel is not None else ""
-    return "friction law: " + "; ".join([dip] * (law.stiction_ratio != 1.0) + [bristles] * bool(bristles))
+    return env.get_template("rig.txt.j2").render(rig=rig, unit=unit)
 
 
 def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
-    """What a log of these rows could show of a response: its filter, and how often it passes each stage.
-
-    Also the smallest line that would have a name beside a rest as large as the response is now.
-    """
+    """What a log of these rows could show of a response: its filter, and how often it passes each stage. Also
+    the smallest line that would have a name beside a rest as large as the response is now."""
     if rig.motors is not None or rig.drifts or not all(r.rows >= FEWEST_ROWS for r in records):
         return
     view = view_of(records, rig, response)

@@ -69,11 +69,8 @@ def _size(effect: dict[str, Any]) -> str:
     if not p:
         return ""
     interval = f" ({p['low']:.4g} to {p['high']:.4g})" if p.get("low") is not None else ""
-    further = [
-        f"; harmonic {at} {other['value']:.4g}"
-        for key, other in effect["parameters"].items()
-        if (at := key.removeprefix("amplitude_")).isdigit()
-    ]
+    numbered = {key.removeprefix("amplitude_"): other["value"] for key, other in effect["parameters"].items()}
+    further = (f"; harmonic {at} {x:.4g}" for at, x in numbered.items() if at.isdigit())
     return f"{name} {p['value']:.4g}{interval} {unit}".rstrip() + "".join(further)
 
 

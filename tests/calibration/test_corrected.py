@@ -18,7 +18,7 @@ from calibration.inputs.declaredplant import declared_model, declared_numbers
 from calibration.names import NAMES as FOUND
 from calibration.names.inplant import Facts, as_found
 from calibration.names.position_friction import nearest_place
-from calibration.names.spline import spline_columns
+from calibration.names.unknown_shapes import spline_columns
 from calibration.replay.corrected import curve_of
 from calibration.replay.plantfile import convert, correct
 from plant.effects import REGISTRY

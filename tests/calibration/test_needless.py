@@ -8,7 +8,7 @@ from calibration.balances.problem import Problem
 from calibration.decide.rules import leave_out, needless
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
-from calibration.names.spline import spline_columns
+from calibration.names.unknown_shapes import spline_columns
 
 PERIOD_S, ROWS = 0.03, 8000
 NOISE, GRAVITY = 0.5, 30.0  # N m

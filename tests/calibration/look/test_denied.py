@@ -8,7 +8,7 @@ import pytest
 
 from calibration.look.axis_result import AxisResult
 from calibration.look.volts import volts_deny
-from calibration.names.candidates import candidate
+from calibration.names.name import candidate
 
 
 @pytest.mark.parametrize(

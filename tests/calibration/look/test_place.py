@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calibration.look.said import place_of
-from calibration.names.candidates import candidate
+from calibration.names.name import candidate
 from plant.effects import REGISTRY
 from tests.calibration.names.test_volts import scene
 

@@ -13,7 +13,7 @@ from plant.effects import REGISTRY
 from tests.calibration.reported import knows, listed
 
 ROOM = Path(__file__).parents[3] / "calibration"
-MAKERS = {"candidate", "grid", "steps", "tried", "_over", "line"}
+MAKERS = {"candidate", "grid", "steps", "tried", "over", "line"}
 SIZES = {"Parameter", "normal", "deviation", "middle", "middle_of"}
 #: files of no name, and whose findings they make
 MADE = {
@@ -25,7 +25,7 @@ MADE = {
     "look/controllerlaw.py": (UNKNOWN, "command_disturbance"),
     "names/columns.py": ("log_wrap", "sample_loss", "clock_jitter"),
     "names/unknown_bits.py": (UNKNOWN,),
-    "names/unknown_volts.py": (UNKNOWN,),
+    "names/unknown_shapes.py": (UNKNOWN,),
     "names/lines.py": ("bearing_pass",),
 }
 
@@ -44,15 +44,18 @@ def printed(path: Path) -> Iterator[str]:
     at = ".".join(path.relative_to(ROOM.parent).with_suffix("").parts)
     module = importlib.import_module(at)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MAKERS:
-            for size in node.args[2 if node.func.id != "_over" else 1 :]:
+        maker = getattr(node.func, "id", getattr(node.func, "attr", "")) if isinstance(node, ast.Call) else ""
+        if isinstance(node, ast.Call) and maker in MAKERS:
+            for size in node.args[2:]:
                 yield from words(size.elts[0] if isinstance(size, ast.Tuple) else size, module)
-        if isinstance(node, ast.keyword) and node.arg in ("at", "fixed", "parameters"):
-            for key in node.value.keys if isinstance(node.value, ast.Dict) else ():
-                yield from words(key, module) if key is not None else ()
         called = node.arg if isinstance(node, ast.keyword) else ""
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             called = node.targets[0].id
+        if called in ("at", "fixed", "parameters") and isinstance(
+            value := getattr(node, "value", None), ast.Dict
+        ):
+            for key in value.keys:
+                yield from words(key, module) if key is not None else ()
         if called in ("along", "size") and isinstance(value := getattr(node, "value", None), ast.Tuple):
             yield from words(value.elts[0], module)
         if isinstance(node, ast.Dict):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calibration.inputs.words import word_length
+from calibration.inputs.counters import word_length
 
 
 @settings(max_examples=50, deadline=None)
@@ -29,6 +29,7 @@ def test_numbers_of_both_signs_show_their_word(bits: int, low: int, high: int, s
         np.concatenate([np.arange(100.0), np.full(3, 65535.0)]),  # readings that failed
         np.arange(1000.0),
         np.linspace(0.0, 65535.0, 100) + 0.25,  # no whole numbers
+        np.concatenate([np.arange(100.0), np.arange(65436.0, 65536.0)]) + 0.25,  # likewise, at both ends
         np.array([1.0, 65535.0, 65534.0, 65533.0]),  # too few rows
         np.concatenate([np.arange(200.0, 900.0), np.arange(6000.0, 7500.0)]),  # mA, idle and running
         np.concatenate([np.arange(0.0, 10.0), np.arange(180.0, 200.0)] * 3),  # a duty of 8 bits
