@@ -85,12 +85,13 @@ def passed(view: View, full: Array, beside: Array | None = None) -> float | None
 
     beside: the position, where its own steps come back in the column through a loop, as real force.
     """
+    every = view.seldom.get(view.response.channel, 1)  # between its readings a column is a straight line
     found = [
         rough(full[rows], 2, None if beside is None else beside[rows])
-        for rows in (view.file == k for k in np.unique(view.file))
+        for rows in (np.flatnonzero(view.file == k)[::every] for k in np.unique(view.file))
     ]
     good = [x for x in found if np.isfinite(x)]
-    return float(np.median(good) * np.sqrt(view.filter.passes)) if good else None
+    return float(np.median(good) * np.sqrt(min(view.filter.passes * every, 1.0))) if good else None
 
 
 def _bent(view: View, by: Filter) -> float:

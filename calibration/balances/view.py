@@ -17,7 +17,7 @@ from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
 from calibration.inputs.declaration import Response, Rig
-from calibration.inputs.run import Run, step_of
+from calibration.inputs.run import Run, rows_per_reading, step_of
 from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z
@@ -52,6 +52,8 @@ MOST = 40.0
 NYQUIST = 0.5
 # steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
 RESOLVED = 6.0
+# rows per reading of a column, from where on its noise is told reading by reading. ASSUMPTION: not a few gaps
+SELDOM = 1.5
 
 
 @dataclass(kw_only=True)
@@ -77,6 +79,7 @@ class View:
     turn: float | None  # position units per turn
     rates: float = 0.0  # standard deviation, rows, by which rates and accelerations are smoothed
     quanta: dict[str, float] = field(default_factory=dict)  # steps of the columns, as they were logged
+    seldom: dict[str, int] = field(default_factory=dict)  # rows per reading of what is read less often
     slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
     slow_offset: int | None = None  # cosines per file by which the response's offset wanders; 0: a constant
     standstill: float = 0.0  # speed, position units per s, below which the direction fades
@@ -193,6 +196,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         rates=sigma if dynamic else 0.0,
         turn=rig.turn or units_per_turn(rig.columns["position"].unit),
         quanta=quanta,
+        seldom={k: round(share) for k in columns if (share := rows_per_reading(records, k)) > SELDOM},
     )
     _motion(view, sigma)
     view.run = _runs(view, label)

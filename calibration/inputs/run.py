@@ -106,6 +106,12 @@ def step_of(records: Iterable[Run], channel: str) -> float | None:
     return quantum(np.concatenate([x[np.isfinite(x)] for x in logged]))
 
 
+def rows_per_reading(records: Iterable[Run], channel: str) -> float:
+    """Rows that a reading of a channel stands for, where it was put on another one's stamps; else 1."""
+    counts = [(r.rows, len(r.logged[channel])) for r in records if channel in r.logged]
+    return sum(rows for rows, _ in counts) / max(sum(own for _, own in counts), 1) if counts else 1.0
+
+
 def signal_of(channel: str, column: str, unit: str, x: Array, wraps: int) -> Signal:
     """Range and quantum of a column."""
     good = x[np.isfinite(x)]

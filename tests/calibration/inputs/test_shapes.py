@@ -8,11 +8,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from calibration.balances.balance import problem_of
+from calibration.balances.floors import passed
 from calibration.balances.view import view_of
 from calibration.errors import CalibrationInputError
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
-from calibration.inputs.run import Run, quantum, step_of
+from calibration.inputs.run import Run, quantum, rows_per_reading, step_of
 from calibration.look.search import scene_of
 from calibration.names.lines import line, of_stage
 
@@ -133,6 +134,19 @@ def test_a_sensor_has_its_own_step_on_the_stamps_of_another(tmp_path: Path) -> N
     run = read(tmp_path, text, COLUMNS, LONG)
     assert quantum(run.columns["position"]) != pytest.approx(0.01, rel=1e-6)
     assert step_of([run], "position") == pytest.approx(0.01, rel=1e-6)
+
+
+def test_noise_of_a_column_that_is_read_seldom_is_that_of_its_readings(tmp_path: Path) -> None:
+    """A tenth of the rate, straight lines between: from row to row they hardly move."""
+    rng, t = np.random.default_rng(5), STEP_S * np.arange(20_000)
+    found = [(at, "x", np.sin(at)) for at in t] + [(at, "u", 0.1 * rng.standard_normal()) for at in t[::10]]
+    text = "t,signal,value\n" + "\n".join(f"{at:.6f},{name},{x:.9g}" for at, name, x in sorted(found))
+    run = read(tmp_path, text, COLUMNS, LONG)
+    assert rows_per_reading([run], "effort") == pytest.approx(10.0)
+    rig = load_rig(tmp_path / "rig.yaml")
+    view = view_of([run], rig, rig.responses[0])
+    assert view.seldom == {"effort": 10}
+    assert passed(view, view.columns["effort"]) == pytest.approx(0.1, rel=0.1)  # nothing is filtered
 
 
 def test_a_signal_that_a_long_table_has_not_is_told(tmp_path: Path) -> None:
