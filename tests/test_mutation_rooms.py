@@ -1,24 +1,62 @@
-"""Targets of the mutation runs: every module of a room has tests, and those tests are there."""
+"""Mutation runs: every module of a room has tests, mutants change what they say, and floors are held."""
 
 from pathlib import Path
 
 import pytest
 
+from tests.mutation.operators import mutants
 from tests.mutation.ratchet import fallen, floors, key, reasons
-from tests.mutation.targets import AIMS, TARGETS, modules, room_of
+from tests.mutation.rooms import AIMS, BESIDES, judging, mirrors, modules, room_of
+
+BOTH = "value > LIMIT and value > least"
+SOURCE = """\
+LIMIT = 3
+def over(value,
+         least=0):
+    if value > LIMIT and (
+            value > least):
+        return 1
+    return 2
+"""
 
 
 @pytest.mark.parametrize("room", AIMS)
-def test_every_module_of_a_room_has_tests_that_are_there(room: str) -> None:
-    found = modules(room)
-    assert found
-    for path, tests in found.items():
-        assert tests and all(Path(each.partition("::")[0]).exists() for each in tests), path
+def test_a_room_has_modules_and_tests_and_they_are_there(room: str) -> None:
+    assert modules(room) and judging(room)
+    assert all(Path(each).is_file() for each in judging(room))
+    assert all(Path(each).exists() for each in BESIDES.get(room, ()))
 
 
-def test_every_target_is_there_and_in_a_room() -> None:
-    for path in [*TARGETS, *floors(), *(each.partition(":")[0] for each in reasons())]:
+def test_every_module_that_is_named_is_there_and_in_a_room() -> None:
+    for path in [*floors(), *(each.partition(":")[0] for each in reasons())]:
         assert Path(path).is_file() and room_of(path), path
+
+
+def test_a_survivor_with_a_reason_is_a_mutant_still() -> None:
+    for path in {each.partition(":")[0] for each in reasons()}:
+        labels = {key(path, each.label) for each in mutants(Path(path).read_text(encoding="utf-8"))}
+        assert {each for each in reasons() if each.startswith(f"{path}:")} <= labels
+
+
+def test_a_module_is_mirrored_by_the_test_of_its_name_or_else_by_its_folder() -> None:
+    assert mirrors("bus/can/bits.py", "tests/bus/can/test_bits.py")
+    assert not mirrors("bus/can/bits.py", "tests/bus/can/test_wire.py")
+    assert mirrors("bus/can/strangers.py", "tests/bus/can/test_wire.py")
+    assert not mirrors("bus/can/strangers.py", "tests/bus/time/test_queue.py")
+
+
+def test_a_mutant_knows_the_lines_of_its_statement_and_whether_a_function_runs_it() -> None:
+    found = {each.label.partition(": ")[2]: (each.lines, each.inside) for each in mutants(SOURCE)}
+    assert found == {
+        "constant: 3 -> 4 in: LIMIT = 3": (range(1, 2), False),
+        "constant: 0 -> 1 in: least=0):": (range(2, 4), False),
+        f"negate: if {BOTH}: -> if not ({BOTH}):": (range(4, 6), True),
+        f"boolean: {BOTH} -> value > LIMIT or value > least": (range(4, 6), True),
+        "compare: value > LIMIT -> value >= LIMIT": (range(4, 6), True),
+        "compare: value > least -> value >= least": (range(4, 6), True),
+        "constant: 1 -> 2 in: return 1": (range(6, 7), True),
+        "constant: 2 -> 3 in: return 2": (range(7, 8), True),
+    }  # fmt: skip
 
 
 def test_a_share_below_its_floor_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 import ast
 import copy
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 _COMPARE: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -86,15 +87,47 @@ class _Replace(ast.NodeTransformer):
         return self.new if node is self.target else super().generic_visit(node)
 
 
-def mutants(source: str) -> Iterator[tuple[str, str]]:
-    """(where and what, changed source) for every mutant of a module."""
+@dataclass
+class Mutant:
+    """A changed module. lines: of the statement; inside: whether a function's body holds it."""
+
+    label: str
+    lines: range
+    inside: bool
+    tree: ast.Module
+
+
+def _places(
+    tree: ast.AST, lines: range = range(0), inside: bool = False
+) -> Iterator[tuple[ast.AST, range, bool]]:
+    """Every node, the lines of its innermost statement (a block's: its head), and whether in a function."""
+    for name, value in ast.iter_fields(tree):
+        for node in value if isinstance(value, list) else [value]:
+            if not isinstance(node, ast.AST):
+                continue
+            own = lines
+            if isinstance(node, ast.stmt):
+                last = node.end_lineno or node.lineno
+                if isinstance(body := getattr(node, "body", None), list):
+                    last = max(node.lineno, body[0].lineno - 1)
+                own = range(node.lineno, last + 1)
+            within = inside or (name == "body" and isinstance(tree, ast.FunctionDef | ast.Lambda))
+            yield node, own, within
+            yield from _places(node, own, within)
+
+
+def mutants(source: str) -> Iterator[Mutant]:
+    """Every mutant of a module."""
     count = sum(len(_changes(node)) for node in _code(ast.parse(source)))
     for number in range(count):
         tree = ast.parse(source)
         sites = [(node, what) for node in _code(tree) for what in _changes(node)]
         node, what = sites[number]
+        lines, inside = next((lines, inside) for each, lines, inside in _places(tree) if each is node)
         new = _apply(node, what)
         line = getattr(node, "lineno", 0)
         label = f"{line}: {what}: {ast.unparse(node).splitlines()[0]} -> {ast.unparse(new).splitlines()[0]}"
+        if what == "constant":
+            label += f" in: {source.splitlines()[line - 1].strip()}"
         changed = ast.fix_missing_locations(_Replace(node, ast.copy_location(new, node)).visit(tree))
-        yield label, ast.unparse(changed)
+        yield Mutant(label, lines, inside, changed)
