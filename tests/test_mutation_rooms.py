@@ -1,12 +1,17 @@
 """Mutation runs: every module of a room has tests, mutants change what they say, and floors are held."""
 
+import os
+import signal
 from pathlib import Path
 
 import pytest
 
+from tests.mutation import ratchet
 from tests.mutation.operators import mutants
 from tests.mutation.ratchet import fallen, floors, key, reasons
 from tests.mutation.rooms import AIMS, BESIDES, judging, mirrors, modules, room_of
+from tests.mutation.session import forked, outcomes
+from tests.mutation.trial import Bench
 
 BOTH = "value > LIMIT and value > least"
 SOURCE = """\
@@ -67,3 +72,69 @@ def test_a_share_below_its_floor_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_a_survivor_is_known_without_its_line() -> None:
     assert key("a.py", "12: compare: a < b -> a <= b") == key("a.py", "99: compare: a < b -> a <= b")
+
+
+def test_a_function_that_is_there_does_what_its_mutant_does() -> None:
+    source = Path(ratchet.__file__).read_text(encoding="utf-8")
+    mutant = next(each for each in mutants(source) if "share < floor -> share <= floor" in each.label)
+
+    def changed() -> bool:
+        before = ratchet.fallen({"a.py": 0.0})
+        Bench([]).patched(compile(mutant.tree, ratchet.__file__, "exec"), {})
+        return not before and bool(ratchet.fallen({"a.py": 0.0}))
+
+    assert forked(changed)
+    assert not ratchet.fallen({"a.py": 0.0})
+
+
+def test_a_child_that_dies_or_fails_is_a_mutant_killed() -> None:
+    works = (
+        lambda: True,
+        lambda: False,
+        lambda: bool(1 // 0),
+        lambda: os.kill(os.getpid(), signal.SIGKILL) is None,
+    )
+    for jobs in (1, 2):
+        assert dict(outcomes(works, jobs)) == {0: True, 1: False, 2: False, 3: False}
+
+
+TESTS = """\
+import pytest
+import here
+
+@pytest.fixture(scope="module")
+def made():
+    return here.shared()
+
+def test_one(made):
+    assert here.own() == made
+
+def test_two(made):
+    assert made == 1
+"""
+CODE = """\
+ONE = 1
+def shared():
+    return ONE
+def own():
+    return ONE
+"""
+
+
+def test_what_a_shared_fixture_executes_is_every_tests_that_asks_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("coverage")
+    from tests.mutation.covering import Covering
+
+    for name, text in {"bus/here.py": CODE, "tests/bus/test_here.py": TESTS}.items():
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).write_text(text)
+    (tmp_path / "tests/boards/chips/mcp2515").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path / "bus")
+    found = Covering("bus")
+    one, two = (f"tests/bus/test_here.py::test_{each}" for each in ("one", "two"))
+    assert sorted(found.executing("bus/here.py", range(3, 4))) == [one, two]
+    assert found.executing("bus/here.py", range(5, 6)) == [one]
+    assert found.imported("bus/here.py", range(1, 2)) and not found.imported("bus/here.py", range(3, 4))

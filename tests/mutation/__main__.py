@@ -14,11 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.covering import Covering, Test
+from tests.mutation.covering import Covering
 from tests.mutation.operators import Mutant, mutants
 from tests.mutation.ratchet import fallen, key, reasons, tighten
 from tests.mutation.rooms import AIMS, UNCOMPILED, modules
-from tests.mutation.session import forked, outcomes, run
+from tests.mutation.session import Test, forked, outcomes, run
 from tests.mutation.trial import Bench
 
 

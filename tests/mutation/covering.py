@@ -10,28 +10,20 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import coverage
 import pytest
 
 from tests.mutation.rooms import judging, mirrors, modules
-from tests.mutation.session import forked, run
+from tests.mutation.session import Test, forked, run
 
-LONGEST_S = 20
+LONGEST_S = 5
 """A test that takes more of the processor is left out: no mutant waits for it."""
 IMPORT = ""
 """Coverage's context while no test runs."""
 FIXTURE = "fixture "
 """Before a fixture's place and name, it is the context while that is set up."""
-
-
-class Test(NamedTuple):
-    """What a test takes, s: on the clock, and of the processor. fixtures: names of those it asks for."""
-
-    wall: float
-    cpu: float
-    fixtures: tuple[str, ...] = ()
 
 
 class Recorder:

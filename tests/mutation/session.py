@@ -3,12 +3,21 @@
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import hypothesis
 import pytest
 
 _QUIET = ["-W", "ignore::pytest.PytestAssertRewriteWarning", "--override-ini", "addopts=", "-q", "-s"]
 _PLAIN = ["--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:anyio"]
+
+
+class Test(NamedTuple):
+    """What a test takes, s: on the clock, and of the processor. fixtures: names of those it asks for."""
+
+    wall: float
+    cpu: float
+    fixtures: tuple[str, ...] = ()
 
 
 class FewExamples:
