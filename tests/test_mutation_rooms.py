@@ -80,7 +80,7 @@ def test_a_function_that_is_there_does_what_its_mutant_does() -> None:
 
     def changed() -> bool:
         before = ratchet.fallen({"a.py": 0.0})
-        Bench([]).patched(compile(mutant.tree, ratchet.__file__, "exec"), {})
+        Bench([]).patched(compile(mutant.tree(), ratchet.__file__, "exec"), {})
         return not before and bool(ratchet.fallen({"a.py": 0.0}))
 
     assert forked(changed)
@@ -130,10 +130,9 @@ def test_what_a_shared_fixture_executes_is_every_tests_that_asks_for_it(
     for name, text in {"bus/here.py": CODE, "tests/bus/test_here.py": TESTS}.items():
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text(text)
-    (tmp_path / "tests/boards/chips/mcp2515").mkdir(parents=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path / "bus")
-    found = Covering("bus")
+    found = Covering("bus", ["tests/bus/test_here.py"], 1.0)
     one, two = (f"tests/bus/test_here.py::test_{each}" for each in ("one", "two"))
     assert sorted(found.executing("bus/here.py", range(3, 4))) == [one, two]
     assert found.executing("bus/here.py", range(5, 6)) == [one]

@@ -7,6 +7,7 @@ told which these are. Everything is imported and collected once; each mutant is 
 import argparse
 import os
 import random
+import re
 import time
 from collections.abc import Callable
 from functools import partial
@@ -17,7 +18,7 @@ import pytest
 from tests.mutation.covering import Covering
 from tests.mutation.operators import Mutant, mutants
 from tests.mutation.ratchet import fallen, key, reasons, tighten
-from tests.mutation.rooms import AIMS, UNCOMPILED, modules
+from tests.mutation.rooms import AIMS, UNCOMPILED, judging, modules
 from tests.mutation.session import Test, forked, outcomes, run
 from tests.mutation.trial import Bench
 
@@ -31,6 +32,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--tighten", action="store_true", help="raise floor.yaml to what is measured")
     parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of each module's mutants")
     parser.add_argument("--sample", type=int, default=0, help="at most so many mutants of each module")
+    parser.add_argument("--tests", default="", help="of those that may notice, files whose path this matches")
     parser.add_argument("--seconds", type=float, default=10, help="of tests at most, for each mutant")
     parser.add_argument("--jobs", type=int, choices=(1, 2), default=1, help="children at a time")
     parser.add_argument("--out", type=Path, help="file for the survivors")
@@ -95,7 +97,7 @@ class Loop:
         if not names:
             return lambda: True
         way, tests = self.bench.patched if there else self.bench.anew, self.within(names)
-        return lambda: way(compile(mutant.tree, os.path.abspath(path), "exec"), tests)
+        return lambda: way(compile(mutant.tree(), os.path.abspath(path), "exec"), tests)
 
     def within(self, names: list[str]) -> dict[str, Test]:
         """As many of these tests as the time allows, at least one."""
@@ -112,7 +114,8 @@ def main() -> None:
     asked = options()
     if asked.room in UNCOMPILED:
         os.environ["NUMBA_DISABLE_JIT"] = "1"
-    covering = Covering(asked.room)
+    files = [each for each in judging(asked.room) if re.search(asked.tests, each)]
+    covering = Covering(asked.room, files, asked.seconds)
     loop = Loop(asked, covering)
     run(sorted({name.partition("::")[0] for name in covering.tests}), [loop])
     if asked.tighten:

@@ -15,11 +15,9 @@ from typing import Any
 import coverage
 import pytest
 
-from tests.mutation.rooms import judging, mirrors, modules
+from tests.mutation.rooms import mirrors, modules
 from tests.mutation.session import Test, forked, run
 
-LONGEST_S = 5
-"""A test that takes more of the processor is left out: no mutant waits for it."""
 IMPORT = ""
 """Coverage's context while no test runs."""
 FIXTURE = "fixture "
@@ -29,7 +27,8 @@ FIXTURE = "fixture "
 class Recorder:
     """A pytest plug-in: a context for each test and each fixture of more than one; times of what passes."""
 
-    def __init__(self, room: str) -> None:
+    def __init__(self, room: str, longest_s: float) -> None:
+        self.longest_s = longest_s
         self.measured = coverage.Coverage(include=modules(room), data_file=None, config_file=False)
         self.context = IMPORT
         self.times: dict[str, Test] = {}
@@ -55,7 +54,7 @@ class Recorder:
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         signal.signal(signal.SIGPROF, lambda *_: pytest.fail("takes too long"))
-        signal.setitimer(signal.ITIMER_PROF, LONGEST_S)
+        signal.setitimer(signal.ITIMER_PROF, self.longest_s)
         with self.within(item.nodeid, tuple(getattr(item, "fixturenames", ()))):
             result = yield
         signal.setitimer(signal.ITIMER_PROF, 0)
@@ -84,20 +83,29 @@ class Recorder:
         return {name: [*self.times.get(name, Test(0, 0)), lines.get(name, {})] for name in names}
 
 
-class Covering:
-    """The map of a room; made anew where a file has changed since."""
+def _times(files: list[str]) -> dict[str, float]:
+    return {each: Path(each).stat().st_mtime for each in files}
 
-    def __init__(self, room: str) -> None:
-        file, files = Path("out/mutation", room.replace("/", "-") + ".json"), judging(room)
-        known: dict[str, list[Any]] = {}
-        since = file.stat().st_mtime if file.exists() else 0.0
-        if since > max(Path(each).stat().st_mtime for each in modules(room)):
-            known = json.loads(file.read_text(encoding="utf-8"))
-        changed = [each for each in files if not known or Path(each).stat().st_mtime > since]
+
+class Covering:
+    """The map of a room by these files of tests, made anew where one has changed.
+
+    longest_s: a test that takes more of the processor is left out.
+    """
+
+    def __init__(self, room: str, files: list[str], longest_s: float) -> None:
+        store, code = Path("out/mutation", room.replace("/", "-") + ".json"), _times(modules(room))
+        kept = json.loads(store.read_text(encoding="utf-8")) if store.exists() else {}
+        if kept.get("code") != code:
+            kept = {"code": code, "files": {}, "found": {}}
+        now = _times(files)
+        changed = [each for each in files if kept["files"].get(each) != now[each]]
         if changed:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            forked(lambda: self._record(room, changed, known, file))
-            known = json.loads(file.read_text(encoding="utf-8"))
+            store.parent.mkdir(parents=True, exist_ok=True)
+            kept["files"].update(now)
+            forked(lambda: self._record(Recorder(room, longest_s), changed, kept, store))
+            kept = json.loads(store.read_text(encoding="utf-8"))
+        known: dict[str, list[Any]] = kept["found"]
         self.tests: dict[str, Test] = {}
         self._lines: dict[tuple[str, int], set[str]] = {}
         above = {name: each for name, each in known.items() if name.startswith(FIXTURE)}
@@ -121,14 +129,13 @@ class Covering:
                 self._lines.setdefault((path, line), set()).add(name)
 
     @staticmethod
-    def _record(room: str, changed: list[str], known: dict[str, list[Any]], file: Path) -> bool:
-        recorder = Recorder(room)
+    def _record(recorder: Recorder, changed: list[str], kept: dict[str, Any], store: Path) -> bool:
         run(changed, [recorder])
-        found = recorder.found()
+        found, known = recorder.found(), kept["found"]
         for path, lines in known.get(IMPORT, [0, 0, (), {}])[3].items():
             found[IMPORT][3].setdefault(path, []).extend(lines)
         old = {k: v for k, v in known.items() if not k.removeprefix(FIXTURE).startswith(tuple(changed))}
-        file.write_text(json.dumps({**old, **found}), encoding="utf-8")
+        store.write_text(json.dumps({**kept, "found": {**old, **found}}), encoding="utf-8")
         return True
 
     def imported(self, path: str, lines: range) -> bool:

@@ -89,12 +89,21 @@ class _Replace(ast.NodeTransformer):
 
 @dataclass
 class Mutant:
-    """A changed module. lines: of the statement; inside: whether a function's body holds it."""
+    """A changed module. number: its place. lines: of the statement; inside: whether in a function's body."""
 
+    source: str
+    number: int
     label: str
     lines: range
     inside: bool
-    tree: ast.Module
+
+    def tree(self) -> ast.Module:
+        """The module with the change, lines as they were."""
+        tree = ast.parse(self.source)
+        node, what = _sites(tree)[self.number]
+        new = ast.copy_location(_apply(node, what), node)
+        changed: ast.Module = ast.fix_missing_locations(_Replace(node, new).visit(tree))
+        return changed
 
 
 def _places(
@@ -116,18 +125,18 @@ def _places(
             yield from _places(node, own, within)
 
 
+def _sites(tree: ast.Module) -> list[tuple[ast.AST, str]]:
+    return [(node, what) for node in _code(tree) for what in _changes(node)]
+
+
 def mutants(source: str) -> Iterator[Mutant]:
     """Every mutant of a module."""
-    count = sum(len(_changes(node)) for node in _code(ast.parse(source)))
-    for number in range(count):
-        tree = ast.parse(source)
-        sites = [(node, what) for node in _code(tree) for what in _changes(node)]
-        node, what = sites[number]
-        lines, inside = next((lines, inside) for each, lines, inside in _places(tree) if each is node)
-        new = _apply(node, what)
+    tree = ast.parse(source)
+    places = {node: (lines, inside) for node, lines, inside in _places(tree)}
+    for number, (node, what) in enumerate(_sites(tree)):
         line = getattr(node, "lineno", 0)
-        label = f"{line}: {what}: {ast.unparse(node).splitlines()[0]} -> {ast.unparse(new).splitlines()[0]}"
+        old, new = (ast.unparse(each).splitlines()[0] for each in (node, _apply(node, what)))
+        label = f"{line}: {what}: {old} -> {new}"
         if what == "constant":
             label += f" in: {source.splitlines()[line - 1].strip()}"
-        changed = ast.fix_missing_locations(_Replace(node, ast.copy_location(new, node)).visit(tree))
-        yield Mutant(label, lines, inside, changed)
+        yield Mutant(source, number, label, *places[node])
