@@ -8,7 +8,6 @@ import argparse
 import os
 import random
 import re
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -49,6 +48,9 @@ class Loop:
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         self.bench = Bench(session.items)
+        every = self.within(self.covering.of_room())
+        if not forked(partial(self.bench.patched, compile("", "", "exec"), every)):
+            raise SystemExit("tests fail without any mutation; repair them first")
         for path in modules(self.asked.room):
             if self.asked.only in path:
                 self.module(path)
@@ -72,14 +74,11 @@ class Loop:
             cases = random.Random(path).sample(cases, self.asked.sample)
         if not cases:
             return
-        code, every = (
-            compile(source, os.path.abspath(path), "exec"),
-            self.within(self.covering.of_module(path)),
-        )
-        for way in (self.bench.patched, self.bench.anew):
-            if every and not forked(partial(way, code, every)):
-                raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
-        started, alive = time.monotonic(), 0
+        anew = partial(self.bench.anew, compile(source, os.path.abspath(path), "exec"))
+        every = self.within(self.covering.of_module(path))
+        if every and any(self.imported(path, each) for each in cases) and not forked(partial(anew, every)):
+            raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
+        started, alive = _spent(), 0
         works = (self.work(path, each) for each in cases)
         for place, passed in outcomes(works, self.asked.jobs):
             if passed:
@@ -87,26 +86,41 @@ class Loop:
                 self.tell(f"    {path}:{cases[place].label}")
         self.total, self.killed = self.total + len(cases), self.killed + len(cases) - alive
         self.shares[path] = 100 * (1 - alive / len(cases))
-        took = time.monotonic() - started
-        self.tell(f"{path}: {len(cases) - alive} of {len(cases)} killed ({took:.0f} s)")
+        took = _spent() - started
+        self.tell(f"{path}: {len(cases) - alive} of {len(cases)} killed ({took:.0f} s of the processor)")
+
+    def imported(self, path: str, mutant: Mutant) -> bool:
+        """Whether an import runs the line, so that functions that are there do not tell all."""
+        return not mutant.inside or self.covering.imported(path, mutant.lines)
 
     def work(self, path: str, mutant: Mutant) -> Callable[[], bool]:
-        """What a child does with a mutant; no test, no work."""
-        there = mutant.inside and not self.covering.imported(path, mutant.lines)
-        names = self.covering.executing(path, mutant.lines) if there else self.covering.of_module(path)
-        if not names:
-            return lambda: True
-        way, tests = self.bench.patched if there else self.bench.anew, self.within(names)
-        return lambda: way(compile(mutant.tree(), os.path.abspath(path), "exec"), tests)
+        """What a child does with a mutant; no test, no work. What runs at import is tried there first."""
+        names = self.covering.executing(path, mutant.lines) if mutant.inside else []
+        here, everywhere = self.within(names), self.within(self.covering.of_module(path))
+
+        def passed() -> bool:
+            code = compile(mutant.tree(), os.path.abspath(path), "exec")
+            if not self.imported(path, mutant):
+                return not here or self.bench.patched(code, here)
+            if here and not forked(partial(self.bench.patched, code, here)):
+                return False
+            return not everywhere or self.bench.anew(code, everywhere)
+
+        return passed
 
     def within(self, names: list[str]) -> dict[str, Test]:
         """As many of these tests as the time allows, at least one."""
         left, found = self.asked.seconds, dict[str, Test]()
         for name in names:
-            if found and (left := left - self.covering.tests[name].cpu) < 0:
+            if found and (left := left - self.covering.tests[name].time) < 0:
                 break
             found[name] = self.covering.tests[name]
         return found
+
+
+def _spent() -> float:
+    """Processor time of the children, s."""
+    return os.times().children_user + os.times().children_system
 
 
 def main() -> None:

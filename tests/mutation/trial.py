@@ -44,7 +44,7 @@ class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 def limit(test: Test) -> None:
     """End this process if the test takes several times what it takes without a mutation."""
     signal.signal(signal.SIGPROF, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_PROF, 2 + 5 * test.cpu)
+    signal.setitimer(signal.ITIMER_PROF, 0.5 + 10 * test.cpu)
     signal.alarm(60 + round(20 * test.wall))
 
 
