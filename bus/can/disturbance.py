@@ -57,7 +57,7 @@ def seen_by_all(frame: Frame, bit: int) -> Verdict | None:
         return Verdict("ack", bit)
     if bit == length - 1:
         return Verdict("form", bit, received=True)
-    if bit > ack or bit == len(body):
+    if bit >= len(body):
         return Verdict("form", bit)
     if body[bit] and bit <= _arbitration_end(frame):
         if bit >= 5 and not any(body[bit - 5 : bit]):
@@ -90,7 +90,10 @@ def receive(wire: list[int]) -> Verdict | None:
     """A receiver's own view of the bits of one frame."""
     plain: list[int] = []
     run, last, end = 0, -1, None
-    for index, level in enumerate([*wire, *[1] * 16]):
+    index = -1
+    while True:  # the idle bus behind the last bit ends every frame: six equal bits are an error
+        index += 1
+        level = wire[index] if index < len(wire) else 1
         if run == 5:
             if level == last:
                 return Verdict("stuff", index)
@@ -102,7 +105,6 @@ def receive(wire: list[int]) -> Verdict | None:
             end = end or _field_length(plain)
         if end is not None and len(plain) >= end and run != 5:
             return _tail(wire, index + 1, crc15(plain) == 0)
-    return Verdict("stuff", len(wire))
 
 
 def _field_length(plain: list[int]) -> int | None:

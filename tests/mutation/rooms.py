@@ -9,9 +9,9 @@ AIMS = {
 """Rooms, the inner ones before those around them, and the share of mutants that is to be killed, per cent."""
 BESIDES = {
     "bus": ("tests/boards/chips/mcp2515",),
-    "calibration/decide": ("tests/calibration/test_honesty.py",),
+    "calibration/decide": ("tests/calibration",),
 }
-"""Tests outside a room's own that judge its modules directly."""
+"""Tests outside a room's own that judge its modules, too."""
 UNCOMPILED = ("plant", "plant/kernels")
 """Rooms whose compiled functions run as Python, or a mutant would have to be compiled first."""
 
