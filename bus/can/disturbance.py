@@ -109,7 +109,7 @@ def receive(wire: list[int]) -> Verdict | None:
 
 def _field_length(plain: list[int]) -> int | None:
     """Unstuffed bits from SOF to the end of the CRC, once the control field is in."""
-    extended = len(plain) > 13 and plain[13]
+    extended = plain[13:14] == [1]
     head = 39 if extended else 19
     if len(plain) < head:
         return None
@@ -120,15 +120,14 @@ def _field_length(plain: list[int]) -> int | None:
 
 def _tail(wire: list[int], start: int, crc_good: bool) -> Verdict | None:
     """CRC delimiter, ACK slot, ACK delimiter and EOF from index `start` on."""
-    tail = [*wire[start:], *[1] * 16][:10]
-    if not tail[0]:
+    if wire[start : start + 1] == [0]:
         return Verdict("form", start)
     if not crc_good:
         return Verdict("crc", start + 2)
-    # a dominant last bit of EOF is an overload condition, not an error
-    for offset in (2, 3, 4, 5, 6, 7, 8):
-        if not tail[offset]:
-            return Verdict("form", start + offset)
+    # from the ACK delimiter on; a dominant last bit of EOF is an overload condition, not an error
+    for index in range(start + 2, min(start + 9, len(wire))):
+        if not wire[index]:
+            return Verdict("form", index)
     return None
 
 
