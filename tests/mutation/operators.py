@@ -2,6 +2,7 @@
 
 import ast
 import copy
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -132,6 +133,7 @@ def _sites(tree: ast.Module) -> list[tuple[ast.AST, str]]:
 def mutants(source: str) -> Iterator[Mutant]:
     """Every mutant of a module."""
     tree = ast.parse(source)
+    seen = Counter[str]()
     places = {node: (lines, inside) for node, lines, inside in _places(tree)}
     for number, (node, what) in enumerate(_sites(tree)):
         line = getattr(node, "lineno", 0)
@@ -139,4 +141,6 @@ def mutants(source: str) -> Iterator[Mutant]:
         label = f"{line}: {what}: {old} -> {new}"
         if what == "constant":
             label += f" in: {source.splitlines()[line - 1].strip()}"
-        yield Mutant(source, number, label, *places[node])
+        seen[label] += 1
+        again = f" ({seen[label]})" if seen[label] > 1 else ""
+        yield Mutant(source, number, label + again, *places[node])
