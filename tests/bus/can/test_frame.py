@@ -16,14 +16,13 @@ OTHERS = [
 
 @pytest.mark.parametrize("other", OTHERS, ids=str)
 def test_a_frame_differs_by_any_one_field(other: Frame) -> None:
-    assert ONE != other and other != ONE
+    assert other != ONE
     assert len({ONE, other, Frame(0x123, b"\x01")}) == 2
     assert hash(ONE) == hash(Frame(0x123, b"\x01"))
 
 
 def test_nothing_else_is_a_frame() -> None:
-    assert ONE != (0x123, b"\x01", False, False)
-    assert ONE != 0x123
+    assert ONE not in [(0x123, b"\x01", False, False), 0x123]
 
 
 def test_a_frame_with_another_identifier_keeps_the_rest() -> None:
