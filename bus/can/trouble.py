@@ -42,7 +42,7 @@ theirs one bit later."""
 
 def _needs_care(port: Port) -> bool:
     """Whether a node makes its wire decide everything when it happens."""
-    return bool(port.watcher or port.timing or port.listen_only or port.asleep)
+    return bool(port.watcher or port.timing or port.listen_only)
 
 
 class Trouble:
@@ -276,7 +276,6 @@ class Trouble:
         """A sender saw an error: it counts, and may go off the bus."""
         if port.online and confinement.send_failed(port, acknowledge=kind == "ack"):
             port._bus_off = True
-            self._wire._forget_routes()
             self._recovery.add(port)
 
     def delivered(self, entry: Entry, t_ns: int) -> tuple[Receive, ...]:
