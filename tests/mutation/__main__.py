@@ -6,7 +6,6 @@ told which these are. Everything is imported and collected once; each mutant is 
 
 import argparse
 import os
-import random
 import re
 from collections.abc import Callable
 from functools import partial
@@ -29,8 +28,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--only", default="", help="modules whose path contains this")
     parser.add_argument("--ratchet", action="store_true", help="fail below floor.yaml")
     parser.add_argument("--tighten", action="store_true", help="raise floor.yaml to what is measured")
-    parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of each module's mutants")
-    parser.add_argument("--sample", type=int, default=0, help="at most so many mutants of each module")
+    parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of the modules")
     parser.add_argument("--tests", default="", help="of those that may notice, files whose path this matches")
     parser.add_argument("--seconds", type=float, default=10, help="of tests at most, for each mutant")
     parser.add_argument("--jobs", type=int, choices=(1, 2), default=1, help="children at a time")
@@ -51,9 +49,10 @@ class Loop:
         every = self.within(self.covering.of_room())
         if not forked(partial(self.bench.patched, compile("", "", "exec"), every)):
             raise SystemExit("tests fail without any mutation; repair them first")
-        for path in modules(self.asked.room):
-            if self.asked.only in path:
-                self.module(path)
+        first, parts = (int(number) for number in self.asked.part.split("/"))
+        paths = [each for each in modules(self.asked.room) if self.asked.only in each]
+        for path in paths[first - 1 :: parts]:
+            self.module(path)
         aim = AIMS[self.asked.room]
         self.tell(f"in all {self.killed} of {self.total} killed: "
                   f"{100 * self.killed / max(self.total, 1):.1f} %, aim {aim} %")  # fmt: skip
@@ -67,11 +66,8 @@ class Loop:
 
     def module(self, path: str) -> None:
         """All mutants of one module."""
-        source, part, known = Path(path).read_text(encoding="utf-8"), self.asked.part, reasons()
-        first, parts = (int(number) for number in part.split("/"))
-        cases = [each for each in mutants(source) if key(path, each.label) not in known][first - 1 :: parts]
-        if self.asked.sample and len(cases) > self.asked.sample:
-            cases = random.Random(path).sample(cases, self.asked.sample)
+        source, known = Path(path).read_text(encoding="utf-8"), reasons()
+        cases = [each for each in mutants(source) if key(path, each.label) not in known]
         if not cases:
             return
         anew = partial(self.bench.anew, compile(source, os.path.abspath(path), "exec"))
