@@ -42,13 +42,15 @@ class Loop:
     def __init__(self, asked: argparse.Namespace, covering: Covering) -> None:
         self.asked, self.covering = asked, covering
         self.shares: dict[str, float] = {}
+        self.broken: list[str] = []
         self.total = self.killed = 0
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         self.bench = Bench(session.items)
         every = self.within(self.covering.of_room())
         if not forked(partial(self.bench.patched, compile("", "", "exec"), every)):
-            raise SystemExit("tests fail without any mutation; repair them first")
+            self.broken.append(self.asked.room)
+            return True
         first, parts = (int(number) for number in self.asked.part.split("/"))
         paths = [each for each in modules(self.asked.room) if self.asked.only in each]
         for path in paths[first - 1 :: parts]:
@@ -73,7 +75,8 @@ class Loop:
         anew = partial(self.bench.anew, compile(source, os.path.abspath(path), "exec"))
         every = self.within(self.covering.of_module(path))
         if every and any(self.imported(path, each) for each in cases) and not forked(partial(anew, every)):
-            raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
+            self.broken.append(path)
+            return
         started, alive = _spent(), 0
         works = (self.work(path, each) for each in cases)
         for place, passed in outcomes(works, self.asked.jobs):
@@ -128,6 +131,10 @@ def main() -> None:
     covering = Covering(asked.room, files, asked.seconds)
     loop = Loop(asked, covering)
     run(sorted({name.partition("::")[0] for name in covering.tests}), [loop])
+    if loop.broken or not loop.shares:
+        raise SystemExit(
+            f"{', '.join(loop.broken) or 'all'}: tests fail without any mutation; repair them first"
+        )
     if asked.tighten:
         tighten(loop.shares)
     if asked.ratchet and (less := fallen(loop.shares)):
