@@ -46,8 +46,8 @@ def test_a_survivor_with_a_reason_is_a_mutant_still() -> None:
 def test_a_module_is_mirrored_by_the_test_of_its_name_or_else_by_its_folder() -> None:
     assert mirrors("bus/can/bits.py", "tests/bus/can/test_bits.py")
     assert not mirrors("bus/can/bits.py", "tests/bus/can/test_wire.py")
-    assert mirrors("bus/can/strangers.py", "tests/bus/can/test_wire.py")
-    assert not mirrors("bus/can/strangers.py", "tests/bus/time/test_queue.py")
+    assert mirrors("bus/can/length.py", "tests/bus/can/test_wire.py")
+    assert not mirrors("bus/can/length.py", "tests/bus/time/test_queue.py")
 
 
 def test_a_mutant_knows_the_lines_of_its_statement_and_whether_a_function_runs_it() -> None:
