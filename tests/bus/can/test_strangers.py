@@ -50,6 +50,20 @@ def test_a_receiver_whose_samples_are_right_takes_the_frame() -> None:
     assert (found.error_bit, found.first, found.deaf) == (None, None, [])
 
 
+def test_a_receiver_that_has_lost_a_bit_sees_the_acknowledge_as_a_form_error() -> None:
+    """Of 993 ns a bit, never moved, it samples at 744.75 ns + 993 n: from n = 107 on, the bit before.
+
+    The slot is bit 107 of this frame. What should be the delimiter, n = 108, is the slot: dominant, if
+    somebody acknowledges.
+    """
+    _, wire = network(3)
+    wire.ports[2].timing = BitTiming(993.0, jump=0.0, tolerance=0.0)
+    found = judged(wire)
+    assert (found.error_bit, found.first) == (108, wire.ports[2])
+    wire.ports[1].listen_only = True
+    assert judged(wire).error_bit is None
+
+
 @pytest.mark.skipif(compiled(), reason="compiled code calls its own")
 @pytest.mark.parametrize(("seen_ns", "bits", "alone", "deaf"), [
     ((50_000.0, None), 50, True, 0),  # one objects
