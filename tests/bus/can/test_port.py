@@ -80,3 +80,50 @@ def test_a_filter_lets_through_what_it_says() -> None:
     wire.ports[0].send(Frame(0x130, b""), queue.now_ns)
     queue.run_until(queue.now_ns + 1_000_000)
     assert log[-1][1].identifier == 0x130
+
+
+def test_who_is_off_hears_nothing_and_who_is_back_hears() -> None:
+    queue, wire = network(3)
+    log = listen(wire, 2)
+    for online in (True, False, True):
+        wire.ports[2].online = online
+        wire.ports[0].send(FRAME, queue.now_ns)
+        queue.run_until(queue.now_ns + 1_000_000)
+    assert len(log) == 2
+
+
+def test_who_goes_off_leaves_the_order_of_the_others() -> None:
+    queue, wire = network(5)
+    log = listen(wire, 4)
+    wire.ports[0].send(FRAME, 0)
+    for node, identifier in ((3, 1), (1, 5), (2, 2)):
+        wire.ports[node].send(Frame(identifier, b""), 10_000)
+    queue.run_until(50_500)
+    wire.ports[3].online = False
+    queue.run_until(1_000_000)
+    assert [frame.identifier for _, frame in log] == [FRAME.identifier, 2, 5]
+
+
+def test_a_frame_at_the_very_beginning_starts_there_though_somebody_goes_off() -> None:
+    queue, wire = network(3)
+    log = listen(wire, 1)
+    wire.ports[0].send(FRAME, 0)
+    wire.ports[2].online = False
+    queue.run_until(1_000_000)
+    assert log == [(116_000, FRAME)]
+
+
+def test_a_frame_is_withdrawn_from_its_own_buffer_until_it_begins() -> None:
+    queue, wire = network(3)
+    wire.disturb(lambda *_: None)  # every frame is decided when its first bit is over
+    one, other = wire.ports[:2]
+    late = Frame(0x300, b"")
+    one.send(FRAME, 0)
+    one.send(late, 0)
+    queue.run_until(1000)
+    assert not one.withdraw(FRAME)
+    assert not one.withdraw(Frame(0x301, b"")) and not other.withdraw(late)
+    assert one.free_buffers == 1
+    assert one.withdraw(late) and one.free_buffers == 2
+    queue.run_until(1_000_000)
+    assert wire.frames == 1 and one.free_buffers == 3

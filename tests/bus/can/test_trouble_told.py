@@ -387,3 +387,33 @@ def test_an_error_frame_counts_its_bits(seen_by: str | None, flags: int) -> None
     assert verdict is not None
     ended = verdict.detected_bit + 1 + flags + 8 + IFS_BITS
     assert wire.bits == ended + LENGTH + IFS_BITS
+
+
+def test_an_overload_or_a_cut_leaves_nothing_behind() -> None:
+    """Each time the next frame, planned on a sound bus, is cut after forty bits."""
+    queue, wire = network(3)
+    once(wire, Flip(LENGTH - 1, seen_by="n2"))
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    wire.disturb(None)
+    for _ in range(2):
+        before, start = wire.bits, queue.now_ns
+        wire.ports[0].send(FRAME, start)
+        queue.run_until(start + 40_000)
+        wire.ports[0].online = False
+        assert wire.bits - before == 40 + 6 + ERROR_BITS + IFS_BITS
+        wire.ports[0].online = True
+        for port in wire.ports:
+            port.tec = port.rec = 0
+        wire.disturb(None)  # a look: the bus is sound
+        queue.run_until(start + 1_000_000)
+
+
+def test_a_cut_is_told_and_counts_once() -> None:
+    queue, wire = network(3)
+    told = heard(wire.ports[1])
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(40_000)
+    wire.ports[0].online = False
+    wire.ports[0].online = True
+    assert wire.errors == {"stuff": 1} and told == [BusError("stuff")]
