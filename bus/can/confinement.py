@@ -6,7 +6,6 @@ from typing import Final
 from bus.can.port import Port
 
 BUS_OFF_ABOVE: Final = 255
-PASSIVE_ABOVE: Final = 127
 RECOVERY_RUNS: Final = 128
 """Bus-off recovery: this many runs of eleven recessive bits."""
 RECOVERY_RUN_BITS: Final = 11
@@ -29,7 +28,7 @@ def received(ports: Iterable[Port]) -> None:
     """A frame came in well."""
     for port in ports:
         if port.rec and not port.listen_only:
-            port.rec = _REC_AFTER_PASSIVE_OK if port.rec > PASSIVE_ABOVE else port.rec - 1
+            port.rec = min(port.rec - 1, _REC_AFTER_PASSIVE_OK)
 
 
 def send_failed(port: Port, *, acknowledge: bool) -> bool:

@@ -57,7 +57,7 @@ def seen_by_all(frame: Frame, bit: int) -> Verdict | None:
         return Verdict("ack", bit)
     if bit == length - 1:
         return Verdict("form", bit, received=True)
-    if bit > ack or bit == len(body):
+    if bit >= len(body):
         return Verdict("form", bit)
     if body[bit] and bit <= _arbitration_end(frame):
         if bit >= 5 and not any(body[bit - 5 : bit]):
@@ -90,7 +90,10 @@ def receive(wire: list[int]) -> Verdict | None:
     """A receiver's own view of the bits of one frame."""
     plain: list[int] = []
     run, last, end = 0, -1, None
-    for index, level in enumerate([*wire, *[1] * 16]):
+    index = -1
+    while True:  # the idle bus behind the last bit ends every frame: six equal bits are an error
+        index += 1
+        level = wire[index] if index < len(wire) else 1
         if run == 5:
             if level == last:
                 return Verdict("stuff", index)
@@ -102,12 +105,11 @@ def receive(wire: list[int]) -> Verdict | None:
             end = end or _field_length(plain)
         if end is not None and len(plain) >= end and run != 5:
             return _tail(wire, index + 1, crc15(plain) == 0)
-    return Verdict("stuff", len(wire))
 
 
 def _field_length(plain: list[int]) -> int | None:
     """Unstuffed bits from SOF to the end of the CRC, once the control field is in."""
-    extended = len(plain) > 13 and plain[13]
+    extended = plain[13:14] == [1]
     head = 39 if extended else 19
     if len(plain) < head:
         return None
@@ -118,15 +120,14 @@ def _field_length(plain: list[int]) -> int | None:
 
 def _tail(wire: list[int], start: int, crc_good: bool) -> Verdict | None:
     """CRC delimiter, ACK slot, ACK delimiter and EOF from index `start` on."""
-    tail = [*wire[start:], *[1] * 16][:10]
-    if not tail[0]:
+    if wire[start : start + 1] == [0]:
         return Verdict("form", start)
     if not crc_good:
         return Verdict("crc", start + 2)
-    # a dominant last bit of EOF is an overload condition, not an error
-    for offset in (2, 3, 4, 5, 6, 7, 8):
-        if not tail[offset]:
-            return Verdict("form", start + offset)
+    # from the ACK delimiter on; a dominant last bit of EOF is an overload condition, not an error
+    for index in range(start + 2, min(start + 9, len(wire))):
+        if not wire[index]:
+            return Verdict("form", index)
     return None
 
 

@@ -72,4 +72,3 @@ class Partition:
         for port in list(self.piece.ports):
             move(port, wire, t_ns)
         wire.ports.sort(key=lambda port: order.get(port, len(order)))
-        wire._forget_routes()

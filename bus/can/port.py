@@ -90,7 +90,8 @@ class Port:
         self._watcher: Watcher | None = None
         self._listen_only = False
         self._timing: BitTiming | None = None
-        self._asleep = False
+        self.asleep = False
+        """True: off, but the next frame wakes it: its watcher hears of it."""
 
     @property
     def state(self) -> State:
@@ -141,17 +142,6 @@ class Port:
         if silent != self._listen_only:
             self._listen_only = silent
             self._wire._trouble.check()
-            self._wire._forget_routes()
-
-    @property
-    def asleep(self) -> bool:
-        """True: off, but the next frame wakes it: its watcher hears of it."""
-        return self._asleep
-
-    @asleep.setter
-    def asleep(self, asleep: bool) -> None:
-        self._asleep = asleep
-        self._wire._trouble.check()
 
     @property
     def timing(self) -> BitTiming | None:

@@ -83,9 +83,7 @@ class Recovery:
             if port.watcher is not None:
                 port.watcher.counted(t_ns)
         wire._trouble.report(t_ns, "", back)
-        if back:
-            wire._forget_routes()
-            wire._trouble.check()
+        if back:  # the first good frame looks whether trouble is near still
             wire._await_ready(not_before_ns=t_ns)
         if self._back_at:
             self._look_again()

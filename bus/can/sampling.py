@@ -40,11 +40,10 @@ def sample(levels: list[int], sent_ns: float, timing: BitTiming) -> list[int]:
         taken.append(level)
         length = bit
         while k < len(edges) and edges[k] < start + bit:
-            error = (
-                edges[k] - start if edges[k] - start <= timing.sample_point * bit else edges[k] - start - bit
-            )
-            if last:
-                length += max(-jump, min(jump, error))
+            late = edges[k] - start
+            early = late > timing.sample_point * bit
+            if level if early else last:  # at the sample point before the edge
+                length += max(-jump, min(jump, late - bit if early else late))
             k += 1
         last = level
         start += length

@@ -32,11 +32,7 @@ class Strangers:
         sender = offer.port.timing
         self._sent_ns = float(wire.bit_ns) if sender is None else sender.bit_ns
         own = BitTiming(wire.bit_ns)
-        self._strangers = (
-            [port for port in listeners if not (port.timing or own).fits(self._sent_ns)]
-            if sender is not None or any(port.timing is not None for port in listeners)
-            else []
-        )
+        self._strangers = [port for port in listeners if not (port.timing or own).fits(self._sent_ns)]
         self.acknowledged = any(not port.listen_only and port not in self._strangers for port in listeners)
 
     def judge(self) -> "Strangers":

@@ -9,7 +9,6 @@ from bus.can.disturbance import ERROR_DELIMITER_BITS, ERROR_FLAG_BITS
 from bus.can.port import Port
 from bus.can.wire import Wire
 
-_NEVER: Final = 1 << 61
 _SEEN_BITS: Final = 6
 """Six equal bits are a stuff error."""
 _REPEAT_BITS: Final = 8

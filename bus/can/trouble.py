@@ -42,7 +42,7 @@ theirs one bit later."""
 
 def _needs_care(port: Port) -> bool:
     """Whether a node makes its wire decide everything when it happens."""
-    return bool(port.watcher or port.timing or port.listen_only or port.asleep)
+    return bool(port.watcher or port.timing or port.listen_only)
 
 
 class Trouble:
@@ -252,7 +252,6 @@ class Trouble:
                 port.watcher.failed(t_ns, sending=True)
         self._tell_failed(receivers, t_ns)
         self.report(t_ns, verdict.kind, [*senders, *receivers], senders)
-        self.check()
         wire._await_ready()
         if verdict.received:
             for call in wire._calls(receivers, offer.frame):
@@ -276,7 +275,6 @@ class Trouble:
         """A sender saw an error: it counts, and may go off the bus."""
         if port.online and confinement.send_failed(port, acknowledge=kind == "ack"):
             port._bus_off = True
-            self._wire._forget_routes()
             self._recovery.add(port)
 
     def delivered(self, entry: Entry, t_ns: int) -> tuple[Receive, ...]:
@@ -324,7 +322,6 @@ class Trouble:
             return
         offer, wire._busy = Offer(*wire._sending), False
         planned = offer.bits + (_OVERLOAD_BITS if self._overload else 0)
-        self._overload = False
         begun_ns = wire._free_ns - planned * wire.bit_ns
         bits = 6 + ERROR_FLAG_BITS + ERROR_DELIMITER_BITS + INTERMISSION_BITS
         wire._free_ns = t_ns + bits * wire.bit_ns
@@ -355,7 +352,7 @@ class Trouble:
             heappush(wire._waiting, wire._sending)
         wire._busy = False
         wire._end_ns = wire._decide_ns = wire._free_ns = _NEVER
-        self._twins, self._excluded, self._overload = [], [], False
+        self._twins, self._excluded = [], []
         self._blocked = True
         self.check()
         return sender
@@ -366,7 +363,6 @@ class Trouble:
         self._blocked = False
         wire._free_ns = free_ns
         self._recovery.quiet(t_ns)
-        self.check()
         wire._await_ready()
 
     def leaves(self, port: Port) -> None:

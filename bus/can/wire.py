@@ -66,7 +66,6 @@ class Wire:
         port = Port(self, name)
         self.ports.append(port)
         self._trouble.check()
-        self._forget_routes()
         return port
 
     def detach(self, port: Port) -> None:
@@ -75,7 +74,6 @@ class Wire:
             port.online = False
             self.ports.remove(port)
             self._trouble.check()
-            self._forget_routes()
 
     def tap(self, call: Tap) -> None:
         """Have `call(t_end_ns, frame, sender)` made for every good frame; a tap does not acknowledge."""
@@ -168,7 +166,6 @@ class Wire:
 
     def trouble_nears(self) -> None:
         """From now on arbitration is decided when it happens."""
-        self._near = True
         if self._unplan():
             self._await_ready()
 

@@ -1,1 +1,1 @@
-"""Mutation testing of codecs, CRCs, CAN error states and the MCP2515: `python -m tests.mutation`."""
+"""Mutation testing of whole rooms: `python -m tests.mutation ROOM`."""

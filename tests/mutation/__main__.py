@@ -1,135 +1,143 @@
-"""Runs the tests of every target on mutants: `python -m tests.mutation [--room ROOM] [--part K/N]`.
+"""Runs tests on the mutants of a room: `python -m tests.mutation ROOM [--only PATH] [--part K/N]`.
 
-Mutants run in forked children, so that numpy and pytest are imported once; a changed source takes its
-module's place at import. Whole rooms take days of one core: nightly.yml runs samples of them in parts.
+A mutant meets the tests that execute its line, the quickest first, up to the first that fails. Coverage has
+told which these are. Everything is imported and collected once; each mutant is a forked child.
 """
 
 import argparse
-import importlib.abc
-import importlib.machinery
-import importlib.util
 import os
-import random
-import signal
-import sys
-import time
-from collections.abc import Sequence
+import re
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from types import CodeType, ModuleType
 
-import can
-import cantools
-import hypothesis
-import numpy as np
 import pytest
 
-from tests.mutation.operators import mutants
+from tests.mutation.covering import Covering
+from tests.mutation.operators import Mutant, mutants
 from tests.mutation.ratchet import fallen, key, reasons, tighten
-from tests.mutation.targets import AIMS, TARGETS, modules
-
-TIMEOUT_S = 600
-"""Tests without a mutation, however busy the machine."""
-WARM = (can, cantools, np)
-"""Imported once, before the children are forked."""
+from tests.mutation.rooms import AIMS, UNCOMPILED, judging, modules
+from tests.mutation.session import Test, forked, outcomes, run
+from tests.mutation.trial import Bench
 
 
-class FewExamples:
-    """A pytest plug-in: few and always the same examples, whatever a conftest file has chosen."""
-
-    def pytest_collection(self) -> None:
-        hypothesis.settings.load_profile("mutation")
-
-
-class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Gives one module other code than its file has."""
-
-    def __init__(self, name: str, code: CodeType) -> None:
-        self.name, self.code = name, code
-
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
-        return importlib.util.spec_from_loader(fullname, self) if fullname == self.name else None
-
-    def exec_module(self, module: ModuleType) -> None:
-        exec(self.code, module.__dict__)
+def options() -> argparse.Namespace:
+    """What was asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("room", choices=AIMS)
+    parser.add_argument("--only", default="", help="modules whose path contains this")
+    parser.add_argument("--ratchet", action="store_true", help="fail below floor.yaml")
+    parser.add_argument("--tighten", action="store_true", help="raise floor.yaml to what is measured")
+    parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of the modules")
+    parser.add_argument("--tests", default="", help="of those that may notice, files whose path this matches")
+    parser.add_argument("--seconds", type=float, default=10, help="of tests at most, for each mutant")
+    parser.add_argument("--jobs", type=int, choices=(1, 2), default=1, help="children at a time")
+    parser.add_argument("--out", type=Path, help="file for the survivors")
+    return parser.parse_args()
 
 
-def survives(path: str, source: str, tests: tuple[str, ...], timeout_s: float = TIMEOUT_S) -> bool:
-    """Whether the tests pass although `path` holds `source`."""
-    child = os.fork()
-    if not child:
-        signal.alarm(round(timeout_s))
-        name = path.removesuffix(".py").replace("/", ".")
-        null = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(null, 1)
-        os.dup2(null, 2)
-        code = 1
-        try:
-            sys.meta_path.insert(0, Substitute(name, compile(source, path, "exec")))
-            quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning", "--override-ini", "addopts="]
-            plain = ["--assert=plain", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:anyio"]
-            arguments = ["-x", "-q", *plain, "-m", "not slow and not guest", *quiet]
-            code = int(pytest.main([*arguments, *tests], plugins=[FewExamples()]))
-        finally:
-            os._exit(code)
-    return os.waitpid(child, 0)[1] == 0
+class Loop:
+    """A pytest plug-in: mutants, where the tests would run."""
+
+    def __init__(self, asked: argparse.Namespace, covering: Covering) -> None:
+        self.asked, self.covering = asked, covering
+        self.shares: dict[str, float] = {}
+        self.broken: list[str] = []
+        self.total = self.killed = 0
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        self.bench = Bench(session.items)
+        every = self.within(self.covering.of_room())
+        if not forked(partial(self.bench.patched, compile("", "", "exec"), every)):
+            self.broken.append(self.asked.room)
+            return True
+        first, parts = (int(number) for number in self.asked.part.split("/"))
+        paths = [each for each in modules(self.asked.room) if self.asked.only in each]
+        for path in paths[first - 1 :: parts]:
+            self.module(path)
+        aim = AIMS[self.asked.room]
+        self.tell(f"in all {self.killed} of {self.total} killed: "
+                  f"{100 * self.killed / max(self.total, 1):.1f} %, aim {aim} %")  # fmt: skip
+        return True
+
+    def tell(self, text: str) -> None:
+        print(text, flush=True)
+        if self.asked.out:
+            with self.asked.out.open("a", encoding="utf-8") as file:
+                file.write(text + "\n")
+
+    def module(self, path: str) -> None:
+        """All mutants of one module."""
+        source, known = Path(path).read_text(encoding="utf-8"), reasons()
+        cases = [each for each in mutants(source) if key(path, each.label) not in known]
+        if not cases:
+            return
+        anew = partial(self.bench.anew, compile(source, os.path.abspath(path), "exec"))
+        every = self.within(self.covering.of_module(path))
+        if every and any(self.imported(path, each) for each in cases) and not forked(partial(anew, every)):
+            self.broken.append(path)
+            return
+        started, alive = _spent(), 0
+        works = (self.work(path, each) for each in cases)
+        for place, passed in outcomes(works, self.asked.jobs):
+            if passed:
+                alive += 1
+                self.tell(f"    {path}:{cases[place].label}")
+        self.total, self.killed = self.total + len(cases), self.killed + len(cases) - alive
+        self.shares[path] = 100 * (1 - alive / len(cases))
+        took = _spent() - started
+        self.tell(f"{path}: {len(cases) - alive} of {len(cases)} killed ({took:.0f} s of the processor)")
+
+    def imported(self, path: str, mutant: Mutant) -> bool:
+        """Whether an import runs the line, so that functions that are there do not tell all."""
+        return not mutant.inside or self.covering.imported(path, mutant.lines)
+
+    def work(self, path: str, mutant: Mutant) -> Callable[[], bool]:
+        """What a child does with a mutant; no test, no work. What runs at import is tried there first."""
+        names = self.covering.executing(path, mutant.lines) if mutant.inside else []
+        here, everywhere = self.within(names), self.within(self.covering.of_module(path))
+
+        def passed() -> bool:
+            code = compile(mutant.tree(), os.path.abspath(path), "exec")
+            if not self.imported(path, mutant):
+                return not here or self.bench.patched(code, here)
+            if here and not forked(partial(self.bench.patched, code, here)):
+                return False
+            return not everywhere or self.bench.anew(code, everywhere)
+
+        return passed
+
+    def within(self, names: list[str]) -> dict[str, Test]:
+        """As many of these tests as the time allows, at least one."""
+        left, found = self.asked.seconds, dict[str, Test]()
+        for name in names:
+            if found and (left := left - self.covering.tests[name].time) < 0:
+                break
+            found[name] = self.covering.tests[name]
+        return found
+
+
+def _spent() -> float:
+    """Processor time of the children, s."""
+    return os.times().children_user + os.times().children_system
 
 
 def main() -> None:
     """Run, print survivors as they come, and the score."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--room", choices=AIMS, help="every module of this room, not only the targets")
-    parser.add_argument("--only", default="", help="targets whose path contains this")
-    parser.add_argument(
-        "--ratchet", action="store_true", help="fail where less is killed than floor.yaml says"
-    )
-    parser.add_argument("--tighten", action="store_true", help="raise floor.yaml to what is measured")
-    parser.add_argument("--part", default="1/1", help="K/N: the K-th of N parts of each target's mutants")
-    parser.add_argument("--sample", type=int, default=0, help="at most so many mutants of each target")
-    parser.add_argument("--out", type=Path, help="file for the survivors")
-    options = parser.parse_args()
-    part, parts = (int(number) for number in options.part.split("/"))
-    hypothesis.settings.register_profile(
-        "mutation", max_examples=15, deadline=None, database=None, derandomize=True
-    )
-    lines: list[str] = []
-
-    def tell(text: str) -> None:
-        lines.append(text)
-        print(text, flush=True)
-        if options.out:
-            options.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-    total = killed = 0
-    known, shares = reasons(), dict[str, float]()
-    for path, tests in (modules(options.room) if options.room else TARGETS).items():
-        if options.only not in path:
-            continue
-        source = Path(path).read_text(encoding="utf-8")
-        started = time.monotonic()
-        if not survives(path, source, tests):
-            raise SystemExit(f"{path}: its tests fail without any mutation; repair them first")
-        longest_s = 60 + 5 * (time.monotonic() - started)
-        cases = [case for case in mutants(source) if key(path, case[0]) not in known][part - 1 :: parts]
-        if not cases:
-            continue
-        if options.sample and len(cases) > options.sample:
-            cases = random.Random(path).sample(cases, options.sample)
-        alive = 0
-        for label, changed in cases:
-            if survives(path, changed, tests, longest_s):
-                alive += 1
-                tell(f"    {path}:{label}")
-        total, killed = total + len(cases), killed + len(cases) - alive
-        shares[path] = 100 * (1 - alive / len(cases))
-        took = time.monotonic() - started
-        tell(f"{path}: {len(cases) - alive} of {len(cases)} killed ({took:.0f} s)")
-    aim = f", aim {AIMS[options.room]} %" if options.room else ""
-    tell(f"in all {killed} of {total} killed: {100 * killed / max(total, 1):.1f} %{aim}")
-    if options.tighten:
-        tighten(shares)
-    if options.ratchet and (less := fallen(shares)):
+    asked = options()
+    if asked.room in UNCOMPILED:
+        os.environ["NUMBA_DISABLE_JIT"] = "1"
+    files = [each for each in judging(asked.room) if re.search(asked.tests, each)]
+    covering = Covering(asked.room, files, asked.seconds)
+    loop = Loop(asked, covering)
+    run(sorted({name.partition("::")[0] for name in covering.tests}), [loop])
+    if loop.broken or not loop.shares:
+        raise SystemExit(
+            f"{', '.join(loop.broken) or 'all'}: tests fail without any mutation; repair them first"
+        )
+    if asked.tighten:
+        tighten(loop.shares)
+    if asked.ratchet and (less := fallen(loop.shares)):
         raise SystemExit("\n".join(less))
 
 

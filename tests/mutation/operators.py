@@ -2,7 +2,9 @@
 
 import ast
 import copy
+from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 _COMPARE: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -86,15 +88,59 @@ class _Replace(ast.NodeTransformer):
         return self.new if node is self.target else super().generic_visit(node)
 
 
-def mutants(source: str) -> Iterator[tuple[str, str]]:
-    """(where and what, changed source) for every mutant of a module."""
-    count = sum(len(_changes(node)) for node in _code(ast.parse(source)))
-    for number in range(count):
-        tree = ast.parse(source)
-        sites = [(node, what) for node in _code(tree) for what in _changes(node)]
-        node, what = sites[number]
-        new = _apply(node, what)
+@dataclass
+class Mutant:
+    """A changed module. number: its place. lines: of the statement; inside: whether in a function's body."""
+
+    source: str
+    number: int
+    label: str
+    lines: range
+    inside: bool
+
+    def tree(self) -> ast.Module:
+        """The module with the change, lines as they were."""
+        tree = ast.parse(self.source)
+        node, what = _sites(tree)[self.number]
+        new = ast.copy_location(_apply(node, what), node)
+        changed: ast.Module = ast.fix_missing_locations(_Replace(node, new).visit(tree))
+        return changed
+
+
+def _places(
+    tree: ast.AST, lines: range = range(0), inside: bool = False
+) -> Iterator[tuple[ast.AST, range, bool]]:
+    """Every node, the lines of its innermost statement (a block's: its head), and whether in a function."""
+    for name, value in ast.iter_fields(tree):
+        for node in value if isinstance(value, list) else [value]:
+            if not isinstance(node, ast.AST):
+                continue
+            own = lines
+            if isinstance(node, ast.stmt):
+                last = node.end_lineno or node.lineno
+                if isinstance(body := getattr(node, "body", None), list):
+                    last = max(node.lineno, body[0].lineno - 1)
+                own = range(node.lineno, last + 1)
+            within = inside or (name == "body" and isinstance(tree, ast.FunctionDef | ast.Lambda))
+            yield node, own, within
+            yield from _places(node, own, within)
+
+
+def _sites(tree: ast.Module) -> list[tuple[ast.AST, str]]:
+    return [(node, what) for node in _code(tree) for what in _changes(node)]
+
+
+def mutants(source: str) -> Iterator[Mutant]:
+    """Every mutant of a module."""
+    tree = ast.parse(source)
+    seen = Counter[str]()
+    places = {node: (lines, inside) for node, lines, inside in _places(tree)}
+    for number, (node, what) in enumerate(_sites(tree)):
         line = getattr(node, "lineno", 0)
-        label = f"{line}: {what}: {ast.unparse(node).splitlines()[0]} -> {ast.unparse(new).splitlines()[0]}"
-        changed = ast.fix_missing_locations(_Replace(node, ast.copy_location(new, node)).visit(tree))
-        yield label, ast.unparse(changed)
+        old, new = (ast.unparse(each).splitlines()[0] for each in (node, _apply(node, what)))
+        label = f"{line}: {what}: {old} -> {new}"
+        if what == "constant":
+            label += f" in: {source.splitlines()[line - 1].strip()}"
+        seen[label] += 1
+        again = f" ({seen[label]})" if seen[label] > 1 else ""
+        yield Mutant(source, number, label + again, *places[node])

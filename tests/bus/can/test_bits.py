@@ -1,11 +1,11 @@
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bus.can import Frame, FrameError
 from bus.can.bits import crc15, header_bits, number_bits, stuff, stuffed_field, wire_bits
 from bus.can.frame import arbitration_key
-from bus.can.length import frame_bits, typed_bits
+from bus.can.length import frame_bits, plain_bits, typed_bits
 
 # Identifier, data, CRC-15, stuff bits, bits with intermission; found apart from this code (hardware.md 3.3).
 VECTORS = [
@@ -103,6 +103,8 @@ def test_headers_bit_by_bit(frame: Frame, bits: str) -> None:
 
 
 @given(st.integers(0, 0x7FF), st.binary(min_size=8, max_size=8))
+@example(0x7FF, bytes(8))
+@example(0, bytes(8))
 def test_the_way_that_compiled_code_takes_finds_the_same_length(identifier: int, data: bytes) -> None:
     assert typed_bits(identifier, data) == len(wire_bits(Frame(identifier, data))) + 3
 
@@ -111,3 +113,20 @@ def test_the_way_that_compiled_code_takes_refuses_the_same_identifiers() -> None
     for identifier in (-1, 0x800):
         with pytest.raises(FrameError):
             typed_bits(identifier, bytes(8))
+
+
+@pytest.mark.parametrize("place", range(7))
+def test_a_run_goes_on_from_one_byte_into_the_next(place: int) -> None:
+    for left in (0x57, 0x5F, 0xA8, 0xA0, 0x50):
+        for right in (0xD5, 0xF5, 0x2A, 0x0A):
+            data = bytearray(b"\x55" * 8)
+            data[place : place + 2] = left, right
+            bits = len(wire_bits(Frame(0x155, bytes(data)))) + 3
+            assert plain_bits(0x155, bytes(data)) == typed_bits(0x155, bytes(data)) == bits
+
+
+@pytest.mark.parametrize("last", range(0x40))
+def test_a_run_goes_on_from_the_data_into_the_crc(last: int) -> None:
+    data = b"\xaa" * 7 + bytes([last << 2 & 0xE0 | last & 0x1F])
+    bits = len(wire_bits(Frame(0x2AA, data))) + 3
+    assert plain_bits(0x2AA, data) == typed_bits(0x2AA, data) == bits

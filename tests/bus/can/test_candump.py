@@ -3,11 +3,12 @@ from io import BytesIO
 from pathlib import Path
 
 import can
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bus.can import Frame
-from bus.can.candump import CandumpWriter, block, line
+from bus.can.candump import CandumpWriter, block, line, parsed
 from tests.bus.can.test_bits import frames
 from tests.bus.can.test_wire import network
 
@@ -76,3 +77,46 @@ def test_lines_filled_in_by_column_are_the_lines(log: list[tuple[int, Frame]], c
     for rows in (log, [row for row in log if len(str(row[0])) == digits]):
         text = "".join(line(t_ns, frame, channel) + "\n" for t_ns, frame in rows)
         assert block([t_ns for t_ns, _ in rows], [frame for _, frame in rows], channel) == text.encode()
+
+
+@pytest.mark.parametrize(("text", "found"), [
+    ("(1.000129) can0 211#1101000000000000", (1_000_129_000, Frame(0x211, b"\x11\x01" + bytes(6)))),
+    ("(1714000000.250000) vcan12 7FF#", (1_714_000_000_250_000_000, Frame(0x7FF, b""))),
+    ("(2.000000) can0 00000012#AB", (2_000_000_000, Frame(0x12, b"\xab", extended=True))),
+    ("(0.000001) can0 7FF#R", (1000, Frame(0x7FF, b"", remote=True))),
+    ("(0.000000) can0 1FFFFFFF#R3", (0, Frame(0x1FFF_FFFF, bytes(3), extended=True, remote=True))),
+    ("(1.000129) can0 211#110", None),
+    ("(0.000000) can0 20000004#00", (0, Frame(0x2000_0004, b"\0", extended=True))),  # CAN_ERR_FLAG
+])  # fmt: skip
+def test_a_line_is_read_as_it_stands(text: str, found: tuple[int, Frame] | None) -> None:
+    assert parsed(text) == found
+
+
+def test_a_batch_is_written_as_it_is_full_and_not_before() -> None:
+    file = BytesIO()
+    writer = CandumpWriter(file)
+    for k in range(1023):
+        writer.take(k * 1000, Frame(0x211, b""))
+    assert not file.getvalue() and writer.frames == 0
+    writer.take(1_023_000, Frame(0x211, b""))
+    assert file.getvalue().count(b"\n") == writer.frames == 1024
+
+
+def test_flushing_writes_through_to_the_file(tmp_path: Path) -> None:
+    with (tmp_path / "can.log").open("wb") as file:
+        writer = CandumpWriter(file)
+        writer.take(0, Frame(0x211, b""))
+        writer.flush()
+        assert (tmp_path / "can.log").read_bytes() == b"(0.000000) can0 211#\n"
+
+
+def test_a_log_goes_on_behind_lines_written_before() -> None:
+    before = b"(0.000000) can0 211#11\n(0.001000) can0 212#\n"
+    whole = before + b"(1.000000) can0 213#22\n"
+    file = BytesIO()
+    for writer in (CandumpWriter(file), CandumpWriter(None)):
+        writer.resume(before)
+        writer.take(1_000_000_000, Frame(0x213, b"\x22"))
+        assert writer.hexdigest() == sha256(whole).hexdigest()
+        assert writer.frames == 3
+    assert file.getvalue() == whole

@@ -4,9 +4,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bus.can import Frame, Wire
+from bus.can.bits import wire_bits
 from bus.can.partition import Partition
+from bus.can.port import BusError
 from bus.can.stuck import StuckDominant
 from bus.time import EventQueue
+from tests.bus.can.test_trouble_told import diaries, heard
+from tests.bus.can.test_wire import listen, network
 
 FRAME = Frame(0x123, b"\x00" * 8)
 
@@ -41,6 +45,62 @@ def test_the_sender_goes_off_the_bus_and_comes_back() -> None:
     assert (one.state, heard) == ("bus_off", [])
     wire.queue.run_until(400_000 + 140 * 11_000)
     assert (one.state, heard) == ("active", [FRAME])
+
+
+def test_a_sender_held_dominant_counts_as_one_and_all_are_told() -> None:
+    """TEC + 8 at the sixth bit, at the twenty-first, and every eight bits: beyond 255 after 32 times."""
+    queue, wire = network(3)
+    watched = diaries(wire)
+    told = [heard(port) for port in wire.ports]
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(50_000)
+    for each in watched:
+        each.told.clear()
+    StuckDominant(wire, 50_000)
+    counts = []
+    for bits in (5, 6, 20, 21, 29, 6 + 15 + 30 * 8 - 1, 6 + 15 + 30 * 8, 2000):
+        queue.run_until(50_000 + bits * 1000)
+        counts.append(wire.ports[0].tec)
+    assert counts == [0, 8, 8, 16, 24, 248, 256, 256]
+    assert wire.errors == {"bit": 1}
+    assert told[0][0] == BusError("bit", True) and told[1][0] == BusError("bit", False)
+    assert told[1][1:3] == [BusError(""), BusError("")]  # the bit after the flag, eight bits later
+    assert watched[1].told[:3] == [(50_000 + bits * 1000, "counted") for bits in (6, 13, 21)]
+
+
+def test_with_nobody_sending_it_is_a_stuff_error_and_ends_when_all_are_full() -> None:
+    queue, wire = network(3)
+    told = heard(wire.ports[0])
+    wire.ports[2].online = False
+    StuckDominant(wire, 0)
+    queue.run_until(6000)
+    assert wire.errors == {"stuff": 1} and told == [BusError("stuff", False)]
+    queue.run_until(1_000_000)
+    assert [port.rec for port in wire.ports] == [255, 255, 0]
+    assert queue.next_ns() is None  # nothing is left to be counted
+
+
+def test_a_sender_counts_on_though_its_receivers_are_full() -> None:
+    queue, wire = network(2)
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(50_000)
+    wire.ports[1].rec = 250
+    StuckDominant(wire, 50_000)
+    queue.run_until(50_000 + 300_000)
+    assert wire.ports[0].state == "bus_off" and wire.ports[1].rec == 255
+
+
+def test_a_frame_starts_a_delimiter_and_an_intermission_after_the_release() -> None:
+    """Eight and three bits."""
+    queue, wire = network(2)
+    log = listen(wire, 1)
+    stuck = StuckDominant(wire, 0)
+    wire.ports[0].send(FRAME, 1000)
+    queue.run_until(5000)
+    stuck.release(5000)
+    queue.run_until(1_000_000)
+    assert log == [(5000 + 11_000 + len(wire_bits(FRAME)) * 1000, FRAME)]
+    assert not wire.errors  # it was over before the sixth bit
 
 
 @given(st.lists(st.integers(0, 1_500_000), min_size=2, max_size=2, unique=True), st.integers(1, 15))

@@ -4,6 +4,7 @@ import pytest
 
 from bus.can import Flip, Frame, Wire
 from bus.can.bits import wire_bits
+from bus.can.disturbance import seen_by_all, seen_by_receiver
 from bus.can.length import frame_bits
 from bus.can.port import BusError, Port
 from bus.can.sampling import BitTiming
@@ -340,3 +341,79 @@ def test_an_error_frame_is_told_at_the_end_of_its_delimiter() -> None:
         (end, "failed False"),
         (end, "failed False"),
     ]
+
+
+def test_a_planned_frame_that_is_cut_counts_the_bits_it_had() -> None:
+    queue, wire = network(3)
+    wire.ports[0].send(FRAME, 7_000)
+    queue.run_until(47_000)
+    wire.ports[0].online = False
+    assert wire.bits == 40 + 6 + ERROR_BITS + IFS_BITS
+
+
+def test_a_look_at_a_sound_bus_leaves_its_plan() -> None:
+    queue, wire = network(3)
+    queue.run_until(10_000)
+    wire.ports[0].send(FRAME, 10_000)
+    wire.disturb(None)
+    assert queue.next_ns() == 10_000 + LENGTH * 1000
+
+
+@pytest.mark.parametrize("silent", [True, False])
+def test_who_cannot_object_is_told_and_misses_the_frame(silent: bool) -> None:
+    queue, wire = network(3)
+    log, missed = listen(wire, 1), listen(wire, 2)
+    watcher, told = Told(), heard(wire.ports[2])
+    wire.ports[2].watcher = watcher
+    wire.ports[2].listen_only, wire.ports[2].rec = silent, 0 if silent else 128
+    once(wire, Flip(50, seen_by="n2"))
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    verdict = seen_by_receiver(FRAME, 50)
+    assert verdict is not None and wire.errors == {verdict.kind: 1}
+    assert (len(log), missed, watcher.failures) == (1, [], [False])
+    assert told[0] == BusError(verdict.kind)
+    assert wire.ports[2].rec == (0 if silent else 129)
+
+
+@pytest.mark.parametrize(("seen_by", "flags"), [(None, 6), ("n2", 12)])
+def test_an_error_frame_counts_its_bits(seen_by: str | None, flags: int) -> None:
+    """Up to the bit in which it is seen, one flag or one that is answered, delimiter, intermission."""
+    queue, wire = network(3)
+    once(wire, Flip(50, seen_by))
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    verdict = seen_by_receiver(FRAME, 50) if seen_by else seen_by_all(FRAME, 50)
+    assert verdict is not None
+    ended = verdict.detected_bit + 1 + flags + 8 + IFS_BITS
+    assert wire.bits == ended + LENGTH + IFS_BITS
+
+
+def test_an_overload_or_a_cut_leaves_nothing_behind() -> None:
+    """Each time the next frame, planned on a sound bus, is cut after forty bits."""
+    queue, wire = network(3)
+    once(wire, Flip(LENGTH - 1, seen_by="n2"))
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(1_000_000)
+    wire.disturb(None)
+    for _ in range(2):
+        before, start = wire.bits, queue.now_ns
+        wire.ports[0].send(FRAME, start)
+        queue.run_until(start + 40_000)
+        wire.ports[0].online = False
+        assert wire.bits - before == 40 + 6 + ERROR_BITS + IFS_BITS
+        wire.ports[0].online = True
+        for port in wire.ports:
+            port.tec = port.rec = 0
+        wire.disturb(None)  # a look: the bus is sound
+        queue.run_until(start + 1_000_000)
+
+
+def test_a_cut_is_told_and_counts_once() -> None:
+    queue, wire = network(3)
+    told = heard(wire.ports[1])
+    wire.ports[0].send(FRAME, 0)
+    queue.run_until(40_000)
+    wire.ports[0].online = False
+    wire.ports[0].online = True
+    assert wire.errors == {"stuff": 1} and told == [BusError("stuff")]

@@ -145,3 +145,68 @@ def test_L1_a_node_that_is_off_is_not_there() -> None:
 def test_L1_bit_rates_can_does_not_have(bitrate: int) -> None:
     with pytest.raises(BitrateError, match=str(bitrate)):
         Wire(EventQueue(), bitrate)
+
+
+def test_a_bit_is_a_whole_number_of_nanoseconds_down_to_one_bit_a_second() -> None:
+    assert [Wire(EventQueue(), rate).bit_ns for rate in (1, 300_000, 1_000_000)] == [10**9, 3333, 1000]
+
+
+def test_before_anything_has_happened_the_load_is_nothing() -> None:
+    assert Wire(EventQueue()).load == 0.0
+
+
+def test_who_is_detached_is_gone_and_the_bus_sound_again() -> None:
+    queue, wire = network(2)
+    guest = wire.attach("guest")
+    guest.listen_only = True
+    wire.detach(guest)
+    wire.detach(guest)
+    assert [port.name for port in wire.ports] == ["n0", "n1"]
+    wire.ports[0].send(Frame(1, b""), 1000)
+    assert queue.next_ns() == 1000 + (frame_bits(Frame(1, b"")) - 3) * 1000  # the end of EOF, told in advance
+
+
+def test_a_tap_hears_until_it_is_taken_off() -> None:
+    queue, wire = network(2)
+    heard: list[str] = []
+
+    def tap(_t_ns: int, _frame: Frame, sender: str) -> None:
+        heard.append(sender)
+
+    wire.tap(tap)
+    for node in (0, 1):
+        wire.ports[node].send(Frame(1, b""), queue.now_ns)
+        queue.run_until(queue.now_ns + 1_000_000)
+        if node == 0:
+            wire.untap(tap)
+    assert heard == ["n0"]
+
+
+def test_a_disturbance_that_is_set_is_asked() -> None:
+    queue, wire = network(2)
+    asked: list[int] = []
+
+    def ask(sof_ns: int, _frame: Frame, _sender: str) -> None:
+        asked.append(sof_ns)
+
+    wire.disturbance = ask
+    assert wire.disturbance is ask
+    wire.ports[0].send(Frame(1, b""), 5000)
+    queue.run_until(1_000_000)
+    assert asked == [5000]
+
+
+@pytest.mark.parametrize("senders", [(1, 2), (1, 1)])
+def test_what_waits_on_a_sound_bus_is_planned_as_the_bus_falls_free(senders: tuple[int, int]) -> None:
+    """Of two nodes, or of one with the same identifier twice: no arbitration is to be decided."""
+    queue, wire = network(4)
+    first = Frame(0x123, bytes(8))
+    wire.ports[0].send(first, 0)
+    waiting = [
+        Frame(0x200 + (node if senders == (1, 2) else 0), bytes([k])) for k, node in enumerate(senders)
+    ]
+    for node, frame in zip(senders, waiting, strict=True):
+        wire.ports[node].send(frame, 10_000)
+    free_ns = frame_bits(first) * 1000
+    queue.run_until(free_ns - 3000)
+    assert queue.next_ns() == free_ns + (frame_bits(waiting[0]) - 3) * 1000

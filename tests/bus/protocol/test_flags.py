@@ -7,6 +7,7 @@ import pytest
 
 from bus import protocol as p
 from bus.protocol.database import database
+from bus.protocol.names import HARMONICS, OBSERVER_CELLS
 
 FLAGS: list[tuple[str, type[IntFlag], int]] = [
     ("AXIS_RA_MOTION", p.MotionFlag, 12),
@@ -29,3 +30,22 @@ def test_what_does_not_fit_is_cut_and_told_of_once() -> None:
     assert (p.unpack_focus(data).position, p.unpack_focus(data).encoder) == (32_767, -32_768)
     assert told == ["focus"]
     assert p.pack_focus(0x41, 0, 1, 2, 3, lambda: told.append("again")) and told == ["focus"]
+
+
+def test_parameters_of_an_axis_have_the_numbers_of_the_dbc() -> None:
+    message = database().get_message_by_name("AXIS_RA_COMMAND")
+    choices = message.get_signal_by_name("GetParameter_Number").choices
+    assert choices is not None
+    numbers = {str(name): number for number, name in choices.items()}
+    first = {
+        p.AxisParameter.HARMONIC_FIRST: "HARMONIC_0_ORDER_Q16",
+        p.AxisParameter.OBSERVER_FIRST: "OBSERVER_0",
+    }
+    for parameter in p.AxisParameter:
+        assert numbers[first.get(parameter, parameter.name)] == parameter
+    assert sum(name.endswith("_ORDER_Q16") for name in numbers) == HARMONICS
+    assert sum(name.startswith("OBSERVER_") for name in numbers) == OBSERVER_CELLS
+
+
+def test_health_has_a_bit_for_each_word_from_the_lowest_on() -> None:
+    assert [flag.value for flag in p.Health] == [1 << bit for bit in range(9)]

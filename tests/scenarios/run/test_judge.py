@@ -80,8 +80,8 @@ def test_a_run_that_was_cut_off_passes_nothing_though_its_steps_are_done() -> No
         evaluate.judge(Outcome(Path(), SCENARIO, records, {"interrupted": each})) for each in (False, True)
     )
     assert [(each.name, each.passed) for each in whole] == [("programme completed", True)]
-    assert [(each.name, each.passed, each.reason) for each in cut_off[1:]] == [
-        ("run to its end", False, "the run was interrupted")
+    assert [(each.name, each.passed, each.limit, each.reason) for each in cut_off[1:]] == [
+        ("run to its end", False, 1, "the run was interrupted")
     ]
 
 
@@ -138,6 +138,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     ({"during": "guide", "axis": "dec"}, 4.0),
     ({"during": "guide", "axis": "dec", "statistic": "final"}, 2.0),
     ({"during": "guide", "axis": "dec", "statistic": "mean"}, 1.0),
+    ({"during": "guide", "settle": 3.0}, 5.0),  # the window begins with an exposure
     ({"during": "guide", "settle": 5.0}, math.sqrt(5.0)),
     ({}, 20.0),  # both steps
 ])  # fmt: skip
