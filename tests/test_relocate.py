@@ -129,10 +129,9 @@ def test_the_installed_command_among_a_users_modules(site: Path, tmp_path: Path)
 @pytest.mark.slow
 def test_the_installed_command_finds_scenarios_and_plants_by_name(site: Path, tmp_path: Path) -> None:
     mine = user(tmp_path / "mine")
-    words = ("run", "quick-look", "--plant", "high_preload", "--no-report", "--out", "out")
+    words = ("run", "quick-look", "--plant", "low_preload_bridge", "--no-report", "--out", "out")
     done = run(mine, [mine, site], "-c", COMMAND, *words)
-    assert done.returncode in (0, 1), done.stderr  # as the drive is
-    assert "ok   programme completed" in done.stdout
+    assert done.returncode == 0, done.stdout + done.stderr
     assert (mine / "out" / "can.log").stat().st_size > 0
     wrong = run(mine, [mine, site], "-c", COMMAND, "run", "quick-lok")
     assert "did you mean 'quick-look'?" in wrong.stderr
