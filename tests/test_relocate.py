@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.docs.test_new_board import BOARDS, examples
+
 ROOT = Path(__file__).parents[1]
 SPEC = spec_from_file_location("build_of_schmidt", ROOT / "setup.py")
 assert SPEC is not None and SPEC.loader is not None
@@ -122,6 +124,28 @@ def test_the_installed_command_among_a_users_modules(site: Path, tmp_path: Path)
     told = [line for line in done.stderr.splitlines() if "time left" not in line]  # a slow machine's progress
     assert (done.returncode, told) == (0, [])
     assert "0 errors" in done.stdout
+
+
+@pytest.mark.slow
+def test_the_installed_command_finds_scenarios_and_plants_by_name(site: Path, tmp_path: Path) -> None:
+    mine = user(tmp_path / "mine")
+    words = ("run", "quick-look", "--plant", "low_preload_bridge", "--no-report", "--out", "out")
+    done = run(mine, [mine, site], "-c", COMMAND, *words)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (mine / "out" / "can.log").stat().st_size > 0
+    wrong = run(mine, [mine, site], "-c", COMMAND, "run", "quick-lok")
+    assert "did you mean 'quick-look'?" in wrong.stderr
+
+
+@pytest.mark.slow
+def test_the_installed_command_runs_the_guides_boards(site: Path, tmp_path: Path) -> None:
+    """With the page's word for an installation: `schmidt.` before the rooms."""
+    mine = user(tmp_path / "mine")
+    for name, text in examples().items():
+        (mine / name).write_text(BUILD.rewritten(text) if name.endswith(".py") else text, encoding="utf-8")
+    for name in BOARDS:
+        done = run(mine, [mine, site], "-c", COMMAND, "run", f"{name}.yaml", "--no-report", "--out", name)
+        assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.slow

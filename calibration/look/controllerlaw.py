@@ -94,7 +94,7 @@ def _others(c: Command, declared: dict[str, float]) -> tuple[list[str], list[Fin
         part = off / declared[name]
         said.append(f"controller: {name} is {x.value:.4g} {unit} ({100 * part:+.1f} % of the declared one)")
         if abs(part) > ANOTHER:
-            evidence = min((off / max(x.error, 1e-300)) ** 2 / 4.6, 1e4)
+            evidence = min(min(abs(off) / max(x.error, 1e-300), 1e3) ** 2 / 4.6, 1e4)
             found.append(Finding(UNKNOWN, "S", "command", evidence=evidence, share=1.0, note=said[-1]))
     return said, found
 

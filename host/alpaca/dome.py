@@ -47,8 +47,7 @@ class DomeDevice(Device):
     def state(self) -> dict[str, object]:
         """Operational properties."""
         return {
-            "Azimuth": self.reading()["Azimuth"], "ShutterStatus": self.shutter(),
-            "Slewing": self.slewing(), "AtHome": False, "AtPark": False,
+            "Azimuth": self.reading()["Azimuth"], "ShutterStatus": self.shutter(), "Slewing": self.slewing(),
         }  # fmt: skip
 
     async def command(self, act: Callable[[Telescope], Job[None]]) -> None:

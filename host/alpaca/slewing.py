@@ -48,6 +48,7 @@ def _star(device: SlewingDevice, ra_h: float, dec_deg: float) -> Star:
 def _coordinates(device: SlewingDevice, given: Parameters) -> Star:
     ra_h, dec_deg = given.number("RightAscension"), given.number("Declination")
     star = _star(device, ra_h, dec_deg)
+    _must_track(device, True)
     device.target_ra_h, device.target_dec_deg = ra_h, dec_deg
     return star
 
@@ -55,7 +56,9 @@ def _coordinates(device: SlewingDevice, given: Parameters) -> Star:
 def _target(device: SlewingDevice, _: Parameters) -> Star:
     if device.target_ra_h is None or device.target_dec_deg is None:
         raise AlpacaError(VALUE_NOT_SET, "TargetRightAscension and TargetDeclination have not been set")
-    return _star(device, device.target_ra_h, device.target_dec_deg)
+    star = _star(device, device.target_ra_h, device.target_dec_deg)
+    _must_track(device, True)
+    return star
 
 
 def _must_track(device: SlewingDevice, on: bool) -> None:
@@ -71,7 +74,6 @@ def _sky(where: Where) -> Way:
 
     def way(device: SlewingDevice, given: Parameters) -> Goto:
         star = where(device, given)
-        _must_track(device, True)
         return lambda t: t.drive.goto(star)
 
     return way
@@ -98,7 +100,6 @@ def _sync(where: Where) -> Put:
 
     async def put(device: SlewingDevice, given: Parameters) -> None:
         star = where(device, given)
-        _must_track(device, True)
         await device.do(lambda t: t.drive.sync(star))
 
     return put

@@ -56,9 +56,7 @@ def _refresher(shell: Shell, chart: Any, names: tuple[str, ...], pick: Any, leas
 def span(values: Sequence[float], least: float) -> dict[str, float]:
     """Ends of the vertical axis: of all values, but for what a tenth at either end does alone. least: its
     height when nothing happens."""
-    if not values:
-        return {}
-    found = sorted(values)
+    found = sorted(values) or [0.0]
     cut = len(found) // 10
     low, high = found[cut], found[-1 - cut]
     room = max(high - low, least)

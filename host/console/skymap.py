@@ -43,7 +43,7 @@ class Chart:
         self._seen = [
             (*_xy(float(altitudes[k]), float(azimuths[k])), objects[k]) for k in np.flatnonzero(altitudes > 0)
         ]
-        shapes = [_shape(*each) for each in self._seen]
+        shapes = [draw(*each) for draw in (_shape, _name) for each in self._seen]
         place, lit = moon(about.site, about.clock, t_s)
         if place.altitude_rad > 0:
             x, y = _xy(place.altitude_rad, place.azimuth_rad)
@@ -67,8 +67,12 @@ def _shape(x: float, y: float, each: Listed) -> str:
     magnitude = 3.0 if each.magnitude is None else each.magnitude
     kind = "sky-star" if each.stellar else "sky-cloud"
     size = max(0.4, 1.6 - 0.3 * magnitude) if each.stellar else 1.6
-    name = _text(x, y - 3, each.star.name) if each.stellar and magnitude < _NAMED else ""
-    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{size:.1f}" class="{kind}"/>{name}'
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{size:.1f}" class="{kind}"/>'
+
+
+def _name(x: float, y: float, each: Listed) -> str:
+    bright = each.stellar and each.magnitude is not None and each.magnitude < _NAMED
+    return _text(x, y - 3, each.star.name) if bright else ""
 
 
 def _text(x: float, y: float, text: str) -> str:

@@ -4,8 +4,14 @@ How they look: red on black for a dark observatory floor, dark on light by day (
 """
 
 from concurrent.futures import Future
+from functools import cache
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from bus.protocol.nodes import DEVICES, documented
+
+if TYPE_CHECKING:
+    from cantools.database import Database
 
 CSS = Path(__file__).with_name("theme.css").read_text(encoding="utf-8")
 INK = {"night": "#ff6a5a", "day": "#0b5cad"}
@@ -74,12 +80,16 @@ class BusView(Protocol):
         """End one; the same."""
 
 
+@cache
+def _protocol() -> "Database":
+    """Of all boards that come along; a network has some of them."""
+    return documented(DEVICES)
+
+
 def words(identifier: int, data: bytes) -> str:
     """Signals of a frame; its device is the sender's column already."""
-    from bus.protocol.database import database
-
     try:
-        said = database().decode_message(identifier, data)
+        said = _protocol().decode_message(identifier, data)
     except Exception:  # whatever anybody put on the bus is shown as it is
         return "not in the protocol"
     pairs = said.items() if isinstance(said, dict) else ()

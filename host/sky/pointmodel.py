@@ -127,7 +127,10 @@ def parsed(text: str, path: Path) -> PointingModel:
     if not isinstance(data, dict) or data.pop("format", None) != FORMAT:
         raise PointingFileError(f"{path}: expected a JSON object with the format {FORMAT!r}")
     try:
-        terms = tuple(Term(**each) for each in data.pop("terms"))
+        listed = data.pop("terms")
+        if not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
+            raise ValueError("its terms are no list of objects")
+        terms = tuple(Term(**each) for each in listed)
         model = PointingModel(terms=terms, **data)
         if not abs(model.latitude_rad) <= math.pi / 2:
             raise ValueError("the latitude is beyond a pole")

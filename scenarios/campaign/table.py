@@ -65,7 +65,7 @@ def rows(path: Path) -> Iterator[Row]:
                 continue
             if (
                 isinstance(found, dict)
-                and all(isinstance(found.get(name), kind) for name, kind in _FIELDS.items())
+                and all(type(found.get(name)) is kind for name, kind in _FIELDS.items())
                 and all(map(_scalar, found.values()))
             ):
                 yield found

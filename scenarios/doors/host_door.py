@@ -44,6 +44,7 @@ class HostProcess:
     def __init__(self, served: LiveNetwork, options: DoorOptions, say: Callable[[str], None]) -> None:
         self.name = "the host"
         self._served = served
+        self._scenario = dated(served.scenario)  # once: the next process has the same sky
         self._options = options
         self._say = say
         self._bus = EmulatedBus(served)
@@ -78,7 +79,7 @@ class HostProcess:
         served = self._served
         ours.send(
             messages.Settings(
-                dated(served.scenario),
+                self._scenario,
                 self._options,
                 list(served.network.boards),
                 served.network.devices,

@@ -149,6 +149,17 @@ def test_a_million_columns_are_refused_at_once(tmp_path: Path) -> None:
         assert monotonic() - begun_s < 10.0
 
 
+def test_a_column_of_next_to_nothing_is_answered(tmp_path: Path) -> None:
+    """In units of nobody, 1e-299 V: gains so far from the declared ones that no float squares them."""
+    t = np.arange(2000) / 1000
+    q = 0.1 * np.sin(5 * t)
+    rows = np.column_stack([t, q, (2 * np.cos(5 * t) + q) * 1e-299, q])
+    np.savetxt(tmp_path / "d.csv", rows, delimiter=",", header="t,qm,vir,qg", comments="")
+    rig = Path(__file__).parents[2] / "calibration" / "rigs" / "emps.yaml"
+    calibrate([tmp_path / "d.csv"], rig, [], tmp_path / "out", plots=False)
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["verdict"]
+
+
 def test_columns_of_a_table_may_be_given_by_their_place(tmp_path: Path) -> None:
     (tmp_path / "rig.yaml").write_text(
         RIG.replace("column: t,", "column: 0,").replace("column: u,", "column: 2,")

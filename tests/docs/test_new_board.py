@@ -27,13 +27,20 @@ BOARDS = {"mirror": 60, "cover": 60}
 """The page's examples in its order, and the most lines that each may have."""
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def examples() -> dict[str, str]:
+    """The page's files by their names."""
     blocks = re.findall(r"```(\w+)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     files = [(name, language) for name in BOARDS for language in SUFFIX]
     assert [language for language, _ in blocks] == [language for _, language in files]
-    for (name, language), (_, text) in zip(files, blocks, strict=True):
-        (tmp_path / f"{name}{SUFFIX[language]}").write_text(text, encoding="utf-8")
+    return {
+        f"{name}{SUFFIX[language]}": text for (name, language), (_, text) in zip(files, blocks, strict=True)
+    }
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in examples().items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 
 

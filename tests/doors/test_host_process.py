@@ -1,16 +1,19 @@
 """The host program in its process beside the emulator: what crosses the pipe, and how either one dies."""
 
+import math
 import os
 import signal
 import socket
 import time
+from collections.abc import Callable
 from multiprocessing import Pipe
 from pathlib import Path
 
 import pytest
 
-from bus.protocol import Device
+from bus.protocol.nodes import DEVICES
 from host.console.views import words
+from host.lx200 import angles
 from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
@@ -22,13 +25,15 @@ from tests.doors.process import Serving
 from tests.ports import free_ports
 
 PATIENCE_S = 120.0
+NEAR_ARCSEC = 20.0
+"""LX200 tells right ascension to 15."""
 
 
 class Both:
     """Both ends of the bus page's view, with a pipe of plain lists between them."""
 
-    def __init__(self) -> None:
-        self.served = LiveNetwork(*chosen())
+    def __init__(self, network: str = "lab") -> None:
+        self.served = LiveNetwork(*chosen(network_name=network))
         self.bus = EmulatedBus(self.served)
         self.wishes: list[Wish] = []
         self.mirror = BusMirror(list(self.served.network.boards), self.bus.fault_kinds(), self.wishes.append)
@@ -42,8 +47,9 @@ class Both:
         self.mirror.state = self.bus.look()
 
 
-def test_the_mirror_shows_the_bus_and_its_frames_in_words() -> None:
-    both = Both()
+@pytest.mark.parametrize("network", ["lab", "final"])
+def test_the_mirror_shows_the_bus_and_its_frames_in_words(network: str) -> None:
+    both = Both(network)
     assert not both.mirror.watching
     for _ in range(10):
         both.carry()
@@ -51,7 +57,10 @@ def test_the_mirror_shows_the_bus_and_its_frames_in_words() -> None:
     assert {node.name for node in now.nodes} >= set(both.mirror.boards)
     assert 0.0 < now.load < 1.0 and both.mirror.watching
     assert len(now.frames) == 25
-    assert all(words(number, data) and sender in Device.__members__ for _, sender, number, data in now.frames)
+    names = {device.name for device in DEVICES}
+    assert all(sender in names for _, sender, _, _ in now.frames)
+    assert "not in the protocol" not in {words(number, data) for _, _, number, data in now.frames}
+    assert words(0x7FF, bytes(8)) == "not in the protocol"
 
 
 def test_a_wish_is_done_or_refused_with_its_reason() -> None:
@@ -78,11 +87,11 @@ def host_of(emulator: int) -> int:
     return int(child)
 
 
-def answered(port: int) -> bytes:
-    """What LX200's "which precision" says; nothing while nobody listens."""
+def answered(port: int, asked: bytes = b":GR#") -> bytes:
+    """What LX200 says; nothing while nobody listens."""
     try:
         with socket.create_connection(("127.0.0.1", port), 60) as s:
-            s.sendall(b":GR#")
+            s.sendall(asked)
             return s.recv(64)
     except OSError:
         return b""
@@ -106,6 +115,41 @@ def test_a_host_that_dies_or_hangs_is_reported_and_comes_back(tmp_path: Path, nu
             time.sleep(0.2)
         assert host_of(served.process.pid) != first
     assert "the host: broken" in served.said
+
+
+def told_h(port: int, asked: bytes = b":GR#") -> float:
+    """A time or right ascension: the first answer there is."""
+    while not (said := answered(port, asked)):
+        time.sleep(0.05)
+    return angles.parse(said.decode().removesuffix("#"))
+
+
+def until(what: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + PATIENCE_S
+    while not what():
+        assert time.monotonic() < end_s
+        time.sleep(0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+def test_a_killed_host_comes_back_at_once_and_tells_what_is_the_case(tmp_path: Path) -> None:
+    """The boards go on tracking: the first answer is where they are, both doors open at the first try."""
+    port, terminal = free_ports(), tmp_path / "lx200"
+    with Serving(tmp_path, "--lx200", str(port), "--lx200", f"pty:{terminal}") as served:
+        place = angles.hours((told_h(port, b":GS#") + 0.2) * math.pi / 12)
+        assert answered(port, f":Sr{place}#:Sd+25*00:00#:MS#".encode()).startswith(b"1")
+        until(lambda: abs(told_h(port) - angles.parse(place)) * 54000 < NEAR_ARCSEC)
+        until(lambda: answered(port, b":GW#") == b"PT1#" and answered(port, b":D#") == b"#")
+        os.kill(host_of(served.process.pid), signal.SIGKILL)
+        until(lambda: "the host: broken" in served.said)
+        assert abs(told_h(port) - angles.parse(place)) * 54000 < NEAR_ARCSEC
+        assert answered(port, b":GW#") == b"PT1#"
+        assert served.said.count("broken") == 1 and terminal.is_symlink()
+        descriptor = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        os.write(descriptor, b":GVP#")
+        assert os.read(descriptor, 64) == b"schmidt#"
+        os.close(descriptor)
 
 
 @pytest.mark.slow

@@ -48,8 +48,9 @@ def _place(shell: Shell) -> None:
         for name, text in zip(labels, here[:5], strict=True):
             labels[name].set_text(text)
         rates.set_text(f"{now.ra.rate_arcsec_s:+.1f}″/s  {now.dec.rate_arcsec_s:+.1f}″/s")
-        found = now.errors_arcsec or (None, None)
-        errors.set_text(f"{number(found[0], '+.2f', '″')}  {number(found[1], '+.2f', '″')}")
+        scale, unit = (3600, "°") if now.slewing else (1, "″")
+        found = [number(each / scale, "+.2f", unit) for each in now.errors_arcsec or ()]
+        errors.set_text("  ".join(found) or "–")
         old = now.stale
         for name, label in labels.items():
             mine = (Device.POSITION_DEC,) if name == "Dec" else (Device.POSITION_RA, Device.POSITION_DEC)

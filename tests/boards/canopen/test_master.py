@@ -1,5 +1,7 @@
 """What a CANopen master expects, by `canopen`'s own master from the EDS alone; and a host that needs none."""
 
+import configparser
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -206,13 +208,29 @@ def test_an_object_comes_in_blocks_with_its_crc(bench: Bench) -> None:
     assert [each[0] for each in answers[4:]] == [0x01, 0x01, 0x81, 0xC1 | 2 << 2]
 
 
+def mapped_objects(file: Path) -> dict[str, bool]:
+    """Those that the sheet's PDOs hold as they come, and whether it says that each may be mapped."""
+    sheet = configparser.ConfigParser()
+    sheet.read(file)
+    entries = [
+        int(sheet[name]["DefaultValue"], 0)
+        for name in sheet
+        if re.fullmatch(r"1[6a]..sub[1-8]", name, re.IGNORECASE)
+    ]
+    names = [f"{entry >> 16:04X}sub{entry >> 8 & 0xFF:X}" for entry in entries if entry]
+    return {name: int(sheet[name]["PDOMapping"], 0) == 1 for name in names}
+
+
 def test_the_sheets_are_the_same_bytes_and_the_dbc_reads_the_bus(bench: Bench, tmp_path: Path) -> None:
     first, second = write_eds(tmp_path / "one"), write_eds(tmp_path / "two")
     assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
     sheet = (tmp_path / "one" / "axis.eds").read_text()
     assert "BaudRate_1000=1\n" in sheet
-    assert "PDOMapping=0x1" in sheet.split("[2000sub3]")[1].split("[")[0]
     assert "PDOMapping=0x0" in sheet.split("[1000]")[1].split("[")[0]
+    for file in first:
+        if file.suffix == ".eds":
+            assert len(mapped := mapped_objects(file)) >= 5
+            assert all(mapped.values()), file.name
     dbc = cantools.database.load_file(tmp_path / "one" / "canopen.dbc")
     assert isinstance(dbc, cantools.database.can.Database)
     bench.bus.run(1.5)

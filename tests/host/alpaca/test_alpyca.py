@@ -45,8 +45,6 @@ def test_connect_slew_read_back_abort_park(live: AlpacaLive) -> None:
     assert telescope.Connected and telescope.InterfaceVersion == 4
 
     assert telescope.AtPark
-    with pytest.raises(ValueNotSetException):
-        _ = telescope.TargetDeclination
     for move in (
         lambda: telescope.SlewToCoordinatesAsync(telescope.SiderealTime, 20.0),
         lambda: setattr(telescope, "Tracking", True),
@@ -56,6 +54,8 @@ def test_connect_slew_read_back_abort_park(live: AlpacaLive) -> None:
     ):
         with pytest.raises(ParkedException):
             move()
+    with pytest.raises(ValueNotSetException):
+        _ = telescope.TargetDeclination
     telescope.Unpark()
     until(lambda: not telescope.AtPark)
     with pytest.raises(InvalidOperationException):

@@ -19,6 +19,7 @@ from alpaca.safetymonitor import SafetyMonitor
 from host.alpaca.observing import dew_point_c
 from tests.host.alpaca.conftest import AlpacaLive
 from tests.host.alpaca.test_alpyca import until
+from tests.host.alpaca.test_http import get, put
 
 
 @contextmanager
@@ -42,6 +43,18 @@ def dome(final: AlpacaLive) -> Dome:
 def test_the_devices_are_those_of_the_network(final: AlpacaLive) -> None:
     kinds = [device["DeviceType"] for device in management.configureddevices(final.address)]
     assert kinds == ["Telescope", "Focuser", "Dome", "ObservingConditions", "SafetyMonitor"]
+
+
+@pytest.mark.parametrize("kind", ["dome", "observingconditions", "safetymonitor"])
+def test_a_state_tells_only_what_there_is(final: AlpacaLive, kind: str) -> None:
+    """ASCOM leaves out of DeviceState what a device has not implemented."""
+    put(final, "connected", "Connected=True", device=kind)
+    state = get(final, "devicestate", device=kind)[1]["Value"]
+    assert isinstance(state, list)
+    for each in state:
+        if each["Name"] != "TimeStamp":
+            body = get(final, each["Name"].lower(), device=kind)[1]
+            assert body["ErrorNumber"] == 0 and type(body["Value"]) is type(each["Value"]), each
 
 
 @pytest.mark.slow

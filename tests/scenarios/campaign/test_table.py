@@ -39,6 +39,7 @@ def test_a_torn_line_and_a_lost_run_are_made_again(tmp_path: Path) -> None:
         b"{}",
         b'{"key": 3}',
         b'{"key": "d", "index": "e"}',
+        b'{"key": "d", "index": true, "failure": ""}',
         b"[]",
         b"\xff",
         b'{"key": "d", "index": 1, "failure": "", "x": [1]}',
