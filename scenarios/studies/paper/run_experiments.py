@@ -139,9 +139,10 @@ def paper(options: PaperOptions) -> int:
     documents = {name: as_json(each, files, seconds, starts) for name, each in found.items()}
     document: dict[str, Any] = documents if options.vary else documents[""]
     write_file(file, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
-    command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
+    command = "schmidt paper" + f" --others {options.others}" * bool(options.others)
     if options.vary:
-        table = varied.markdown(found, f"{command} --vary {options.vary:g}", options.vary, len(starts))
+        command += f" --vary {options.vary:g}" + " --quick" * options.quick
+        table = varied.markdown(found, command, options.vary, len(starts))
     else:
         names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
         table = markdown(rows, names, command, date.today())
