@@ -45,6 +45,9 @@ def campaign(scheduler: str | None, **given: Any) -> None:
 @click.option(
     "--others", type=click.IntRange(0, 1000), default=0, help="Starts and seeds that no search used."
 )
+@click.option(
+    "--vary", type=Number(0, 50), default=0.0, help="J, K, R, Tc, Ts off by so many percent, in turn."
+)
 @_jobs
 @_scheduler
 def paper(**given: Any) -> None:

@@ -12,8 +12,9 @@ class PaperOptions:
     """json_file: where the JSON goes. out: folder of the table (and the JSON, when none is named). plant,
     plant_high: plant files, or names, for low and high preload. rows: comma-separated.
 
-    quick: two starts only, for a look. others: so many starts and seeds that no search has used. jobs:
-    processes (None: one per core); scheduler: a Dask scheduler instead."""
+    quick: two starts only, for a look. others: so many starts and seeds that no search has used. vary: rows
+    with each of J, K, R, Tc and Ts off by so many percent instead. jobs: processes (None: one per core);
+    scheduler: a Dask scheduler instead."""
 
     out: Path
     json_file: Path | None = None
@@ -22,6 +23,7 @@ class PaperOptions:
     rows: str | None = None
     quick: bool = False
     others: int = 0
+    vary: float = 0.0
     jobs: int | None = None
     scheduler: str | None = None
 

@@ -52,6 +52,13 @@ class Row:
         """The limit that is missed by most, or met by least."""
         return max(self.experiment.limits, key=lambda limit: limit.excess(self.worst(limit)))
 
+    @property
+    def decided(self) -> str:
+        """Its words and bounds, and the worst value, as two cells; why there is none."""
+        limit = self.decisive
+        cells = f"{limit.words} ({limit.bounds}) | {_short(self.worst(limit), limit.unit)}"
+        return f"{'; '.join(self.unevaluated)} | " if self.failed else cells
+
     def misses(self, limit: Limit) -> int:
         """Return at how many starts a limit is missed."""
         return sum(not limit.holds(value) for value in self.values(limit.figure)) + len(self.failed)

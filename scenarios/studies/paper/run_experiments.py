@@ -1,10 +1,11 @@
-"""`schmidt paper`: run the rows, print published beside emulated, write JSON and the table."""
+"""`schmidt paper`: run the rows, print published beside emulated, write JSON and the table.
 
-import itertools
+With `--vary` the same rows on drives with one number off.
+"""
+
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from datetime import date
-from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -17,6 +18,7 @@ from plant.parts import PlantModel
 from scenarios.campaign.executor import each
 from scenarios.progress import shown
 from scenarios.studies.options import PaperOptions
+from scenarios.studies.paper import varied
 from scenarios.studies.paper.experiments import EXPERIMENTS, Experiment, Figures
 from scenarios.studies.paper.rows import Row, markdown
 from scenarios.studies.paper.starts import QUICK, STARTS, Benches, EmulatorBench, Start, others
@@ -35,37 +37,45 @@ def measure(experiment: Experiment, plants: Mapping[str, PlantModel], start: Sta
         return {}, str(error)
 
 
-def _job(plants: Mapping[str, PlantModel], job: tuple[str, Start]) -> Outcome:
+def _job(job: tuple[varied.Plants, str, Start]) -> Outcome:
     """What a process does: experiments are found by name, functions of modules travel badly."""
-    name, start = job
+    plants, name, start = job
     return measure(next(row for row in EXPERIMENTS if row.id == name), plants, start)
 
 
 def run_rows(
-    plants: Mapping[str, PlantModel],
+    many: Mapping[str, varied.Plants],
     experiments: Sequence[Experiment],
     starts: Sequence[Start],
     *,
+    few: Collection[str] = (),
     workers: int | None = None,
     scheduler: str | None = None,
-    progress: Callable[[str], None] = lambda text: None,
-) -> list[Row]:
-    """Return the rows: every experiment at every start is a job of its own with its own simulation.
+    progress: Callable[[int, str], None] = lambda place, text: None,
+) -> dict[str, list[Row]]:
+    """Return the rows by drive: every experiment at every start is a job of its own with its own simulation.
 
-    workers: processes. scheduler: address of a Dask cluster instead. progress: told after every job what it
-    was.
+    few: rows that have every fourth start only. workers: processes. scheduler: address of a Dask cluster
+    instead. progress: told after every job which it was and its row.
     """
     ranks = {name: rank for rank, name in enumerate(DEAREST)}
-    ordered = sorted((row.id for row in experiments), key=lambda name: ranks.get(name, len(ranks)))
-    jobs = {f"{name} {place}": (name, start) for name in ordered for place, start in enumerate(starts)}
-    found: dict[str, dict[Start, Outcome]] = {name: {} for name in ordered}
-    for done in each(partial(_job, plants), jobs.items(), jobs=workers, scheduler=scheduler):
+    jobs = {
+        f"{drive} {row.id} {place}": (drive, row.id, start)
+        for row in sorted(experiments, key=lambda row: ranks.get(row.id, len(ranks)))
+        for drive in many
+        for place, start in enumerate(starts[::4] if row.id in few else starts)
+    }
+    outcomes: dict[str, Outcome] = {}
+    tasks = ((key, (many[drive], *rest)) for key, (drive, *rest) in jobs.items())
+    for done in each(_job, tasks, jobs=workers, scheduler=scheduler):
         if done.value is None:
             raise RuntimeError(f"{done.key}: {done.error}")
-        name, start = jobs[done.key]
-        found[name][start] = done.value
-        progress(name)
-    return [row_of(row, {start: found[row.id][start] for start in starts}) for row in experiments]
+        outcomes[done.key] = done.value
+        progress(len(outcomes), jobs[done.key][1])
+    found: dict[tuple[str, str], dict[Start, Outcome]] = {}
+    for key, (drive, name, start) in jobs.items():
+        found.setdefault((drive, name), {})[start] = outcomes[key]
+    return {drive: [row_of(row, found[drive, row.id]) for row in experiments] for drive in many}
 
 
 def row_of(experiment: Experiment, outcomes: Mapping[Start, Outcome]) -> Row:
@@ -110,31 +120,35 @@ def paper(options: PaperOptions) -> int:
     """
     console, out = Console(), options.out
     files = {"low": options.plant, "high": options.plant_high}
-    plants = {preload: load(name) for preload, name in files.items()}
+    plants: varied.Plants = {preload: load(name) for preload, name in files.items()}
     chosen, starts = select(options.rows), QUICK if options.quick else STARTS
     starts = others(options.others) if options.others else starts
     write_file(out / ".probe", "")  # find out before minutes of work, not after
     (out / ".probe").unlink()
     begin = monotonic()
-    with shown("experiments", len(chosen) * len(starts)) as tell:
-        count = itertools.count(1)
+    many = varied.variations(plants, options.vary) if options.vary else {"": plants}
+    few = varied.DEAR if options.vary else ()
+    total = len(many) * sum(len(starts[::4] if row.id in few else starts) for row in chosen)
+    with shown("experiments", total) as tell:
         found = run_rows(
-            plants,
-            chosen,
-            starts,
-            workers=options.jobs,
-            scheduler=options.scheduler,
-            progress=lambda text: tell(next(count), text),
+            many, chosen, starts, few=few, workers=options.jobs, scheduler=options.scheduler, progress=tell
         )
     seconds = monotonic() - begin
-    document = json.dumps(as_json(found, files, seconds, starts), indent=2, ensure_ascii=False) + "\n"
-    write_file(options.json_file or out / "paper.json", document)
-    command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
-    names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
-    table = markdown(found, names, command, date.today())
+    rows = [row for each in found.values() for row in each]
+    file = options.json_file or out / ("varied.json" if options.vary else "paper.json")
+    documents = {name: as_json(each, files, seconds, starts) for name, each in found.items()}
+    document: dict[str, Any] = documents if options.vary else documents[""]
+    write_file(file, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
+    command = "schmidt paper" + f" --others {options.others}" * bool(options.others)
+    if options.vary:
+        command += f" --vary {options.vary:g}" + " --quick" * options.quick
+        table = varied.markdown(found, command, options.vary, len(starts))
+    else:
+        names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
+        table = markdown(rows, names, command, date.today())
     console.print(table, markup=False, highlight=False, soft_wrap=True)
-    write_file(out / "experiments.md", table)
-    met = sum(row.passed for row in found)
+    write_file(out / ("varied.md" if options.vary else "experiments.md"), table)
+    met = sum(row.passed for row in rows)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if options.quick else "")
-    console.print(f"{met} of {len(found)} rows met {where}, {seconds:.0f} s")
-    return 0 if met == len(found) else 1
+    console.print(f"{met} of {len(rows)} rows met {where}, {seconds:.0f} s")
+    return 0 if met == len(rows) else 1

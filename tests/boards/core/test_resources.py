@@ -1,5 +1,7 @@
 """Every board of the final network against its chip: RAM of its buffers, time of its routines."""
 
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -11,7 +13,19 @@ from boards.focus.config import FocusConfig
 from plant.model import load
 from scenarios.lab.lab import Lab
 from scenarios.language.configure import observer
-from tests.boards.core.ledger import AXIS, FOCUS, GATEWAY, PARAMETERS, STACK_BYTES, WRITTEN, Ledger, declared
+from tests.boards.core.ledger import (
+    AXIS,
+    CODE_WORDS,
+    FOCUS,
+    GATEWAY,
+    LIBRARY_WORDS,
+    PARAMETERS,
+    STACK_BYTES,
+    WORDS,
+    WRITTEN,
+    Ledger,
+    declared,
+)
 
 BY_HAND = {
     "AXIS_RA": 8 * 9 + 8 + 2 * (8 + 24) + 68 * 4 + 128,
@@ -78,3 +92,35 @@ def test_the_axis_board_in_c_fits_with_all_of_its_variables() -> None:
     found = Memory(ROOT / "boards/axis/axis.c").row.memory_bytes + STACK_BYTES
     assert AXIS.ram < found <= AXIS.chip.ram
     assert f"in C with all of its variables {found} |" in (ROOT / "FIDELITY.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(shutil.which("clang") is None, reason="no clang, which has a 16-bit target")
+def test_the_axis_board_in_c_takes_no_more_words_than_the_ledger_says() -> None:
+    command = [
+        "clang",
+        "--target=msp430",
+        "-Oz",
+        "-fno-inline",
+        "-std=c11",
+        "-ffreestanding",
+        "-S",
+        "-o",
+        "-",
+    ]
+    source = ["-I", str(ROOT / "boards/c"), str(ROOT / "boards/axis/axis.c")]
+    done = subprocess.run([*command, *source], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    code = sum(line.startswith("\t") and line[1:2].isalpha() for line in lines)
+    tables = sum({".short": 1, ".long": 2}.get(line.split()[0], 0) for line in lines if line.split())
+    print(f"{code} instructions, {tables} words of tables")
+    assert 5_000 < code + tables + LIBRARY_WORDS <= CODE_WORDS
+
+
+def test_the_page_says_which_chip_holds_the_code() -> None:
+    own, larger = WORDS.values()
+    assert own < CODE_WORDS <= larger
+    page = (ROOT / "FIDELITY.md").read_text(encoding="utf-8")
+    assert (
+        f"at most {CODE_WORDS} instructions, where a dsPIC30F3011 holds {own} and a dsPIC30F4011 {larger}"
+        in page
+    )

@@ -24,7 +24,7 @@ def plants():
 
 @pytest.fixture(scope="module")
 def rows(plants):
-    return run_rows(plants, EXPERIMENTS, QUICK)
+    return run_rows({"": plants}, EXPERIMENTS, QUICK)[""]
 
 
 def test_the_json_has_the_agreed_shape(rows):

@@ -1,0 +1,67 @@
+"""The rows with one number of the drive off, at both preloads: which of them stand."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final
+
+from plant.model import get, with_value
+from plant.parts import PlantModel
+from scenarios.studies.paper.rows import Row
+from scenarios.studies.paper.starts import with_inertia
+
+Plants = Mapping[str, PlantModel]
+Change = Callable[[PlantModel, float], PlantModel]
+
+
+def _number(path: str) -> Change:
+    """Multiplies one number of the RA axis; the declination's plays no part in any row."""
+    where = f"axes.ra.{path}"
+    return lambda model, factor: with_value(model, where, get(model, where).value * factor)
+
+
+NUMBERS: Final[Mapping[str, Change]] = {
+    "J": with_inertia,
+    "K": _number("motor.torque_constant"),
+    "R": _number("motor.resistance"),
+    "Tc": _number("friction.coulomb"),
+    "Ts": _number("friction.stiction"),
+}
+"""Inertia with the rotors', torque constant and EMF, winding, Coulomb friction, stiction."""
+DEAR: Final = ("E7", "E8")
+"""Rows that take most of a core's time: from every fourth start."""
+
+
+def variations(plants: Plants, percent: float) -> dict[str, Plants]:
+    """Return plants by what is off, each number once below and once above what is declared."""
+    return {
+        f"{name} {sign}{percent:g} %": {
+            preload: change(model, 1.0 + float(f"{sign}{percent}") / 100.0)
+            for preload, model in plants.items()
+        }
+        for name, change in NUMBERS.items()
+        for sign in "-+"
+    }
+
+
+_HEAD = """## One number of the drive off
+
+    {command}
+
+Each of J, K, R, Tc and Ts is off by {percent:g} %, one at a time, at both preloads; the controller stays.
+Measured from {starts} starts, E7 and E8 from {dear}. A dot: every limit holds at every start.
+E7 and E8 hold the drive that is there against what is printed, so they are to find a number that is off.
+"""
+
+
+def markdown(found: Mapping[str, Sequence[Row]], command: str, percent: float, starts: int) -> str:
+    """Return what stands and what falls as a section of a page: a table, and by how much a row falls that
+    stands elsewhere."""
+    head = _HEAD.format(command=command, percent=percent, starts=starts, dear=-(-starts // 4))
+    lines = [head, "| row | " + " | ".join(found) + " |", "|---|" + "---|" * len(found)]
+    falls = ["", "| off | row | missed by most (limit) | worst |", "|---|---|---|---|"]
+    for rows in zip(*found.values(), strict=True):
+        cells = ("·" if row.passed else "**miss**" for row in rows)
+        lines.append(f"| {rows[0].id} | " + " | ".join(cells) + " |")
+        for name, row in zip(found, rows, strict=True):
+            if not row.passed and any(other.passed for other in rows):
+                falls.append(f"| {name} | {row.id} | {row.decided} |")
+    return "\n".join(lines + falls) + "\n"

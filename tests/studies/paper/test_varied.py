@@ -1,0 +1,67 @@
+"""`schmidt paper --vary`: which numbers are off, at which starts, and what the section says of it."""
+
+import pytest
+
+from plant.model import get, load
+from scenarios.studies.options import HIGH, LOW
+from scenarios.studies.paper.experiments import EXPERIMENTS
+from scenarios.studies.paper.experiments.experiment import Experiment, Limit
+from scenarios.studies.paper.rows import Row
+from scenarios.studies.paper.run_experiments import run_rows
+from scenarios.studies.paper.starts import STARTS
+from scenarios.studies.paper.varied import markdown, variations
+from tests.studies.paper.test_rows import experiment, row
+
+PLANTS = {"low": load(LOW), "high": load(HIGH)}
+PATHS = {
+    "K": "motor.torque_constant",
+    "R": "motor.resistance",
+    "Tc": "friction.coulomb",
+    "Ts": "friction.stiction",
+}
+
+
+def test_each_number_is_off_alone_below_and_above_at_both_preloads() -> None:
+    found = variations(PLANTS, 10.0)
+    assert list(found) == [f"{name} {sign}10 %" for name in ("J", "K", "R", "Tc", "Ts") for sign in "-+"]
+    for name, plants in found.items():
+        factor = 0.9 if "-" in name else 1.1
+        for preload, model in plants.items():
+            assert model.controller == PLANTS[preload].controller
+            for number, path in PATHS.items():
+                wanted = factor if name.startswith(f"{number} ") else 1.0
+                where = f"axes.ra.{path}"
+                assert get(model, where).value == pytest.approx(wanted * get(PLANTS[preload], where).value)
+    rotors = 2 * 0.0006045 * 360.48864**2
+    heavy = found["J +10 %"]["low"].axes.ra.inertia.si + rotors
+    assert heavy == pytest.approx(1.1 * (1602.9 + rotors), rel=1e-6)  # the rotors' share with it
+
+
+def test_the_section_tells_what_falls_here_and_stands_there() -> None:
+    always = Experiment(
+        id="E2", limits=(Limit(figure="peak", unit="%", high=1.0, words="peak"),), measure=dict
+    )
+    found = {"J -10 %": [row(12.0), Row(always, {STARTS[0]: {"peak": 3.0}})],
+             "J +10 %": [row(40.0), Row(always, {STARTS[0]: {"peak": 2.0}})]}  # fmt: skip
+    text = markdown(found, "schmidt paper --vary 10", 10.0, 8)
+    assert "from 8 starts, E7 and E8 from 2" in text
+    assert "| E1 | · | **miss** |" in text and "| E2 | **miss** | **miss** |" in text
+    assert "| J +10 % | E1 | peak (10–25) | 40 % |" in text
+    assert "| J -10 % | E1 |" not in text and "% | E2 |" not in text  # which is missed everywhere
+    failed = Row(experiment(), {}, {STARTS[0]: "it does not move"})
+    assert "| b | E1 | not evaluated: it does not move |  |" in markdown(
+        {"a": [row(12.0)], "b": [failed]}, "", 1, 1
+    )
+
+
+@pytest.mark.slow
+def test_dear_rows_have_every_fourth_start() -> None:
+    chosen = [each for each in EXPERIMENTS if each.id in ("E9", "E14")]
+    told: list[int] = []
+    found = run_rows(
+        {"a": PLANTS, "b": PLANTS}, chosen, STARTS[:5], few=("E14",), workers=1,
+        progress=lambda place, _: told.append(place),
+    )  # fmt: skip
+    assert [[len(each.found) for each in rows] for rows in found.values()] == [[5, 2], [5, 2]]
+    assert [each.id for each in found["a"]] == ["E9", "E14"]
+    assert told == list(range(1, 15))
