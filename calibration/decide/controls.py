@@ -86,7 +86,8 @@ def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[
             return []
         order, _ = c.fixed.get("order", (c.order, ""))
         label = s.problem.session if c.per_run else np.zeros_like(s.problem.session)
-        rates = [order / turn + shift / span for shift in (CELLS, -CELLS)]
+        # a negative order is the positive one the other way round
+        rates = [r for r in (order / turn + CELLS / span, order / turn - CELLS / span) if r > 0]
         what = f"in place of {order:.4g} ({c.say()})"
         return [Wrong(what=f"order {r * turn:.4g} {what}", columns=sine_columns(x * r, label)) for r in rates]
 
