@@ -93,4 +93,5 @@ def replay_picture(again: Replay) -> dict[str, str]:
         low.plot(t[use][: len(e)], e, ".", ms=1.2, color=color, label=f"{name}, {said}")
     low.set(xlabel="time in the run, s", ylabel="velocity error, arcsec/s")
     low.legend(frameon=False, fontsize=8, markerscale=6)
-    return {"image": png(fig), "alt": f"Closed loop replayed on {again.run}: measured, declared and corrected"}
+    alt = f"Closed loop replayed on {again.run}: measured, declared and corrected"
+    return {"image": png(fig), "alt": alt}
