@@ -49,3 +49,9 @@ def test_parameters_of_an_axis_have_the_numbers_of_the_dbc() -> None:
 
 def test_health_has_a_bit_for_each_word_from_the_lowest_on() -> None:
     assert [flag.value for flag in p.Health] == [1 << bit for bit in range(9)]
+
+
+@pytest.mark.parametrize("opcode", [0x12, p.Opcode.SET_RATE])
+def test_arguments_that_do_not_fit_name_the_opcode(opcode: int) -> None:
+    with pytest.raises(p.CommandError, match=r"SET_RATE takes .*; \(1, 2, 3, 4\) does not fit"):
+        p.pack_command(0x11, opcode, 1, 2, 3, 4)
