@@ -66,7 +66,7 @@ def run_rows(
         for place, start in enumerate(starts[::4] if row.id in few else starts)
     }
     outcomes: dict[str, Outcome] = {}
-    tasks = ((key, (many[drive], *rest)) for key, (drive, *rest) in jobs.items())
+    tasks = ((key, (many[drive], name, start)) for key, (drive, name, start) in jobs.items())
     for done in each(_job, tasks, jobs=workers, scheduler=scheduler):
         if done.value is None:
             raise RuntimeError(f"{done.key}: {done.error}")
