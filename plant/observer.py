@@ -37,9 +37,8 @@ DISTURBANCE: Final = 10.0
 """Noise of the disturbance, (N m)^2 per tick.
 
 Of all decades of the two these leave the least rate on three drives, without cogging and with it. No number
-of a drive that is off by a tenth may raise the peak of the sensitivity beyond 2, as is usual (Astrom and
-Hagglund, Advanced PID Control, 2006; general knowledge). `tests/studies/objective/test_weights.py` picks
-them."""
+of a drive that is off by a tenth may raise the peak of the sensitivity beyond 2. Source: Astrom and Hagglund,
+Advanced PID Control, 2006 (general knowledge). `tests/studies/objective/test_weights.py` picks them."""
 OTHERS = (1e-12, 1e-2)
 """Noise of the rate, (rad/s)^2 per tick, and of the motors' torque, (N m)^2 per tick. ASSUMPTION: a
 thousandth of either changes nothing by 1 %, as that test shows."""

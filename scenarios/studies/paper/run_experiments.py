@@ -4,7 +4,7 @@ With `--vary` the same rows on drives with one number off.
 """
 
 import json
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 from time import monotonic
@@ -48,16 +48,16 @@ def run_rows(
     experiments: Sequence[Experiment],
     starts: Sequence[Start],
     *,
-    few: Collection[str] = (),
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Callable[[int, str], None] = lambda place, text: None,
 ) -> dict[str, list[Row]]:
     """Return the rows by drive: every experiment at every start is a job of its own with its own simulation.
 
-    few: rows that have every fourth start only. workers: processes. scheduler: address of a Dask cluster
-    instead. progress: told after every job which it was and its row.
+    Of several drives the dear rows are measured at every fourth start only. workers: processes. scheduler:
+    address of a Dask cluster instead. progress: told after every job which it was and its row.
     """
+    few = varied.DEAR if len(many) > 1 else ()
     ranks = {name: rank for rank, name in enumerate(DEAREST)}
     jobs = {
         f"{drive} {row.id} {place}": (drive, row.id, start)
@@ -66,7 +66,7 @@ def run_rows(
         for place, start in enumerate(starts[::4] if row.id in few else starts)
     }
     outcomes: dict[str, Outcome] = {}
-    tasks = ((key, (many[drive], *rest)) for key, (drive, *rest) in jobs.items())
+    tasks = ((key, (many[drive], name, start)) for key, (drive, name, start) in jobs.items())
     for done in each(_job, tasks, jobs=workers, scheduler=scheduler):
         if done.value is None:
             raise RuntimeError(f"{done.key}: {done.error}")
@@ -131,11 +131,11 @@ def paper(options: PaperOptions) -> int:
     total = len(many) * sum(len(starts[::4] if row.id in few else starts) for row in chosen)
     with shown("experiments", total) as tell:
         found = run_rows(
-            many, chosen, starts, few=few, workers=options.jobs, scheduler=options.scheduler, progress=tell
+            many, chosen, starts, workers=options.jobs, scheduler=options.scheduler, progress=tell
         )
     seconds = monotonic() - begin
     rows = [row for each in found.values() for row in each]
-    file = options.json_file or out / ("varied.json" if options.vary else "paper.json")
+    file = options.json_file or out / f"{'varied' if options.vary else 'paper'}.json"
     documents = {name: as_json(each, files, seconds, starts) for name, each in found.items()}
     document: dict[str, Any] = documents if options.vary else documents[""]
     write_file(file, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
@@ -147,7 +147,7 @@ def paper(options: PaperOptions) -> int:
         names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
         table = markdown(rows, names, command, date.today())
     console.print(table, markup=False, highlight=False, soft_wrap=True)
-    write_file(out / ("varied.md" if options.vary else "experiments.md"), table)
+    write_file(out / f"{'varied' if options.vary else 'experiments'}.md", table)
     met = sum(row.passed for row in rows)
     where = f"at {len(starts)} starts" + (" (eight decide: leave --quick out)" if options.quick else "")
     console.print(f"{met} of {len(rows)} rows met {where}, {seconds:.0f} s")

@@ -37,7 +37,7 @@ def test_the_json_has_the_agreed_shape(rows):
 
 
 def test_rows_that_the_table_calls_met_are_met_here(rows):
-    text = TABLE.read_text(encoding="utf-8")
+    text = TABLE.read_text(encoding="utf-8").split("## One number of the drive off")[0]
     verdicts = dict(re.findall(r"^\| (E\d+) \|.*?\| (met|\*\*miss\*\*) \|", text, flags=re.M))
     assert len(verdicts) == len(rows)
     assert [row.id for row in rows if verdicts[row.id] == "met" and not row.passed] == []
