@@ -105,7 +105,8 @@ def test_in_wind_the_fine_firmware_is_not_the_worse_one(speed_m_s: float, mode: 
 def test_nor_is_it_before_it_has_noticed_the_wind(
     torque_n_m: float, mode: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The gains of still air, in every ten seconds: so long it may take. 0: a wind of 20 m/s."""
+    """The gains of still air, in every ten seconds: so long it may take. 0: a wind of 20 m/s. With twice the
+    integral action the axis left 1.13 of what it does with the paper's, at 1 N m in RATE."""
     effect = broadband(torque_n_m) if torque_n_m else wind(20.0)
     monkeypatch.setattr("boards.axis.motion.Gusts", Deaf)
     ours, paper = both(effect, mode)
