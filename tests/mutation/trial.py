@@ -14,9 +14,9 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from types import CodeType, FunctionType, ModuleType
+from typing import Any
 
 import pytest
-from _pytest.runner import runtestprotocol
 
 from tests.mutation.session import Test, run
 
@@ -104,7 +104,8 @@ class Bench:
         items = [self.items[name] for name in tests]
         for item, following in zip(items, [*items[1:], None], strict=False):
             limit(tests[item.nodeid])
-            if any(report.failed for report in runtestprotocol(item, log=False, nextitem=following)):
+            runner: Any = item.config.pluginmanager.get_plugin("runner")  # pytest's own
+            if any(report.failed for report in runner.runtestprotocol(item, log=False, nextitem=following)):
                 return False
         return True
 
