@@ -158,6 +158,11 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
             order = c.order * (h + 1) if c.order else None
             sizes = {size: amplitude, "phase": phase}
             out.append(replace(whole, harmonic=h + 1, order=order, parameters=sizes))
-    largest = max((f.parameters[size].value for f in out), default=0.0)
-    shown = [f for f in out if (f.parameters[size].high or largest) ** 2 > limits.ROUNDING * largest**2]
-    return sorted(shown, key=lambda f: -f.parameters[size].value) or [whole]
+    out.sort(key=lambda f: -f.parameters[size].value)
+    sizes_of = [f.parameters[size] for f in out]
+    # neither a trifle nor one whose interval holds zero is told beside those that show
+    good = [
+        (x.low or 0.0) > 0.0 and (x.high or x.value) ** 2 > limits.ROUNDING * sizes_of[0].value ** 2
+        for x in sizes_of
+    ]
+    return [f for f, shows in zip(out, good, strict=True) if shows] or out[:1] or [whole]

@@ -9,6 +9,8 @@ from calibration.decide.withdraw import Refused
 from calibration.look.looked import Looked
 from calibration.replay.held import Replay
 
+MOST_HIDDEN = 2
+"""Names of one answer whose worth was ever measured: the sealed logs hide two effects at most. arithmetic"""
 LARGEST_STATISTIC = 1e6
 """Of a channel's gate, that report.json holds: a log without noise has an infinite one. ASSUMPTION."""
 
@@ -19,9 +21,11 @@ def report_of(found: Looked, again: Replay) -> dict[str, Any]:
     error = {b.row: b.error for b in found.balances if b.held_out and b.row} | dict(found.rows)
     notes = [*found.notes, *(x for b in found.balances for x in b.notes)]
     short = [x for b in found.balances for x in b.short]
+    names = {(e.name, e.stage) for e in found.effects if not e.of_column}
+    earned = found.earned if len(names) <= MOST_HIDDEN else None
     return {
         "verdict": verdict,
-        "effects": [effect_as_dict(e, k, error, found.earned) for k, e in enumerate(found.effects)],
+        "effects": [effect_as_dict(e, k, error, earned) for k, e in enumerate(found.effects)],
         "error": error,
         **({"closed_loop": again.rows} if again.rows else {}),
         "held_out": list(found.held_out),
