@@ -7,7 +7,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
-from calibration.arrays import Array, Mask
+from calibration.arrays import Array, Mask, by_median
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FOR_A_DRIFT
 from calibration.errors import CalibrationInputError
@@ -32,6 +32,10 @@ MOST_DEGREE = 43
 SLOWEST_S = 663.0
 # blocks in a turn of the slowest period, 40 s of a mount's: air and guiding forget sooner. ASSUMPTION
 PER_BLOCK = 16.6
+# parts of the quickest turn: over two of them a parabola follows a sine within some hundredths. arithmetic
+QUARTER = 4.0
+# robust deviations, at which a frame beside its neighbours is cut off: air of heavy tails stays. ASSUMPTION
+CUT = 5.0
 # pieces of the longest section, each held out in its turn, where it has fewer turns. ASSUMPTION
 LEAST_PIECES = 3
 # groups of pieces, where there are more: every sixth piece is held out together. ASSUMPTION
@@ -105,24 +109,37 @@ def guide_problem(
         block_s=block_s,
         fresh=fresh,
         domains={"clock": rows["clock"]} if whole else {},
-        floor=_air(y, run, round(block_s / period)),
+        floor=_air(y, rows["segment"], max(round(min(block_s, quickest_s / QUARTER) / period), 3)),
     )
     return problem, names
 
 
-def _air(y: Array, run: NDArray[np.int64], side: int) -> float:
-    """rms of air and centroid: each row beside a parabola through `side` rows before and behind, which a worm
-    follows and air forgets. What of the noise the parabola takes along is given back, as if it were white."""
-    at = np.arange(-side, side + 1) / side
-    own = np.zeros(2 * side + 1)
-    own[side] = 1.0
-    weights = own - np.linalg.pinv(np.column_stack([np.ones_like(at), at, at**2]))[0]
+def _air(y: Array, segment: NDArray[np.int64], side: int) -> float:
+    """rms of air and centroid: each cell beside a parabola through `side` cells before and behind.
+
+    A worm follows it, and air forgets. What the parabola takes along of the noise is given back, as if that
+    were white. Cells without frames, or of another segment, do not count. A jump is cut off: it is no air.
+    """
     if len(y) <= 2 * side:
         return 0.0
-    window = sliding_window_view(run, 2 * side + 1)
-    left = (sliding_window_view(y, 2 * side + 1) @ weights)[window[:, 0] == window[:, -1]]
-    left = left[np.isfinite(left)]
-    return rms(left) / float(np.linalg.norm(weights)) if len(left) else 0.0
+    at = np.arange(-side, side + 1) / side
+    shape = np.column_stack([np.ones_like(at), at, at**2])
+    near, own = sliding_window_view(y, 2 * side + 1), sliding_window_view(segment, 2 * side + 1)
+    seen = np.isfinite(near) & (own == own[:, side : side + 1])
+    good = (
+        seen[:, side]
+        & (seen[:, :side].sum(axis=1) > side // 2)
+        & (seen[:, side + 1 :].sum(axis=1) > side // 2)
+    )
+    if not good.any():
+        return 0.0
+    seen, near = seen[good].astype(float), np.where(seen[good], near[good], 0.0)
+    products = (seen @ (shape[:, :, None] * shape[:, None, :]).reshape(len(at), 9)).reshape(-1, 3, 3)
+    inverse = np.linalg.inv(products)
+    fitted = (inverse[:, 0] * (near @ shape)).sum(axis=1)
+    left = (near[:, side] - fitted) / np.sqrt(np.maximum(1.0 - inverse[:, 0, 0], 1e-9))
+    usual = by_median(left)
+    return rms(np.clip(left, -CUT * usual, CUT * usual))
 
 
 def _unit(runs: list[Run]) -> str:

@@ -88,12 +88,14 @@ class Problem:
 
     def in_turn(self) -> Problem:
         """With every session held out in its turn, on rows of which the others tell the declared terms."""
-        return replace(self, turned=np.logical_or.reduce([part._told for part in self.turns]))
+        turned = np.logical_or.reduce([part._told for part in self.turns])
+        untold = 1.0 - float((turned & self.valid).sum()) / max(int(self.valid.sum()), 1)
+        return replace(self, turned=turned, untold=untold)
 
     def told(self) -> Problem:
         """With held-out rows of which the fitted ones tell the declared terms: no others are judged."""
         here = self._told
-        untold = 1.0 - float(here.sum()) / max(int(self.test.sum()), 1)
+        untold = 1.0 - float(here.sum()) / int(self.test.sum()) if self.test.any() else 0.0
         return replace(self, valid=self.valid & (~self.held | here), untold=untold)
 
     @property

@@ -52,7 +52,7 @@ def refuse(contender: Contender, inside: HeldOut, held: HeldOut, margin: float, 
     c = contender.candidate
     free = c.kind == "line" and c.stage is None  # the best of a spectrum
     least = c.least or needed(max(tried, limits.SPECTRUM) if free else tried)
-    if named and held.sure and held.share > limits.CLEAR_SHARE:
+    if named and held.apart and held.sure and held.share > limits.CLEAR_SHARE:
         least += limits.BY_HELD_OUT_ROWS
     if contender.evidence >= least:
         return ""

@@ -26,6 +26,7 @@ class HeldOut:
     z: float = 0.0
     share: float = 0.0  # 1 - mean square after / before
     everywhere: bool = False  # cross-validation only: every fold gained
+    apart: bool = False  # nothing was fitted to these rows, not even in another turn
 
     @property
     def taken(self) -> float:
@@ -114,7 +115,8 @@ def compare(problem: Problem, before: Model, after: Model, whitener: Whitener) -
     full = np.zeros((len(problem.y), 2))
     full[rows] = np.column_stack([e0, e1])
     white = whitener.whiten(full, rows) ** 2
-    return _scored(e0, e1, paired_z(white[:, 0] - white[:, 1], problem.block))
+    found = _scored(e0, e1, paired_z(white[:, 0] - white[:, 1], problem.block))
+    return replace(found, apart=problem.turned is None)
 
 
 def _scored(e0: Array, e1: Array, z: float, everywhere: bool = False) -> HeldOut:

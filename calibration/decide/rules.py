@@ -268,14 +268,18 @@ def of_the_steps(s: Selection) -> tuple[int, str] | None:
     held = _off_the_steps(s)
     if held is None or not held.share <= limits.NOISE_SHARE:
         return None
-    return len(s.chosen) - 1, "only rows that the position's steps spoil have it"
+    others = [_off_the_steps(x) for x in _each_left_out(s)]
+    k = int(np.argmin([np.inf if one is None else float(np.nan_to_num(one.after)) for one in others]))
+    return k, "only rows that the position's steps spoil have it"
 
 
 def _off_the_steps(s: Selection) -> HeldOut | None:
     """Held-out errors on rows that coarse steps do not spoil; None where no steps do, or too few are left."""
     if s.problem.resolved is None:
         return None
-    clean = replace(s.problem, valid=s.problem.resolved[0])
+    p, rows = s.problem, s.problem.resolved[0]
+    # of files in turn the fit stays that of all their rows
+    clean = replace(p, valid=p.valid & rows) if p.turned is None else replace(p, turned=p.turned & rows)
     return s.held_on(clean) if clean.test.sum() >= limits.FEWEST_TOLD else None
 
 

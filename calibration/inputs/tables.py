@@ -55,7 +55,7 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
     counted = {
         channel: logged[label] * of_file(path, where, label) * where.scale
         for channel, where in rig.columns.items()
-        if (label := str(where.column)) in logged
+        if (label := str(where.column)) in logged and not (where.steps or where.integrated)
     }
     wraps: dict[str, int] = {}
     rows = len(next(iter(raw.values())))

@@ -9,7 +9,15 @@ import numpy as np
 from calibration.balances.candidate import sine_columns
 from calibration.balances.repeats import repeat_lag
 from calibration.inputs.train import SHAFT
-from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, STEP_OF_CELL, has_train, on_clock, spectral_lines
+from calibration.names.lines import (
+    ENOUGH,
+    ON_CLOCK,
+    SLOWEST_HZ,
+    STEP_OF_CELL,
+    has_train,
+    on_clock,
+    spectral_lines,
+)
 from calibration.names.name import SEARCHED_WORTH, Array, Candidate, Facts, Finding, Made, Name, tried, value
 from calibration.names.scene import FORCE, SPEED, VOLTS, Scene
 from calibration.names.structural_mode import NAME as MODE
@@ -58,8 +66,9 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     v = s.view
     files = s.problem.session
     t = v.t[v.rows]
-    lengths = [float(t[files == k].max()) for k in np.unique(files)]
-    length, train = max(lengths), s.problem.train
+    train = s.problem.train
+    lengths = [float(t[files == k].max()) for k in np.unique(files[train])]
+    length = max(lengths, default=0.0)
     fitted = max((float(np.ptp(t[train & (files == k)])) for k in np.unique(files[train])), default=0.0)
     if fitted <= 0:
         return []
@@ -99,7 +108,8 @@ def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
     if not on_clock(s, rate):
         return ()
     for g in s.view.rig.stages:
-        if g.period and any(abs(rate - h / g.period) * s.span < 1.0 for h in g.orders):
+        own = [h / g.period for h in g.orders if g.period and s.span * h / g.period >= ENOUGH]
+        if any(abs(rate - one) * s.span < 1.0 for one in own):
             return None
     return (PASSED,) if has_train(s) else (SHAFT, PASSED)
 

@@ -173,14 +173,27 @@ def test_two_turns_are_enough_for_a_worm_and_wander_over_three_is_none() -> None
     assert sum(bool(named(seed, 6.0, 2.4)) for seed in range(8)) >= 6
 
 
-def test_the_floor_holds_the_colour_of_the_air() -> None:
-    """Seeing of 6 s of memory beside white noise; a worm of ten times that is no part of it."""
-    rng = np.random.default_rng(4)
-    t, keep = np.arange(0.0, 6000.0, 2.0), np.exp(-2.0 / 6.0)
-    air = np.zeros(len(t))
-    for k in range(1, len(t)):
-        air[k] = keep * air[k - 1] + np.sqrt(1 - keep**2) * rng.standard_normal()
-    seeing = 0.5 * (air + rng.standard_normal(len(t))) / np.sqrt(2.0)
-    for worm in (0.0, 5.0):
-        y = seeing + worm * np.sin(2 * np.pi * t / 480.0)
-        assert _air(y, np.zeros(len(t), dtype=np.int64), 20) == pytest.approx(0.5, rel=0.15)
+def air() -> np.ndarray:
+    """Seeing of 0.5 arcsec every 2 s, half of it with 6 s of memory."""
+    rng, keep = np.random.default_rng(4), np.exp(-2.0 / 6.0)
+    slow = np.zeros(3000)
+    for k in range(1, len(slow)):
+        slow[k] = keep * slow[k - 1] + np.sqrt(1 - keep**2) * rng.standard_normal()
+    return np.asarray(0.5 * (slow + rng.standard_normal(len(slow))) / np.sqrt(2.0))
+
+
+@pytest.mark.parametrize("worm", [0.0, 5.0])
+@pytest.mark.parametrize("dithered_every_s", [6000, 60])
+def test_the_floor_holds_the_colour_of_the_air(worm: float, dithered_every_s: int) -> None:
+    """A worm of ten times that is no part of it, nor another place after a dither, which leaves out 10 s."""
+    t = np.arange(0.0, 6000.0, 2.0)
+    segment = (t // dithered_every_s).astype(np.int64)
+    place = 20.0 * np.random.default_rng(5).standard_normal(segment.max() + 1)[segment]
+    y = air() + worm * np.sin(2 * np.pi * t / 480.0) + place
+    y[(t % dithered_every_s < 10.0) & (segment > 0)] = np.nan
+    assert _air(y, segment, 20) == pytest.approx(0.5, rel=0.2)
+
+
+def test_a_jump_is_no_air() -> None:
+    y = air() + 20.0 * (np.arange(3000) > 1400)
+    assert _air(y, np.zeros(3000, dtype=np.int64), 20) == pytest.approx(0.5, rel=0.2)
