@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from tests.calibration.test_drives import answer, found
+from tests.calibration.test_drives import FORCE, answer, found, motion
 
 MOTOR = """rig: motor at one speed
 columns:
@@ -83,3 +84,27 @@ def test_a_rest_between_two_runs_is_no_lost_row(tmp_path: Path) -> None:
     run = np.repeat(np.arange(10), 300)
     data = answer(tmp_path, rig, (t, x, 0.8 * x + noise, run), header="t,x,u,run")
     assert found(data) == []
+
+
+def test_a_declared_line_is_none_of_the_clock_though_a_first_guess_lies_beside_its_order(
+    tmp_path: Path,
+) -> None:
+    """A fifth of a turn: orders within five of each other are one line, and 83 was guessed for 84."""
+    t = np.arange(0, 8, 0.001)
+    x = 0.0262 * t
+    noise = 0.3 * np.random.default_rng(3).standard_normal(len(t))
+    rig = TORQUE.replace("harmonics: 12", "harmonics: [1, 2, 7, 12, 14, 42, 84]")
+    data = answer(tmp_path, rig, (t, np.round(x, 5), noise + np.sin(2 * np.pi * 84 * x + 0.7)))
+    first = data["effects"][0]
+    assert (first["name"], first["harmonic"]) == ("motor_cogging", 84)
+
+
+def test_a_short_file_beside_a_long_one_hides_no_frequency(tmp_path: Path) -> None:
+    """Of 1.17 Hz a file of 1.3 s has a turn and a half."""
+    tables = []
+    for seconds in (24.0, 1.3, 24.0):
+        t, x, u = motion(seconds)
+        tables.append((t, np.round(x, 6), u + 0.5 * np.sin(2 * np.pi * 1.17 * t)))
+    data = answer(tmp_path, FORCE, *tables)
+    assert data["effects"][0]["name"] == "command_disturbance"
+    assert data["effects"][0]["frequency_Hz"] == pytest.approx(1.17, rel=0.005)

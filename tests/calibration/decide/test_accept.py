@@ -1,9 +1,11 @@
 """Scores that let a contender in, and those that do not."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from calibration.decide.accept import needed, refuse
@@ -53,6 +55,18 @@ def test_none_may_make_the_held_out_run_worse(worse: float) -> None:
 def test_each_rule_says_why(one: Any, inside: HeldOut, why: str) -> None:
     assert re.search(why, refuse(one, inside, GOOD, MARGIN, TRIED))
     assert refuse(contender(), scored(0.5, 0.9 * LUCK_Z, everywhere=True), GOOD, MARGIN, TRIED) == ""
+
+
+@pytest.mark.parametrize(
+    ("apart", "share", "accepted"), [(True, 0.6, True), (False, 0.6, False), (True, 0.4, False)]
+)
+def test_rows_that_nothing_was_fitted_to_are_further_evidence(
+    apart: bool, share: float, accepted: bool
+) -> None:
+    """One log in ten thousand by luck: by two standard errors there, 0.023 of those, too."""
+    one = contender(evidence=needed(TRIED) + np.log10(0.0228) + 0.01, after=lambda k: 0.0)
+    held = replace(scored(share), apart=apart)
+    assert (refuse(one, GOOD, held, MARGIN, TRIED) == "") is accepted
 
 
 def test_the_best_of_more_candidates_needs_more() -> None:

@@ -35,21 +35,14 @@ def test_every_harmonic_has_its_own_amplitude_wherever_the_first_row_stands(firs
         assert f.parameters["amplitude"].value == pytest.approx(sizes[f.harmonic or 0], abs=0.05)
 
 
-def test_a_harmonic_that_is_surely_a_trifle_is_not_listed() -> None:
+@pytest.mark.parametrize(("size", "noise", "seed"), [(2.0, 0.1, 4), (0.15, 0.3, 9)])
+def test_neither_a_trifle_nor_what_is_within_its_error_is_listed(
+    size: float, noise: float, seed: int
+) -> None:
+    """The second harmonic alone is there. In loud noise the others' share is no trifle beside it."""
     turns = 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
-    noise = np.random.default_rng(4).standard_normal(ROWS)
-    p = problem(2.0 * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + 0.1 * noise)
-    columns = np.hstack([line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2, 3)])
-    whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
-    s = select(p, [whole], np.random.default_rng(1))
-    assert [f.harmonic for f in findings_of(s, 0)] == [2]
-
-
-def test_a_harmonic_that_is_within_its_error_is_not_listed_beside_one_that_shows() -> None:
-    """Half of the noise: what the other two harmonics get of it is no trifle beside that."""
-    turns = 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
-    noise = np.random.default_rng(9).standard_normal(ROWS)
-    p = problem(0.15 * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + 0.3 * noise)
+    loud = noise * np.random.default_rng(seed).standard_normal(ROWS)
+    p = problem(size * np.cos(2 * np.pi * 2 * ORDER * turns + 0.4) + loud)
     columns = np.hstack([line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2, 3)])
     whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
     s = select(p, [whole], np.random.default_rng(1))

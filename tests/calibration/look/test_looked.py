@@ -87,3 +87,34 @@ def test_at_its_floor_a_balance_asks_for_no_longer_log(quiet: Selection) -> None
     close = replace(quiet, refused=[Refusal("play", f"{SHORT}: it lowers the held-out mean square")])
     assert [x for x in balance(close, floor=0.5).short if "play" in x]
     assert not [x for x in balance(close, floor=2.0).short if "play" in x]
+
+
+@pytest.mark.parametrize("in_turn", [False, True])
+def test_rows_that_no_fitted_row_is_like_are_said_where_they_are_most(
+    quiet: Selection, in_turn: bool
+) -> None:
+    """A term that only three quarters of the rows held out have, and one that all rows have."""
+    noise, late = quiet.problem.y, np.arange(ROWS) >= ROWS - 3 * ROWS // 16
+    for column, most in ((late.astype(float), True), (np.sin(TURNS), False)):
+        p = made.problem(noise, np.column_stack([np.ones(ROWS), column]))
+        p = replace(p, session=p.run).in_turn() if in_turn else p.told()
+        share = (0.75 / 4 if in_turn else 0.75) if most else 0.0
+        assert p.untold == pytest.approx(share, abs=1e-3)
+        said = balance(select(p, [], np.random.default_rng(0))).short
+        assert any("go where no fitted row did" in x for x in said) == (most and not in_turn)
+    assert made.problem(noise, held=9).told().untold == 0.0
+
+
+def test_much_that_is_left_on_fitted_rows_is_no_luck_of_a_short_log(turning: Selection) -> None:
+    needs = ["channel T: 3 s to fit show only what is 90 % of it"]
+    loud = balance(turning, missing=Left(8.0, 1.0, "time"))
+    effects, _ = unnamed_where_missing([], needs, [loud])
+    assert [f.name for f in effects] == ["unknown"]
+    for other in (balance(turning, floor=3.0, missing=Left(2.7, 1.0, "time")), close_to(turning)):
+        assert unnamed_where_missing([], needs, [other])[0] == []
+
+
+def close_to(turning: Selection) -> Balance:
+    """The same, where a name was close."""
+    refused = [Refusal("gravity_imbalance", f"{SHORT}: a longer one would decide")]
+    return balance(replace(turning, refused=refused), missing=Left(8.0, 1.0, "time"))
