@@ -39,8 +39,11 @@ def align_counters(records: list[Run], rig: Rig) -> None:
         return
     for channel in ("position", "position2"):
         length = _length(records, rig, channel) if channel in rig.columns else 0.0
-        for r in records[1:] if length else ():
-            x, first = r.columns[channel], float(np.nanmedian(records[0].columns[channel]))
+        if not length:
+            continue
+        first = float(np.nanmedian(records[0].columns[channel]))
+        for r in records[1:]:
+            x = r.columns[channel]
             r.columns[channel] = x - length * np.round((float(np.nanmedian(x)) - first) / length)
 
 

@@ -104,7 +104,8 @@ def _read(path: Path, rig: Rig | None) -> tuple[str, list[Run]]:
             raise CalibrationInputError(path, "is empty", 1)
     if rig is None or rig.format != "table":
         neither = "is neither an axis log ('# format: axis-log 1') nor a PHD2 guide log"
-        drafts = f"schmidt rig --new {path.name} drafts one" + ", of format: table" * (rig is not None)
+        form = "" if rig is None else ", of format: table"
+        drafts = f"schmidt rig --new {path.name} drafts one{form}"
         what = f"{neither}. Another drive's file needs --rig FILE; {drafts}"
         raise CalibrationInputError(path, what, 1)
     return "table", read_table(path, rig, text)

@@ -139,9 +139,9 @@ def paper(options: PaperOptions) -> int:
     documents = {name: as_json(each, files, seconds, starts) for name, each in found.items()}
     document: dict[str, Any] = documents if options.vary else documents[""]
     write_file(file, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
-    command = "schmidt paper" + f" --others {options.others}" * bool(options.others)
+    command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
     if options.vary:
-        command += f" --vary {options.vary:g}" + " --quick" * options.quick
+        command += f" --vary {options.vary:g}{' --quick' if options.quick else ''}"
         table = varied.markdown(found, command, options.vary, len(starts))
     else:
         names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
