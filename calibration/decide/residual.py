@@ -31,6 +31,9 @@ MOST_LEFT = 0.5
 TELLING = 1.6
 # share of the mean square of what is left, over the turn of a stage: most of it. ASSUMPTION
 OVER_ITS_TURN = 0.5
+# of what neighbouring rows share: a domain that holds less of it is not where the residual lives. ASSUMPTION
+OF_WHAT_REPEATS = 0.5
+ALONE = "over time alone"
 # smooth functions at most: of a force one; of two sensors one over the place, one of a flank of teeth
 MOST = {True: 1, False: 2}
 
@@ -103,10 +106,11 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
     turns = [(g.name, g.period) for g in v.rig.stages if g.period]
     places += [Place(f"the turn of {name}", "axis_angle", v.x[v.rows] % turn) for name, turn in turns]
     most, place, how = _most(shapes, places, share)
+    alone = coherence(e, rows, p.session, int(np.ceil(APART * v.sigma / v.step)) or 1)
+    if alone > limits.LEAST_SHARE and most <= max(limits.LEAST_SHARE, OF_WHAT_REPEATS * alone):
+        return replace(found, domain="time", where=ALONE, share=alone)
     if most <= limits.LEAST_SHARE:
-        alone = coherence(e, rows, p.session, int(np.ceil(APART * v.sigma / v.step)) or 1)
-        shown = alone > limits.LEAST_SHARE
-        return replace(found, domain="time", where="over time alone", share=alone) if shown else found
+        return found
     return replace(found, domain=place.domain, where=f"over {place.words}{how}", share=most)
 
 
@@ -167,14 +171,16 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     names = list(dict.fromkeys(f.name for f in named))
     taken = f"{100 * (1 - left.part):.0f} % of what is above the floor"
     note = f"{', '.join(names)} would take {taken} only: {size}"
-    most = replace(_unknown(first.domain, channel, left, note), equivalent=names)
+    own = (1 - left.part) * first.share >= left.part * left.share  # of the whole
+    most = replace(_unknown(first.domain if own else left.domain, channel, left, note), equivalent=names)
     return [most, *[f for f in findings if f.name == UNKNOWN]]
 
 
-def of_one_place(findings: list[Finding], left: Left | None) -> list[Finding]:
-    """Guesses at a function of the place, where the place has more of it: together they are that function.
+def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:
+    """Guesses at a function of the place or of time, where that has more of it: together they are it.
 
-    A smooth function beside them says so, or a residual that lives over the turn of their own stage.
+    A smooth function of the place beside them says so. So does a residual that lives over the turn of their
+    own stage, or over time alone beside a line of a fixed frequency.
     """
     smooth = any(f.name == UNKNOWN and f.domain == "axis_angle" and f.stage is None for f in findings)
     where = left.where if left is not None and left.share > OVER_ITS_TURN else ""
@@ -182,13 +188,14 @@ def of_one_place(findings: list[Finding], left: Left | None) -> list[Finding]:
     out: list[Finding] = []
     for f in findings:
         own = f.stage is not None and turn == f"over the turn of {f.stage}"
-        if f.name not in NAMES or not NAMES[f.name].a_guess or not (smooth or own):
+        more = turn == ALONE if f.domain == "time" else smooth or own
+        if f.name not in NAMES or not NAMES[f.name].a_guess or not more:
             out.append(f)
             continue
         alike = [f.name, *(x for x in f.equivalent if x != UNKNOWN)]
         one = replace(f, name=UNKNOWN, harmonic=None, order=None, equivalent=alike)
         if not any(x.name == UNKNOWN and x.stage == f.stage and x.equivalent == alike for x in out):
-            out.append(one.noted("the place has more of it than this form"))
+            out.append(one.noted(f"{'time' if f.domain == 'time' else 'the place'} has more of it than this form"))
     return out
 
 

@@ -14,7 +14,7 @@ from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
 from calibration.decide.onecolumn import by_one_column
 from calibration.decide.parameters import findings_of
-from calibration.decide.residual import beyond_names, left_over, of_one_place, quick_lines, settle
+from calibration.decide.residual import beyond_names, left_over, of_one_domain, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
 from calibration.decide.twins import told_by_the_clock, told_by_the_way, weight_first
@@ -144,7 +144,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
     findings = as_told(named, scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)
-    findings = settle(of_one_place(findings, left), left, problem.channel) + quick_lines(view, problem)
+    findings = settle(of_one_domain(findings, left), left, problem.channel) + quick_lines(view, problem)
     tried = controls(s, order_beside(s, scene))
     needs = [] if floor and together.held.after <= floor else close(together)
     return Balance(

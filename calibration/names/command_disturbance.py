@@ -212,6 +212,7 @@ NAME = Name(
     searched=True,
     scaled=True,
     random=True,
+    a_guess=True,
     channels=(FORCE, VOLTS, SPEED),
     columns=columns,
     experiment="the same motion at another speed: a disturbance keeps its frequency and size, at rest "

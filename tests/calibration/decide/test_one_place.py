@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calibration.decide.residual import Left, beside, of_one_place
+from calibration.decide.residual import Left, beside, of_one_domain
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -22,7 +22,7 @@ SMOOTH = Finding(UNKNOWN, "T", "axis_angle")
 
 
 def told(findings: list[Finding], left: Left | None = None) -> list[tuple[str, tuple[str, ...]]]:
-    return [(f.name, tuple(f.equivalent)) for f in of_one_place(findings, left)]
+    return [(f.name, tuple(f.equivalent)) for f in of_one_domain(findings, left)]
 
 
 def test_alone_it_keeps_its_name() -> None:
