@@ -131,7 +131,7 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
-        return "damped too much for a resonance" if "damping" in told and not rings(told["damping"]) else ""
+        return "no damping of a resonance" if "damping" in told and not rings(told["damping"]) else ""
 
     return each(why)
 
@@ -331,10 +331,14 @@ def negative(s: Selection, standard_errors: float = 0.0) -> str:
 
 
 def _turned(s: Selection) -> str:
-    """Mass or friction that was positive without names and is negative now, or at some places; or empty."""
+    """Mass or friction that was positive without names and is negative now, or at some places; or empty.
+
+    Or that is negative beyond its error, and was not.
+    """
     was, now = s.problem.named(s.before), s.problem.named(s.after)
     for name, x in now.items():
-        if name in POSITIVE and was[name].value > 0 > x.value:
+        surely = x.value < -SURE_Z * x.error < 0 and was[name].value > -SURE_Z * was[name].error
+        if name in POSITIVE and (was[name].value > 0 > x.value or surely):
             return name
         if name == "coulomb" and x.value > 0:
             pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)

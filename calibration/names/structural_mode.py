@@ -86,8 +86,9 @@ def second_mass(a: Array, file: NDArray[np.int64], dt: float, f: float, damping:
 
 
 def rings(damping: Parameter) -> bool:
-    """Whether a damping is one that structures have, and its interval does not reach to the bound."""
-    return damping.value <= STRUCTURES_DAMPED and (damping.high or 0.0) < MOST_DAMPED
+    """Whether a damping is one that structures have: its interval holds no bound, and not energy alone."""
+    high = damping.high if damping.high is not None else damping.value
+    return damping.value <= STRUCTURES_DAMPED and 0.0 <= high < MOST_DAMPED
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
