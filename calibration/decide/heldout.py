@@ -12,7 +12,7 @@ from calibration.balances.frame import Frame, fill
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_FILES
 from calibration.decide import thresholds as limits
-from calibration.statistics.regression import leverage, solve, solve_without
+from calibration.statistics.regression import solve, solve_without, told
 from calibration.statistics.tails import rms
 from calibration.statistics.whitening import Whitener
 
@@ -155,7 +155,7 @@ def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
 def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
     """Score two designs on training rows they were not fitted to, in FOLDS folds of pieces in time.
 
-    Rows with a leverage above one are not used. Not a number where the rows make fewer than two folds.
+    Rows that the others do not tell are not used. Not a number where the rows make fewer than two folds.
     """
     rows = problem.train
     use = whitener.usable(rows)
@@ -175,7 +175,7 @@ def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -
             out = fold == k
             e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
             if x is x1:
-                tested[out] = leverage(w[~out], w[out]) <= 1.0
+                tested[out] = told(w[~out], w[out])
         residuals.append(e)
     dealt = np.unique(fold[tested])
     if tested.sum() < limits.FEWEST_VALIDATED or len(dealt) < 2:

@@ -18,15 +18,19 @@ from calibration.statistics.regression import solve
 
 # cells before a jump and as many behind it, over which it is measured beside a slope: quiet air shows it over
 # few, seeing over many. ASSUMPTION
-SIDES = (6, 12, 24)
+SIDES = (6, 12, 24, 48, 96)
 # robust standard errors of a jump that is tried; held-out rows decide. Jumps of 40 sound logs of the sky
 # take 0.8 % of the held-out square at most, real ones 28 to 97 % (seeds 1969 to 1982)
 CLEAR = 4.0
 # of the held-out square, that jumps take together. ASSUMPTION, a quarter: gusts of two measured nights take
 # 15 and 23 % as pairs of jumps
 LEAST_SHARE = 0.25
-# of a jump's size over many rows, that few rows show at least. ASSUMPTION: half, their own error aside
+# of a jump's size, that few rows show at least, their own error aside, and LASTS times as many. ASSUMPTION
 SHARP = 0.5
+# times the rows, over which a jump is still there: two outliers of heavy tails are not. ASSUMPTION
+LASTS = 4
+# rows on either side of a jump in which no second one is looked for. ASSUMPTION: as many as it must last
+BETWEEN = LASTS * SIDES[0] // 2
 # of one log. More are no events but a way of moving. ASSUMPTION
 MOST = 12
 
@@ -67,7 +71,8 @@ def jumps_of(s: Selection, least: float) -> list[int]:
     while len(places) <= MOST:
         x = np.column_stack([s.columns, *_steps_at(p, places)])
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
-        rest[[cell for at in places for cell in (at - 1, at)]] = np.nan  # it jumped within one of the two
+        for at in places:  # it jumped in one of them; a second one as near would be the way back
+            rest[max(at - BETWEEN, 0) : at + BETWEEN] = np.nan
         clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
         if clear < least:
             return sorted(places)
@@ -76,16 +81,17 @@ def jumps_of(s: Selection, least: float) -> list[int]:
 
 
 def _clearest(rest: Array, run: NDArray[np.int64], side: int) -> tuple[float, int]:
-    """The largest step that few rows show as well, over what is usual, and its row.
+    """The largest step that few rows show as well, and many more, over what is usual, and its row.
 
     Waves have steps, too, which grow with the rows that are looked at.
     """
-    sizes, near = (_steps(rest, run, rows) for rows in (side, SIDES[0]))
+    sizes, near, far = (_steps(rest, run, rows) for rows in (side, SIDES[0], min(LASTS * side, SIDES[-1])))
     if not np.isfinite(sizes).any():
         return 0.0, 0
-    usual = by_median(sizes[np.isfinite(sizes)]) or np.inf
-    sharp = near * np.sign(sizes) > SHARP * np.abs(sizes)
-    told = np.where(sharp, np.abs(np.nan_to_num(sizes)), 0.0) / usual
+    usual, own = (by_median(x[np.isfinite(x)]) or np.inf for x in (sizes, near))
+    least = SHARP * np.abs(sizes)
+    sharp, lasts = near * np.sign(sizes) + own > least, ~(far * np.sign(sizes) < least)
+    told = np.where(sharp & lasts, np.abs(np.nan_to_num(sizes)), 0.0) / usual
     return float(told.max()), int(told.argmax())
 
 

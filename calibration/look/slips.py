@@ -21,7 +21,7 @@ from calibration.decide.parameters import interval
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z, MARGIN
-from calibration.finding import Finding, Parameter
+from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.look.delay import Find, Found, Timed
 from calibration.look.jumps import SIDES, jumps_of
 from calibration.names.play import NAME as PLAY
@@ -44,6 +44,9 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     """`found` on `whole`, or the search beside slips where they explain what nothing else does. Jumps at the
     reversals are a gap's."""
     s, scene, bounds = found
+    least = s.held.after
+    # steps look like something slow
+    s = s.keep([x for x in s.chosen if (x.candidate.name, x.candidate.domain) != (UNKNOWN, "time")])
     # where a file begins, columns that look back are no measurement
     begins = maximum_filter1d(np.diff(s.problem.session, prepend=-1) != 0, 2 * SIDES[-1] + 1)
     places, turns = [at for at in jumps_of(s, CLEAR) if not begins[at]], _turns(view, s.problem)
@@ -51,7 +54,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     if len(turning) > PLAYS * len(turns):
         places = [at for at in places if at not in turning]
         s = _with_gap(s, scene)
-        found = s, scene, bounds
+        found, least = (s, scene, bounds), s.held.after
     # a slip that is past says nothing on held-out rows behind it, nor fitted rows of one among these: pieces
     # of all rows tell
     everywhere = replace(s.problem, held=np.zeros_like(s.problem.held))
@@ -64,7 +67,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
         return Timed(whole, found)
     apart = _apart(s.problem, list(steps.values()))
     again = find(apart)
-    if again[0].held.after > s.held.after:
+    if again[0].held.after > least:
         return Timed(whole, found)
     first = _finding(again[0], list(steps), view, inside.share)
     return Timed(apart, again, first, Selection.of(s.problem))
@@ -123,14 +126,15 @@ def _step(view: View, row: int) -> Array:
 
 
 def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
-    """Those that are more than their own errors, and than a count: a drift through one looks like a slip."""
+    """Those that are more than their own errors, and than half a count, the error of a reading: a drift through
+    one looks like a slip."""
     r, steps_of = view.response, view.quanta
-    count = max(
+    half = 0.5 * max(
         steps_of.get(r.channel, 0.0) * abs(r.gain), steps_of.get("position", 0.0) * abs(r.ratio or 1.0)
     )
     fit = everywhere.fit(np.column_stack([s.columns, *steps.values()])) if steps else s.after
     first = s.columns.shape[1]
-    clear = np.abs(fit.beta[first:]) > np.maximum(SURE_Z * fit.errors[first:], count)
+    clear = np.abs(fit.beta[first:]) > np.maximum(SURE_Z * fit.errors[first:], half)
     return {row: x for (row, x), good in zip(steps.items(), clear, strict=True) if good} if steps else {}
 
 
