@@ -1,6 +1,6 @@
 """The regression of a drive's response: a balance of forces, or one sensor against another."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,11 @@ MEMORIES = 2.0
 PER_FILE = "offset_per_file"
 # of its own quantile range that a held-out file may exceed the others. ASSUMPTION
 COVER = 0.02
+# of the others' range that the end of a file may go beyond them before another part is held out. ASSUMPTION:
+# half; loads that grow step by step are first seen at the end
+BEYOND = 0.5
+# first letters of terms that a part of a file may go beyond, as the speed may
+TOLD_BY = ("gravity", "applied")
 
 
 def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: float = 0.0) -> Problem:
@@ -44,7 +49,8 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
         valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
     if not view.dynamic and response.is_force:
         valid &= np.abs(view.direction[at]) > 0
-    held = _held(view, records, hold_out, valid)
+    shown = [np.abs(view.speed), *(x for name, _, x in terms if name.startswith(TOLD_BY))]
+    held = _held(view, records, hold_out, valid, [x[at] for x in shown])
     period, session = view.period_s * view.step, view.file[at]
     problem = Problem(
         channel="T" if response.is_force else "K",
@@ -168,33 +174,48 @@ def _unit_of(view: View, channel: str) -> str:
     return view.rig.columns[channel].unit if channel in view.rig.columns else "1"
 
 
-def _held(view: View, records: list[Run], names: list[str], valid: Mask) -> Mask:
+def _held(view: View, records: list[Run], names: list[str], valid: Mask, shown: list[Array]) -> Mask:
     """Named files; of three and more one that the others cover; else the end of the `valid` rows of every
-    run."""
-    session, run = view.file[view.rows], view.run[view.rows]
+    run, or their middle or beginning where the end goes far beyond the others in a column of `shown`."""
+    session = view.file[view.rows]
     if names:
         return np.isin(session, [k for k, r in enumerate(records) if r.among(names)])
     if len(records) >= FEWEST_FILES:
         return np.asarray(session == _covered(view, session, len(records)))
+    share = 1 - view.rig.hold_out
+    parts = [_part(view, valid, first) for first in (share, share / 2, 0.0)]
+    excess = [_excess(shown, held & valid, ~held & valid) for held in parts]
+    return parts[0 if excess[0] <= BEYOND else int(np.argmin(excess))]
+
+
+def _part(view: View, valid: Mask, first: float) -> Mask:
+    """A contiguous part of the `valid` rows of every run, from a share of them on."""
+    run = view.run[view.rows]
     held = np.zeros(len(run), dtype=bool)
     for label in np.unique(run):
         rows = np.flatnonzero((run == label) & valid)  # a rest has none to hold
-        last = rows[int(len(rows) * (1 - view.rig.hold_out)) :]
-        if len(last):
-            held[last[0] : last[-1] + 1] = run[last[0] : last[-1] + 1] == label
+        part = rows[int(len(rows) * first) :][: len(rows) - int(len(rows) * (1 - view.rig.hold_out))]
+        if len(part):
+            held[part[0] : part[-1] + 1] = run[part[0] : part[-1] + 1] == label
     return held
+
+
+def _excess(columns: Sequence[Array], mine: Mask, others: Mask) -> float:
+    """How far the rows `mine` of some columns go beyond the `others`, in parts of these' ranges."""
+    total = 0.0
+    if not mine.any() or not others.any():
+        return float("inf")
+    for z in columns:
+        low, high = np.quantile(z[others], [0.01, 0.99])
+        a, b = np.quantile(z[mine], [0.02, 0.98])
+        total += (max(low - a, 0.0) + max(b - high, 0.0)) / max(high - low, 1e-300)
+    return float(total)
 
 
 def _covered(view: View, session: NDArray[np.int64], count: int) -> int:
     """The file that leaves the ranges of the others least; of those the middle one in time."""
-    x, v = view.x[view.rows], np.abs(view.speed[view.rows])
-    excess = np.zeros(count)
-    for k in range(count):
-        mine = session == k
-        for z in (x, v):
-            low, high = np.quantile(z[~mine], [0.01, 0.99])
-            a, b = np.quantile(z[mine], [0.02, 0.98])
-            excess[k] += (max(low - a, 0.0) + max(b - high, 0.0)) / max(high - low, 1e-300)
+    columns = (view.x[view.rows], np.abs(view.speed[view.rows]))
+    excess = np.array([_excess(columns, session == k, session != k) for k in range(count)])
     good = np.flatnonzero(excess <= excess.min() + COVER)
     clock = np.array([view.clock[view.rows][session == k].mean() for k in good])
     return int(good[np.argsort(clock)[len(good) // 2]])

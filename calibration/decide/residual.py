@@ -171,8 +171,8 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     names = list(dict.fromkeys(f.name for f in named))
     taken = f"{100 * (1 - left.part):.0f} % of what is above the floor"
     note = f"{', '.join(names)} would take {taken} only: {size}"
-    own = (1 - left.part) * first.share >= left.part * left.share  # of the whole
-    most = replace(_unknown(first.domain if own else left.domain, channel, left, note), equivalent=names)
+    theirs = left.domain if left.part * left.share > (1 - left.part) * first.share else None  # of the whole
+    most = replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)
     return [most, *[f for f in findings if f.name == UNKNOWN]]
 
 
@@ -195,7 +195,8 @@ def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:
         alike = [f.name, *(x for x in f.equivalent if x != UNKNOWN)]
         one = replace(f, name=UNKNOWN, harmonic=None, order=None, equivalent=alike)
         if not any(x.name == UNKNOWN and x.stage == f.stage and x.equivalent == alike for x in out):
-            out.append(one.noted(f"{'time' if f.domain == 'time' else 'the place'} has more of it than this form"))
+            what = "time" if f.domain == "time" else "the place"
+            out.append(one.noted(f"{what} has more of it than this form"))
     return out
 
 

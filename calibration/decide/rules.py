@@ -22,6 +22,7 @@ from calibration.finding import UNKNOWN
 from calibration.names import NAMES
 from calibration.names.structural_mode import rings
 from calibration.statistics.regression import under
+from calibration.statistics.tails import rms
 from calibration.statistics.thresholds import SURE_Z
 
 Rule = Callable[[Selection], tuple[int, str] | None]
@@ -253,8 +254,10 @@ def harmful(s: Selection) -> tuple[int, str] | None:
 
 def below_floor(s: Selection) -> tuple[int, str] | None:
     """Names are for what is above the floor. Unless most goes with them: then the floor is what a coarse
-    sensor may hide, and did not."""
-    if s.held.before > s.problem.floor or clear(s) or _clear_of_steps(s):
+    sensor may hide, and did not. Or they are for fitted rows, as what is far above it there."""
+    p = s.problem
+    fitted = rms(s.before.residual[p.train]) > limits.STILL_MISSING * p.floor > 0
+    if s.held.before > p.floor or fitted or clear(s) or _clear_of_steps(s):
         return None
     return 0, "the declared model is at the floor without it"
 

@@ -116,8 +116,10 @@ def _held_names(view: View, p: Problem, records: list[Run]) -> Iterator[str]:
         rows = (p.run == k) & p.held
         whole = rows.sum() == (p.run == k).sum()
         file = records[int(p.session[rows][0])].name
-        begin = float(view.t[view.rows][rows].min())
-        yield file if whole else f"{file} run {int(k) + 1} from {begin:.4g} s"
+        t = view.t[view.rows]
+        to_end = not np.any(t[(p.run == k) & p.train] > t[rows].max())
+        part = f"from {t[rows].min():.4g} s" + ("" if to_end else f" to {t[rows].max():.4g} s")
+        yield file if whole else f"{file} run {int(k) + 1} {part}"
 
 
 def _gaps(records: list[Run]) -> Iterator[str]:

@@ -126,8 +126,8 @@ def _step(view: View, row: int) -> Array:
 
 
 def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
-    """Those that are more than their own errors, and than half a count, the error of a reading: a drift through
-    one looks like a slip."""
+    """Those that are more than their own errors, and than half a count, which is the error of a reading: a
+    drift through one looks like a slip."""
     r, steps_of = view.response, view.quanta
     half = 0.5 * max(
         steps_of.get(r.channel, 0.0) * abs(r.gain), steps_of.get("position", 0.0) * abs(r.ratio or 1.0)
