@@ -194,9 +194,12 @@ def _part(view: View, valid: Mask, first: float) -> Mask:
     held = np.zeros(len(run), dtype=bool)
     for label in np.unique(run):
         rows = np.flatnonzero((run == label) & valid)  # a rest has none to hold
-        part = rows[int(len(rows) * first) :][: len(rows) - int(len(rows) * (1 - view.rig.hold_out))]
-        if len(part):
-            held[part[0] : part[-1] + 1] = run[part[0] : part[-1] + 1] == label
+        begin, count = int(len(rows) * first), len(rows) - int(len(rows) * (1 - view.rig.hold_out))
+        every = np.flatnonzero(run == label)
+        if count:  # with the rows of the run at its side that say nothing
+            low = rows[begin] if begin else every[0]
+            high = rows[begin + count] if begin + count < len(rows) else every[-1] + 1
+            held[low:high] = run[low:high] == label
     return held
 
 

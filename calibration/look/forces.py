@@ -23,6 +23,7 @@ from calibration.decide.withdraw import as_told, of_calibrated, unnamed
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
+from calibration.look.event import leave_out_event
 from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
@@ -42,6 +43,8 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     made = partial(problem_of, view, records, options.hold_out)
     if view.dynamic:
         one_filter(view, made)
+    event = leave_out_event(view, made)
+    if view.dynamic:
         fade(view, sharpest(view, made))
     problem = made()
     if few := few_values(records, view, problem):
@@ -49,7 +52,8 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
     notes = turned(view, problem)
     when, remarks = _found(view, made)
-    return _told(view, when, notes, remarks)
+    told = _told(view, when, notes, remarks)
+    return replace(told, findings=[*told.findings, event]) if event else told
 
 
 def _found(view: View, made: Make) -> tuple[Timed, list[str]]:

@@ -1,0 +1,79 @@
+"""One stretch of a log that does not obey what the rest obeys: a push by hand, a foot against the bench.
+
+It spoils every number that is fitted with it. So it is left out, and said, where that predicts held-out rows
+far better.
+"""
+
+import numpy as np
+from scipy.ndimage import binary_dilation, label, sum_labels
+
+from calibration.arrays import Array, Mask, by_median
+from calibration.balances.problem import Problem
+from calibration.balances.view import View
+from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY
+from calibration.finding import UNKNOWN, Finding
+from calibration.look.delay import Make
+from calibration.look.search import scene_of
+from calibration.statistics.regression import solve
+
+# robust deviations of a row that does not obey. ASSUMPTION: friction's corners and worn teeth stay below
+FAR = 8.0
+# of the largest residual, where an event begins and ends. ASSUMPTION
+SLOPES = 0.1
+# of the fitted rows, that an event holds at most. ASSUMPTION: more is a part of the motion
+SHORT = 0.1
+# refits with weights 1 / residual: least absolute deviations to some per cent. arithmetic
+ROUNDS = 20
+
+
+def leave_out_event(view: View, made: Make) -> Finding | None:
+    """The event, whose rows are no longer `ok` in the view; None where there is none. made: by a delay, s."""
+    p = made(0.0)
+    x = np.column_stack([p.base, scene_of(view, p.once).wander])
+    rows = _stretch(p, x)
+    if rows is None:
+        return None
+    every, rest = (_usual(p, x, rows, out) for out in (np.zeros_like(rows), rows))
+    if not rest < (1 - PLAINLY) * every:
+        return None
+    first, last = view.rows[np.flatnonzero(rows)[[0, -1]]]
+    reach = int(3 * view.sigma) + 1
+    view.ok = view.ok.copy()
+    view.ok[max(first - reach, 0) : last + reach + 1] = False
+    file = int(view.file[first]) + 1
+    note = f"from {view.t[first]:.4g} to {view.t[last]:.4g} s of file {file} only: these rows are left out"
+    return Finding(UNKNOWN, p.channel, "time", share=1 - rest / every, note=note)
+
+
+def _stretch(p: Problem, x: Array) -> Mask | None:
+    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave, if it is short."""
+    e = _robust(x[p.train], p.y[p.train])
+    square, far = np.zeros(len(p.y)), np.zeros(len(p.y), dtype=bool)
+    square[p.train] = e**2
+    far[p.train] = np.abs(e) > max(FAR * by_median(e), SLOPES * float(np.max(np.abs(e), initial=0.0)))
+    stretches, count = label(binary_dilation(far, iterations=p.block))
+    if not count:
+        return None
+    most = 1 + int(np.argmax(sum_labels(square, stretches, range(1, count + 1))))
+    at = np.flatnonzero(far & (stretches == most))
+    rows = (np.arange(len(far)) >= at[0]) & (np.arange(len(far)) <= at[-1])
+    one_file = len(np.unique(p.session[rows])) == 1
+    holds_most = float(square[rows].sum()) > CLEAR_SHARE * float(square.sum())
+    return rows if one_file and holds_most and rows.sum() < SHORT * p.train.sum() else None
+
+
+def _robust(x: Array, y: Array) -> Array:
+    """Residual (n,) of the fit with the least sum of absolute residuals."""
+    e = y - x @ solve(x, y)
+    for _ in range(ROUNDS):
+        least = max(float(np.median(np.abs(e))), 1e-300)
+        weight = 1.0 / np.sqrt(np.maximum(np.abs(e), 0.1 * least))
+        e = y - x @ solve(x * weight[:, None], y * weight)
+    return np.asarray(e)
+
+
+def _usual(p: Problem, x: Array, event: Mask, out: Mask) -> float:
+    """Usual square beside columns x (n, k), fitted without the rows `out`, on held-out rows that are not the
+    event's: they may hold another one."""
+    rows, test = p.train & ~out, p.test & ~event
+    return by_median(p.y[test] - x[test] @ solve(x[rows], p.y[rows])) ** 2
