@@ -8,9 +8,10 @@ import numpy as np
 from scipy.ndimage import binary_dilation, label, sum_labels
 
 from calibration.arrays import Array, Mask, by_median
+from calibration.balances.floors import floor_of
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
-from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY
+from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY, STILL_MISSING
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.delay import Make
 from calibration.look.search import scene_of
@@ -30,7 +31,8 @@ def leave_out_event(view: View, made: Make) -> Finding | None:
     """The event, whose rows are no longer `ok` in the view; None where there is none. made: by a delay, s."""
     p = made(0.0)
     x = np.column_stack([p.base, scene_of(view, p.once).wander])
-    rows = _stretch(p, x)
+    friction = abs(p.plain_fit(p.train)[0].get("coulomb", 0.0))  # that turns leaves twice itself at most
+    rows = _stretch(p, x, max(STILL_MISSING * (floor_of(view, p)[0] or 0.0), 2 * friction))
     if rows is None:
         return None
     every, rest = (_usual(p, x, rows, out) for out in (np.zeros_like(rows), rows))
@@ -45,8 +47,9 @@ def leave_out_event(view: View, made: Make) -> Finding | None:
     return Finding(UNKNOWN, p.channel, "time", share=1 - rest / every, note=note)
 
 
-def _stretch(p: Problem, x: Array) -> Mask | None:
-    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave, if it is short."""
+def _stretch(p: Problem, x: Array, least: float) -> Mask | None:
+    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave, if it is short and
+    its rms is more than the least."""
     e = _robust(x[p.train], p.y[p.train])
     square, far = np.zeros(len(p.y)), np.zeros(len(p.y), dtype=bool)
     square[p.train] = e**2
@@ -59,7 +62,8 @@ def _stretch(p: Problem, x: Array) -> Mask | None:
     rows = (np.arange(len(far)) >= at[0]) & (np.arange(len(far)) <= at[-1])
     one_file = len(np.unique(p.session[rows])) == 1
     holds_most = float(square[rows].sum()) > CLEAR_SHARE * float(square.sum())
-    return rows if one_file and holds_most and rows.sum() < SHORT * p.train.sum() else None
+    shows = float(square[at].mean()) > least**2
+    return rows if one_file and holds_most and shows and rows.sum() < SHORT * p.train.sum() else None
 
 
 def _robust(x: Array, y: Array) -> Array:
