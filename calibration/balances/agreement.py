@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
 
 from calibration.arrays import Array, Mask
-from calibration.balances.filters import by_piece, smooth
+from calibration.balances.filters import by_piece, pieces, smooth
 from calibration.balances.noise import row_to_row
 from calibration.balances.thresholds import FEWEST_FILES, FEWEST_ROWS, LEAST_SCALE
 from calibration.balances.view import View
@@ -99,7 +99,18 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     )
     unit = view.rig.columns["velocity"].unit
     own, spread = float(last.beta[0]), float(last.errors[0])
+    if abs(_of_the_travel(view) - 1.0) < SCALED:  # rows that repeat spoil the rates, not the way
+        own = 1.0
     return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread)
+
+
+def _of_the_travel(view: View) -> float:
+    """The velocity's sum over the way between reversals, in parts of that way."""
+    v = view.columns["velocity"]
+    ways = pieces(np.cumsum(np.diff(np.sign(view.direction), prepend=0.0) != 0) + 10**6 * view.segment)
+    ends = [(view.x[b - 1] - view.x[a], float(np.sum(v[a:b]) - (v[a] + v[b - 1]) / 2)) for a, b in ways]
+    way, total = np.array(ends).T
+    return float(way @ total * view.period_s / max(float(way @ way), 1e-300))
 
 
 def _over_two_rows(rate: Array) -> Array:

@@ -63,6 +63,8 @@ def pick_up(view: View) -> tuple[float, float] | None:
     line = float(max(near, key=lambda f: _sizes(quick, spans, f, everything)))
     whole = _sizes(quick, spans, line, calm)
     noise = by_median(quick[view.ok])
+    if whole <= 0.5 * view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain):
+        return None  # rounding leaves as much
     if whole / np.sqrt(2.0) < MATTERS * noise or not _at_every_speed(view, quick, spans, line, whole):
         return None
     taken_away = 1.0 - float(view.filter.gain(line))

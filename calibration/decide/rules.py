@@ -133,6 +133,8 @@ def within_bounds(resolved: float) -> Rule:
         told = parameters_of(s, k)
         if "width" in told and (told["width"].low or 0.0) < 0.0:
             return "as wide as nothing, by its interval"
+        if "order" in told and (told["order"].low or 0.0) < 0.0:
+            return "of any order, by its interval"
         return "no damping of a resonance" if "damping" in told and not rings(told["damping"]) else ""
 
     return each(why)

@@ -28,7 +28,7 @@ from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
-from calibration.look.settled import few_values, one_filter, sharpest, turned
+from calibration.look.settled import few_values, law_of_its_loop, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
 #: of a finding
@@ -47,7 +47,9 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     if view.dynamic:
         fade(view, sharpest(view, made))
     problem = made()
-    if few := few_values(records, view, problem):
+    if few := few_values(records, view, problem) or law_of_its_loop(
+        view, problem, floor_of(view, problem)[0]
+    ):
         bare = Selection.of(problem)
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
     notes = turned(view, problem)
@@ -108,8 +110,11 @@ def _apart(when: Timed, view: View, made: Make, size: float) -> Timed:
 
 
 def _instead(steady: Timed, slow: Timed) -> bool:
-    """Whether effects of one size for all files explain what an offset fitted anew in every file does."""
+    """Whether effects of one size for all files explain what an offset fitted anew in every file does, or it
+    explains nothing."""
     one, other = steady.found[0], slow.found[0]
+    if one.held.after <= other.held.after:
+        return True
     if not one.chosen or other.chosen:
         return _better(steady, slow)
     return one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)

@@ -11,9 +11,16 @@ from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
 from calibration.balances.view import NYQUIST, STANDSTILLS, View, choose_rows, fade
 from calibration.decide.heldout import cross_validate
+from calibration.decide.thresholds import STILL_MISSING
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
+from calibration.statistics.regression import solve
+from calibration.statistics.tails import rms
 
+#: responses that a loop commands
+EFFORTS = ("effort", "current", "voltage")
+# of its variation, that such a law leaves at most. ASSUMPTION: friction's corners leave more
+EXACT = 0.01
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
 
@@ -78,6 +85,27 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
     return (
         f"{channel} holds {values} values, the model has {terms} terms: no balance"
         " can be tested with it; as response take a measured current or force"
+    )
+
+
+def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
+    """Why an effort that is its loop's law, and so says nothing of forces, cannot be tested; or empty.
+
+    A loop at rest at one set point pulls back, in proportion to the place; a drive's own forces do not.
+    """
+    if not view.dynamic or view.response.channel not in EFFORTS or not floor:
+        return ""
+    rows, unit = p.valid, view.unit
+    x = np.column_stack([np.ones(len(p.y)), view.x[view.rows], view.at(view.smoothed(view.rate(view.x)))])[
+        rows
+    ]
+    beta = solve(x, p.y[rows])
+    least = min(STILL_MISSING * floor, EXACT * float(np.std(p.y[rows])))
+    if beta[1] >= 0 or not rms(p.y[rows] - x @ beta) <= least:
+        return ""
+    return (
+        f"{view.response.channel} is {beta[0]:.4g} {unit} {beta[1]:+.4g} {unit}/{view.angle_unit} x position,"
+        " the law of a loop with one set point, beside which no force shows: let the set point move"
     )
 
 

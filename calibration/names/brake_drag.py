@@ -10,6 +10,7 @@ from calibration.names.onsets import steps
 FOREVER_S = 1e6
 LESS = ("friction_warmup", "preload_change")  # friction that falls from some time on
 CHANGES = ("brake_drag", "preload_change")  # friction that is another from some time on
+IN_TIME = ("brake_drag", "friction_warmup")  # forces against the motion that come or go
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -30,7 +31,7 @@ def one_way(f: Finding, s: Scene) -> Finding:
     """Where all goes one way, or held-out rows say no more (decide/twins.py), a sensor's offset that changes
     looks the same. Less drag has other names."""
     offset = f.name in CHANGES and UNKNOWN in f.equivalent
-    if s.pair is not None or not (offset or f.name == NAME.name):
+    if s.pair is not None or not (offset or f.name in IN_TIME):
         return f
     if f.name == NAME.name and f.parameters["torque"].value < 0.0:
         f = replace(f, equivalent=tuple(dict.fromkeys([*f.equivalent, *LESS])))

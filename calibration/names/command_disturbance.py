@@ -8,6 +8,7 @@ import numpy as np
 
 from calibration.balances.candidate import sine_columns
 from calibration.balances.repeats import repeat_lag
+from calibration.finding import UNKNOWN
 from calibration.inputs.train import SHAFT
 from calibration.names.lines import (
     ENOUGH,
@@ -94,7 +95,9 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
                 return np.hstack([sine_columns(t * f, files) * v.filter.gain(f * v.period_s) for f in hertz])
 
             rings = len(overtones) == 1 and not MODE.lacks(s)
-            more["twins"] = (MODE.name, *places) if rings else places
+            # other joints may move along: sums of their frequencies are multiples, too
+            along = np.min(np.abs(multiples - f), initial=np.inf) * length < 0.5
+            more["twins"] = (*((MODE.name,) if rings else ()), *places, *((UNKNOWN,) if along else ()))
             at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / fitted, ("amplitude", s.unit)
             out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))
     return out

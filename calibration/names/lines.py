@@ -21,6 +21,8 @@ ENOUGH = 1.2
 AXIS_ENOUGH = 0.8
 # turns likewise, of a stage with many harmonics, whose others turn more often. ASSUMPTION
 MANY_ENOUGH = 0.5
+# cycles likewise, of a stage that does not come round: fewer are any function of the place. ASSUMPTION
+NOT_ROUND = 2.0
 # of a turn: orders that are one. arithmetic
 SAME = 1e-6
 # part of a resolution cell (1 / travel) about a stage's harmonic that is its own. ASSUMPTION
@@ -99,6 +101,8 @@ def of_stage(
 ) -> list[Candidate]:
     """`blank` at the stage's harmonics that make `turns` within the travel; `weight` (n,) at full rate."""
     enough = AXIS_ENOUGH if s.pair is not None else ENOUGH if stage.harmonics <= 2 else MANY_ENOUGH
+    if s.pair is None and s.force and stage.period and s.span < stage.period:
+        enough = NOT_ROUND
     out = []
     for h in stage.orders if stage.period else ():
         rate = h / (stage.period or 1.0)
