@@ -39,7 +39,8 @@ def one_way(f: Finding, s: Scene) -> Finding:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
     why = f"{'' if s.both else 'one way only, '}an offset of the column that changes looks the same"
-    return replace(f, name=UNKNOWN, equivalent=alike).noted(why)
+    sizes = f.parameters if f.name in CHANGES else {}  # a depth is friction's
+    return replace(f, name=UNKNOWN, equivalent=alike, parameters=sizes).noted(why)
 
 
 NAME = Name(

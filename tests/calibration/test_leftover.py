@@ -47,3 +47,11 @@ def test_an_effect_is_no_part_of_the_floor(tmp_path: Path) -> None:
         torque = answer(folder, FORCE, (t, x, force))["error"]["torque"]
         floors.append(torque["floor"])
     assert floors[1] == pytest.approx(floors[0], rel=0.1) and floors[1] < 0.3 * torque["before"]
+
+
+@pytest.mark.parametrize(("share", "domain"), [(0.9, "time"), (0.1, "axis_angle")])
+def test_the_domain_is_that_of_the_larger_part(share: float, domain: str) -> None:
+    """A name took a fifth of the square; what is left lives over time with nine tenths, or nowhere much."""
+    named = [Finding("bearing_pass", "T", "axis_angle", share=0.5)]
+    (found,) = settle(named, Left(13.0, 0.8, "time", "over time alone", share), "T")
+    assert (found.name, found.domain) == ("unknown", domain)

@@ -1,5 +1,7 @@
 """Held-out scores: who is compared on which rows, against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -167,3 +169,16 @@ def test_beside_nuisances_a_piece_is_told_by_the_others_alone(seed: int) -> None
         beta = np.linalg.lstsq(xs[piece != k], ys[piece != k], rcond=None)[0]
         assert left[piece == k] == pytest.approx(ys[piece == k] - xs[piece == k] @ beta, abs=1e-9)
     assert Model(x=base, beta=np.ones(4)).left_out(p) == pytest.approx(ys, abs=1e-9)
+
+
+def test_rows_that_the_others_do_not_tell_are_not_validated() -> None:
+    """Two steps with one stretch between them, all of it in one fold: beside the others they are one step."""
+    rng = np.random.default_rng(6)
+    n = 4000
+    p = problem(rng.standard_normal(n), runs=1, held=9)
+    at = np.arange(n)
+    edge = np.clip((at - 1010) / 4.0, 0.0, 1.0), np.clip((at - 1040) / 4.0, 0.0, 1.0)
+    x = np.column_stack([np.ones(n), *edge])
+    p = replace(p, y=p.y + x @ np.array([1.0, 10.0, -10.0]), valid=at != 1012)
+    found = cross_validate(p, x[:, :1], x, PLAIN)
+    assert found.after < 1.2

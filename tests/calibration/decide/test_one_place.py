@@ -72,3 +72,18 @@ def test_a_second_function_of_a_domain_is_what_the_first_lacks(domain: str) -> N
     both = np.hstack([s.columns, powers]), np.hstack([s.columns, second.columns])
     one, other = (x @ np.linalg.lstsq(x[p.train], p.y[p.train], rcond=None)[0] for x in both)
     assert other == pytest.approx(one, abs=1e-6)
+
+
+DISTURBED = Finding("command_disturbance", "T", "time", frequency=0.35, parameters=SIZE, equivalent=["play"])
+
+
+@pytest.mark.parametrize(
+    ("where", "share", "named"),
+    [("over time alone", 0.9, False), ("over time alone", 0.4, True), ("over time", 0.9, True)],
+)
+def test_a_line_in_time_is_part_of_what_time_alone_has(where: str, share: float, named: bool) -> None:
+    """A wave beside a slow drift is a wave; beside quick motions of something else it is one of these."""
+    first = told([DISTURBED], Left(8.0, 0.4, "time", where, share))[0]
+    assert first == (
+        ("command_disturbance", ("play",)) if named else (UNKNOWN, ("command_disturbance", "play"))
+    )

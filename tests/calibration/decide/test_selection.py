@@ -12,12 +12,14 @@ from calibration.decide.rules import (
     below_floor,
     dominant,
     each,
+    feeds_energy,
     harmful,
     leave_out,
     lesser_of_one_order,
     negative,
     of_the_steps,
     remainder,
+    superfluous,
     worth_little,
 )
 from calibration.decide.scan import Contender, fit_with
@@ -181,3 +183,43 @@ def test_filtered_rows_are_those_whose_past_is_valid(seed: int, a: float) -> Non
     rows = np.flatnonzero(valid[1:] & valid[:-1]) + 1
     assert w.whiten(x, valid) == pytest.approx(x[rows] - a * x[rows - 1])
     assert w.whiten(x[:, 0], valid) == pytest.approx((x[rows] - a * x[rows - 1])[:, 0])
+
+
+def test_names_stay_for_fitted_rows_far_above_the_floor() -> None:
+    """What begins and ends within the fitted rows shows on none that are held out."""
+    s = of({"brake_drag": 2.0})
+    fitted = np.where(s.problem.held[:, None], 0.0, s.candidates[0].columns)
+    y = 2.0 * fitted[:, 0] + NOISE * np.random.default_rng(4).standard_normal(ROWS)
+    for floor, goes in ((1.5 * NOISE, False), (8 * NOISE, True)):
+        bare = Selection.of(replace(s.problem, y=y, floor=floor))
+        assert bare.held.before < floor or goes is None
+        one = bare.keep([contender(bare, term("brake_drag", fitted))])
+        assert (below_floor(one) is not None) == goes
+
+
+def test_what_takes_most_of_the_held_out_square_is_not_superfluous() -> None:
+    """Of either first pick two fitted rows say hardly anything; one is all that held-out rows have."""
+    held = problem(np.zeros(ROWS)).held
+    shown = held | np.isin(np.arange(ROWS), [700, 900])
+    column = np.where(shown, 1.0, 0.0)[:, None]
+    later = np.random.default_rng(1).standard_normal((ROWS, 1))
+    for size, kept in ((0.5, True), (0.0, False)):
+        y = size * column[:, 0] + later[:, 0] + NOISE * np.random.default_rng(2).standard_normal(ROWS)
+        s = Selection.of(replace(problem(y), ar_order=0))
+        s = s.keep([contender(s, term("cable_wrap", column)), contender(s, term("brake_drag", later))])
+        assert (superfluous(s) is None) == kept
+
+
+def test_friction_that_is_surely_negative_feeds_energy() -> None:
+    """It was within its error before the name; with the name it is not."""
+    rng = np.random.default_rng(8)
+    way, load = rng.choice([-1.0, 1.0], ROWS), rng.standard_normal(ROWS)
+    shape = way * (1.0 + 0.02 * load)
+    y = -5.0 * way + 5.0 * shape + NOISE * rng.standard_normal(ROWS)
+    p = replace(problem(y, way[:, None]), base_labels=[("coulomb", "N m")])
+    s = Selection.of(p)
+    assert abs(s.before.beta[0]) < 3 * s.before.errors[0]
+    s = s.keep([contender(s, term("friction_warmup", shape[:, None]))])
+    assert s.after.beta[0] < -3 * s.after.errors[0]
+    found = feeds_energy(s)
+    assert found is not None and "feeds energy" in found[1]

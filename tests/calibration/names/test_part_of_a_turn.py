@@ -70,3 +70,13 @@ def test_a_weight_comes_before_harmonics_of_its_joint(tmp_path: Path, reach_turn
     first = answer(tmp_path, JOINT, (t, x, u))["effects"][0]
     assert first["name"] == "gravity_imbalance"
     assert first["parameters"]["amplitude"]["value"] == pytest.approx(10.0, rel=0.1)
+
+
+def test_a_weight_over_a_quarter_turn_is_no_pair_of_harmonics(tmp_path: Path) -> None:
+    """Three and four cycles a turn are less than one over the stroke: together they are any curve."""
+    t, x = swept(0.25)
+    rate = np.gradient(x, t)
+    u = 10.0 * np.cos(np.radians(x) + 0.4) + 0.3 * np.tanh(x / 20.0) + np.sign(rate) + 0.002 * rate
+    u += 0.05 * np.random.default_rng(5).standard_normal(len(t))
+    for effect in answer(tmp_path, JOINT, (t, x, u))["effects"]:
+        assert not (effect["stage"] == "joint" and effect["name"] != "gravity_imbalance")

@@ -1,0 +1,35 @@
+"""An effort that is its loop's law to its noise says nothing of forces."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import FORCE, PERIOD, answer
+
+GAIN, SET_POINT = 40.0, 0.5
+
+
+def looped(disturbed: float = 0.0, gain: float = GAIN) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """t, x and u = gain (set point - x) of a mass with friction, swinging in; and a force nobody logs."""
+    t = np.arange(0, 20.0, PERIOD)
+    x = SET_POINT * (1 - np.exp(-0.15 * t) * np.cos(2.1 * t))
+    u = gain * (SET_POINT - x) + disturbed * np.sin(0.7 * t)
+    return t, x, u + 0.005 * np.random.default_rng(3).standard_normal(len(t))
+
+
+def test_the_law_is_told_in_place_of_a_force(tmp_path: Path) -> None:
+    data = answer(tmp_path, FORCE, looped())
+    assert data["verdict"] == "cannot tell" and not data["effects"]
+    told = re.search(r"effort is (\S+) N (\S+) N/m x position, the law of a loop", str(data))
+    assert told is not None
+    assert float(told[1]) == pytest.approx(GAIN * SET_POINT, rel=0.01)
+    assert float(told[2]) == pytest.approx(-GAIN, rel=0.01)
+
+
+@pytest.mark.parametrize(("disturbed", "gain"), [(1.0, GAIN), (0.0, -GAIN)])
+def test_a_spring_or_another_force_is_none(tmp_path: Path, disturbed: float, gain: float) -> None:
+    """A spring pulls the other way: the effort grows with the place."""
+    data = answer(tmp_path, FORCE, looped(disturbed, gain))
+    assert "law of a loop" not in str(data)

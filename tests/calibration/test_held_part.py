@@ -1,0 +1,47 @@
+"""Which part of one file is held out: its end, unless that goes where the rest has not been."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, VISCOUS, answer
+
+LOADED = FORCE.replace("effort:", "applied: {column: f, unit: N}\n  effort:").replace(
+    "offset]", "offset, applied]"
+)
+PART = 0.2  # of the load: friction of the teeth that carry it
+
+
+def loaded(levels_n: list[float]) -> tuple[np.ndarray, ...]:
+    """t, x, f, u of a mass to and fro, ten seconds under every load."""
+    t = np.arange(0, 10.0 * len(levels_n), PERIOD)
+    w = 2 * np.pi * np.array([0.4, 0.93])
+    size = np.array([0.3, 0.1])
+    x = (size * np.sin(np.outer(t, w))).sum(1)
+    v = (size * w * np.cos(np.outer(t, w))).sum(1)
+    a = -(size * w**2 * np.sin(np.outer(t, w))).sum(1)
+    f = np.repeat(levels_n, round(10.0 / PERIOD))
+    load = MASS * a - f
+    u = load + VISCOUS * v + (COULOMB + PART * np.abs(load)) * np.sign(v)
+    return t, x, f, u + 0.02 * np.random.default_rng(1).standard_normal(len(t))
+
+
+@pytest.mark.parametrize("levels", [[1.0, -2.0, 4.0, -9.0, 20.0, -40.0], [20.0, -9.0, 1.0, 4.0, 15.0, -30.0]])
+def test_a_load_that_comes_last_is_fitted(tmp_path: Path, levels: list[float]) -> None:
+    data = answer(tmp_path, LOADED, loaded(levels), header="t,x,f,u")
+    assert [e["name"] for e in data["effects"]] == ["load_friction"]
+    assert data["effects"][0]["parameters"]["coefficient"]["value"] == pytest.approx(PART, rel=0.05)
+    assert data["calibrated"]["inertia"]["value"] == pytest.approx(MASS, rel=0.03)
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_what_is_held_out_is_told(tmp_path: Path, reverse: bool) -> None:
+    """As long as the rest of the log in either case; the end of an even log, else not the end."""
+    levels = [1.0, -2.0, 4.0, -9.0, 20.0, -40.0]
+    (told,) = answer(tmp_path, LOADED, loaded(levels[::-1] if reverse else levels), header="t,x,f,u")[
+        "held_out"
+    ]
+    begin = float(told.split("from ")[1].split()[0])
+    assert (" to " in told) is not reverse
+    assert begin == pytest.approx(36.0, abs=1.0) if reverse else begin < 24.0
