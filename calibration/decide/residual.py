@@ -29,7 +29,7 @@ from calibration.statistics.whitening import APART, coherence
 MOST_LEFT = 0.5
 # floors of a force beyond which a domain is looked for: sound drives stay below 1.4 (seeds 1036 and 1038)
 TELLING = 1.6
-# share of the mean square of what is left, over the turn of a stage: most of it. ASSUMPTION
+# share of the mean square of what is left, over the turn of a stage or over time alone: most. ASSUMPTION
 OVER_ITS_TURN = 0.5
 # of what neighbouring rows share: a domain that holds less of it is not where the residual lives. ASSUMPTION
 OF_WHAT_REPEATS = 0.5
@@ -107,7 +107,7 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
     places += [Place(f"the turn of {name}", "axis_angle", v.x[v.rows] % turn) for name, turn in turns]
     most, place, how = _most(shapes, places, share)
     alone = coherence(e, rows, p.session, int(np.ceil(APART * v.sigma / v.step)) or 1)
-    if alone > limits.LEAST_SHARE and most <= max(limits.LEAST_SHARE, OF_WHAT_REPEATS * alone):
+    if alone > OVER_ITS_TURN and most <= OF_WHAT_REPEATS * alone:
         return replace(found, domain="time", where=ALONE, share=alone)
     if most <= limits.LEAST_SHARE:
         return found
