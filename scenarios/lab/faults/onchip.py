@@ -40,13 +40,6 @@ class FrameLoss:
             ear.clear(t_ns)
 
 
-class DeafController(Hears):
-    """A controller gives nothing of what it receives to the processor; it still acknowledges and sends."""
-
-    def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
-        super().__init__(place, place.board(given["node"]).port)
-
-
 class EndatLine(Laid):
     """In a share of the transfers one bit is inverted on the line: the CRC finds it."""
 
