@@ -66,11 +66,6 @@ TRIALS = 80
 """Pairs of efforts tried at most."""
 
 
-def saturated(log: Log) -> bool:
-    """Whether a current was at the end of the converter's range."""
-    return bool(max(np.max(log.adc_a), np.max(log.adc_b)) >= ADC_FULL)
-
-
 def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
     """Whether a run is a steady state. A limit cycle is none: its torque belongs to no velocity."""
     if any(stalled(log.rate) or cycles(np.abs(log.rate), speed) for log in logs):
@@ -102,7 +97,7 @@ def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
         there, back = map_pair(bench, speed)
         logs = (noise.log(there), noise.log(back))
         point = steady_point(logs[0], logs[1], sheet)
-        if any(saturated(log) for log in logs):
+        if max(np.max(current) for log in logs for current in (log.adc_a, log.adc_b)) >= ADC_FULL:
             continue
         if steady(speed, point, logs):
             points.append(point)
