@@ -204,9 +204,6 @@ class _Wiring:
     def velocity(self, name: str, device_type: int, encoder: Callable[[int], int]) -> Board:
         return MotorVelocityBoard(self.place(name, device_type), encoder)
 
-    def gateway(self, device: Device) -> Board:
-        return GatewayBoard(self.of(device))
-
     def focus(self, device: Device) -> Board:
         port = self.plant.focus
         pins = FocusPins(coils=port.coils, encoder=port.encoder, index=port.index, lvdt=port.lvdt)
@@ -236,7 +233,7 @@ _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
     ("AXIS", _Wiring.axis),
     ("POSITION", _Wiring.position),
     ("MOTOR", _Wiring.motor),
-    ("GATEWAY", _Wiring.gateway),
+    ("GATEWAY", lambda wiring, device: GatewayBoard(wiring.of(device))),
     ("FOCUS", _Wiring.focus),
     ("DISPLAY", _Wiring.display),
 )

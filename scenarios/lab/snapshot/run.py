@@ -10,6 +10,7 @@ from typing import Any
 
 from bus.protocol import Device
 from scenarios.lab.session import Session
+from scenarios.lab.snapshot.code import nothing
 from scenarios.lab.snapshot.file import read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 
@@ -134,7 +135,7 @@ def begun(file: Path) -> dict[str, Any]:
 def resume(whole: dict[str, Any], folder: Path) -> Session:
     """A session in a new folder as it was, its files written again up to then."""
     session = Session(whole["scenario"], whole["model"], folder)
-    session.link._send = _nobody
+    session.link._send = nothing  # what the host says while it lives again has been said
     calls = listeners(session) | {"tick": session.work}
     session.eye.replay(arguments for kind, arguments in whole["heard"] if kind == SEEN)
     for kind, arguments in whole["heard"]:
@@ -145,7 +146,3 @@ def resume(whole: dict[str, Any], folder: Path) -> Session:
     network, session.faults = restore(whole["network"], {**listeners(session), **_outside(session)})
     session.adopt(network)
     return session
-
-
-def _nobody(_t_ns: int, _report: bytes) -> None:
-    """What the host says while it lives again has been said."""
