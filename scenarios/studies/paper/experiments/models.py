@@ -72,7 +72,7 @@ def simulate_loop(
     seconds: float,
     ramp_arcsec_s2: float,
 ) -> tuple[Array, Array]:
-    """Return velocity (arcsec/s) and effort (1/3000) of equation (6) in the loop of the paper's PI, from rest.
+    """Return velocity (arcsec/s), effort (1/3000) of equation (6) in the loop of the paper's PI, from rest.
 
     The set point rises with `ramp_arcsec_s2`, as the firmware's does.
     One row per controller period, s. Steps of 0.1 ms; the effort acts Delta t / 2 late; the controller sees
