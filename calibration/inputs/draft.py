@@ -17,32 +17,22 @@ from calibration.inputs.run import quantum
 from calibration.inputs.thresholds import GAP, LARGEST_NUMBER
 from calibration.inputs.units import PER_TURN, units_per_turn
 
-# rows: standard deviation of the filter before a rate or a force is compared. ASSUMPTION
-SOFT = 5.0
-# share of a column's variance that a rate must explain, to be that rate. ASSUMPTION
-IS_RATE = 0.8
-# of what the direction alone leaves of a column, that its rate may. ASSUMPTION
-BESIDE = 0.5
+SOFT = 5.0  # rows: standard deviation of the filter before a rate or a force is compared. ASSUMPTION
+IS_RATE = 0.8  # share of a column's variance that a rate must explain, to be that rate. ASSUMPTION
+BESIDE = 0.5  # of what the direction alone leaves of a column, that its rate may. ASSUMPTION
 # likewise rate, direction and acceleration of a column that is a force by nothing else. ASSUMPTION
 IS_FORCE = 0.05
-# correlation of two columns that show one place. ASSUMPTION
-SAME_PLACE = 0.99
+SAME_PLACE = 0.99  # correlation of two columns that show one place. ASSUMPTION
 # of a factor between a rate and a column, that is a factor between two units all the same. ASSUMPTION
 NEAR = 0.03
-# turns that a log has of a stage worth declaring. ASSUMPTION
-TURNS = 3.0
-# of the mean, that a steady speed or supply may scatter. ASSUMPTION
-STEADY = 0.2
-# share of rows that move either way, before friction is told from an offset. ASSUMPTION
-EITHER_WAY = 0.05
-# s since 1970, from where a stamp is the time of day: the year 2001. definition
-SINCE_1970_S = 1e9
-# bits of a sensor's turn, at least, by which its unit is guessed. ASSUMPTION
-LEAST_BITS = 6
+TURNS = 3.0  # turns that a log has of a stage worth declaring. ASSUMPTION
+STEADY = 0.2  # of the mean, that a steady speed or supply may scatter. ASSUMPTION
+EITHER_WAY = 0.05  # share of rows that move either way, before friction is told from an offset. ASSUMPTION
+SINCE_1970_S = 1e9  # s since 1970, from where a stamp is the time of day: the year 2001. definition
+LEAST_BITS = 6  # bits of a sensor's turn, at least, by which its unit is guessed. ASSUMPTION
 # of a power of two of steps, that a turn may be off it: what six digits of a scale leave. arithmetic
 WHOLE_BITS = 1e-4
-# of a power of ten, likewise, that a decimal's step may be off it. arithmetic
-WHOLE_DECIMALS = 1e-3
+WHOLE_DECIMALS = 1e-3  # of a power of ten, likewise, that a decimal's step may be off it. arithmetic
 #: between a rate's unit and the position's, per s
 FACTORS = (1.0, 1 / 60, 6.0, np.pi / 30, np.pi / 180, 180 / np.pi, 1e-3)
 FORCES = ("force", "current", "effort")

@@ -34,12 +34,9 @@ _UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _PART = re.compile(r"[^\W\d_]+")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
-# characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
-SHORT = 2
-# rows that are enough to say what a column holds. ASSUMPTION
-LOOKED_AT = 200
-# words that name the signals of a long table. ASSUMPTION
-SIGNALS = 64
+SHORT = 2  # characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
+LOOKED_AT = 200  # rows that are enough to say what a column holds. ASSUMPTION
+SIGNALS = 64  # words that name the signals of a long table. ASSUMPTION
 # of the rows, from which on a word that is another one than in the row before is a signal's name. ASSUMPTION
 TURNS = 0.3
 

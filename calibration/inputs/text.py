@@ -14,10 +14,8 @@ from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, with_seconds
 
-# characters that a blank line may hold, but for the delimiter
-BLANK = " \t\r\f\v"
-# words of a column's name: itself and its unit. A remark has more. ASSUMPTION
-NAME_WORDS = 2
+BLANK = " \t\r\f\v"  # characters that a blank line may hold, but for the delimiter
+NAME_WORDS = 2  # words of a column's name: itself and its unit. A remark has more. ASSUMPTION
 MOST_COLUMNS = 4096
 """Ten times the widest table known. ASSUMPTION."""
 COMMAS = ": decimal commas? write points"

@@ -35,8 +35,7 @@ from calibration.names.name import TOLERANCE
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC
 
-# 6 s: fewer rows say nothing about six parameters. ASSUMPTION
-LEAST_ROWS = 600
+LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters. ASSUMPTION
 # of the rows between first and last stamp; with fewer, nothing is a measured motion any more. ASSUMPTION
 LEAST_PRESENT = 0.25
 

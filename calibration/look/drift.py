@@ -40,14 +40,11 @@ from calibration.look.worm import (
     worms,
 )
 
-# frames to fit. ASSUMPTION
-LEAST_ROWS = 100
+LEAST_ROWS = 100  # frames to fit. ASSUMPTION
 # of a turn, over the whole log, by which a worm with a tooth more runs away from this one (ASSUMPTION)
 TOOTH_APART = 0.3
-# of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
-WRONG_PERIODS = (0.9, 1.1)
-# parts of a mount, whose turns are looked at for what is left. ASSUMPTION
-FEW = 4
+WRONG_PERIODS = (0.9, 1.1)  # of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
+FEW = 4  # parts of a mount, whose turns are looked at for what is left. ASSUMPTION
 OF_ALL_FRAMES = "offsets, drift and the dithers' gain are fitted to all frames, before and after alike"
 NEED = "guide one section for at least two turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (

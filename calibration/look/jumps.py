@@ -27,8 +27,7 @@ CLEAR = 4.0
 LEAST_SHARE = 0.25
 # of a jump's size over many rows, that few rows show at least. ASSUMPTION: half, their own error aside
 SHARP = 0.5
-# of one log. More are no events but a way of moving. ASSUMPTION
-MOST = 12
+MOST = 12  # of one log. More are no events but a way of moving. ASSUMPTION
 
 
 def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, list[Finding]]:

@@ -34,10 +34,8 @@ from calibration.statistics.thresholds import SURE_Z
 CLEAR = 5.0
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
-# fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
-BESIDE = 2
-# places that are tried about a slip, and once more about the best of them. ASSUMPTION
-TRIED = 33
+BESIDE = 2  # fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
+TRIED = 33  # places that are tried about a slip, and once more about the best of them. ASSUMPTION
 
 
 def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
