@@ -62,8 +62,7 @@ def _back(before: dict[int, int]) -> None:
             os.sched_setscheduler(thread, policy, os.sched_param(0))
 
 
-_STATUS_S = 1.0
-"""Wall time between two status lines. ASSUMPTION."""
+_STATUS_S = 1.0  # Wall time between two status lines. ASSUMPTION.
 
 
 class Loop:

@@ -21,8 +21,7 @@ from scenarios.doors.pc import Host, TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken, Wish
 from scenarios.language.model import Scenario
 
-_LOOKED_S = 1.0
-"""Pages refresh four times a second; when nobody has asked for so long, nobody looks."""
+_LOOKED_S = 1.0  # Pages refresh four times a second; when nobody has asked for so long, nobody looks.
 
 
 class BusMirror:

@@ -153,8 +153,7 @@ class PtyDoor:
         return counted(*read, (sum(port.lost for port in self.ports), "bytes lost by slow readers"))
 
 
-_KEPT = 4096
-"""Bytes that wait for a slice; older ones are lost."""
+_KEPT = 4096  # Bytes that wait for a slice; older ones are lost.
 
 
 class DebugFeed:

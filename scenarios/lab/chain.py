@@ -24,10 +24,8 @@ DROP_NS: Final = 20_000_000
 """The contactor falls this much later. ASSUMPTION: usual for one of 24 V with a diode over its coil."""
 _SOONEST_NS: Final = 5_000_000
 """Between two looks at a switch: at 3 deg/s (paper) the axis goes on by 0.015 deg."""
-_OPEN_NS: Final = 50_000_000
-"""Between two looks at an open chain: five MOTION frames of each axis."""
-_STRONGEST: Final = 1.5
-"""Most that the fault `weak_supply` makes of the supply."""
+_OPEN_NS: Final = 50_000_000  # Between two looks at an open chain: five MOTION frames of each axis.
+_STRONGEST: Final = 1.5  # Most that the fault `weak_supply` makes of the supply.
 
 
 class Chain:

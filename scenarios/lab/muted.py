@@ -18,8 +18,7 @@ from scenarios.lab.network import Network
 
 _LONGEST = 200
 """Characters of a line read at once: candump's are shorter, and a file without lines may be large."""
-_ERROR = 0x2000_0000
-"""CAN_ERR_FLAG (linux/can.h)."""
+_ERROR = 0x2000_0000  # CAN_ERR_FLAG (linux/can.h).
 
 
 class FeedError(ValueError):

@@ -11,8 +11,7 @@ from scenarios.lab.faults.onboard import Hears
 from scenarios.lab.faults.onplant import Staged
 from scenarios.lab.faults.place import Place
 
-_ENDAT_BITS = 36
-"""F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1)."""
+_ENDAT_BITS = 36  # F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1).
 
 
 class FrameLoss:

@@ -109,8 +109,7 @@ def break_away_point(forward: Log, backward: Log, sheet: Drive) -> MapPoint:
     return MapPoint(max(rate, 0.1) * ARCSEC, level, BREAK_AWAY_ERROR * level)
 
 
-WINDOW = 15
-"""Samples, 150 ms."""
+WINDOW = 15  # Samples, 150 ms.
 BREAK_AWAY_ERROR = 0.025
 """Share. The rate, some 10 arcsec/s, doubles within the window and is read in counts of 2.3. So it is known
 to a quarter. There the torque falls by a tenth when the rate doubles (Table 2, any exponent near 0.5).
@@ -142,8 +141,7 @@ class FrictionFit:
         return friction_curve(rate, astuple(self))
 
 
-EXPONENTS = (0.5, 2.0)
-"""Bounds of the fitted exponent: hardware.md 1.1."""
+EXPONENTS = (0.5, 2.0)  # Bounds of the fitted exponent: hardware.md 1.1.
 
 
 def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:

@@ -79,10 +79,8 @@ INERTIA = (300.0, 10_000.0)
 DAMPING = (300.0, 60_000.0)
 LATE_S = (0.0, 0.025)
 """Bounds of the three: kg m2; N m s/rad of one train; s."""
-SLOWEST = 60.0
-"""arcsec/s: below, bristles move more than they slide, which the map's curve does not know."""
-SPAN_S = 0.1
-"""s: the axis is slower than that within 0.08 s."""
+SLOWEST = 60.0  # arcsec/s: below, bristles move more than they slide, which the map's curve does not know.
+SPAN_S = 0.1  # s: the axis is slower than that within 0.08 s.
 
 
 def fit_run_downs(

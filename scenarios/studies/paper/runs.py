@@ -11,16 +11,13 @@ from plant.units import ARCSEC_PER_TURN
 from scenarios.studies.paper.measures import Log, join, stalled
 from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
 
-TRACKING = 15.0
-"""arcsec/s, the paper's tracking speed (Fig. 13)."""
+TRACKING = 15.0  # arcsec/s, the paper's tracking speed (Fig. 13).
 HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
 """arcsec/s, "higher speeds of 600 to 1000 arc sec/s" (paper 4)."""
-OPENED = (600.0, 1000.0)
-"""arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a))."""
+OPENED = (600.0, 1000.0)  # arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a)).
 SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
-LOW = 100.0
-"""arcsec/s, Fig. 7."""
+LOW = 100.0  # arcsec/s, Fig. 7.
 
 
 class Bench(Protocol):
@@ -108,14 +105,11 @@ def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 1
     return LowSpeed(closed, steps)
 
 
-TRIALS = 10
-"""Efforts tried on each side at most."""
-MOTOR_TURN_ARCSEC = ARCSEC_PER_TURN / GEAR_RATIO
-"""arcsec of the axis in a turn of the motor."""
+TRIALS = 10  # Efforts tried on each side at most.
+MOTOR_TURN_ARCSEC = ARCSEC_PER_TURN / GEAR_RATIO  # arcsec of the axis in a turn of the motor.
 OPENED_BEGIN_S, OPENED_SETTLE_S, OPENED_AVERAGED_S = 4.0, 12.0, 30.0
 """s: settling is slowest where friction falls with speed nearly as fast as the motor's torque."""
-BROKEN_AWAY = 20.0
-"""Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
+BROKEN_AWAY = 20.0  # Counts in 5 ms, 46 arcsec/s: the axis no longer creeps.
 MAP_SPEEDS = (
     10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0,
     1200.0, 1400.0, 1600.0, 1800.0, 2400.0, 4800.0, 7200.0,
@@ -201,5 +195,4 @@ def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
     return bench.open_loop(0, 1.5)
 
 
-STEP_TO = 600.0
-"""arcsec/s, Fig. 11."""
+STEP_TO = 600.0  # arcsec/s, Fig. 11.

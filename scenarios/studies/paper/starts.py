@@ -21,8 +21,7 @@ ANGLES_DEG = (97.3, 123.1, 149.6, 172.9, 193.4, 217.7, 241.2, 268.9)
 """Eight angles of the absolute encoder over the telescope's travel, at odd places of every gear stage.
 ASSUMPTION: the paper names no place; travel +-100 deg about 180 deg."""
 SEEDS = (1, 2, 3)
-NOTHING = 1e-3
-"""Torque left of a friction that is taken away: a plant file wants a positive number."""
+NOTHING = 1e-3  # Torque left of a friction that is taken away: a plant file wants a positive number.
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,7 @@ STARTS = tuple(Start(angle, SEEDS[k % len(SEEDS)]) for k, angle in enumerate(ANG
 """What decides a row: eight angles, the seeds in turn."""
 FRESH, TRAVEL_DEG = 20261126, (85.0, 275.0)
 """Seed of `others`, which the search must never see; degrees of the absolute encoder."""
-QUICK = STARTS[::4]
-"""For a look; decides nothing."""
+QUICK = STARTS[::4]  # For a look; decides nothing.
 
 
 def others(count: int) -> tuple[Start, ...]:

@@ -10,12 +10,9 @@ from scenarios.studies.paper.runs import BROKEN_AWAY, HIGH, break_away, map_run,
 from scenarios.studies.paper.scales import EFFORT_SCALE, INERTIA, TABLE_2, drive
 from scenarios.studies.paper.starts import Benches, with_inertia
 
-REGION = (0.25, 3.0)
-"""Of vs: where the Stribeck effect does most of its falling."""
-OTHERS = (0.8, 1.2)
-"""Factors on the inertia."""
-RUN_DOWN_SPEEDS = (7200.0, 2400.0)
-"""arcsec/s: the slew speed of Table 1, and a third of it."""
+REGION = (0.25, 3.0)  # Of vs: where the Stribeck effect does most of its falling.
+OTHERS = (0.8, 1.2)  # Factors on the inertia.
+RUN_DOWN_SPEEDS = (7200.0, 2400.0)  # arcsec/s: the slew speed of Table 1, and a third of it.
 PLACES = (0.0, 0.25)
 """Motor turns: what its second harmonic adds to the torque at one of them it takes off at the other."""
 

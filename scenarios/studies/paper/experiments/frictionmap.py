@@ -27,10 +27,8 @@ from scenarios.studies.paper.starts import Benches
 
 ADC_NOISE = 1.0
 """Counts rms on every current sample: 6.1 mA of 6 A. ASSUMPTION: one count of ten bits beside a PWM."""
-GAIN_NOISE = 0.01
-"""Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION."""
-CONSTANT_ERROR = 0.05
-"""Share by which a motor's torque constant may be off its data sheet, either way."""
+GAIN_NOISE = 0.01  # Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION.
+CONSTANT_ERROR = 0.05  # Share by which a motor's torque constant may be off its data sheet, either way.
 
 
 class Noise:
@@ -57,13 +55,11 @@ class Noise:
 
 STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
 """Shares, of a steady state: mean velocity off the set point, and uncertainty of the mean torque, at most."""
-ADC_FULL = 1023.0
-"""Largest count of the 10-bit converter: 6.24 A."""
+ADC_FULL = 1023.0  # Largest count of the 10-bit converter: 6.24 A.
 BREAK_AWAYS = (0.15, 0.2, 0.3)
 """s that each effort lasts on the way to break-away. Three, because the rate at that moment, some 10
 arcsec/s, is read in counts of 2.3. It is all that is known of the curve's steep end."""
-TRIALS = 80
-"""Pairs of efforts tried at most."""
+TRIALS = 80  # Pairs of efforts tried at most.
 
 
 def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:

@@ -25,8 +25,7 @@ from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.runs import STEP_TO
 from scenarios.studies.paper.starts import Benches
 
-RAMP_ARCSEC_S2 = 7200.0
-"""The firmware's acceleration limit, 2 deg/s2 (Table 1)."""
+RAMP_ARCSEC_S2 = 7200.0  # The firmware's acceleration limit, 2 deg/s2 (Table 1).
 Gains = tuple[float, float]
 """Kp and Ki of an incremental PI: PWM steps per count in 5 ms, PWM steps per count."""
 
