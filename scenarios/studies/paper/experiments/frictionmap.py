@@ -8,7 +8,7 @@ not the current. The logs have noise of the instruments the authors read, which 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -70,23 +70,15 @@ def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
     return off < STEADY_RATE and point.unrest < STEADY_TORQUE * point.torque
 
 
-@dataclass(frozen=True)
-class Map:
-    """Points, the speeds at which the loop had no steady state, and the fit (None: too few points)."""
-
-    points: list[MapPoint]
-    left_out: list[float]
-    fit: FrictionFit | None
-
-
-def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
-    """Measure the map: steady states both ways, and the break-away torques as its points near rest."""
+def friction_map(benches: Benches, preload: str, noise: Noise) -> tuple[list[MapPoint], FrictionFit | None]:
+    """Measure the map: steady states both ways, and the break-away torques as its points near rest. Points,
+    and the fit (None: too few of them)."""
     sheet = noise.sheet(drive(benches.plants[preload]))
     points = []
     for step_s in BREAK_AWAYS:
         ways = [noise.log(break_away(benches(preload), way, step_s)) for way in (1, -1)]
         points.append(break_away_point(ways[0], ways[1], sheet))
-    left_out: list[float] = []
+    leaps = False  # at some speed the loop had no steady state
     slowest: tuple[Log, Log] | None = None
     for speed in reversed(MAP_SPEEDS):
         bench = benches(preload)
@@ -97,12 +89,12 @@ def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
             continue
         if steady(speed, point, logs):
             points.append(point)
-            slowest = logs if not left_out else slowest
+            slowest = slowest if leaps else logs
         else:
-            left_out.append(speed)
-    if left_out and slowest is not None:
+            leaps = True
+    if leaps and slowest is not None:
         points += opened(benches, preload, noise, sheet, slowest)
-    return Map(points, left_out, fit_friction(points) if len(points) >= 6 else None)
+    return points, fit_friction(points) if len(points) >= 6 else None
 
 
 def opened(
