@@ -10,9 +10,13 @@ from calibration.arrays import Array
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.look.looked import Spectrum
-from calibration.report.thresholds import BINS, BINS_OF_A_PULSE, FEWEST_DRAWN, FEWEST_OF_A_TRACE, MOST_MARKED
 from calibration.statistics.orders import order_spectrum
 
+BINS = 80  # bins over a domain. ASSUMPTION
+BINS_OF_A_PULSE = 8  # bins over the width of a narrow pulse. ASSUMPTION: its shape shows
+FEWEST_DRAWN = 20  # rows, fewest, over a domain. ASSUMPTION
+FEWEST_OF_A_TRACE = 3  # rows, fewest, of a trace: a line with a bend. ASSUMPTION
+MOST_MARKED = 12  # places of gaps that are marked in a trace; more would hide it. ASSUMPTION
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
 
 GATE = "The largest score of all candidates, in this log and in copies of its residual that hold nothing"

@@ -1,7 +1,6 @@
 """What the host beside a served network sees of the emulator: its wire for the bus page, sky for cameras."""
 
 from collections import Counter, deque
-from collections.abc import Mapping
 from typing import Any
 
 from bus.can.frame import Frame
@@ -67,14 +66,12 @@ class EmulatedBus:
         ]
 
     def _running(self) -> list[tuple[int, str]]:
-        now_ns = self._served.now_ns
-        return [
-            (
-                each.number,
-                f"{each.name}, {_arguments(each.arguments)} for {(now_ns - each.since_ns) * 1e-9:.1f} s",
-            )
-            for each in self._served.faults.running
-        ]
+        found = []
+        for each in self._served.faults.running:
+            given = " ".join(f"{name}={value}" for name, value in each.arguments.items()) or "no arguments"
+            since_s = (self._served.now_ns - each.since_ns) * 1e-9
+            found.append((each.number, f"{each.name}, {given} for {since_s:.1f} s"))
+        return found
 
     def wish(self, wished: Wish) -> Done:
         """Do it; refused are faults and boards that cannot be, and arguments of another kind."""
@@ -121,10 +118,6 @@ def _pairs(text: str) -> dict[str, str]:
             raise FaultError(f"{word!r}: arguments are written name=value")
         found[name] = value.replace("_", " ") if name not in ("node", "nodes", "sensor") else value
     return found
-
-
-def _arguments(given: Mapping[str, Any]) -> str:
-    return " ".join(f"{name}={value}" for name, value in given.items()) or "no arguments"
 
 
 PERIOD_NS = 10_000_000

@@ -36,7 +36,7 @@ class Tape:
 
     def __init__(self, session: Session, heard: Heard) -> None:
         self.heard = heard
-        self.ears = {kind: Ear(self.heard, kind, call) for kind, call in listeners(session).items()}
+        self.ears = {kind: Ear(heard, kind, call) for kind, call in listeners(session).items()}
         network = session.network
         network.hid.to_host = self.ears["usb"]
         for link in session.serial:
@@ -44,16 +44,8 @@ class Tape:
         session.plant._sink = self.ears["truth"]
         if network.chain is not None:
             network.chain.told = self.ears["chain"]
-        session.ticked = self.tick
-        session.eye.told = self.seen
-
-    def tick(self, t_ns: int) -> None:
-        """The host's clock."""
-        self.heard.append(("tick", (t_ns,)))
-
-    def seen(self, hour_angle_rad: float, declination_rad: float) -> None:
-        """An offset of a star in the field."""
-        self.heard.append((SEEN, (hour_angle_rad, declination_rad)))
+        session.ticked = Ear(heard, "tick", nothing)
+        session.eye.told = Ear(heard, SEEN, nothing)
 
 
 def listeners(session: Session) -> dict[str, Callable[..., None]]:
