@@ -9,7 +9,7 @@ import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
 from scenarios.studies.paper.measures import Log, join, stalled
-from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
+from scenarios.studies.paper.scales import EFFORT_SCALE, GEAR_RATIO, LOG_PERIOD_S
 
 TRACKING = 15.0  # arcsec/s, the paper's tracking speed (Fig. 13).
 HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
@@ -18,6 +18,7 @@ OPENED = (600.0, 1000.0)  # arcsec/s: the ends of that range, at which the loop 
 SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
 LOW = 100.0  # arcsec/s, Fig. 7.
+DWELL_S, SETTLE_S = 60.0, 12.0  # Of each effort of E6, and before it counts.
 
 
 class Bench(Protocol):
@@ -76,22 +77,22 @@ class LowSpeed:
         )
 
 
-def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 12.0) -> LowSpeed:
+def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
     """E6: as an operator would look for the lowest open-loop speed. bench: makes a fresh one, at the same
     place.
 
     Closed loop at 100 arcsec/s first. Then, for one effort after the other, from 140 arcsec/s into open loop
-    for `dwell` s after `settle` s. The first effort is the one that the loop needed. It falls in the smallest
+    for DWELL_S after SETTLE_S. The first effort is the one that the loop needed. It falls in the smallest
     steps until the axis stays put, or rises until it keeps moving.
     """
-    closed = bench().closed_loop(LOW, settle + dwell).after(settle)
+    closed = bench().closed_loop(LOW, SETTLE_S + DWELL_S).after(SETTLE_S)
     effort = round(float(closed.effort.mean()))
     steps: list[tuple[int, Log]] = []
 
     def moves(tried: int) -> bool:
         trial = bench()
         trial.closed_loop(1.4 * LOW, 4.0)
-        steps.append((tried, trial.open_loop(tried, settle + dwell).after(settle)))
+        steps.append((tried, trial.open_loop(tried, SETTLE_S + DWELL_S).after(SETTLE_S)))
         return not stalled(steps[-1][1].rate)
 
     if moves(effort):
@@ -169,7 +170,7 @@ def opened_pair(bench: Bench, begin: float, there: int, back: int) -> tuple[Log,
     return log, opened_run(bench, -begin, back)
 
 
-def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3000) -> Log:
+def break_away(bench: Bench, direction: int, step_s: float = 0.2) -> Log:
     """E7: from rest the effort rises by 1/3000 every `step_s` until the axis is gone. direction: 1 or -1.
 
     Slowly: at 0.05 s a step the high-preload axis creeps at 25 arcsec/s when its torque is largest. What it
@@ -177,7 +178,7 @@ def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3
     reads lies within 2 %.
     """
     logs: list[Log] = []
-    for effort in range(1, limit + 1):
+    for effort in range(1, EFFORT_SCALE + 1):
         logs.append(bench.open_loop(direction * effort, step_s))
         if np.max(np.abs(logs[-1].counts), initial=0.0) > BROKEN_AWAY:
             break
