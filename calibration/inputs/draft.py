@@ -93,13 +93,11 @@ def draft(path: Path) -> str:
     _by_motion(d)
     _response(d)
     d.unsaid += [f"{c!r}: a channel for it; it is left out" for c in d.left]
-    lines = [
-        f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."
-    ]
-    lines += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
-    lines += [role.line(channel) for channel, role in d.roles.items()]
+    text = [f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."]
+    text += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
+    text += [role.line(channel) for channel, role in d.roles.items()]
     told = {k: (v, "") for k, v in loose.fields.items()} | d.fields
-    return "\n".join([*lines, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
+    return "\n".join([*text, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
 
 
 def _flow(key: str, value: Any, why: str) -> str:
@@ -166,9 +164,9 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        by_side, _ = _like(
-            gaussian_filter1d(d.left[column], SOFT), np.sign(rate)
-        )  # friction goes with it, too
+        by_side = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))[
+            0
+        ]  # friction goes with it, too
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:

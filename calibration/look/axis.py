@@ -60,8 +60,7 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
     tried = [row for b in balances for row in b.controls]
     effects, withdrawn = withdraw(named, failed_controls(tried), against_nature(result.selections))
     before = result.before | within_tolerance(result, effects)
-    balances = [replace(b, before=before.get(b.key)) for b in balances]
-    balances = [_with_missing(result, b) for b in balances]
+    balances = [_with_missing(result, replace(b, before=before.get(b.key))) for b in balances]
     doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]
     absent = {key: what for key, what in COLUMNS.items() if key not in result.selections}
     effects, needs = unnamed_where_missing(effects, [*lacks(result, balances), *doubts], balances)

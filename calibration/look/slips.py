@@ -122,10 +122,8 @@ def _step(view: View, row: int) -> Array:
 
 def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
     """Those that are more than their own errors, and than a count: a drift through one looks like a slip."""
-    r, steps_of = view.response, view.quanta
-    count = max(
-        steps_of.get(r.channel, 0.0) * abs(r.gain), steps_of.get("position", 0.0) * abs(r.ratio or 1.0)
-    )
+    r, step = view.response, view.quanta
+    count = max(step.get(r.channel, 0.0) * abs(r.gain), step.get("position", 0.0) * abs(r.ratio or 1.0))
     fit = everywhere.fit(np.column_stack([s.columns, *steps.values()])) if steps else s.after
     first = s.columns.shape[1]
     clear = np.abs(fit.beta[first:]) > np.maximum(SURE_Z * fit.errors[first:], count)

@@ -104,9 +104,8 @@ def domain_plot(
 def spectrum_plot(selection: Selection, spectrum: Spectrum, title: str) -> str:
     """Amplitude over order, or over the period, before and after, with the known parts and what was found."""
     amplitude = _over_periods if spectrum.periods else _over_orders
-    before, after = (
-        amplitude(selection, spectrum, fit.residual) for fit in (selection.before, selection.after)
-    )
+    fits = selection.before, selection.after
+    before, after = (amplitude(selection, spectrum, fit.residual) for fit in fits)
     if not len(before[0]):
         return nothing_to_draw(title, "too few fitted rows for a spectrum")
     _, ax = figure(9.0, 3.8)
