@@ -164,9 +164,8 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        by_side = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))[
-            0
-        ]  # friction goes with it, too
+        # friction goes with it, too
+        by_side, _ = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:

@@ -59,10 +59,8 @@ class EmulatedBus:
     def fault_kinds(self) -> list[FaultKind]:
         """The table of faults."""
         return [
-            FaultKind(
-                kind.name, kind.level, kind.text, _template(kind), "; ".join(map(_said, kind.parameters))
-            )
-            for kind in self._served.faults.kinds()
+            FaultKind(k.name, k.level, k.text, _template(k), "; ".join(map(_said, k.parameters)))
+            for k in self._served.faults.kinds()
         ]
 
     def _running(self) -> list[tuple[int, str]]:
@@ -99,14 +97,12 @@ def _template(kind: Kind) -> str:
     return " ".join(f"{name}=" for name in needed)
 
 
-def _said(parameter: Parameter) -> str:
+def _said(p: Parameter) -> str:
     """An argument: what it is, its unit, its bounds, what it is when left out."""
-    unit = f", {parameter.unit}" if parameter.unit not in ("", "1") else ""
-    bounds = (
-        f", {parameter.low:g} to {parameter.high:g}" if None not in (parameter.low, parameter.high) else ""
-    )
-    default = f" ({parameter.default} when left out)" if parameter.default not in (None, "") else ""
-    return f"{parameter.name}: {parameter.text}{unit}{bounds}{default}"
+    unit = f", {p.unit}" if p.unit not in ("", "1") else ""
+    bounds = f", {p.low:g} to {p.high:g}" if None not in (p.low, p.high) else ""
+    default = f" ({p.default} when left out)" if p.default not in (None, "") else ""
+    return f"{p.name}: {p.text}{unit}{bounds}{default}"
 
 
 def _pairs(text: str) -> dict[str, str]:

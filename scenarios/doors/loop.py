@@ -121,9 +121,7 @@ class Loop:
             self._next_s = now_s + _STATUS_S
             pace = self._keeping_up(now_s)
             self._show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
-        elif (
-            now_s >= self._flush_s and self._recording is not None
-        ):  # in another slice: half a millisecond each
+        elif now_s >= self._flush_s and self._recording is not None:  # another slice: half a millisecond each
             self._flush_s = now_s + _STATUS_S
             self._recording.flush()
         served.entry.running = True

@@ -53,10 +53,8 @@ def over_angle(log: Log) -> Array:
     What the gears add repeats with the angle, so its mean over whole turns is zero over the angle. Over time
     it is not: an open loop lingers where they hold it back (0.2 % of the torque at 5 % of ripple).
     """
-    window = np.ones(WINDOW)
-    rate = np.convolve(log.rate, window, mode="same") / np.convolve(
-        np.ones(log.rate.size), window, mode="same"
-    )
+    summed, rows = (np.convolve(x, np.ones(WINDOW), mode="same") for x in (log.rate, np.ones(log.rate.size)))
+    rate = summed / rows
     covered = np.maximum(0.0, rate * np.sign(rate.sum()))
     whole = float(covered.sum())
     share = covered / whole if whole > 0.0 else np.full(rate.size, 1.0 / rate.size)
@@ -162,12 +160,11 @@ def fit_friction(points: Sequence[MapPoint]) -> FrictionFit:
 
     low = np.log([1.0, 1.0, 1e-5, EXPONENTS[0], 1.0])
     high = np.log([1e5, 1e5, 1e-1, EXPONENTS[1], 1e6])
+    rise = np.ptp(torque[-3:]) / np.ptp(rate[-3:])
     found = []
     for vs in (2e-4, 5e-4, 1.2e-3):
         for delta in (0.6, 1.0, 1.8):
-            start = np.log(
-                [torque.min(), torque.max(), vs, delta, max(10.0, np.ptp(torque[-3:]) / np.ptp(rate[-3:]))]
-            )
+            start = np.log([torque.min(), torque.max(), vs, delta, max(10.0, rise)])
             start = np.clip(start, low + 1e-9, high - 1e-9)
             found.append(least_squares(misfit, start, bounds=(low, high), loss="soft_l1"))
     return FrictionFit(*map(float, np.exp(min(found, key=lambda each: each.cost).x)))

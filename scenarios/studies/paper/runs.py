@@ -72,9 +72,7 @@ class LowSpeed:
     @property
     def nearest(self) -> Log | None:
         """The open-loop run nearest to 100 arcsec/s."""
-        return min(
-            (log for _, log in self.running), key=lambda log: abs(float(log.rate.mean()) - LOW), default=None
-        )
+        return min((log for _, log in self.running), key=lambda log: abs(log.rate.mean() - LOW), default=None)
 
 
 def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
