@@ -18,17 +18,7 @@ from calibration.inputs.guidelog import is_guide_log
 from calibration.inputs.matlab import columns_of, read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.shapes import ISO, is_stamp
-from calibration.inputs.text import (
-    Heading,
-    Long,
-    check_file,
-    heading,
-    load_utf8,
-    plain,
-    read_columns,
-    read_long,
-    split,
-)
+from calibration.inputs.text import Heading, Long, check_file, heading, load_utf8, plain, read_long, split
 
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _PART = re.compile(r"[^\W\d_]+")
@@ -84,7 +74,7 @@ def _of_text(h: Heading, fields: dict[str, Any]) -> Loose:
         column = name if clear and h.fields.count(name) == 1 else k
         form = {str(column): (ISO, "")} if held and all(_is_stamp(x) for x in held) else {}
         try:
-            got = read_columns(h, [column], form)
+            got = h.read([column], form)
         except CalibrationInputError as error:
             refused = refused or error
             found.words.append(name)

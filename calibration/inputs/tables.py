@@ -16,7 +16,7 @@ from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
-from calibration.inputs.text import Long, heading, load_utf8, read_columns, read_long
+from calibration.inputs.text import Long, heading, load_utf8, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
 
 #: files that are no text, by the ending of their name
@@ -45,7 +45,7 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
             one, logged = read_long(table, wanted, long, stamps)
             found = [one]
         else:
-            found = [read_columns(table, wanted, stamps)]
+            found = [table.read(wanted, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
     return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
 

@@ -71,6 +71,10 @@ def check_width(path: Path, count: int, line: int) -> None:
         raise CalibrationInputError(path, f"{count} columns, at most {MOST_COLUMNS}: is it transposed?", line)
 
 
+Stamps = Mapping[str, tuple[str, str | int]]
+"""Formats of the columns that are stamps, and the column ("": none) that holds their clock."""
+
+
 class Heading(NamedTuple):
     """A table's file, lines, names of its columns, the index of its first row, the delimiter, and the index
     of the header row. That index is `first` where there is none."""
@@ -99,6 +103,21 @@ class Heading(NamedTuple):
             have = ", ".join(fields) if named else f"no header row and {len(fields)} columns, named 0, 1 …"
             what = f"no such column; the file has {have}"
         raise CalibrationInputError(self.path, what, self.at + 1, str(column))
+
+    def read(self, wanted: list[str | int], stamps: Stamps = MappingProxyType({})) -> dict[str, Array]:
+        """The wanted columns (by name, or place from 0), keyed by `str(column)`; `stamps` become s."""
+        path, mark, line = self.path, self.mark, self.first + 1
+        places = [self.place(c) for c in wanted]
+        called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
+        labels = [called.get(k, str(k)) for k in range(len(self.fields))]
+        rows = self.lines[self.first :]
+        for column, k in zip(wanted, places, strict=True):
+            if str(column) in stamps:
+                form, clock = stamps[str(column)]
+                beside = None if clock == "" else self.place(clock)
+                rows = with_seconds(path, rows, mark, (k, beside), form, line, labels[k])
+        got = read_numbers(path, "\n".join(rows), labels, line, mark, set(places))
+        return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
 
 
 def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str | None = None) -> Heading:
@@ -158,28 +177,6 @@ def _commented(above: list[str], mark: str, count: int) -> list[str]:
     return names if len(names) == count > 1 and words and len(set(names)) == count else []
 
 
-Stamps = Mapping[str, tuple[str, str | int]]
-"""Formats of the columns that are stamps, and the column ("": none) that holds their clock."""
-
-
-def read_columns(
-    table: Heading, wanted: list[str | int], stamps: Stamps = MappingProxyType({})
-) -> dict[str, Array]:
-    """The wanted columns (by name, or place from 0), keyed by `str(column)`; `stamps` become s."""
-    path, mark, line = table.path, table.mark, table.first + 1
-    places = [table.place(c) for c in wanted]
-    called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
-    labels = [called.get(k, str(k)) for k in range(len(table.fields))]
-    rows = table.lines[table.first :]
-    for column, k in zip(wanted, places, strict=True):
-        if str(column) in stamps:
-            form, clock = stamps[str(column)]
-            beside = None if clock == "" else table.place(clock)
-            rows = with_seconds(path, rows, mark, (k, beside), form, line, labels[k])
-    got = read_numbers(path, "\n".join(rows), labels, line, mark, set(places))
-    return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
-
-
 class Long(NamedTuple):
     """Columns of a table with a row per reading: the signal's name, its stamp, its value; `compete` as in
     `wide`."""
@@ -194,7 +191,7 @@ def read_long(
     table: Heading, wanted: list[str | int], long: Long, stamps: Stamps
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """The wanted signals of a long table on the stamps of one of them and as logged, as `wide` has it."""
-    got = read_columns(table, [long.time, long.value], stamps)
+    got = table.read([long.time, long.value], stamps)
     place = table.place(long.name, named=True)
     rows = (row for row in table.lines[table.first :] if row.strip())
     names = [split(row, table.mark)[place] for row in rows][: len(got[long.time])]

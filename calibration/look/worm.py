@@ -142,7 +142,7 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
     return s
 
 
-def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
+def findings(s: Selection, mount: Mount, span: float) -> list[Finding]:
     """Every part and period that was found, with its neighbours within the resolution and a wheel that is
     assumed in its note. `span` is in s, as in `longest_span`."""
     out = []
