@@ -75,9 +75,7 @@ class BusMirror:
         return future
 
 
-def cameras(
-    scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None = None
-) -> tuple[Camera, ...]:
+def cameras(scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None) -> tuple[Camera, ...]:
     """By Alpaca's number, where there is an Alpaca door. scenario: one with a date. guiding: sees the frames.
     Raises ValueError for a catalogue that cannot be used."""
     if not options.asked.get("alpaca"):

@@ -51,7 +51,9 @@ def others(count: int) -> tuple[Start, ...]:
     return tuple(Start(round(float(angle), 1), int(seed)) for angle, seed in zip(angles, seeds, strict=True))
 
 
-MakeBench = Callable[[PlantModel, int, tuple[float, float] | None, float], Bench]
+Gains = tuple[float, float]
+"""Kp and Ki of an incremental PI: PWM steps per count in 5 ms, PWM steps per count."""
+MakeBench = Callable[[PlantModel, int, Gains | None, float], Bench]
 """Makes a bench, at rest and powered, of (plant, seed, gains instead of the plant file's, start in steps)."""
 
 
@@ -63,16 +65,16 @@ class Benches:
     plants: Mapping[str, PlantModel]
     start: Start
 
-    def __call__(self, preload: str = "low", gains: tuple[float, float] | None = None) -> Bench:
+    def __call__(self, preload: str = "low", gains: Gains | None = None) -> Bench:
         """Return a fresh bench of a preload."""
         return self.of(self.plants[preload], gains)
 
-    def of(self, model: PlantModel, gains: tuple[float, float] | None = None) -> Bench:
+    def of(self, model: PlantModel, gains: Gains | None = None) -> Bench:
         """Return a fresh bench of another plant at this start."""
         return self.make(model, self.start.seed, gains, self.start.steps)
 
     @property
-    def gains(self) -> tuple[float, float]:
+    def gains(self) -> Gains:
         """Kp, Ki of the plant file."""
         controller = self.plants["low"].controller
         return controller.kp.si, controller.ki.si
@@ -107,11 +109,7 @@ class EmulatorBench(AxisBench):
     """
 
     def __init__(
-        self,
-        model: PlantModel,
-        seed: int = 1,
-        gains: tuple[float, float] | None = None,
-        start_steps: float = START_STEPS,
+        self, model: PlantModel, seed: int = 1, gains: Gains | None = None, start_steps: float = START_STEPS
     ) -> None:
         super().__init__(model, seed, start_steps)
         self._rows: list[tuple[float, int, int, int, int, float]] = []

@@ -23,11 +23,9 @@ from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.identify import FirstOrder, identify
 from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.runs import STEP_TO
-from scenarios.studies.paper.starts import Benches
+from scenarios.studies.paper.starts import Benches, Gains
 
 RAMP_ARCSEC_S2 = 7200.0  # The firmware's acceleration limit, 2 deg/s2 (Table 1).
-Gains = tuple[float, float]
-"""Kp and Ki of an incremental PI: PWM steps per count in 5 ms, PWM steps per count."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,17 +61,10 @@ def linear_axis(model: PlantModel) -> LinearAxis:
     )
 
 
-def simulate_loop(
-    axis: LinearAxis,
-    gains: Gains,
-    pwm_steps: int,
-    arcsec_s: float,
-    seconds: float,
-    ramp_arcsec_s2: float,
-) -> tuple[Array, Array]:
+def simulate_loop(axis: LinearAxis, gains: Gains, pwm_steps: int, seconds: float) -> tuple[Array, Array]:
     """Return velocity (arcsec/s), effort (1/3000) of equation (6) in the loop of the paper's PI, from rest.
 
-    The set point rises with `ramp_arcsec_s2`, as the firmware's does.
+    The set point rises to STEP_TO as the firmware's does.
     One row per controller period, s. Steps of 0.1 ms; the effort acts Delta t / 2 late; the controller sees
     the mean velocity of its period, unquantised. At rest the stiction only holds: it never pushes back.
     """
@@ -97,7 +88,7 @@ def simulate_loop(
                 speed = current = 0.0
             travelled += speed * dt
         out[k] = travelled / scales.CONTROL_PERIOD_S * to_axis
-        setpoint = min(arcsec_s, setpoint + ramp_arcsec_s2 * scales.CONTROL_PERIOD_S)
+        setpoint = min(STEP_TO, setpoint + RAMP_ARCSEC_S2 * scales.CONTROL_PERIOD_S)
         new = (setpoint - out[k]) / scales.COUNT_RATE
         before = effort
         effort = min(max(effort + kp * (new - error) + ki * new, -pwm_steps), pwm_steps)
@@ -140,7 +131,7 @@ def equation_6(benches: Benches) -> Figures:
     """Difference of the two responses from rest to 600 arcsec/s, and their settled efforts."""
     measured, plant = benches("low").closed_loop(STEP_TO, 3.0), benches.plants["low"]
     steps, seconds = round(plant.controller.pwm_steps.si), measured.t_s.size * scales.LOG_PERIOD_S
-    modelled = simulate_loop(linear_axis(plant), benches.gains, steps, STEP_TO, seconds, RAMP_ARCSEC_S2)
+    modelled = simulate_loop(linear_axis(plant), benches.gains, steps, seconds)
     rate, effort = (x[1::2] for x in modelled)  # the log has every second tick
     late = slice(-rate.size // 3, None)
     return {
