@@ -16,8 +16,7 @@ from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, wi
 
 BLANK = " \t\r\f\v"  # characters that a blank line may hold, but for the delimiter
 NAME_WORDS = 2  # words of a column's name: itself and its unit. A remark has more. ASSUMPTION
-MOST_COLUMNS = 4096
-"""Ten times the widest table known. ASSUMPTION."""
+MOST_COLUMNS = 4096  # Ten times the widest table known. ASSUMPTION.
 COMMAS = ": decimal commas? write points"
 STAMP = ": a stamp? the column time takes 'format: iso'"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)

@@ -41,7 +41,7 @@ class Chain:
         self._network = network
         self._ends = ends
         self._guards = guards
-        model = network.plant.model
+        model, boards = network.plant.model, network.boards
         self._fastest = {
             axis: _STRONGEST
             * model.supply.voltage.si
@@ -50,9 +50,7 @@ class Chain:
         }
         self._pressed = 0
         self._standing: tuple[str, ...] = ()
-        self._motion = {
-            name: MEASUREMENT_BASE + network.boards[name].device_type for name in map(board_of, ends)
-        }
+        self._motion = {name: MEASUREMENT_BASE + boards[name].device_type for name in map(board_of, ends)}
         self._off: set[str] = set()
         self.open = False
         self.told: Callable[[int, str], None] | None = None

@@ -45,11 +45,9 @@ class Log:
 
     def after(self, seconds: float) -> "Log":
         """Return the log without its first `seconds`: start-up discarded."""
-        first = round(seconds / LOG_PERIOD_S)
+        first, span_s = round(seconds / LOG_PERIOD_S), self.t_s.size * LOG_PERIOD_S
         if first >= self.t_s.size:
-            raise ValueError(
-                f"a run of {self.t_s.size * LOG_PERIOD_S:.2f} s has nothing after {seconds:.2f} s"
-            )
+            raise ValueError(f"a run of {span_s:.2f} s has nothing after {seconds:.2f} s")
         return Log(*(column[first:] for column in self._columns()))
 
     def last(self, seconds: float) -> "Log":
