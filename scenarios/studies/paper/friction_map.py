@@ -142,9 +142,9 @@ class FrictionFit:
 EXPONENTS = (0.5, 2.0)  # Bounds of the fitted exponent: hardware.md 1.1.
 
 
-def fit_friction(points: Sequence[MapPoint]) -> FrictionFit:
-    """Fit Table 2's four parameters and the exponent to a torque-velocity map, by least squares weighted with
-    each point's standard error.
+def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:
+    """Fit Table 2's four parameters and the exponent (unless it is given) to a torque-velocity map, by least
+    squares weighted with each point's standard error.
 
     Starts are a grid over vs and delta, so that the result does not depend on a guess. Raises ValueError when
     there are fewer points than parameters.
@@ -154,16 +154,17 @@ def fit_friction(points: Sequence[MapPoint]) -> FrictionFit:
     rate = np.array([p.rate for p in points])
     torque = np.array([p.torque for p in points])
     spread = np.array([p.spread for p in points])
+    bounds = EXPONENTS if exponent is None else (exponent * (1.0 - 1e-6), exponent * (1.0 + 1e-6))
 
     def misfit(x: Array) -> Array:
         return np.asarray((friction_curve(rate, np.exp(x)) - torque) / spread, dtype=np.float64)
 
-    low = np.log([1.0, 1.0, 1e-5, EXPONENTS[0], 1.0])
-    high = np.log([1e5, 1e5, 1e-1, EXPONENTS[1], 1e6])
+    low = np.log([1.0, 1.0, 1e-5, bounds[0], 1.0])
+    high = np.log([1e5, 1e5, 1e-1, bounds[1], 1e6])
     rise = np.ptp(torque[-3:]) / np.ptp(rate[-3:])
     found = []
     for vs in (2e-4, 5e-4, 1.2e-3):
-        for delta in (0.6, 1.0, 1.8):
+        for delta in (0.6, 1.0, 1.8) if exponent is None else (exponent,):
             start = np.log([torque.min(), torque.max(), vs, delta, max(10.0, rise)])
             start = np.clip(start, low + 1e-9, high - 1e-9)
             found.append(least_squares(misfit, start, bounds=(low, high), loss="soft_l1"))
