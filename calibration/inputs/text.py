@@ -177,8 +177,7 @@ def _commented(above: list[str], mark: str, count: int) -> list[str]:
 
 
 class Long(NamedTuple):
-    """Columns of a table with a row per reading: the signal's name, its stamp, its value; `compete` as in
-    `wide`."""
+    """Columns of a table with a row per reading: a signal's name, stamp and value; `compete` as in `wide`."""
 
     name: str
     time: str

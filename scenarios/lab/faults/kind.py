@@ -24,8 +24,7 @@ class FaultError(ValueError):
 class Parameter:
     """One argument of a fault.
 
-    default: None: it has to be given; "": it may be left out. low, high: bounds, both allowed, in the base
-    unit.
+    default: None: it has to be given; "": it may be left out. low, high: both allowed, in the base unit.
     """
 
     name: str
