@@ -67,9 +67,7 @@ def nothing_to_draw(title: str, why: str) -> str:
     return finish(ax, title)
 
 
-def domain_plot(
-    selection: Selection, x: Array, label: str, title: str, index: int = 0, odd: Array | None = None
-) -> str:
+def domain_plot(selection: Selection, x: Array, label: str, title: str, index: int, odd: Array | None) -> str:
     """Residual without effect `index` over the domain that explains it, binned means with errors, and the
     effect. `odd` is the direction of motion for an effect that changes sign with it: both are multiplied."""
     p = selection.problem

@@ -42,12 +42,9 @@ class Chain:
         self._ends = ends
         self._guards = guards
         model, boards = network.plant.model, network.boards
-        self._fastest = {
-            axis: _STRONGEST
-            * model.supply.voltage.si
-            / (getattr(model.axes, axis).motor.torque_constant.si * RATIO)
-            for axis in ends
-        }
+        most = _STRONGEST * model.supply.voltage.si
+        motors = {axis: getattr(model.axes, axis).motor for axis in ends}
+        self._fastest = {axis: most / (each.torque_constant.si * RATIO) for axis, each in motors.items()}
         self._pressed = 0
         self._standing: tuple[str, ...] = ()
         self._motion = {name: MEASUREMENT_BASE + boards[name].device_type for name in map(board_of, ends)}
