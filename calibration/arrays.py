@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# standard deviations, of a normal value's median size. By definition
-MEDIAN = 1.4826
+MEDIAN = 1.4826  # standard deviations, of a normal value's median size. By definition
 
 
 def by_median(x: Array) -> float:

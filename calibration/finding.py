@@ -7,10 +7,8 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 
 import numpy as np
 
-#: the name of an effect that has none
-UNKNOWN = "unknown"
-# standard errors of a normal law's 95 % interval. arithmetic
-NORMAL = 1.96
+UNKNOWN = "unknown"  # the name of an effect that has none
+NORMAL = 1.96  # standard errors of a normal law's 95 % interval. arithmetic
 
 
 @dataclass(frozen=True)

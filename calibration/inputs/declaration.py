@@ -12,10 +12,8 @@ from plant.effects import REGISTRY
 
 #: channels whose response is a balance of forces; the others compare one sensor with another
 FORCES = ("effort", "force", "current", "acceleration", "velocity")
-#: channels of other joints' angles, which a weight is carried over
-JOINTS = ("joint", "joint2", "joint3")
-#: the SI unit at the end of a key
-_UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")
+JOINTS = ("joint", "joint2", "joint3")  # channels of other joints' angles, which a weight is carried over
+_UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")  # the SI unit at the end of a key
 T = TypeVar("T")
 
 
@@ -59,8 +57,7 @@ class Column:
     integrated: bool = False  # over time, after all that
 
 
-#: kind of a stage of which nobody said whether it is a gear or a motor
-GUESSED = "unknown"
+GUESSED = "unknown"  # kind of a stage of which nobody said whether it is a gear or a motor
 
 
 @dataclass(frozen=True)

@@ -17,32 +17,22 @@ from calibration.inputs.run import quantum
 from calibration.inputs.thresholds import GAP, LARGEST_NUMBER
 from calibration.inputs.units import PER_TURN, units_per_turn
 
-# rows: standard deviation of the filter before a rate or a force is compared. ASSUMPTION
-SOFT = 5.0
-# share of a column's variance that a rate must explain, to be that rate. ASSUMPTION
-IS_RATE = 0.8
-# of what the direction alone leaves of a column, that its rate may. ASSUMPTION
-BESIDE = 0.5
+SOFT = 5.0  # rows: standard deviation of the filter before a rate or a force is compared. ASSUMPTION
+IS_RATE = 0.8  # share of a column's variance that a rate must explain, to be that rate. ASSUMPTION
+BESIDE = 0.5  # of what the direction alone leaves of a column, that its rate may. ASSUMPTION
 # likewise rate, direction and acceleration of a column that is a force by nothing else. ASSUMPTION
 IS_FORCE = 0.05
-# correlation of two columns that show one place. ASSUMPTION
-SAME_PLACE = 0.99
+SAME_PLACE = 0.99  # correlation of two columns that show one place. ASSUMPTION
 # of a factor between a rate and a column, that is a factor between two units all the same. ASSUMPTION
 NEAR = 0.03
-# turns that a log has of a stage worth declaring. ASSUMPTION
-TURNS = 3.0
-# of the mean, that a steady speed or supply may scatter. ASSUMPTION
-STEADY = 0.2
-# share of rows that move either way, before friction is told from an offset. ASSUMPTION
-EITHER_WAY = 0.05
-# s since 1970, from where a stamp is the time of day: the year 2001. definition
-SINCE_1970_S = 1e9
-# bits of a sensor's turn, at least, by which its unit is guessed. ASSUMPTION
-LEAST_BITS = 6
+TURNS = 3.0  # turns that a log has of a stage worth declaring. ASSUMPTION
+STEADY = 0.2  # of the mean, that a steady speed or supply may scatter. ASSUMPTION
+EITHER_WAY = 0.05  # share of rows that move either way, before friction is told from an offset. ASSUMPTION
+SINCE_1970_S = 1e9  # s since 1970, from where a stamp is the time of day: the year 2001. definition
+LEAST_BITS = 6  # bits of a sensor's turn, at least, by which its unit is guessed. ASSUMPTION
 # of a power of two of steps, that a turn may be off it: what six digits of a scale leave. arithmetic
 WHOLE_BITS = 1e-4
-# of a power of ten, likewise, that a decimal's step may be off it. arithmetic
-WHOLE_DECIMALS = 1e-3
+WHOLE_DECIMALS = 1e-3  # of a power of ten, likewise, that a decimal's step may be off it. arithmetic
 #: between a rate's unit and the position's, per s
 FACTORS = (1.0, 1 / 60, 6.0, np.pi / 30, np.pi / 180, 180 / np.pi, 1e-3)
 FORCES = ("force", "current", "effort")
@@ -103,13 +93,11 @@ def draft(path: Path) -> str:
     _by_motion(d)
     _response(d)
     d.unsaid += [f"{c!r}: a channel for it; it is left out" for c in d.left]
-    lines = [
-        f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."
-    ]
-    lines += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
-    lines += [role.line(channel) for channel, role in d.roles.items()]
+    text = [f"# Drafted from {path.name!r}: {rows} rows at {1 / d.period_s:.5g} Hz. Check what is 'guessed'."]
+    text += [*(f"# could not say: {x}" for x in d.unsaid), _flow("rig", path.stem, ""), "columns:"]
+    text += [role.line(channel) for channel, role in d.roles.items()]
     told = {k: (v, "") for k, v in loose.fields.items()} | d.fields
-    return "\n".join([*lines, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
+    return "\n".join([*text, *(_flow(k, v, why) for k, (v, why) in told.items()), ""])
 
 
 def _flow(key: str, value: Any, why: str) -> str:
@@ -176,9 +164,8 @@ def _by_motion(d: _Draft) -> None:
     near = {c: _like(gaussian_filter1d(x, SOFT), rate) for c, x in d.left.items()}
     if "velocity" not in d.roles and near:
         column = max(near, key=lambda c: near[c][0])
-        by_side, _ = _like(
-            gaussian_filter1d(d.left[column], SOFT), np.sign(rate)
-        )  # friction goes with it, too
+        # friction goes with it, too
+        by_side, _ = _like(gaussian_filter1d(d.left[column], SOFT), np.sign(rate))
         if 1 - near[column][0] < min(1 - IS_RATE, BESIDE * (1 - by_side)):
             d.put("velocity", column, "", 1.0, "goes with the position's rate")
     if "velocity" in d.roles:

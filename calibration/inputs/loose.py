@@ -17,29 +17,16 @@ from calibration.inputs.axislog import is_axis_log
 from calibration.inputs.guidelog import is_guide_log
 from calibration.inputs.matlab import columns_of, read_matlab
 from calibration.inputs.recordings import RECORDINGS
-from calibration.inputs.shapes import ISO, is_json, is_stamp, table_of_json
-from calibration.inputs.text import (
-    Heading,
-    Long,
-    check_file,
-    heading,
-    load_utf8,
-    plain,
-    read_columns,
-    read_long,
-    split,
-)
+from calibration.inputs.shapes import ISO, is_stamp
+from calibration.inputs.text import Heading, Long, check_file, heading, load_utf8, plain, read_long, split
 
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _PART = re.compile(r"[^\W\d_]+")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
-# characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
-SHORT = 2
-# rows that are enough to say what a column holds. ASSUMPTION
-LOOKED_AT = 200
-# words that name the signals of a long table. ASSUMPTION
-SIGNALS = 64
+SHORT = 2  # characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
+LOOKED_AT = 200  # rows that are enough to say what a column holds. ASSUMPTION
+SIGNALS = 64  # words that name the signals of a long table. ASSUMPTION
 # of the rows, from which on a word that is another one than in the row before is a signal's name. ASSUMPTION
 TURNS = 0.3
 
@@ -70,15 +57,14 @@ def read_loose(path: Path) -> Loose:
     if is_axis_log(text) or is_guide_log(text):
         what = f"says itself what it holds: schmidt calibrate {path.name} --out DIR"
         raise CalibrationInputError(path, what)
-    text = table_of_json(path, text) if is_json(text) else text
     h = heading(path, text)
     if h.first != h.at and any(plain(f) is None and not _is_stamp(f) for f in h.fields):
-        return _of_text(path, text, h, {})
+        return _of_text(h, {})
     names = [f"column{k + 1}" for k in range(len(h.fields))]
-    return _of_text(path, text, h._replace(fields=names, first=h.at), {"names": names})
+    return _of_text(heading(path, text, tuple(names)), {"names": names})
 
 
-def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose:
+def _of_text(h: Heading, fields: dict[str, Any]) -> Loose:
     some = [split(row, h.mark) for row in h.lines[h.first : h.first + LOOKED_AT] if row.strip()]
     found = Loose({}, fields=fields)
     signals, refused = "", None
@@ -88,7 +74,7 @@ def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose
         column = name if clear and h.fields.count(name) == 1 else k
         form = {str(column): (ISO, "")} if held and all(_is_stamp(x) for x in held) else {}
         try:
-            got = read_columns(path, text, [column], tuple(fields.get("names", ())), None, form)
+            got = h.read([column], form)
         except CalibrationInputError as error:
             refused = refused or error
             found.words.append(name)
@@ -100,18 +86,18 @@ def _of_text(path: Path, text: str, h: Heading, fields: dict[str, Any]) -> Loose
     if refused is not None and found.columns.keys() <= {found.stamp}:
         raise refused
     if signals and not fields and len(found.columns) == 2:
-        return _of_long(path, text, found, signals, sorted({row[h.fields.index(signals)] for row in some}))
+        return _of_long(h, found, signals, sorted({row[h.fields.index(signals)] for row in some}))
     return found
 
 
-def _of_long(path: Path, text: str, found: Loose, name: str, signals: list[str]) -> Loose:
+def _of_long(h: Heading, found: Loose, name: str, signals: list[str]) -> Loose:
     """Of a table with a row per reading, on the stamps of a signal that has most."""
     first, second = found.columns
     time, value = (second, first) if found.stamp == second else (first, second)
     long = {"name": name, "value": str(value)}
     stamps = {str(time): (ISO, "")} if found.stamp == time else {}
     timed = Long(name, str(time), str(value), compete=len(signals))
-    columns, _ = read_long(path, text, [*signals, time], timed, stamps)
+    columns, _ = read_long(h, [*signals, time], timed, stamps)
     return Loose(dict(columns.items()), found.stamp, {"long": long})
 
 

@@ -5,7 +5,6 @@ time; rows are those of the first column, `time` aside.
 """
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from struct import error as StructError
 from typing import Any, Final
@@ -94,6 +93,4 @@ def _joined(path: Path, wanted: list[str], columns: Columns, have: list[str]) ->
     return {name: found[name] for name in wanted}
 
 
-Reader = Callable[[Path, list[str]], list[dict[str, Array]]]
-RECORDINGS: Final[dict[str, Reader]] = {".mf4": read_mf4, ".mcap": read_mcap}
-"""By the ending of a file's name."""
+RECORDINGS = {".mf4": read_mf4, ".mcap": read_mcap}  # by the ending of a file's name

@@ -17,8 +17,7 @@ from calibration.inputs.train import stages_of
 from plant.yamltext import TextError, beside, check_yaml, read_text
 
 DELIMITERS = {"comma": ",", "tab": "\t", "space": " ", "semicolon": ";"}
-#: rig files that ship with the tool
-RIGS = Path(__file__).parent.parent / "rigs"
+RIGS = Path(__file__).parent.parent / "rigs"  # rig files that ship with the tool
 SCHEMA = Path(__file__).with_name("rig.schema.json")
 
 

@@ -13,8 +13,7 @@ from calibration.errors import CalibrationInputError
 from calibration.inputs import thresholds as limits
 from calibration.inputs.run import longest_step
 
-#: `format` of a time column whose stamps are ISO 8601; another one is strptime's
-ISO = "iso"
+ISO = "iso"  # `format` of a time column whose stamps are ISO 8601; another one is strptime's
 
 
 def is_json(text: str) -> bool:

@@ -81,10 +81,9 @@ def piled_at(x: Array, effort: Array, end: float, before: float) -> tuple[int, i
 
 def converter_end(runs: Sequence[Run], names: Sequence[str]) -> float | None:
     """What the currents `names` of two motors stop at in all runs; None where they pile up nowhere."""
-    have = [
-        (r.columns[n], r.columns["effort"]) for n in names if all(n in r.columns for r in runs) for r in runs
-    ]
-    both = np.hstack([np.zeros((2, 0)), *map(np.array, have)])
+    have = [n for n in names if all(n in r.columns for r in runs)]
+    pairs = (np.array((r.columns[n], r.columns["effort"])) for n in have for r in runs)
+    both = np.hstack([np.zeros((2, 0)), *pairs])
     x, effort = both[:, np.isfinite(both).all(axis=0)]
     below = x[x < x.max(initial=-np.inf)]
     if not len(below):  # nothing, or one number, which has no end

@@ -16,7 +16,7 @@ from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
 from calibration.inputs.run import Run, signal_of
-from calibration.inputs.text import Long, load_utf8, read_columns, read_long
+from calibration.inputs.text import Long, heading, load_utf8, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
 
 #: files that are no text, by the ending of their name
@@ -38,14 +38,14 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     if reader := READERS.get(path.suffix.lower()):
         found = reader(path, [str(c) for c in wanted])
     else:
-        text = load_utf8(path) if text is None else text
+        table = heading(path, load_utf8(path) if text is None else text, rig.names, rig.delimiter)
         if rig.long and stamp is not None:
             compete = 2 if any(r.is_force for r in rig.responses) else 1  # a force and its position
             long = Long(rig.long["name"], str(stamp.column), rig.long["value"], compete)
-            one, logged = read_long(path, text, wanted, long, stamps, (rig.names, rig.delimiter))
+            one, logged = read_long(table, wanted, long, stamps)
             found = [one]
         else:
-            found = [read_columns(path, text, wanted, rig.names, rig.delimiter, stamps)]
+            found = [table.read(wanted, stamps)]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
     return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
 

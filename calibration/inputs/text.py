@@ -14,12 +14,9 @@ from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
 from calibration.inputs.shapes import is_json, is_stamp, table_of_json, wide, with_seconds
 
-# characters that a blank line may hold, but for the delimiter
-BLANK = " \t\r\f\v"
-# words of a column's name: itself and its unit. A remark has more. ASSUMPTION
-NAME_WORDS = 2
-MOST_COLUMNS = 4096
-"""Ten times the widest table known. ASSUMPTION."""
+BLANK = " \t\r\f\v"  # characters that a blank line may hold, but for the delimiter
+NAME_WORDS = 2  # words of a column's name: itself and its unit. A remark has more. ASSUMPTION
+MOST_COLUMNS = 4096  # Ten times the widest table known. ASSUMPTION.
 COMMAS = ": decimal commas? write points"
 STAMP = ": a stamp? the column time takes 'format: iso'"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)
@@ -73,15 +70,53 @@ def check_width(path: Path, count: int, line: int) -> None:
         raise CalibrationInputError(path, f"{count} columns, at most {MOST_COLUMNS}: is it transposed?", line)
 
 
-class Heading(NamedTuple):
-    """Lines of a table, names of its columns, the index of its first row, the delimiter, and the index of the
-    header row. That index is `first` where there is none."""
+Stamps = Mapping[str, tuple[str, str | int]]
+"""Formats of the columns that are stamps, and the column ("": none) that holds their clock."""
 
+
+class Heading(NamedTuple):
+    """A table's file, lines, names of its columns, the index of its first row, the delimiter, and the index
+    of the header row. That index is `first` where there is none."""
+
+    path: Path
     lines: list[str]
     fields: list[str]
     first: int
     mark: str
     at: int
+
+    def place(self, column: str | int, named: bool = False) -> int:
+        """Place of a column, from 0; else CalibrationInputError, of the names if these are `named` anyway."""
+        fields = self.fields
+        if isinstance(column, int):
+            if 0 <= column < len(fields):
+                return column
+            what = f"there are {len(fields)} columns, counted from 0"
+        elif (count := fields.count(column)) == 1:
+            return fields.index(column)
+        elif count:
+            places = ", ".join(str(k) for k, f in enumerate(fields) if f == column)
+            what = f"stands more than once (at {places}, from 0): give the place in its stead"
+        else:
+            named = named or self.first > self.at
+            have = ", ".join(fields) if named else f"no header row and {len(fields)} columns, named 0, 1 …"
+            what = f"no such column; the file has {have}"
+        raise CalibrationInputError(self.path, what, self.at + 1, str(column))
+
+    def read(self, wanted: list[str | int], stamps: Stamps = MappingProxyType({})) -> dict[str, Array]:
+        """The wanted columns (by name, or place from 0), keyed by `str(column)`; `stamps` become s."""
+        path, mark, line = self.path, self.mark, self.first + 1
+        places = [self.place(c) for c in wanted]
+        called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
+        labels = [called.get(k, str(k)) for k in range(len(self.fields))]
+        rows = self.lines[self.first :]
+        for column, k in zip(wanted, places, strict=True):
+            if str(column) in stamps:
+                form, clock = stamps[str(column)]
+                beside = None if clock == "" else self.place(clock)
+                rows = with_seconds(path, rows, mark, (k, beside), form, line, labels[k])
+        got = read_numbers(path, "\n".join(rows), labels, line, mark, set(places))
+        return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
 
 
 def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str | None = None) -> Heading:
@@ -105,7 +140,7 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
         raise CalibrationInputError(path, "has no data rows", first)
     if len(fields) != (width := len(lines[first].split(mark))):
         raise CalibrationInputError(path, f"{width} fields, {len(fields)} names", first + 1)
-    return Heading(lines, fields, first, mark, skip - 1 if fields == said else skip)
+    return Heading(path, lines, fields, first, mark, skip - 1 if fields == said else skip)
 
 
 def _mark(line: str) -> str:
@@ -141,33 +176,8 @@ def _commented(above: list[str], mark: str, count: int) -> list[str]:
     return names if len(names) == count > 1 and words and len(set(names)) == count else []
 
 
-def read_columns(
-    path: Path,
-    text: str,
-    wanted: list[str | int],
-    names: tuple[str, ...] = (),
-    delimiter: str | None = None,
-    stamps: Mapping[str, tuple[str, str | int]] = MappingProxyType({}),
-) -> dict[str, Array]:
-    """The wanted columns (by name, or place from 0) of a table's `text`, keyed by `str(column)`. `stamps` are
-    the formats of those that are stamps and become s, and the column ("": none) that holds their clock."""
-    lines, fields, first, mark, at = heading(path, text, names, delimiter)
-    places = [_place(path, c, fields, first > at, at + 1) for c in wanted]
-    called = {k: c for c, k in zip(wanted, places, strict=True) if isinstance(c, str)}
-    labels = [called.get(k, str(k)) for k in range(len(fields))]
-    rows = lines[first:]
-    for column, k in zip(wanted, places, strict=True):
-        if str(column) in stamps:
-            form, clock = stamps[str(column)]
-            beside = None if clock == "" else _place(path, clock, fields, first > at, at + 1)
-            rows = with_seconds(path, rows, mark, (k, beside), form, first + 1, labels[k])
-    got = read_numbers(path, "\n".join(rows), labels, first + 1, mark, set(places))
-    return {str(c): got[k] for c, k in zip(wanted, places, strict=True)}
-
-
 class Long(NamedTuple):
-    """Columns of a table with a row per reading: the signal's name, its stamp, its value; `compete` as in
-    `wide`."""
+    """Columns of a table with a row per reading: a signal's name, stamp and value; `compete` as in `wide`."""
 
     name: str
     time: str
@@ -176,40 +186,16 @@ class Long(NamedTuple):
 
 
 def read_long(
-    path: Path,
-    text: str,
-    wanted: list[str | int],
-    long: Long,
-    stamps: Mapping[str, tuple[str, str | int]],
-    shape: tuple[tuple[str, ...], str | None] = ((), None),
+    table: Heading, wanted: list[str | int], long: Long, stamps: Stamps
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """The wanted signals of a long table on the stamps of one of them and as logged, as `wide` has it.
-
-    shape: names of the columns of a file without a header row, delimiter.
-    """
-    got = read_columns(path, text, [long.time, long.value], *shape, stamps)
-    lines, fields, first, mark, at = heading(path, text, *shape)
-    place = _place(path, long.name, fields, True, at + 1)
-    names = [split(row, mark)[place] for row in lines[first:] if row.strip()][: len(got[long.time])]
+    """The wanted signals of a long table on the stamps of one of them and as logged, as `wide` has it."""
+    got = table.read([long.time, long.value], stamps)
+    place = table.place(long.name, named=True)
+    rows = (row for row in table.lines[table.first :] if row.strip())
+    names = [split(row, table.mark)[place] for row in rows][: len(got[long.time])]
     signals = [str(c) for c in wanted if str(c) != long.time]
-    found, logged = wide(path, names, got[long.time], got[long.value], signals, long.compete)
+    found, logged = wide(table.path, names, got[long.time], got[long.value], signals, long.compete)
     return {long.time: found.pop(""), **found}, logged
-
-
-def _place(path: Path, column: str | int, fields: list[str], header: bool, line: int) -> int:
-    if isinstance(column, int):
-        if 0 <= column < len(fields):
-            return column
-        what = f"there are {len(fields)} columns, counted from 0"
-    elif (count := fields.count(column)) == 1:
-        return fields.index(column)
-    elif count:
-        places = ", ".join(str(k) for k, f in enumerate(fields) if f == column)
-        what = f"stands more than once (at {places}, from 0): give the place in its stead"
-    else:
-        have = ", ".join(fields) if header else f"no header row and {len(fields)} columns, named 0, 1 …"
-        what = f"no such column; the file has {have}"
-    raise CalibrationInputError(path, what, line, str(column))
 
 
 def read_numbers(

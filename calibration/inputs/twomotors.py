@@ -62,9 +62,8 @@ def _end_of_currents(runs: list[Run]) -> None:
 def _scales(r: Run, rig: Rig, ratio: float, steps: dict[str, float]) -> dict[str, float]:
     """What the axis logs' headers say (inputs/header.py), from a table's columns."""
     assert rig.motors is not None
-    rate, motor = (
-        (rig.columns[n].window_s if n in rig.columns else None) or r.period_s for n in ("velocity", "motor_a")
-    )
+    windows = {n: where.window_s or r.period_s for n, where in rig.columns.items()}
+    rate, motor = (windows.get(n, r.period_s) for n in ("velocity", "motor_a"))
     full = 1.0 / steps["effort"]  # steps of the effort to full supply, whole where they are all but whole
     whole = abs(full - round(full)) < WHOLE * full
     tach = 2 * pi / (steps["motor_a"] * motor) if "motor_a" in steps else 4096.0

@@ -26,18 +26,13 @@ from calibration.names.play import NAME as GAP
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC
 
-#: faults of a column that can be undone
-UNDONE = (DELAY.name, GAP.name)
+UNDONE = (DELAY.name, GAP.name)  # faults of a column that can be undone
 #: columns of a log by their number in a plant file
 LATE = {1: ("position",), 2: ("velocity",), 3: ("current_a", "current_b"), 4: ("motor_a", "motor_b")}
-# of the held-out error of a channel, that an applied effect must leave less than. ASSUMPTION
-FALLS = 0.99
-# of another channel's, that it may leave at most. ASSUMPTION
-RISES = 1.05
-# share, of a channel's error: one that falls below it falls by much (ASSUMPTION)
-MUCH = 0.5
-# times its error, that another channel's may then rise to (ASSUMPTION)
-AT_MOST = 1.15
+FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than. ASSUMPTION
+RISES = 1.05  # of another channel's, that it may leave at most. ASSUMPTION
+MUCH = 0.5  # share, of a channel's error: one that falls below it falls by much (ASSUMPTION)
+AT_MOST = 1.15  # times its error, that another channel's may then rise to (ASSUMPTION)
 
 # of the reading's noise per row, rms: two rows differ by so much once in 1e8, so it has moved. arithmetic
 MOVED = 8.0

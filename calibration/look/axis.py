@@ -18,25 +18,17 @@ from calibration.decide.withdraw import against_nature, failed_controls, withdra
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
+from calibration.look import looked
 from calibration.look.axis_channels import analyse
 from calibration.look.axis_result import SENSORS, AxisResult
 from calibration.look.lacks import COLUMNS, lacks, not_identifiable
-from calibration.look.looked import (
-    Balance,
-    Looked,
-    Options,
-    Spectrum,
-    calibrated,
-    missing_over,
-    unnamed_where_missing,
-)
+from calibration.look.looked import Balance, Looked, Options, Spectrum
 from calibration.look.said import place_of
 from calibration.names.name import TOLERANCE
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC
 
-# 6 s: fewer rows say nothing about six parameters. ASSUMPTION
-LEAST_ROWS = 600
+LEAST_ROWS = 600  # 6 s: fewer rows say nothing about six parameters. ASSUMPTION
 # of the rows between first and last stamp; with fewer, nothing is a measured motion any more. ASSUMPTION
 LEAST_PRESENT = 0.25
 
@@ -61,11 +53,10 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
     tried = [row for b in balances for row in b.controls]
     effects, withdrawn = withdraw(named, failed_controls(tried), against_nature(result.selections))
     before = result.before | within_tolerance(result, effects)
-    balances = [replace(b, before=before.get(b.key)) for b in balances]
-    balances = [_with_missing(result, b) for b in balances]
+    balances = [_with_missing(result, replace(b, before=before.get(b.key))) for b in balances]
     doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]
     absent = {key: what for key, what in COLUMNS.items() if key not in result.selections}
-    effects, needs = unnamed_where_missing(effects, [*lacks(result, balances), *doubts], balances)
+    effects, needs = looked.unnamed_where_missing(effects, [*lacks(result, balances), *doubts], balances)
     return Looked(
         title=title,
         balances=balances,
@@ -89,7 +80,7 @@ def _balance(result: AxisResult, key: str, s: Selection, names: set[str]) -> Bal
     theta = result.motion.x[result.motion.rows] / (2 * np.pi)
     numbers: dict[str, Parameter] = {}
     if key == "E":
-        numbers = calibrated(s, ("electrical_lag",), ELECTRICAL_ERROR)
+        numbers = looked.calibrated(s, ("electrical_lag",), ELECTRICAL_ERROR)
     elif key == ("T" if "T" in result.selections else "K"):
         numbers = result.calibrated
     tried = any(c.name in names for c in s.candidates)
@@ -122,7 +113,7 @@ def _with_missing(result: AxisResult, b: Balance) -> Balance:
     ]
     times, rest = divmod(rows, len(m.rows))
     long = [] if rest else [one._replace(x=np.resize(one.x, rows)) for one in places]
-    return replace(b, missing=missing_over(b, long, times))
+    return replace(b, missing=looked.missing_over(b, long, times))
 
 
 def too_little(runs: list[Run]) -> str:

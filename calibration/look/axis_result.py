@@ -18,8 +18,7 @@ from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
 
-#: row of the report's error table, by channel
-SENSORS = {**ROWS, "U": "command"}
+SENSORS = {**ROWS, "U": "command"}  # row of the report's error table, by channel
 
 
 @dataclass

@@ -27,15 +27,12 @@ from calibration.names.scene import Scene, since_first
 from calibration.statistics.orders import Wanted, standing_out
 from calibration.statistics.regression import solve
 
-# of a declared gain: less is calibration, as for the axis' declared numbers. ASSUMPTION
-ANOTHER = 0.2
+ANOTHER = 0.2  # of a declared gain: less is calibration, as for the axis' declared numbers. ASSUMPTION
 # of the mean square that the declared gains leave of held-out rows, at least, by which others must be better:
 # where both leave the same, the log does not tell them apart (ASSUMPTION)
 BETTER = 0.1
-# share of a declared gain: less is not reported. ASSUMPTION
-REPORTED = 0.02
-# standard errors likewise. ASSUMPTION
-CLEAR = 5.0
+REPORTED = 0.02  # share of a declared gain: less is not reported. ASSUMPTION
+CLEAR = 5.0  # standard errors likewise. ASSUMPTION
 BEFORE = "in front of the logged effort: the law makes no such command"
 FORWARD = "follows the reference, not the error: a feed-forward that the rig file does not declare?"
 # times what the rounding of the effort leaves of its change, before a law of its own is looked for: below, a
@@ -45,8 +42,7 @@ LEAST_LAW = 1.2
 # steps of the effort: a line on the command below the effort's own step is a beat of quantised columns.
 # ASSUMPTION
 LEAST_COMMAND = 0.8
-# of a line's resolution cell (1 / span), for its refinement. ASSUMPTION
-STEP_CELLS = 0.5
+STEP_CELLS = 0.5  # of a line's resolution cell (1 / span), for its refinement. ASSUMPTION
 
 
 def look_at_law(view: View, balance: Problem) -> Balance | None:

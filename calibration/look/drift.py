@@ -19,35 +19,16 @@ from calibration.decide.withdraw import failed_controls, withdraw
 from calibration.finding import Finding
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
+from calibration.look import looked
 from calibration.look.jumps import with_jumps
-from calibration.look.looked import (
-    MOST,
-    Balance,
-    Looked,
-    Options,
-    Spectrum,
-    calibrated,
-    missing_over,
-    unnamed_where_missing,
-)
-from calibration.look.worm import (
-    LEAST_TURNS,
-    Mount,
-    findings_of_worms,
-    harmonics,
-    longest_span,
-    sections_of,
-    worms,
-)
+from calibration.look.looked import Balance, Looked, Options, Spectrum
+from calibration.look.worm import LEAST_TURNS, Mount, findings, harmonics, longest_span, sections_of, worms
 
-# frames to fit. ASSUMPTION
-LEAST_ROWS = 100
+LEAST_ROWS = 100  # frames to fit. ASSUMPTION
 # of a turn, over the whole log, by which a worm with a tooth more runs away from this one (ASSUMPTION)
 TOOTH_APART = 0.3
-# of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
-WRONG_PERIODS = (0.9, 1.1)
-# parts of a mount, whose turns are looked at for what is left. ASSUMPTION
-FEW = 4
+WRONG_PERIODS = (0.9, 1.1)  # of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
+FEW = 4  # parts of a mount, whose turns are looked at for what is left. ASSUMPTION
 OF_ALL_FRAMES = "offsets, drift and the dithers' gain are fitted to all frames, before and after alike"
 NEED = "guide one section for at least two turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
@@ -81,13 +62,13 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known
         slow = [f"{len(slow)} of the usual worms ({few})"]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
-    effects, refused = withdraw(merge(findings_of_worms(s, mount, span)), failed_controls(tried))
+    effects, refused = withdraw(merge(findings(s, mount, span)), failed_controls(tried))
     effects += jumped
     b = _balance(s, mount, slow, tried)
     needs = [f"{what} was close, but {why}" for _, what, why in refused]
     if slow:
         needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
-    effects, needs = unnamed_where_missing(effects, [*needs, *b.short], [b])
+    effects, needs = looked.unnamed_where_missing(effects, [*needs, *b.short], [b])
     return Looked(
         title=title,
         balances=[b],
@@ -108,7 +89,7 @@ def _balance(s: Selection, mount: Mount, slow: list[str], tried: list[dict[str, 
         row="position",
         selection=s,
         floor=p.floor,
-        numbers=calibrated(s, ("offset",)),
+        numbers=looked.calibrated(s, ("offset",)),
         controls=tried,
         not_identifiable=slow,
         over=partial(_over, p, clock),
@@ -116,11 +97,11 @@ def _balance(s: Selection, mount: Mount, slow: list[str], tried: list[dict[str, 
     )
     near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
     turns = [Place(f"the turn of {name}", None, (clock * rate) % 1.0) for name, rate in near.items()]
-    missing = missing_over(b, [Place("time", None, p.t), *turns])
+    missing = looked.missing_over(b, [Place("time", None, p.t), *turns])
     if missing is None:
         return b
     # no plant has an effect for what a night's air leaves; most of it over a part's turn is no air
-    turning = missing.domain is None and missing.share > MOST
+    turning = missing.domain is None and missing.share > looked.MOST
     return replace(b, missing=replace(missing, effect=turning))
 
 

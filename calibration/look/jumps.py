@@ -31,8 +31,7 @@ SHARP = 0.5
 LASTS = 4
 # rows on either side of a jump in which no second one is looked for. ASSUMPTION: as many as it must last
 BETWEEN = LASTS * SIDES[0] // 2
-# of one log. More are no events but a way of moving. ASSUMPTION
-MOST = 12
+MOST = 12  # of one log. More are no events but a way of moving. ASSUMPTION
 
 
 def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, list[Finding]]:

@@ -25,10 +25,8 @@ from calibration.names.channel_delay import against_position, late_column
 from calibration.names.columns import repairs_found
 
 REMARKED = ("saturation", "leap")  # repairs that change what a reader thinks the log is
-# that are reported: a longer sentence is not read. ASSUMPTION
-MOST_NEEDS = 4
-# of a frequency: two lines are one. ASSUMPTION
-SAME_HZ = 0.02
+MOST_NEEDS = 4  # that are reported: a longer sentence is not read. ASSUMPTION
+SAME_HZ = 0.02  # of a frequency: two lines are one. ASSUMPTION
 
 
 def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:

@@ -17,10 +17,8 @@ from calibration.names.scene import Scene
 from calibration.names.unknown import flexible
 from calibration.names.unknown_alone import alone
 
-# effects: a cogging motor shows several orders. ASSUMPTION
-MOST = 14
-# of search: lines come out when larger things are gone. ASSUMPTION
-ROUNDS = 3
+MOST = 14  # effects: a cogging motor shows several orders. ASSUMPTION
+ROUNDS = 3  # of search: lines come out when larger things are gone. ASSUMPTION
 
 
 def find(view: View, problem: Problem) -> tuple[Selection, Scene, list[str]]:

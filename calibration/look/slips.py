@@ -34,10 +34,8 @@ from calibration.statistics.thresholds import SURE_Z
 CLEAR = 5.0
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
-# fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
-BESIDE = 2
-# places that are tried about a slip, and once more about the best of them. ASSUMPTION
-TRIED = 33
+BESIDE = 2  # fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
+TRIED = 33  # places that are tried about a slip, and once more about the best of them. ASSUMPTION
 
 
 def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
@@ -128,10 +126,8 @@ def _step(view: View, row: int) -> Array:
 def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
     """Those that are more than their own errors, and than half a count, which is the error of a reading: a
     drift through one looks like a slip."""
-    r, steps_of = view.response, view.quanta
-    half = 0.5 * max(
-        steps_of.get(r.channel, 0.0) * abs(r.gain), steps_of.get("position", 0.0) * abs(r.ratio or 1.0)
-    )
+    r, step = view.response, view.quanta
+    half = 0.5 * max(step.get(r.channel, 0.0) * abs(r.gain), step.get("position", 0.0) * abs(r.ratio or 1.0))
     fit = everywhere.fit(np.column_stack([s.columns, *steps.values()])) if steps else s.after
     first = s.columns.shape[1]
     clear = np.abs(fit.beta[first:]) > np.maximum(SURE_Z * fit.errors[first:], half)

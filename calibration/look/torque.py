@@ -24,14 +24,10 @@ from calibration.names.adc_offset import NAME as OFFSET
 from calibration.statistics.whitening import white_noise
 from plant.effects import REGISTRY
 
-# rad/s, 3 arcsec/s: slower, the torque is the bristles' history. ASSUMPTION
-CREEP = 1.5e-5
-# of creeping beside a motion: pre-sliding and break-away. ASSUMPTION
-REST_S = 3.0
-# rows of the analysis grid, 9 s, that slide in training. ASSUMPTION
-LEAST_MOVING = 300
-# -log10 p of a torque effect that is accepted beside a broadband torque. ASSUMPTION
-SURE_IN_WIND = 120.0
+CREEP = 1.5e-5  # rad/s, 3 arcsec/s: slower, the torque is the bristles' history. ASSUMPTION
+REST_S = 3.0  # of creeping beside a motion: pre-sliding and break-away. ASSUMPTION
+LEAST_MOVING = 300  # rows of the analysis grid, 9 s, that slide in training. ASSUMPTION
+SURE_IN_WIND = 120.0  # -log10 p of a torque effect that is accepted beside a broadband torque. ASSUMPTION
 
 
 def torque_channel(result: AxisResult, drive: Transmission) -> None:

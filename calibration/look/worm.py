@@ -21,21 +21,16 @@ from calibration.finding import UNKNOWN, Finding
 from calibration.names.name import candidate
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
-# fitted turns of a section for its own phase to mean anything. ASSUMPTION
-LEAST_IN_SECTION = 1.2
+LEAST_IN_SECTION = 1.2  # fitted turns of a section for its own phase to mean anything. ASSUMPTION
 # of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
 # wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
 # tests/calibration/guidelogs.py) three of these took 9 to 27 % of the ends that were held out then, the worms
 # of the measured logs 81 to 98 %
 PART_GAIN = 0.15
-# share likewise, of one of eleven usual wheels or any free period, on the same seeds
-FREE_GAIN = 0.35
-# of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
-NEXT = 0.9
-# worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
-LEAST_TURNS = 2.0
-# harmonics of a worm that are looked at. ASSUMPTION
-HARMONICS = 8
+FREE_GAIN = 0.35  # share likewise, of one of eleven usual wheels or any free period, on the same seeds
+NEXT = 0.9  # of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
+LEAST_TURNS = 2.0  # worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
+HARMONICS = 8  # harmonics of a worm that are looked at. ASSUMPTION
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +142,7 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
     return s
 
 
-def findings_of_worms(s: Selection, mount: Mount, span: float) -> list[Finding]:
+def findings(s: Selection, mount: Mount, span: float) -> list[Finding]:
     """Every part and period that was found, with its neighbours within the resolution and a wheel that is
     assumed in its note. `span` is in s, as in `longest_span`."""
     out = []

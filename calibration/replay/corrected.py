@@ -25,10 +25,8 @@ from plant.evaluate import evaluate_function
 from plant.gears import RATIO
 from plant.model import PlantModel, load, with_effects
 
-# knots: three for each of a smooth function's eight splines. ASSUMPTION
-POINTS = 24
-# part of the normal matrix: holds knots in a gap of the data to a straight line. ASSUMPTION
-STIFF = 1e-6
+POINTS = 24  # knots: three for each of a smooth function's eight splines. ASSUMPTION
+STIFF = 1e-6  # part of the normal matrix: holds knots in a gap of the data to a straight line. ASSUMPTION
 
 
 def correct_and_replay(found: Looked, options: Options) -> Replay:

@@ -13,8 +13,7 @@ from plant.model import ModelError, PlantModel, dump, dumps, get, load, loads, w
 from plant.parts import EffectModel
 from plant.units import to_si
 
-# kg m2: a load that is left when the rotors are taken off. ASSUMPTION
-LEAST_INERTIA = 10.0
+LEAST_INERTIA = 10.0  # kg m2: a load that is left when the rotors are taken off. ASSUMPTION
 
 
 def calibrate_model(

@@ -13,8 +13,7 @@ CHANNELS = {
     "S": "sensor, clock or log",
 }
 
-#: parameters that say where a shape without a name lies
-PLACES = ("begin", "place")
+PLACES = ("begin", "place")  # parameters that say where a shape without a name lies
 
 
 def summary(data: dict[str, Any]) -> str:

@@ -14,8 +14,10 @@ from calibration.replay.compare import residual
 from calibration.replay.held import Replay
 from calibration.report import plots
 from calibration.report.plots import BLUE, GREY, RED, figure, png
-from calibration.report.thresholds import MOST_PICTURES, WHOLE, WINDOW_S
 
+MOST_PICTURES = 4  # pictures of effects in a balance. ASSUMPTION
+WINDOW_S = 2.0  # s that a page can show of a trace at 10 ms. ASSUMPTION
+WHOLE = 0.99  # share of a window's rows that must be usable. ASSUMPTION: single rows may be missing
 Picture = dict[str, str]
 TRACE = "Rows that nothing was fitted to: parameters, a law's gains among them, are those of the fitted rows"
 SPECTRUM = "Fitted rows; dotted: known parts, short marks: what was found"

@@ -10,9 +10,13 @@ from calibration.arrays import Array
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.look.looked import Spectrum
-from calibration.report.thresholds import BINS, BINS_OF_A_PULSE, FEWEST_DRAWN, FEWEST_OF_A_TRACE, MOST_MARKED
 from calibration.statistics.orders import order_spectrum
 
+BINS = 80  # bins over a domain. ASSUMPTION
+BINS_OF_A_PULSE = 8  # bins over the width of a narrow pulse. ASSUMPTION: its shape shows
+FEWEST_DRAWN = 20  # rows, fewest, over a domain. ASSUMPTION
+FEWEST_OF_A_TRACE = 3  # rows, fewest, of a trace: a line with a bend. ASSUMPTION
+MOST_MARKED = 12  # places of gaps that are marked in a trace; more would hide it. ASSUMPTION
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
 
 GATE = "The largest score of all candidates, in this log and in copies of its residual that hold nothing"
@@ -63,9 +67,7 @@ def nothing_to_draw(title: str, why: str) -> str:
     return finish(ax, title)
 
 
-def domain_plot(
-    selection: Selection, x: Array, label: str, title: str, index: int = 0, odd: Array | None = None
-) -> str:
+def domain_plot(selection: Selection, x: Array, label: str, title: str, index: int, odd: Array | None) -> str:
     """Residual without effect `index` over the domain that explains it, binned means with errors, and the
     effect. `odd` is the direction of motion for an effect that changes sign with it: both are multiplied."""
     p = selection.problem
@@ -100,9 +102,8 @@ def domain_plot(
 def spectrum_plot(selection: Selection, spectrum: Spectrum, title: str) -> str:
     """Amplitude over order, or over the period, before and after, with the known parts and what was found."""
     amplitude = _over_periods if spectrum.periods else _over_orders
-    before, after = (
-        amplitude(selection, spectrum, fit.residual) for fit in (selection.before, selection.after)
-    )
+    fits = selection.before, selection.after
+    before, after = (amplitude(selection, spectrum, fit.residual) for fit in fits)
     if not len(before[0]):
         return nothing_to_draw(title, "too few fitted rows for a spectrum")
     _, ax = figure(9.0, 3.8)

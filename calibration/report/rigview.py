@@ -16,7 +16,9 @@ from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, Signal, signal_of
 from calibration.inputs.thresholds import MOST_POINTS
 from calibration.report.plots import drawn, figure
-from calibration.report.thresholds import USUAL_CANDIDATES
+
+# candidates that a balance has before one is known to be none of it. ASSUMPTION
+USUAL_CANDIDATES = 1000
 
 
 def show_rig(rig_file: Path, logs: list[Path], out: Path | None = None) -> str:

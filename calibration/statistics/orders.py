@@ -12,24 +12,15 @@ from calibration.arrays import Array
 STANDS_OUT = 12.0
 # part of the mean square: such a line needs less, as the filter spreads it over its neighbours. ASSUMPTION
 LARGE = 0.05
-# times the power around it, likewise. ASSUMPTION
-LARGE_STANDS_OUT = 5.0
-# cycles within the span that are searched. ASSUMPTION
-HIGHEST = 4000
-# part of a period per row: quicker is not seen. ASSUMPTION: a little below the Nyquist limit
-PER_ROW = 0.45
-# bins per cycle of the quickest line. ASSUMPTION
-FINE = 8
-# rows, fewest, for a spectrum. ASSUMPTION
-FEWEST_ROWS = 20
-# bins of a spectrum at most, for its memory. ASSUMPTION
-MOST_BINS = 2**21
-# share of 1 / span to either side, that a line is compared with. ASSUMPTION
-AROUND = 12
-# share of 1 / span within which a frequency is avoided. ASSUMPTION
-AVOIDED = 0.75
-# bins that are tried for every line that is wanted. ASSUMPTION
-TRIED = 60
+LARGE_STANDS_OUT = 5.0  # times the power around it, likewise. ASSUMPTION
+HIGHEST = 4000  # cycles within the span that are searched. ASSUMPTION
+PER_ROW = 0.45  # part of a period per row: quicker is not seen. ASSUMPTION: a little below the Nyquist limit
+FINE = 8  # bins per cycle of the quickest line. ASSUMPTION
+FEWEST_ROWS = 20  # rows, fewest, for a spectrum. ASSUMPTION
+MOST_BINS = 2**21  # bins of a spectrum at most, for its memory. ASSUMPTION
+AROUND = 12  # share of 1 / span to either side, that a line is compared with. ASSUMPTION
+AVOIDED = 0.75  # share of 1 / span within which a frequency is avoided. ASSUMPTION
+TRIED = 60  # bins that are tried for every line that is wanted. ASSUMPTION
 
 
 def order_spectrum(e: Array, angle: Array, weight: Array, top: float, fine: int = 4) -> tuple[Array, Array]:

@@ -13,8 +13,7 @@ from calibration.statistics.thresholds import LOADING, ROWS_PER_ORDER, SECOND
 # rows, beyond the filter's own reach, over which a residual is compared with itself. ASSUMPTION: a swept line
 # or a switch that sticks agrees with itself for longer than the filter lasts
 LAGS = 50
-# standard deviations of a Gaussian filter, after which it carries exp(-4), 2 %, over. arithmetic
-APART = 4.0
+APART = 4.0  # standard deviations of a Gaussian filter, after which it carries exp(-4), 2 %, over. arithmetic
 # pairs of rows, to compare at all. ASSUMPTION: chance correlates 200 of white noise by a tenth of LEAST_SHARE
 FEWEST = 200
 

@@ -1,7 +1,6 @@
 """What the host beside a served network sees of the emulator: its wire for the bus page, sky for cameras."""
 
 from collections import Counter, deque
-from collections.abc import Mapping
 from typing import Any
 
 from bus.can.frame import Frame
@@ -60,21 +59,17 @@ class EmulatedBus:
     def fault_kinds(self) -> list[FaultKind]:
         """The table of faults."""
         return [
-            FaultKind(
-                kind.name, kind.level, kind.text, _template(kind), "; ".join(map(_said, kind.parameters))
-            )
-            for kind in self._served.faults.kinds()
+            FaultKind(k.name, k.level, k.text, _template(k), "; ".join(map(_said, k.parameters)))
+            for k in self._served.faults.kinds()
         ]
 
     def _running(self) -> list[tuple[int, str]]:
-        now_ns = self._served.now_ns
-        return [
-            (
-                each.number,
-                f"{each.name}, {_arguments(each.arguments)} for {(now_ns - each.since_ns) * 1e-9:.1f} s",
-            )
-            for each in self._served.faults.running
-        ]
+        found = []
+        for each in self._served.faults.running:
+            given = " ".join(f"{name}={value}" for name, value in each.arguments.items()) or "no arguments"
+            since_s = (self._served.now_ns - each.since_ns) * 1e-9
+            found.append((each.number, f"{each.name}, {given} for {since_s:.1f} s"))
+        return found
 
     def wish(self, wished: Wish) -> Done:
         """Do it; refused are faults and boards that cannot be, and arguments of another kind."""
@@ -102,14 +97,12 @@ def _template(kind: Kind) -> str:
     return " ".join(f"{name}=" for name in needed)
 
 
-def _said(parameter: Parameter) -> str:
+def _said(p: Parameter) -> str:
     """An argument: what it is, its unit, its bounds, what it is when left out."""
-    unit = f", {parameter.unit}" if parameter.unit not in ("", "1") else ""
-    bounds = (
-        f", {parameter.low:g} to {parameter.high:g}" if None not in (parameter.low, parameter.high) else ""
-    )
-    default = f" ({parameter.default} when left out)" if parameter.default not in (None, "") else ""
-    return f"{parameter.name}: {parameter.text}{unit}{bounds}{default}"
+    unit = f", {p.unit}" if p.unit not in ("", "1") else ""
+    bounds = f", {p.low:g} to {p.high:g}" if None not in (p.low, p.high) else ""
+    default = f" ({p.default} when left out)" if p.default not in (None, "") else ""
+    return f"{p.name}: {p.text}{unit}{bounds}{default}"
 
 
 def _pairs(text: str) -> dict[str, str]:
@@ -121,10 +114,6 @@ def _pairs(text: str) -> dict[str, str]:
             raise FaultError(f"{word!r}: arguments are written name=value")
         found[name] = value.replace("_", " ") if name not in ("node", "nodes", "sensor") else value
     return found
-
-
-def _arguments(given: Mapping[str, Any]) -> str:
-    return " ".join(f"{name}={value}" for name, value in given.items()) or "no arguments"
 
 
 PERIOD_NS = 10_000_000

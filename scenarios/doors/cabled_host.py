@@ -34,9 +34,7 @@ class CabledHost(Host):
         self._said, self._console = said, console
         scenario, model = chosen(options.scenario, network_name=options.network)
         scenario = dated(scenario)
-        pc = TelescopePc(
-            scenario, lambda _t, report: self.usb.write(report), devices_in(scenario), options.logs
-        )
+        pc = TelescopePc(scenario, lambda _t, data: self.usb.write(data), devices_in(scenario), options.logs)
         self.usb = LinkTask(options.usb, lambda: _port(options.usb), self.inbox, said.put)
         self.tasks = [self.usb]
         self.serial: dict[str, SerialLink] = {}

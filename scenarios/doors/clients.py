@@ -55,8 +55,7 @@ def listen(host: str, port: int) -> socket.socket:
 LIMIT = 64
 """Clients of one listener; more are turned away."""
 _CHUNK = 4096
-_PATIENCE_S = 60.0
-"""Wall time. ASSUMPTION."""
+_PATIENCE_S = 60.0  # Wall time. ASSUMPTION.
 
 
 class Client:

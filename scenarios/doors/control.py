@@ -20,8 +20,7 @@ from scenarios.doors.clients import Client, Clients, address, is_local, listen
 from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 
-_LINE_LIMIT = 1000
-"""Longer lines are nobody's command."""
+_LINE_LIMIT = 1000  # Longer lines are nobody's command.
 _LINES_PER_POLL = 8
 STEPPING, _PACING = ("join", "listen", "send", "step"), ("speed", "pause", "resume")
 TOKEN_VARIABLE = "SCHMIDT_TOKEN"

@@ -22,8 +22,7 @@ _set_request = Struct(f"<IIBBH{_DATA}s")
 _get_reply = Struct("<IIHH")
 _set_reply = Struct("<IIH")
 _EIO = 5
-_EVENTS = 32
-"""The kernel's own queue of events."""
+_EVENTS = 32  # The kernel's own queue of events.
 
 
 class UhidDoor:

@@ -15,8 +15,7 @@ from scenarios.doors.door import DoorError, counted
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbPlug, out_report
 
-_READS = 16
-"""Reports taken from one client in one look."""
+_READS = 16  # Reports taken from one client in one look.
 
 
 class UnixDoor:

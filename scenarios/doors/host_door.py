@@ -23,16 +23,12 @@ from scenarios.lab.session import log_headers
 
 RECORDED = ("AXIS_RA", "AXIS_DEC")
 """Boards whose RS232 lines a console can record."""
-_START_S = 120.0
-"""Wall time in which a host on a very busy machine has imported its libraries. ASSUMPTION."""
+_START_S = 120.0  # Wall time in which a host on a very busy machine has imported its libraries. ASSUMPTION.
 _SILENT_S = 10.0
 """A host that has not taken a slice for so long hangs: it is ended and started again. ASSUMPTION."""
-_END_S = 2.0
-"""Wall time for its farewell and the logs. ASSUMPTION."""
-_BUS_S = 0.25
-"""Wall time between two pictures of the bus: consoles refresh as often."""
-_MOST = 256
-"""Reports in one slice: 20 kB, far less than a socket's buffer, so that sending never blocks."""
+_END_S = 2.0  # Wall time for its farewell and the logs. ASSUMPTION.
+_BUS_S = 0.25  # Wall time between two pictures of the bus: consoles refresh as often.
+_MOST = 256  # Reports in one slice: 20 kB, far less than a socket's buffer, so that sending never blocks.
 
 
 class HostProcess:

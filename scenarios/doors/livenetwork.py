@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from bus.can.frame import Frame
 from bus.outside.node import OutsideNode
@@ -18,15 +18,9 @@ from scenarios.lab.wiring import wired
 from scenarios.language.model import Scenario
 
 if TYPE_CHECKING:
+    from scenarios.doors.recording import Recording
     from scenarios.doors.snapshots import Standing
     from scenarios.doors.steps import Steps
-
-
-class Journal(Protocol):
-    """Where entries are written."""
-
-    def write(self, t_ns: int, kind: str, data: bytes) -> None:
-        """Record one entry."""
 
 
 class EntryError(RuntimeError):
@@ -39,7 +33,7 @@ class Entry:
     That holds because entries are made between slices only, when all events up to the present have happened.
     """
 
-    def __init__(self, queue: EventQueue, journal: Journal | None = None) -> None:
+    def __init__(self, queue: EventQueue, journal: Recording | None = None) -> None:
         self.count = 0
         self._queue = queue
         self._journal = journal
@@ -103,7 +97,7 @@ class LiveNetwork:
         scenario: Scenario,
         model: PlantModel,
         speed: float = 1.0,
-        journal: Journal | None = None,
+        journal: Recording | None = None,
         begun: Standing | None = None,
     ) -> None:
         self.scenario = scenario

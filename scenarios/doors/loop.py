@@ -62,8 +62,7 @@ def _back(before: dict[int, int]) -> None:
             os.sched_setscheduler(thread, policy, os.sched_param(0))
 
 
-_STATUS_S = 1.0
-"""Wall time between two status lines. ASSUMPTION."""
+_STATUS_S = 1.0  # Wall time between two status lines. ASSUMPTION.
 
 
 class Loop:
@@ -122,9 +121,7 @@ class Loop:
             self._next_s = now_s + _STATUS_S
             pace = self._keeping_up(now_s)
             self._show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
-        elif (
-            now_s >= self._flush_s and self._recording is not None
-        ):  # in another slice: half a millisecond each
+        elif now_s >= self._flush_s and self._recording is not None:  # another slice: half a millisecond each
             self._flush_s = now_s + _STATUS_S
             self._recording.flush()
         served.entry.running = True

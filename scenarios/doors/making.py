@@ -55,9 +55,8 @@ def check_ports(names: Sequence[str], boards: Sequence[str]) -> None:
 def check(options: DoorOptions) -> None:
     """Raise OptionError unless there is a door at all, and one to step by."""
     if not any(options.asked.values()):
-        raise OptionError(
-            f"serve needs a door: {named((*ON_NETWORK, *ON_HOST), 'or')} (see schmidt serve -h)"
-        )
+        doors = named((*ON_NETWORK, *ON_HOST), "or")
+        raise OptionError(f"serve needs a door: {doors} (see schmidt serve -h)")
     for option, given in (("--stars", options.stars), ("--frames", options.frames)):
         if given is not None and not options.asked.get("alpaca"):
             raise OptionError(f"{option} needs --alpaca, which has the cameras")

@@ -27,12 +27,11 @@ class DoorOptions:
 class ServeOptions(DoorOptions):
     """Options of `schmidt serve`.
 
-    clock: `wall`, or `steps`: time goes on when clients step it. duration: seconds of wall time.
-    record: folder for the session. muted: a board that sends nothing and the
-    candump log that its frames come from, times from the start on. realtime: ask the system to run the ticks
-    before all other programs; None: where it grants that, at the pace of the wall. snapshots: the folder for
-    those that are asked for on the way. begun: one to go on from; scenario, seed, plant and network are what
-    is in it.
+    clock: `wall`, or `steps`: time goes on when clients step it. duration: seconds of wall time. record:
+    folder for the session. muted: a board that sends nothing and the candump log that its frames come
+    from, times from the start on. realtime: ask the system to run the ticks before all other programs;
+    None: where it grants that, at the pace of the wall. snapshots: the folder for those that are asked
+    for on the way. begun: one to go on from; scenario, seed, plant and network are what is in it.
     """
 
     scenario: Path | None = None

@@ -43,10 +43,8 @@ def interrupts(stop: Callable[[], None]) -> Iterator[None]:
 
 
 BEGUN = "parking the axes; Ctrl-C again stops them where they are"
-_HEARD_S = 1.0
-"""A hundred MOTION frames, four of TARGET: an axis that has sent none is not there."""
-_REST_S = 5.0
-"""From 2°/s an axis stops within a second or two. ASSUMPTION: thrice that."""
+_HEARD_S = 1.0  # A hundred MOTION frames, four of TARGET: an axis that has sent none is not there.
+_REST_S = 5.0  # From 2°/s an axis stops within a second or two. ASSUMPTION: thrice that.
 
 
 class _Way:

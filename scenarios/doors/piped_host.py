@@ -21,8 +21,7 @@ from scenarios.doors.pc import Host, TelescopePc
 from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken, Wish
 from scenarios.language.model import Scenario
 
-_LOOKED_S = 1.0
-"""Pages refresh four times a second; when nobody has asked for so long, nobody looks."""
+_LOOKED_S = 1.0  # Pages refresh four times a second; when nobody has asked for so long, nobody looks.
 
 
 class BusMirror:
@@ -76,9 +75,7 @@ class BusMirror:
         return future
 
 
-def cameras(
-    scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None = None
-) -> tuple[Camera, ...]:
+def cameras(scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None) -> tuple[Camera, ...]:
     """By Alpaca's number, where there is an Alpaca door. scenario: one with a date. guiding: sees the frames.
     Raises ValueError for a catalogue that cannot be used."""
     if not options.asked.get("alpaca"):

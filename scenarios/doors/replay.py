@@ -18,8 +18,7 @@ from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot.file import read
 from scenarios.progress import Show, shown
 
-_STEP_NS = 1_000_000_000
-"""Simulated time between two looks at what is left."""
+_STEP_NS = 1_000_000_000  # Simulated time between two looks at what is left.
 _LAST_NS = 10_000_000_000_000_000
 """Longest session, as `scenarios.language.units` has it for a run: four months."""
 

@@ -8,21 +8,14 @@ from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Protocol
 
 from boards.core.debug import DebugPort
 from host.logs.files import reason
 from scenarios.doors.door import DoorError, counted
+from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
 
 _CHUNK = 4096
-
-
-class Source(Protocol):
-    """Where a line's bytes come from."""
-
-    def until(self, now_ns: int) -> bytes:
-        """What is through by now and has not been handed out."""
 
 
 class PtyPort:
@@ -32,7 +25,9 @@ class PtyPort:
     take: gets what a program sends, None: the line has no receiver, it goes nowhere.
     """
 
-    def __init__(self, link: Path, feed: Source, take: Callable[[bytes], None] | None = None) -> None:
+    def __init__(
+        self, link: Path, feed: "Feed | DebugFeed", take: Callable[[bytes], None] | None = None
+    ) -> None:
         self.link = link
         self.take = take
         self.feed = feed
@@ -135,7 +130,7 @@ class PtyDoor:
         """Boards that have a port."""
         return self._live.lines.uarts
 
-    def _ends(self, board: str) -> tuple[Source, Callable[[bytes], None] | None]:
+    def _ends(self, board: str) -> tuple["Feed | DebugFeed", Callable[[bytes], None] | None]:
         """Where its bytes come from, and where those go that a program sends."""
         lines = self._live.lines
         feed = lines.feed(board)
@@ -158,8 +153,7 @@ class PtyDoor:
         return counted(*read, (sum(port.lost for port in self.ports), "bytes lost by slow readers"))
 
 
-_KEPT = 4096
-"""Bytes that wait for a slice; older ones are lost."""
+_KEPT = 4096  # Bytes that wait for a slice; older ones are lost.
 
 
 class DebugFeed:
@@ -194,7 +188,7 @@ class DebugDoor(PtyDoor):
     def _names(self) -> Iterable[str]:
         return self._live.network.debug
 
-    def _ends(self, board: str) -> tuple[Source, Callable[[bytes], None]]:
+    def _ends(self, board: str) -> tuple[DebugFeed, Callable[[bytes], None]]:
         feed = DebugFeed(self._live.network.debug[board])
         self._close.callback(feed.close)
         return feed, partial(self._live.debug, board)

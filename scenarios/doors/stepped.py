@@ -63,8 +63,7 @@ class Stepped(AbstractContextManager["Stepped"]):
 
 
 _PATIENCE_S = 5.0
-_ANSWER_S = 60.0
-"""A snapshot on a busy machine takes its time."""
+_ANSWER_S = 60.0  # A snapshot on a busy machine takes its time.
 
 
 def tell(command: str, at: str, token: str | None = None) -> str:

@@ -22,8 +22,7 @@ from scenarios.doors.clients import LIMIT, Client
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.language.units import parse
 
-_LOOK_S = 0.05
-"""Wall time after which a signal is noticed while time stands."""
+_LOOK_S = 0.05  # Wall time after which a signal is noticed while time stands.
 NODE = 99
 """Of the clients' frames on the wire; beyond any number of `--can` doors."""
 

@@ -8,11 +8,9 @@ from scenarios.lab.network import build
 from scenarios.lab.networks import NetworkConfig
 
 AXIS = Device.AXIS_RA
-_BOARDS = 2
-"""The first of the lab network's order."""
+_BOARDS = 2  # The first of the lab network's order.
 _ANSWER_S = 0.02
-_HEARD_S = 0.2
-"""The EnDat board has to be heard before the motors may be switched on."""
+_HEARD_S = 0.2  # The EnDat board has to be heard before the motors may be switched on.
 
 
 class BenchError(ValueError):

@@ -24,10 +24,8 @@ DROP_NS: Final = 20_000_000
 """The contactor falls this much later. ASSUMPTION: usual for one of 24 V with a diode over its coil."""
 _SOONEST_NS: Final = 5_000_000
 """Between two looks at a switch: at 3 deg/s (paper) the axis goes on by 0.015 deg."""
-_OPEN_NS: Final = 50_000_000
-"""Between two looks at an open chain: five MOTION frames of each axis."""
-_STRONGEST: Final = 1.5
-"""Most that the fault `weak_supply` makes of the supply."""
+_OPEN_NS: Final = 50_000_000  # Between two looks at an open chain: five MOTION frames of each axis.
+_STRONGEST: Final = 1.5  # Most that the fault `weak_supply` makes of the supply.
 
 
 class Chain:
@@ -43,18 +41,13 @@ class Chain:
         self._network = network
         self._ends = ends
         self._guards = guards
-        model = network.plant.model
-        self._fastest = {
-            axis: _STRONGEST
-            * model.supply.voltage.si
-            / (getattr(model.axes, axis).motor.torque_constant.si * RATIO)
-            for axis in ends
-        }
+        model, boards = network.plant.model, network.boards
+        most = _STRONGEST * model.supply.voltage.si
+        motors = {axis: getattr(model.axes, axis).motor for axis in ends}
+        self._fastest = {axis: most / (each.torque_constant.si * RATIO) for axis, each in motors.items()}
         self._pressed = 0
         self._standing: tuple[str, ...] = ()
-        self._motion = {
-            name: MEASUREMENT_BASE + network.boards[name].device_type for name in map(board_of, ends)
-        }
+        self._motion = {name: MEASUREMENT_BASE + boards[name].device_type for name in map(board_of, ends)}
         self._off: set[str] = set()
         self.open = False
         self.told: Callable[[int, str], None] | None = None

@@ -14,13 +14,11 @@ _FRAME_BITS = 120
 POINTING_BANDWIDTH = 22.0
 """rad/s, of the velocity loop inside the position loop, at least. ASSUMPTION: a sixth of the mode of the
 rotors against the axis (about 130 rad/s, 5 % damped). Otherwise 10 ms of delay would drive that mode."""
-_POINTING_KI = 0.08
-"""Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION."""
+_POINTING_KI = 0.08  # Ki/Kp while the axis slides: 16 rad/s. ASSUMPTION.
 _CREEP_KI = {"ra": 0.1, "dec": 0.2}
 """Ki/Kp while it creeps: 20 and 40 rad/s. ASSUMPTION: on the axis that tracks, more of it hunts between two
 PWM steps. Declination stands, and its effort has the dead zone of the power stage to cross."""
-_GUST_BANDWIDTH = 33.0
-"""rad/s, while it creeps in wind, at least. ASSUMPTION: a quarter of that mode."""
+_GUST_BANDWIDTH = 33.0  # rad/s, while it creeps in wind, at least. ASSUMPTION: a quarter of that mode.
 _GUST_KI = 0.05
 """Ki/Kp then: 10 rad/s. ASSUMPTION: with less of it the axis swings less between 1 and 8 Hz, where wind is. A
 slow torque then leaves twice as much, so these gains are for wind alone."""

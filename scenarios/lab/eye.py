@@ -16,10 +16,7 @@ from scenarios.language.model import Scenario
 
 NOISE_ARCSEC = 0.3
 """Standard deviation of a solved place in each coordinate. ASSUMPTION: seeing of 2″ over some 50 stars."""
-
-
-_UP_RAD = 1e-5
-"""A step of the declination axis, which shows what is up in a picture."""
+_UP_RAD = 1e-5  # A step of the declination axis, which shows what is up in a picture.
 
 
 class Eye:

@@ -11,14 +11,14 @@ from bus.can import Frame
 from bus.can.bits import INTERMISSION_BITS
 from bus.can.candump import parsed
 from bus.can.length import frame_bits
+from bus.outside.node import OutsideNode
 from bus.protocol import COMMAND_BASE, REPLY_BASE
 from plant.yamltext import TextError, check_regular
 from scenarios.lab.network import Network
 
 _LONGEST = 200
 """Characters of a line read at once: candump's are shorter, and a file without lines may be large."""
-_ERROR = 0x2000_0000
-"""CAN_ERR_FLAG (linux/can.h)."""
+_ERROR = 0x2000_0000  # CAN_ERR_FLAG (linux/can.h).
 
 
 class FeedError(ValueError):
@@ -64,9 +64,7 @@ class Feed:
         muted = network.boards[board]
         muted.send = _drop
         self._queue, bit_ns = network.queue, network.wire.bit_ns
-        self.port = network.wire.attach(f"{board} from the log")
-        self.port.on_sent = self._sent
-        self._waiting: deque[Frame] = deque()
+        self._node = OutsideNode(self._queue, network.wire, f"{board} from the log")
         self._coming = deque(
             (logged.t_ns - (frame_bits(logged.frame) - INTERMISSION_BITS) * bit_ns, logged.frame)
             for logged in read(file)
@@ -77,17 +75,9 @@ class Feed:
         self._queue.at(max(0, self._coming[0][0]), self._next)
 
     def _next(self, t_ns: int) -> None:
-        self._waiting.append(self._coming.popleft()[1])
-        self._load(t_ns)
+        self._node.arrive(self._coming.popleft()[1])
         if self._coming:
             self._queue.at(max(t_ns, self._coming[0][0]), self._next)
-
-    def _load(self, t_ns: int) -> None:
-        while self._waiting and self.port.send(self._waiting[0], t_ns):
-            self._waiting.popleft()
-
-    def _sent(self, t_ns: int, _frame: Frame) -> None:
-        self._load(t_ns)
 
 
 def _drop(_frame: Frame, _ready_ns: int) -> bool:

@@ -51,9 +51,7 @@ CRYSTAL_DRIFT_PPM_PER_HOUR = 0.2
 CRYSTAL_PHASE_NS = 1_000_000_000
 """Boards have been switched on within the same second, ASSUMPTION."""
 _MAXIMUM_NODES = 64
-SPARE_TYPES = tuple(
-    number for number in range(0x35, 0x80) if number not in {int(device) for device in (*Device, *FINAL)}
-)
+SPARE_TYPES = tuple(sorted(set(range(0x35, 0x80)) - {int(device) for device in (*Device, *FINAL)}))
 """Device types for boards beyond the lab network."""
 
 
@@ -128,11 +126,9 @@ class _Wiring:
         self.boards: dict[str, Board] = {}
         self.site = Site(plant, self.boards)
 
-    def place(self, name: str, device_type: int) -> Place:
+    def place(self, name: str, kind: int) -> Place:
         oscillator = crystal(self.seed, name, self.config.node(name))
-        return Place(
-            name=name, device_type=device_type, queue=self.queue, wire=self.wire, oscillator=oscillator
-        )
+        return Place(name=name, device_type=kind, queue=self.queue, wire=self.wire, oscillator=oscillator)
 
     def of(self, device: Device) -> Place:
         return self.place(device.name, int(device))
@@ -204,9 +200,6 @@ class _Wiring:
     def velocity(self, name: str, device_type: int, encoder: Callable[[int], int]) -> Board:
         return MotorVelocityBoard(self.place(name, device_type), encoder)
 
-    def gateway(self, device: Device) -> Board:
-        return GatewayBoard(self.of(device))
-
     def focus(self, device: Device) -> Board:
         port = self.plant.focus
         pins = FocusPins(coils=port.coils, encoder=port.encoder, index=port.index, lvdt=port.lvdt)
@@ -236,7 +229,7 @@ _MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
     ("AXIS", _Wiring.axis),
     ("POSITION", _Wiring.position),
     ("MOTOR", _Wiring.motor),
-    ("GATEWAY", _Wiring.gateway),
+    ("GATEWAY", lambda wiring, device: GatewayBoard(wiring.of(device))),
     ("FOCUS", _Wiring.focus),
     ("DISPLAY", _Wiring.display),
 )
@@ -272,11 +265,8 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
         name = f"MOTOR_{device_type:02X}"
         encoder = plant.ra.tachometer_b if device_type & 1 else plant.ra.tachometer_a
         boards[name] = wiring.velocity(name, device_type, encoder)
-    unknown = set(config.nodes) - set(boards)
-    if unknown:
-        raise NetworkError(
-            f"network: there is no board '{min(unknown)}'; expected one of {', '.join(boards)}"
-        )
+    if other := set(config.nodes) - set(boards):
+        raise NetworkError(f"network: there is no board '{min(other)}'; expected one of {', '.join(boards)}")
     gateway = boards.get(Device.GATEWAY.name)
     hid = gateway.hid if isinstance(gateway, GatewayBoard) else HidEndpoint()
     uarts = {name: uart for name, board in boards.items() if (uart := uart_of(board)) is not None}

@@ -82,9 +82,8 @@ class NetworkConfig:
 def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
     """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
     if config.name not in NETWORKS:
-        raise NetworkError(
-            f"network: there is no network '{config.name}'; expected one of {', '.join(NETWORKS)}"
-        )
+        known = ", ".join(NETWORKS)
+        raise NetworkError(f"network: there is no network '{config.name}'; expected one of {known}")
     own = dict.fromkeys(device for board in config.extra for device in board.KIND.devices())
     return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
 

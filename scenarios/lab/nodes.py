@@ -55,13 +55,9 @@ class Supply:
 
     def current(self, t_ns: int) -> float:
         """A: the motors of the axes on this supply, and its boards."""
-        names = self._names
-        on = sum(self._boards[name].on for name in names if name in self._boards)
-        motors = [
-            port
-            for name, port in (("AXIS_RA", self._plant.ra), ("AXIS_DEC", self._plant.dec))
-            if name in names
-        ]
+        axes = {"AXIS_RA": self._plant.ra, "AXIS_DEC": self._plant.dec}
+        on = sum(self._boards[name].on for name in self._names if name in self._boards)
+        motors = [axes[name] for name in self._names if name in axes]
         return BOARD_A * on + sum(port.current(t_ns, motor) for port in motors for motor in (0, 1))
 
     def relay(self, t_ns: int, channel: int, on: bool) -> None:

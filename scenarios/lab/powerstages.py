@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from plant.kernels import layout as at
 
 if TYPE_CHECKING:
-    from scenarios.lab.faults.layers import Evidence
+    from scenarios.lab.faults.onplant import Staged
     from scenarios.lab.network import Network
-
-
-class Stage(Protocol):
-    """A power stage that does something else: duties wanted (0..1 each) to duties had."""
-
-    evidence: Evidence
-
-    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
-        """Of motors A and B."""
 
 
 class _Axis:
@@ -27,7 +18,7 @@ class _Axis:
         self._name = axis
         self._pwm = getattr(network.boards[f"AXIS_{axis.upper()}"], "pwm")  # noqa: B009 - Board has none
         self._below = self._pwm.drive
-        self.stages: list[Stage] = []
+        self.stages: list[Staged] = []
         self.dead = False
         view, place = network.plant.view, AXES[axis] * at.WIDTH + at.DUTY
         self._wanted = (view[place], view[place + 1])
@@ -62,12 +53,12 @@ class PowerStages:
         self._network = network
         self._axes: dict[str, _Axis] = {}
 
-    def add(self, axis: str, stage: Stage, t_ns: int) -> None:
+    def add(self, axis: str, stage: Staged, t_ns: int) -> None:
         """From now on, whatever the board has commanded before."""
         self._at(axis).stages.append(stage)
         self._at(axis).again(t_ns)
 
-    def remove(self, axis: str, stage: Stage, t_ns: int) -> None:
+    def remove(self, axis: str, stage: Staged, t_ns: int) -> None:
         """The switches obey again."""
         self._axes[axis].stages.remove(stage)
         self._settle(axis, t_ns)

@@ -132,14 +132,11 @@ def check_boards(scenario: Scenario) -> None:
 
     names = [device.name for device in devices_in(scenario)]
     wanted = [(step.where, _NEEDS[step.action]) for step in scenario.steps if step.action in _NEEDS]
-    wanted += [
-        (fault.where, fault.arguments["node"]) for fault in scenario.faults if "node" in fault.arguments
-    ]
+    wanted += [(each.where, each.arguments["node"]) for each in scenario.faults if "node" in each.arguments]
+    network = scenario.network.get("name", "lab")
     for where, board in wanted:
         if board not in names:
-            raise ScenarioError(
-                f"{where}: the network '{scenario.network.get('name', 'lab')}' has no board {board}"
-            )
+            raise ScenarioError(f"{where}: the network '{network}' has no board {board}")
 
 
 def chosen(

@@ -17,10 +17,8 @@ from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
 from scenarios.language.model import Scenario
 
-_FOCUS_START = 5
-"""The focus is found at most this many electrical periods from the middle. ASSUMPTION."""
-_HALF_STEPS_PER_PERIOD = 8
-"""The rotor rests where the phase that the board starts with holds it."""
+_FOCUS_START = 5  # The focus is found at most this many electrical periods from the middle. ASSUMPTION.
+_HALF_STEPS_PER_PERIOD = 8  # The rotor rests where the phase that the board starts with holds it.
 _STEP_RAD = STEP_ARCSEC / ARCSEC_PER_RAD
 
 

@@ -24,8 +24,7 @@ class FaultError(ValueError):
 class Parameter:
     """One argument of a fault.
 
-    default: None: it has to be given; "": it may be left out. low, high: bounds, both allowed, in the base
-    unit.
+    default: None: it has to be given; "": it may be left out. low, high: both allowed, in the base unit.
     """
 
     name: str
@@ -125,12 +124,10 @@ class Kind:
 
     def arguments(self, given: Mapping[str, Any], known: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
         """All arguments in base units, defaults filled in; raises FaultError."""
-        by_name = {each.name: each for each in self.parameters}
+        names = [each.name for each in self.parameters]
         for name in given:
-            if name not in by_name:
-                raise FaultError(
-                    f"{self.name}: unknown argument {name!r}; use {', '.join(by_name) or 'none'}"
-                )
+            if name not in names:
+                raise FaultError(f"{self.name}: unknown argument {name!r}; use {', '.join(names) or 'none'}")
         if self.one_of and not set(self.one_of) & set(given):
             raise FaultError(f"{self.name} needs a {' or an '.join(self.one_of)}")
         values: dict[str, Any] = {}

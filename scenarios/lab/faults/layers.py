@@ -72,16 +72,11 @@ def chained(call: Any, layers: list[Any]) -> Any:
     return call
 
 
-def last(value: Any, items: list[Any]) -> Any:
-    """The `value` that the last one gives."""
-    return items[-1].value if items else value
-
-
-def turned(number: float, items: list[Any]) -> float:
-    """A number that each one has a `turn` at."""
+def turned(value: Any, items: list[Any]) -> Any:
+    """A number, or a setting, that each one has a `turn` at."""
     for each in items:
-        number = each.turn(number)
-    return number
+        value = each.turn(value)
+    return value
 
 
 class Laid:

@@ -141,16 +141,20 @@ class WrongRate:
     """A node's controller is set to another bit rate."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
-        self._port, self._values = place.board(given["node"]).port, place.values
-        self.value = BitTiming(1e9 / given["bitrate"])
-        self._values.add(self._port, "timing", self)
+        self._port, self._dials = place.board(given["node"]).port, place.dials
+        self._timing = BitTiming(1e9 / given["bitrate"])
+        self._dials.add(self._port, "timing", self)
         port = self._port
         self._errors = Errors(place.layers, port, place.evidence, lambda: port.timing is not None)
+
+    def turn(self, _before: BitTiming | None) -> BitTiming:
+        """What the port is set to, whatever it was."""
+        return self._timing
 
     def clear(self, t_ns: int) -> None:
         """Set right."""
         self._errors.clear(t_ns)
-        self._values.remove(self._port, "timing", self)
+        self._dials.remove(self._port, "timing", self)
 
 
 class Dominant:

@@ -11,8 +11,7 @@ from scenarios.lab.faults.onboard import Hears
 from scenarios.lab.faults.onplant import Staged
 from scenarios.lab.faults.place import Place
 
-_ENDAT_BITS = 36
-"""F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1)."""
+_ENDAT_BITS = 36  # F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1).
 
 
 class FrameLoss:
@@ -38,13 +37,6 @@ class FrameLoss:
         """Heard again."""
         for ear in self._ears:
             ear.clear(t_ns)
-
-
-class DeafController(Hears):
-    """A controller gives nothing of what it receives to the processor; it still acknowledges and sends."""
-
-    def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
-        super().__init__(place, place.board(given["node"]).port)
 
 
 class EndatLine(Laid):

@@ -12,7 +12,7 @@ from scenarios.lab.powerstages import AXES
 
 
 class Staged:
-    """The power stage of an axis gives other duties than are wanted."""
+    """The power stage of an axis gives other duties, 0..1 each, than are wanted."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         self._drives, self.given, self.evidence = place.network.stages, given, place.evidence
@@ -28,26 +28,16 @@ class Staged:
         self._drives.remove(self.given["axis"], self, t_ns)
 
 
-class _Motor(Staged):
+class OneDuty(Staged):
     """One motor whose switches give one duty, whatever is wanted."""
 
-    duty: float
+    def __init__(self, duty: float, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
+        self._duty = duty
+        super().__init__(place, given, t_ns)
 
     def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
         """Of motors A and B."""
-        return (self.duty, wanted[1]) if self.given["motor"] == "a" else (wanted[0], self.duty)
-
-
-class MotorOpen(_Motor):
-    """A lead is off: no voltage reaches the winding."""
-
-    duty = 0.0
-
-
-class MosfetShort(_Motor):
-    """The switch conducts all the time."""
-
-    duty = 1.0
+        return (self._duty, wanted[1]) if self.given["motor"] == "a" else (wanted[0], self._duty)
 
 
 class EmergencyStop:
@@ -76,23 +66,21 @@ class _Driven(Staged):
         return wanted
 
 
-class _Turned:
-    """Numbers of the plant's world turned by a function, on one axis or both."""
+class Turned:
+    """Numbers of the plant's world, at their `places` in an axis' row, multiplied on one axis or both."""
 
-    places: tuple[int, ...]
-
-    def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
+    def __init__(self, places: tuple[int, ...], place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         plant = place.network.plant
         self.given = given
         self._dials, self._plant = place.dials, plant
-        self._axes = [given["axis"]] if "axis" in given else list(AXES)
-        self._places = [AXES[axis] * at.WIDTH + each for axis in self._axes for each in self.places]
+        axes = [given["axis"]] if "axis" in given else list(AXES)
+        self._places = [AXES[axis] * at.WIDTH + each for axis in axes for each in places]
         plant.advance(t_ns)
         before = [plant.view[each] for each in self._places]
         for each in self._places:
             self._dials.add(plant.view, each, self)
         moved = [plant.view[each] for each in self._places] != before
-        driven = [name for name in self._axes if moved and f"AXIS_{name.upper()}" in place.network.boards]
+        driven = [name for name in axes if moved and f"AXIS_{name.upper()}" in place.network.boards]
         self._watches = [self.watch(place, name, t_ns) for name in driven]
 
     def watch(self, place: Place, axis: str, _t_ns: int) -> Active:
@@ -113,32 +101,16 @@ class _Turned:
             self._dials.remove(self._plant.view, each, self)
 
 
-class WeakSupply(_Turned):
+class WeakSupply(Turned):
     """The motors' supply has less voltage."""
-
-    places = (at.VOLTAGE, at.RIPPLE)
 
     def watch(self, place: Place, axis: str, t_ns: int) -> Active:
         """A motor is driven: it need not move."""
         return _Driven(place, {"axis": axis}, t_ns)
 
 
-class Friction(_Turned):
-    """Coulomb and breakaway friction are other than declared."""
-
-    places = (at.DECLARED_FRICTION + at.F_COULOMB, at.DECLARED_FRICTION + at.F_STICTION)
-
-
-class Load(_Turned):
-    """The moved mass is another."""
-
-    places = (at.INERTIA,)
-
-
-class Play(_Turned):
+class Play(Turned):
     """The gear train has more play."""
-
-    places = (at.HALF_PLAY,)
 
     def turn(self, value: float) -> float:
         """Half of it on each side."""

@@ -45,8 +45,8 @@ class Stuck(Sensor):
         return self._held
 
 
-class _Counting(Sensor):
-    """A reading that is a number."""
+class Off(Sensor):
+    """A reading that is a number, off by what is given: a factor about zero, an offset, white noise."""
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         if given["sensor"] == "focus.index":
@@ -55,36 +55,10 @@ class _Counting(Sensor):
 
     def show(self, _t_ns: int, reading: Any) -> Any:
         """The nearest there is: counters count."""
-        value = self.change(float(reading))
+        value = float(reading) * float(self.given.get("factor", 1.0)) + float(self.given.get("offset", 0.0))
+        if "deviation" in self.given:
+            value += float(self.given["deviation"]) * float(self.random.standard_normal())
         return value if isinstance(reading, float) else round(value)
-
-    def change(self, value: float) -> float:
-        """What becomes of a number."""
-        raise NotImplementedError
-
-
-class Noise(_Counting):
-    """White noise on every reading."""
-
-    def change(self, value: float) -> float:
-        """Gaussian."""
-        return value + float(self.given["deviation"]) * float(self.random.standard_normal())
-
-
-class Bias(_Counting):
-    """An offset on every reading."""
-
-    def change(self, value: float) -> float:
-        """Shifted."""
-        return value + float(self.given["offset"])
-
-
-class Scale(_Counting):
-    """A wrong scale, about zero."""
-
-    def change(self, value: float) -> float:
-        """Stretched."""
-        return value * float(self.given["factor"])
 
 
 class Delayed(Sensor):

@@ -7,7 +7,7 @@ import numpy as np
 
 from bus.can.stuck import StuckDominant
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, chained, last, turned
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, chained, turned
 from scenarios.lab.network import Network
 
 _OF_AN_AXIS = {
@@ -51,7 +51,6 @@ class Place:
     random: np.random.Generator
     evidence: Evidence
     layers: Stacks = field(default_factory=lambda: Stacks(chained))
-    values: Stacks = field(default_factory=lambda: Stacks(last))
     dials: Stacks = field(default_factory=lambda: Stacks(turned))
     stuck: list[StuckDominant] = field(default_factory=list)
     held: dict[str, int] = field(default_factory=dict)

@@ -27,7 +27,7 @@ _HELPERS: Final = {
     "boards.core.commands": {"_nothing"},
     "boards.silicon.hid": {"_nobody", "_always"},
     "bus.protocol.saturate": {"nobody"},
-    "scenarios.lab.faults.layers": {"chained", "last", "turned"},
+    "scenarios.lab.faults.layers": {"chained", "turned"},
     "scenarios.lab.snapshot.code": {"cell", "fill", "finish", "function"},
     "scenarios.lab.snapshot.freeze": {"_array", "_view"},
     "numpy.random._pickle": {"__bit_generator_ctor", "__generator_ctor"},

@@ -10,6 +10,7 @@ from typing import Any
 
 from bus.protocol import Device
 from scenarios.lab.session import Session
+from scenarios.lab.snapshot.code import nothing
 from scenarios.lab.snapshot.file import read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 
@@ -35,7 +36,7 @@ class Tape:
 
     def __init__(self, session: Session, heard: Heard) -> None:
         self.heard = heard
-        self.ears = {kind: Ear(self.heard, kind, call) for kind, call in listeners(session).items()}
+        self.ears = {kind: Ear(heard, kind, call) for kind, call in listeners(session).items()}
         network = session.network
         network.hid.to_host = self.ears["usb"]
         for link in session.serial:
@@ -43,16 +44,8 @@ class Tape:
         session.plant._sink = self.ears["truth"]
         if network.chain is not None:
             network.chain.told = self.ears["chain"]
-        session.ticked = self.tick
-        session.eye.told = self.seen
-
-    def tick(self, t_ns: int) -> None:
-        """The host's clock."""
-        self.heard.append(("tick", (t_ns,)))
-
-    def seen(self, hour_angle_rad: float, declination_rad: float) -> None:
-        """An offset of a star in the field."""
-        self.heard.append((SEEN, (hour_angle_rad, declination_rad)))
+        session.ticked = Ear(heard, "tick", nothing)
+        session.eye.told = Ear(heard, SEEN, nothing)
 
 
 def listeners(session: Session) -> dict[str, Callable[..., None]]:
@@ -134,7 +127,7 @@ def begun(file: Path) -> dict[str, Any]:
 def resume(whole: dict[str, Any], folder: Path) -> Session:
     """A session in a new folder as it was, its files written again up to then."""
     session = Session(whole["scenario"], whole["model"], folder)
-    session.link._send = _nobody
+    session.link._send = nothing  # what the host says while it lives again has been said
     calls = listeners(session) | {"tick": session.work}
     session.eye.replay(arguments for kind, arguments in whole["heard"] if kind == SEEN)
     for kind, arguments in whole["heard"]:
@@ -145,7 +138,3 @@ def resume(whole: dict[str, Any], folder: Path) -> Session:
     network, session.faults = restore(whole["network"], {**listeners(session), **_outside(session)})
     session.adopt(network)
     return session
-
-
-def _nobody(_t_ns: int, _report: bytes) -> None:
-    """What the host says while it lives again has been said."""

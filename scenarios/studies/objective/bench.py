@@ -13,8 +13,7 @@ from plant.units import ARCSEC
 from scenarios.lab.axisbench import AxisBench
 
 Floats = NDArray[np.float64]
-SIDEREAL = 15.041
-"""arcsec/s, the issue's and the paper's tracking rate."""
+SIDEREAL = 15.041  # arcsec/s, the issue's and the paper's tracking rate.
 SETTLE_S = 30.0
 """After the command. The bristles need some 17 arcsec to load (hardware.md 2.4: discard the start-up)."""
 _OPCODES = {"TRACK": Opcode.TRACK_RATE, "RATE": Opcode.SET_RATE}

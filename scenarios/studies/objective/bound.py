@@ -21,10 +21,8 @@ from plant.rows import values
 from plant.units import ARCSEC
 from scenarios.studies.objective.bench import SIDEREAL
 
-TICK_S: Final = 0.005
-"""Paper, section 3.3."""
-PARTS: Final = 5
-"""Instants of a tick at which the rate counts."""
+TICK_S: Final = 0.005  # Paper, section 3.3.
+PARTS: Final = 5  # Instants of a tick at which the rate counts.
 _LAGS: Final = (
     (wind_torque.SLOW, wind_torque.OF_SLOW),
     (wind_torque.MIDDLE, wind_torque.OF_MIDDLE),

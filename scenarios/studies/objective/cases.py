@@ -19,8 +19,7 @@ EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivisio
 """At the catalogue's default size (`schmidt effects NAME`)."""
 PAPER = "the paper's firmware"
 STARTS = 8
-SPEEDS_M_S = (1.0, 3.0, 10.0)
-"""Of the wind in the slit."""
+SPEEDS_M_S = (1.0, 3.0, 10.0)  # Of the wind in the slit.
 FIRST_DEG, LAST_DEG = 85.0, 265.0
 """Of the absolute encoder: 95 deg before the middle of the travel to 85 deg after it."""
 
@@ -94,8 +93,7 @@ def starts(shift_deg: float, count: int = STARTS) -> list[float]:
     return [FIRST_DEG + (k * spacing + shift_deg) % (LAST_DEG - FIRST_DEG) for k in range(count)]
 
 
-MUST = 1.0
-"""arcsec/s: the paper's objective."""
+MUST = 1.0  # arcsec/s: the paper's objective.
 BOUND = "the least possible"
 
 

@@ -53,10 +53,8 @@ def over_angle(log: Log) -> Array:
     What the gears add repeats with the angle, so its mean over whole turns is zero over the angle. Over time
     it is not: an open loop lingers where they hold it back (0.2 % of the torque at 5 % of ripple).
     """
-    window = np.ones(WINDOW)
-    rate = np.convolve(log.rate, window, mode="same") / np.convolve(
-        np.ones(log.rate.size), window, mode="same"
-    )
+    summed, rows = (np.convolve(x, np.ones(WINDOW), mode="same") for x in (log.rate, np.ones(log.rate.size)))
+    rate = summed / rows
     covered = np.maximum(0.0, rate * np.sign(rate.sum()))
     whole = float(covered.sum())
     share = covered / whole if whole > 0.0 else np.full(rate.size, 1.0 / rate.size)
@@ -109,8 +107,7 @@ def break_away_point(forward: Log, backward: Log, sheet: Drive) -> MapPoint:
     return MapPoint(max(rate, 0.1) * ARCSEC, level, BREAK_AWAY_ERROR * level)
 
 
-WINDOW = 15
-"""Samples, 150 ms."""
+WINDOW = 15  # Samples, 150 ms.
 BREAK_AWAY_ERROR = 0.025
 """Share. The rate, some 10 arcsec/s, doubles within the window and is read in counts of 2.3. So it is known
 to a quarter. There the torque falls by a tenth when the rate doubles (Table 2, any exponent near 0.5).
@@ -142,8 +139,7 @@ class FrictionFit:
         return friction_curve(rate, astuple(self))
 
 
-EXPONENTS = (0.5, 2.0)
-"""Bounds of the fitted exponent: hardware.md 1.1."""
+EXPONENTS = (0.5, 2.0)  # Bounds of the fitted exponent: hardware.md 1.1.
 
 
 def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> FrictionFit:
@@ -165,12 +161,11 @@ def fit_friction(points: Sequence[MapPoint], exponent: float | None = None) -> F
 
     low = np.log([1.0, 1.0, 1e-5, bounds[0], 1.0])
     high = np.log([1e5, 1e5, 1e-1, bounds[1], 1e6])
+    rise = np.ptp(torque[-3:]) / np.ptp(rate[-3:])
     found = []
     for vs in (2e-4, 5e-4, 1.2e-3):
         for delta in (0.6, 1.0, 1.8) if exponent is None else (exponent,):
-            start = np.log(
-                [torque.min(), torque.max(), vs, delta, max(10.0, np.ptp(torque[-3:]) / np.ptp(rate[-3:]))]
-            )
+            start = np.log([torque.min(), torque.max(), vs, delta, max(10.0, rise)])
             start = np.clip(start, low + 1e-9, high - 1e-9)
             found.append(least_squares(misfit, start, bounds=(low, high), loss="soft_l1"))
     return FrictionFit(*map(float, np.exp(min(found, key=lambda each: each.cost).x)))

@@ -45,11 +45,9 @@ class Log:
 
     def after(self, seconds: float) -> "Log":
         """Return the log without its first `seconds`: start-up discarded."""
-        first = round(seconds / LOG_PERIOD_S)
+        first, span_s = round(seconds / LOG_PERIOD_S), self.t_s.size * LOG_PERIOD_S
         if first >= self.t_s.size:
-            raise ValueError(
-                f"a run of {self.t_s.size * LOG_PERIOD_S:.2f} s has nothing after {seconds:.2f} s"
-            )
+            raise ValueError(f"a run of {span_s:.2f} s has nothing after {seconds:.2f} s")
         return Log(*(column[first:] for column in self._columns()))
 
     def last(self, seconds: float) -> "Log":
@@ -70,28 +68,27 @@ def peak_percent(rate: Array, setpoint: float) -> float:
     return float(np.max(np.abs(rate - setpoint)) / abs(setpoint) * 100.0)
 
 
-def means(rate: Array, seconds: float = 1.0) -> Array:
-    """Return means over consecutive windows of `seconds`; an incomplete last window is left out."""
-    width = round(seconds / LOG_PERIOD_S)
+def means(rate: Array) -> Array:
+    """Return means over consecutive seconds; an incomplete last one is left out."""
+    width = round(1.0 / LOG_PERIOD_S)
     count = rate.size // width
     if not count:
-        raise ValueError(f"{rate.size} samples are fewer than one window of {seconds} s")
+        raise ValueError(f"{rate.size} samples are fewer than one window of 1.0 s")
     return np.asarray(rate[: count * width].reshape(count, width).mean(axis=1), dtype=np.float64)
 
 
-def cycles(rate: Array, setpoint: float, depth: float = 0.5) -> int:
-    """Return how often the velocity went from below (1 - depth) to above (1 + depth) set points.
+def cycles(rate: Array, setpoint: float) -> int:
+    """Return how often the velocity went from below half a set point to above one and a half.
 
     A limit cycle does so again and again; quantisation of steady motion (7 to 8 % at 15 arcsec/s) never.
     """
     ratio = rate / setpoint
     state, count = 0, 0
-    for low, high in zip(ratio < 1.0 - depth, ratio > 1.0 + depth, strict=True):
+    for low, high in zip(ratio < 0.5, ratio > 1.5, strict=True):
         if low:
             state = -1
         elif high:
-            if state < 0:
-                count += 1
+            count += state < 0
             state = 1
     return count
 
@@ -104,21 +101,21 @@ class Line:
     amplitude: float
 
 
-def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float = LOG_PERIOD_S) -> Line:
+def strongest_line(record: Array, low_hz: float, high_hz: float) -> Line:
     """Return the strongest sinusoid of `record` between two frequencies.
 
     Strongest is the one that explains most of what an offset and a trend leave. Its amplitude alone would
     favour slow sinusoids that offset and trend cancel again. Frequencies are tried on a grid of a tenth of
     the record's resolution. Raises ValueError when not one period of `high_hz` fits.
     """
-    span = record.size * period_s
+    span = record.size * LOG_PERIOD_S
     if span * high_hz < 1.0:
         raise ValueError(f"a record of {span:.1f} s cannot show lines below {high_hz} Hz")
     # decimate: lines far below the sampling rate need no 10 ms samples
-    width = max(1, int(0.05 / (high_hz * period_s)))
+    width = max(1, int(0.05 / (high_hz * LOG_PERIOD_S)))
     count = record.size // width
     y = record[: count * width].reshape(count, width).mean(axis=1)
-    t = (np.arange(count) * width + (width - 1) / 2.0) * period_s
+    t = (np.arange(count) * width + (width - 1) / 2.0) * LOG_PERIOD_S
     t = t - t.mean()
     rest = _detrended(t, y)
     best, least = Line(low_hz, 0.0), np.inf
@@ -129,9 +126,9 @@ def strongest_line(record: Array, low_hz: float, high_hz: float, period_s: float
     return best
 
 
-def line_amplitude(record: Array, frequency_hz: float, period_s: float = LOG_PERIOD_S) -> float:
+def line_amplitude(record: Array, frequency_hz: float) -> float:
     """Return the amplitude of the sinusoid of one frequency in `record`, in its unit."""
-    t: Array = (np.arange(record.size, dtype=np.float64) - (record.size - 1) / 2.0) * period_s
+    t: Array = (np.arange(record.size, dtype=np.float64) - (record.size - 1) / 2.0) * LOG_PERIOD_S
     return _sinusoid(t, _detrended(t, record), frequency_hz)[0]
 
 

@@ -115,8 +115,7 @@ def as_json(
 def paper(options: PaperOptions) -> int:
     """Run the paper's experiments.
 
-    Returns 0 when every row is met at every start, 1 when one is missed. Raises ValueError for a file that
-    cannot be used.
+    Returns 0 when every row is met at every start, 1 when one is missed. Raises ValueError for bad files.
     """
     console, out = Console(), options.out
     files = {"low": options.plant, "high": options.plant_high}

@@ -38,17 +38,15 @@ def settled(sheet: scales.Drive, current: Array, duty: Array, emf: Array) -> Arr
     return np.maximum(0.0, goal + (current - goal) * np.exp(-resistance * STEP_S / sheet.inductance))
 
 
-def coast(
-    sheet: scales.Drive, friction: FrictionFit, axis: Coasting, setpoints: Array, samples: int
-) -> Array:
+def coast(sheet: scales.Drive, friction: FrictionFit, axis: Coasting, speeds: Array, samples: int) -> Array:
     """Return the counts of 5 ms, shape (runs, samples), that the log has every 10 ms after "effort 0".
 
-    setpoints: rad/s > 0, one steady state for each run.
+    speeds: rad/s > 0, one steady state for each run.
     """
     damping, late_s = axis.damping, axis.late_s
     k, n, load = sheet.torque_constant, scales.GEAR_RATIO, axis.inertia - 2.0 * sheet.rotor
     emf = k * n
-    w = np.array(setpoints, dtype=np.float64)
+    w = np.array(speeds, dtype=np.float64)
     lead_w, lag_w = w.copy(), w.copy()
     # before: both duties in the ratio of the split, together what friction takes
     duty = sheet.steady(friction.torque(w) / n, emf * w)
@@ -79,10 +77,8 @@ INERTIA = (300.0, 10_000.0)
 DAMPING = (300.0, 60_000.0)
 LATE_S = (0.0, 0.025)
 """Bounds of the three: kg m2; N m s/rad of one train; s."""
-SLOWEST = 60.0
-"""arcsec/s: below, bristles move more than they slide, which the map's curve does not know."""
-SPAN_S = 0.1
-"""s: the axis is slower than that within 0.08 s."""
+SLOWEST = 60.0  # arcsec/s: below, bristles move more than they slide, which the map's curve does not know.
+SPAN_S = 0.1  # s: the axis is slower than that within 0.08 s.
 
 
 def fit_run_downs(

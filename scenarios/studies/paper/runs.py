@@ -9,18 +9,16 @@ import numpy as np
 
 from plant.units import ARCSEC_PER_TURN
 from scenarios.studies.paper.measures import Log, join, stalled
-from scenarios.studies.paper.scales import GEAR_RATIO, LOG_PERIOD_S
+from scenarios.studies.paper.scales import EFFORT_SCALE, GEAR_RATIO, LOG_PERIOD_S
 
-TRACKING = 15.0
-"""arcsec/s, the paper's tracking speed (Fig. 13)."""
+TRACKING = 15.0  # arcsec/s, the paper's tracking speed (Fig. 13).
 HIGH = (600.0, 700.0, 800.0, 900.0, 1000.0)
 """arcsec/s, "higher speeds of 600 to 1000 arc sec/s" (paper 4)."""
-OPENED = (600.0, 1000.0)
-"""arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a))."""
+OPENED = (600.0, 1000.0)  # arcsec/s: the ends of that range, at which the loop is opened (Fig. 6(a)).
 SLOW_SLEW = (3600.0, 7200.0, 10800.0)
 """arcsec/s, "1 to 3 deg/s" (paper 4)."""
-LOW = 100.0
-"""arcsec/s, Fig. 7."""
+LOW = 100.0  # arcsec/s, Fig. 7.
+DWELL_S, SETTLE_S = 60.0, 12.0  # Of each effort of E6, and before it counts.
 
 
 class Bench(Protocol):
@@ -74,27 +72,25 @@ class LowSpeed:
     @property
     def nearest(self) -> Log | None:
         """The open-loop run nearest to 100 arcsec/s."""
-        return min(
-            (log for _, log in self.running), key=lambda log: abs(float(log.rate.mean()) - LOW), default=None
-        )
+        return min((log for _, log in self.running), key=lambda log: abs(log.rate.mean() - LOW), default=None)
 
 
-def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 12.0) -> LowSpeed:
+def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
     """E6: as an operator would look for the lowest open-loop speed. bench: makes a fresh one, at the same
     place.
 
     Closed loop at 100 arcsec/s first. Then, for one effort after the other, from 140 arcsec/s into open loop
-    for `dwell` s after `settle` s. The first effort is the one that the loop needed. It falls in the smallest
+    for DWELL_S after SETTLE_S. The first effort is the one that the loop needed. It falls in the smallest
     steps until the axis stays put, or rises until it keeps moving.
     """
-    closed = bench().closed_loop(LOW, settle + dwell).after(settle)
+    closed = bench().closed_loop(LOW, SETTLE_S + DWELL_S).after(SETTLE_S)
     effort = round(float(closed.effort.mean()))
     steps: list[tuple[int, Log]] = []
 
     def moves(tried: int) -> bool:
         trial = bench()
         trial.closed_loop(1.4 * LOW, 4.0)
-        steps.append((tried, trial.open_loop(tried, settle + dwell).after(settle)))
+        steps.append((tried, trial.open_loop(tried, SETTLE_S + DWELL_S).after(SETTLE_S)))
         return not stalled(steps[-1][1].rate)
 
     if moves(effort):
@@ -108,14 +104,11 @@ def low_speed(bench: Callable[[], Bench], dwell: float = 60.0, settle: float = 1
     return LowSpeed(closed, steps)
 
 
-TRIALS = 10
-"""Efforts tried on each side at most."""
-MOTOR_TURN_ARCSEC = ARCSEC_PER_TURN / GEAR_RATIO
-"""arcsec of the axis in a turn of the motor."""
+TRIALS = 10  # Efforts tried on each side at most.
+MOTOR_TURN_ARCSEC = ARCSEC_PER_TURN / GEAR_RATIO  # arcsec of the axis in a turn of the motor.
 OPENED_BEGIN_S, OPENED_SETTLE_S, OPENED_AVERAGED_S = 4.0, 12.0, 30.0
 """s: settling is slowest where friction falls with speed nearly as fast as the motor's torque."""
-BROKEN_AWAY = 20.0
-"""Counts in 5 ms, 46 arcsec/s: the axis no longer creeps."""
+BROKEN_AWAY = 20.0  # Counts in 5 ms, 46 arcsec/s: the axis no longer creeps.
 MAP_SPEEDS = (
     10.0, 15.0, 25.0, 40.0, 60.0, 80.0, 100.0, 140.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0,
     1200.0, 1400.0, 1600.0, 1800.0, 2400.0, 4800.0, 7200.0,
@@ -175,7 +168,7 @@ def opened_pair(bench: Bench, begin: float, there: int, back: int) -> tuple[Log,
     return log, opened_run(bench, -begin, back)
 
 
-def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3000) -> Log:
+def break_away(bench: Bench, direction: int, step_s: float = 0.2) -> Log:
     """E7: from rest the effort rises by 1/3000 every `step_s` until the axis is gone. direction: 1 or -1.
 
     Slowly: at 0.05 s a step the high-preload axis creeps at 25 arcsec/s when its torque is largest. What it
@@ -183,7 +176,7 @@ def break_away(bench: Bench, direction: int, step_s: float = 0.2, limit: int = 3
     reads lies within 2 %.
     """
     logs: list[Log] = []
-    for effort in range(1, limit + 1):
+    for effort in range(1, EFFORT_SCALE + 1):
         logs.append(bench.open_loop(direction * effort, step_s))
         if np.max(np.abs(logs[-1].counts), initial=0.0) > BROKEN_AWAY:
             break
@@ -201,5 +194,4 @@ def run_down(bench: Bench, setpoint: float = 7200.0, turns: float = 0.0) -> Log:
     return bench.open_loop(0, 1.5)
 
 
-STEP_TO = 600.0
-"""arcsec/s, Fig. 11."""
+STEP_TO = 600.0  # arcsec/s, Fig. 11.

@@ -21,8 +21,7 @@ ANGLES_DEG = (97.3, 123.1, 149.6, 172.9, 193.4, 217.7, 241.2, 268.9)
 """Eight angles of the absolute encoder over the telescope's travel, at odd places of every gear stage.
 ASSUMPTION: the paper names no place; travel +-100 deg about 180 deg."""
 SEEDS = (1, 2, 3)
-NOTHING = 1e-3
-"""Torque left of a friction that is taken away: a plant file wants a positive number."""
+NOTHING = 1e-3  # Torque left of a friction that is taken away: a plant file wants a positive number.
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,7 @@ STARTS = tuple(Start(angle, SEEDS[k % len(SEEDS)]) for k, angle in enumerate(ANG
 """What decides a row: eight angles, the seeds in turn."""
 FRESH, TRAVEL_DEG = 20261126, (85.0, 275.0)
 """Seed of `others`, which the search must never see; degrees of the absolute encoder."""
-QUICK = STARTS[::4]
-"""For a look; decides nothing."""
+QUICK = STARTS[::4]  # For a look; decides nothing.
 
 
 def others(count: int) -> tuple[Start, ...]:
@@ -53,7 +51,9 @@ def others(count: int) -> tuple[Start, ...]:
     return tuple(Start(round(float(angle), 1), int(seed)) for angle, seed in zip(angles, seeds, strict=True))
 
 
-MakeBench = Callable[[PlantModel, int, tuple[float, float] | None, float], Bench]
+Gains = tuple[float, float]
+"""Kp and Ki of an incremental PI: PWM steps per count in 5 ms, PWM steps per count."""
+MakeBench = Callable[[PlantModel, int, Gains | None, float], Bench]
 """Makes a bench, at rest and powered, of (plant, seed, gains instead of the plant file's, start in steps)."""
 
 
@@ -65,16 +65,16 @@ class Benches:
     plants: Mapping[str, PlantModel]
     start: Start
 
-    def __call__(self, preload: str = "low", gains: tuple[float, float] | None = None) -> Bench:
+    def __call__(self, preload: str = "low", gains: Gains | None = None) -> Bench:
         """Return a fresh bench of a preload."""
         return self.of(self.plants[preload], gains)
 
-    def of(self, model: PlantModel, gains: tuple[float, float] | None = None) -> Bench:
+    def of(self, model: PlantModel, gains: Gains | None = None) -> Bench:
         """Return a fresh bench of another plant at this start."""
         return self.make(model, self.start.seed, gains, self.start.steps)
 
     @property
-    def gains(self) -> tuple[float, float]:
+    def gains(self) -> Gains:
         """Kp, Ki of the plant file."""
         controller = self.plants["low"].controller
         return controller.kp.si, controller.ki.si
@@ -109,11 +109,7 @@ class EmulatorBench(AxisBench):
     """
 
     def __init__(
-        self,
-        model: PlantModel,
-        seed: int = 1,
-        gains: tuple[float, float] | None = None,
-        start_steps: float = START_STEPS,
+        self, model: PlantModel, seed: int = 1, gains: Gains | None = None, start_steps: float = START_STEPS
     ) -> None:
         super().__init__(model, seed, start_steps)
         self._rows: list[tuple[float, int, int, int, int, float]] = []

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.text import _slowly, heading, load_text, load_utf8, plain, read_columns, read_numbers
+from calibration.inputs.text import _slowly, heading, load_text, load_utf8, plain, read_numbers
 
 PATH = Path("x.csv")
 FIELDS = st.one_of(
@@ -108,7 +108,7 @@ def test_a_file_that_is_not_there_says_so(tmp_path: Path) -> None:
 
 def test_a_commented_header_names_columns_that_any_number_of_blanks_parts() -> None:
     text = "# of a logger\n#t q  tau\n0.00   1.0 2\n0.01  -1.5   3\n"
-    got = read_columns(PATH, text, ["tau", "t"])
+    got = heading(PATH, text).read(["tau", "t"])
     assert got["tau"].tolist() == [2.0, 3.0] and got["t"].tolist() == [0.0, 0.01]
 
 

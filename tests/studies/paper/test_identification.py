@@ -221,17 +221,17 @@ def test_E7_and_E8_find_the_numbers_of_a_plant_that_nobody_tuned_them_on(preload
     benches = Benches(CompiledBench, plants, begin)
     noise = Noise(7, "other")
     noise.constant = 1.0
-    found = friction_map(benches, preload, noise)
+    _, fit = friction_map(benches, preload, noise)
     truth = plants[preload].axes.ra.friction
-    assert found.fit is not None
-    assert found.fit.stiction == pytest.approx(truth.stiction.si, rel=0.10)
-    assert found.fit.viscous == pytest.approx(truth.viscous.si, rel=0.10)
-    assert found.fit.coulomb == pytest.approx(truth.coulomb.si, rel=0.20)
-    assert found.fit.stribeck_rate == pytest.approx(truth.stribeck_rate.si, rel=0.20)
+    assert fit is not None
+    assert fit.stiction == pytest.approx(truth.stiction.si, rel=0.10)
+    assert fit.viscous == pytest.approx(truth.viscous.si, rel=0.10)
+    assert fit.coulomb == pytest.approx(truth.coulomb.si, rel=0.20)
+    assert fit.stribeck_rate == pytest.approx(truth.stribeck_rate.si, rel=0.20)
     if preload == "low":
         setpoints = [way * speed for speed in RUN_DOWN_SPEEDS for way in (1, -1)]
         logs = [noise.log(run_down(benches("low"), setpoint)) for setpoint in setpoints]
-        inertia = fit_run_downs(logs, setpoints, found.fit, drive(plants["low"])).inertia
+        inertia = fit_run_downs(logs, setpoints, fit, drive(plants["low"])).inertia
         assert inertia == pytest.approx(1.3 * INERTIA, rel=0.05)
 
 

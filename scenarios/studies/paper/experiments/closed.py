@@ -13,10 +13,8 @@ SECONDS, SETTLE = 12.0, 4.0
 SLEW_SECONDS, SLEW_SETTLE = 6.0, 7.0
 """s of E4, after the acceleration."""
 ALL_SPEEDS = (TRACKING, LOW, *HIGH, *SLOW_SLEW)
-BOTH_PRELOADS = (600.0, 1000.0, 7200.0)
-"""arcsec/s, of E15."""
-OBJECTIVE = 1.0
-"""arcsec/s: the paper's objective for velocity."""
+BOTH_PRELOADS = (600.0, 1000.0, 7200.0)  # arcsec/s, of E15.
+OBJECTIVE = 1.0  # arcsec/s: the paper's objective for velocity.
 SHARE = 0.01
 """Of the set point: the paper's "within 1%"."""
 
@@ -78,17 +76,12 @@ def both_preloads(benches: Benches) -> Figures:
     return found
 
 
-MOTOR_TURN_S = 240.0
-"""One turn of the motor at 15 arcsec/s."""
-STICK_S = 0.1
-"""s: shorter standstills are not called a stick phase. ASSUMPTION."""
-STILL = COUNT_RATE / 2.0
-"""arcsec/s: half the velocity quantum; a slower axis reads zero more often than not."""
-LEAP = 2.0
-"""Set points: an error of 100 %."""
+MOTOR_TURN_S = 240.0  # One turn of the motor at 15 arcsec/s.
+STICK_S = 0.1  # s: shorter standstills are not called a stick phase. ASSUMPTION.
+STILL = COUNT_RATE / 2.0  # arcsec/s: half the velocity quantum; a slower axis reads zero more often than not.
+LEAP = 2.0  # Set points: an error of 100 %.
 LEAP_OF_LOW_GAINS = 1.5
-FACTORS = (0.5, 0.25, 0.1)
-"""Of the plant file's gains."""
+FACTORS = (0.5, 0.25, 0.1)  # Of the plant file's gains.
 
 
 @row("E1")

@@ -86,8 +86,7 @@ class Experiment:
 def row(
     name: str, beside: tuple[tuple[str, str], ...] = ()
 ) -> Callable[[Callable[[Benches], Figures]], Experiment]:
-    """Makes a function the experiment of this name in rows.yaml. beside: more of these figures, whose names
-    code makes."""
+    """Makes a function the experiment of this name in rows.yaml. beside: figures whose names code makes."""
     told = _rows()[name]
     limits = tuple(Limit(**each) for each in told["limits"])
     shown = (*map(tuple, told.get("beside", ())), *beside)

@@ -10,12 +10,9 @@ from scenarios.studies.paper.runs import BROKEN_AWAY, HIGH, break_away, map_run,
 from scenarios.studies.paper.scales import EFFORT_SCALE, INERTIA, TABLE_2, drive
 from scenarios.studies.paper.starts import Benches, with_inertia
 
-REGION = (0.25, 3.0)
-"""Of vs: where the Stribeck effect does most of its falling."""
-OTHERS = (0.8, 1.2)
-"""Factors on the inertia."""
-RUN_DOWN_SPEEDS = (7200.0, 2400.0)
-"""arcsec/s: the slew speed of Table 1, and a third of it."""
+REGION = (0.25, 3.0)  # Of vs: where the Stribeck effect does most of its falling.
+OTHERS = (0.8, 1.2)  # Factors on the inertia.
+RUN_DOWN_SPEEDS = (7200.0, 2400.0)  # arcsec/s: the slew speed of Table 1, and a third of it.
 PLACES = (0.0, 0.25)
 """Motor turns: what its second harmonic adds to the torque at one of them it takes off at the other."""
 
@@ -29,16 +26,16 @@ def table_2(benches: Benches) -> Figures:
     for preload, table in TABLE_2.items():
         friction = benches.plants[preload].axes.ra.friction
         unit = friction.coulomb.value / friction.coulomb.si  # N m to the unit in which Table 2 is read
-        found_map = friction_map(benches, preload, noise)
+        points, fit = friction_map(benches, preload, noise)
         low, high = (share * table["stribeck_rate"] for share in REGION)
-        region.append(sum(low <= point.rate <= high for point in found_map.points))
-        if found_map.fit is None:
+        region.append(sum(low <= point.rate <= high for point in points))
+        if fit is None:
             continue
         for name, printed in table.items():
             scale = unit if name in ("coulomb", "stiction") else 1.0
-            value = float(getattr(found_map.fit, name)) * scale
+            value = float(getattr(fit, name)) * scale
             found[f"{preload} {name}"] = (value / printed - 1.0) * 100.0
-        found[f"{preload} exponent"] = found_map.fit.exponent
+        found[f"{preload} exponent"] = fit.exponent
     found["region"] = float(min(region))
     return found
 
@@ -49,7 +46,7 @@ def inertia(benches: Benches) -> Figures:
     plant = benches.plants["low"]
     # an error of the torque constant is one of J, share for share: E7 has it
     noise = Noise(benches.start.seed, f"e8.{benches.start.angle_deg}", constant_error=0.0)
-    fit = friction_map(benches, "low", noise).fit
+    _, fit = friction_map(benches, "low", noise)
     if fit is None:
         return {}
     sheet = drive(plant)

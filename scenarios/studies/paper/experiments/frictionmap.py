@@ -8,7 +8,7 @@ not the current. The logs have noise of the instruments the authors read, which 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,10 +27,8 @@ from scenarios.studies.paper.starts import Benches
 
 ADC_NOISE = 1.0
 """Counts rms on every current sample: 6.1 mA of 6 A. ASSUMPTION: one count of ten bits beside a PWM."""
-GAIN_NOISE = 0.01
-"""Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION."""
-CONSTANT_ERROR = 0.05
-"""Share by which a motor's torque constant may be off its data sheet, either way."""
+GAIN_NOISE = 0.01  # Share of the reading, rms, from sample to sample: brush noise. ASSUMPTION.
+CONSTANT_ERROR = 0.05  # Share by which a motor's torque constant may be off its data sheet, either way.
 
 
 class Noise:
@@ -57,18 +55,11 @@ class Noise:
 
 STEADY_RATE, STEADY_TORQUE = 0.05, 0.03
 """Shares, of a steady state: mean velocity off the set point, and uncertainty of the mean torque, at most."""
-ADC_FULL = 1023.0
-"""Largest count of the 10-bit converter: 6.24 A."""
+ADC_FULL = 1023.0  # Largest count of the 10-bit converter: 6.24 A.
 BREAK_AWAYS = (0.15, 0.2, 0.3)
 """s that each effort lasts on the way to break-away. Three, because the rate at that moment, some 10
 arcsec/s, is read in counts of 2.3. It is all that is known of the curve's steep end."""
-TRIALS = 80
-"""Pairs of efforts tried at most."""
-
-
-def saturated(log: Log) -> bool:
-    """Whether a current was at the end of the converter's range."""
-    return bool(max(np.max(log.adc_a), np.max(log.adc_b)) >= ADC_FULL)
+TRIALS = 80  # Pairs of efforts tried at most.
 
 
 def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
@@ -79,39 +70,31 @@ def steady(speed: float, point: MapPoint, logs: tuple[Log, ...]) -> bool:
     return off < STEADY_RATE and point.unrest < STEADY_TORQUE * point.torque
 
 
-@dataclass(frozen=True)
-class Map:
-    """Points, the speeds at which the loop had no steady state, and the fit (None: too few points)."""
-
-    points: list[MapPoint]
-    left_out: list[float]
-    fit: FrictionFit | None
-
-
-def friction_map(benches: Benches, preload: str, noise: Noise) -> Map:
-    """Measure the map: steady states both ways, and the break-away torques as its points near rest."""
+def friction_map(benches: Benches, preload: str, noise: Noise) -> tuple[list[MapPoint], FrictionFit | None]:
+    """Measure the map: steady states both ways, and the break-away torques as its points near rest. Points,
+    and the fit (None: too few of them)."""
     sheet = noise.sheet(drive(benches.plants[preload]))
     points = []
     for step_s in BREAK_AWAYS:
         ways = [noise.log(break_away(benches(preload), way, step_s)) for way in (1, -1)]
         points.append(break_away_point(ways[0], ways[1], sheet))
-    left_out: list[float] = []
+    leaps = False  # at some speed the loop had no steady state
     slowest: tuple[Log, Log] | None = None
     for speed in reversed(MAP_SPEEDS):
         bench = benches(preload)
         there, back = map_pair(bench, speed)
         logs = (noise.log(there), noise.log(back))
         point = steady_point(logs[0], logs[1], sheet)
-        if any(saturated(log) for log in logs):
+        if max(np.max(current) for log in logs for current in (log.adc_a, log.adc_b)) >= ADC_FULL:
             continue
         if steady(speed, point, logs):
             points.append(point)
-            slowest = logs if not left_out else slowest
+            slowest = slowest if leaps else logs
         else:
-            left_out.append(speed)
-    if left_out and slowest is not None:
+            leaps = True
+    if leaps and slowest is not None:
         points += opened(benches, preload, noise, sheet, slowest)
-    return Map(points, left_out, fit_friction(points) if len(points) >= 6 else None)
+    return points, fit_friction(points) if len(points) >= 6 else None
 
 
 def opened(

@@ -26,18 +26,14 @@ from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.runs import MOTOR_TURN_ARCSEC, Bench
 from scenarios.studies.paper.scales import CONTROL_PERIOD_S, EFFORT_SCALE, LOG_PERIOD_S
 
-ABOUT = 600.0
-"""arcsec/s: the viscous branch."""
-STEP_SHARE = 0.15
-"""Of the effort at that speed."""
+ABOUT = 600.0  # arcsec/s: the viscous branch.
+STEP_SHARE = 0.15  # Of the effort at that speed.
 COUNTER_SHARE = 10
 """Steps of the effort that move the counter torque by one (paper 3.3: 10 to 25 %, here 10)."""
-SETTLE_S = 6.0
-"""s before the first step."""
+SETTLE_S = 6.0  # s before the first step.
 RESPONSE, BASE = 100, 30
 """Rows: of a response, 1 s, and those before a step that its baseline is the mean of."""
-PHASES = 10
-"""Of half a turn of the motor, in which a step up is taken, and one down."""
+PHASES = 10  # Of half a turn of the motor, in which a step up is taken, and one down.
 APART_ARCSEC = MOTOR_TURN_ARCSEC / 2.0 * (1.0 + 1.0 / PHASES) / 2.0
 """arcsec of the axis from one step to the next."""
 HALF_ROW_S = LOG_PERIOD_S / 2.0

@@ -21,12 +21,11 @@ from plant.parts import PlantModel
 from scenarios.studies.paper import scales
 from scenarios.studies.paper.experiments.experiment import Figures, row
 from scenarios.studies.paper.experiments.identify import FirstOrder, identify
-from scenarios.studies.paper.measures import Array, Log
+from scenarios.studies.paper.measures import Array
 from scenarios.studies.paper.runs import STEP_TO
-from scenarios.studies.paper.starts import Benches
+from scenarios.studies.paper.starts import Benches, Gains
 
-RAMP_ARCSEC_S2 = 7200.0
-"""The firmware's acceleration limit, 2 deg/s2 (Table 1)."""
+RAMP_ARCSEC_S2 = 7200.0  # The firmware's acceleration limit, 2 deg/s2 (Table 1).
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,25 +61,10 @@ def linear_axis(model: PlantModel) -> LinearAxis:
     )
 
 
-def beside(benches: Benches, log: Log) -> tuple[Array, Array, Array]:
-    """Return what `simulate_loop` makes of a bench's low preload for as long as its log of a step."""
-    plant = benches.plants["low"]
-    steps, seconds = round(plant.controller.pwm_steps.si), log.t_s.size * scales.LOG_PERIOD_S
-    return simulate_loop(linear_axis(plant), benches.gains, steps, STEP_TO, seconds, RAMP_ARCSEC_S2)
+def simulate_loop(axis: LinearAxis, gains: Gains, pwm_steps: int, seconds: float) -> tuple[Array, Array]:
+    """Return velocity (arcsec/s), effort (1/3000) of equation (6) in the loop of the paper's PI, from rest.
 
-
-def simulate_loop(
-    axis: LinearAxis,
-    gains: tuple[float, float],
-    pwm_steps: int,
-    arcsec_s: float,
-    seconds: float,
-    ramp_arcsec_s2: float,
-) -> tuple[Array, Array, Array]:
-    """Return (t, velocity in arcsec/s, effort in 1/3000) of equation (6) in the loop of the paper's PI, from
-    rest.
-
-    gains: Kp, Ki in PWM steps per count. The set point rises with `ramp_arcsec_s2`, as the firmware's does.
+    The set point rises to STEP_TO as the firmware's does.
     One row per controller period, s. Steps of 0.1 ms; the effort acts Delta t / 2 late; the controller sees
     the mean velocity of its period, unquantised. At rest the stiction only holds: it never pushes back.
     """
@@ -104,26 +88,17 @@ def simulate_loop(
                 speed = current = 0.0
             travelled += speed * dt
         out[k] = travelled / scales.CONTROL_PERIOD_S * to_axis
-        setpoint = min(arcsec_s, setpoint + ramp_arcsec_s2 * scales.CONTROL_PERIOD_S)
+        setpoint = min(STEP_TO, setpoint + RAMP_ARCSEC_S2 * scales.CONTROL_PERIOD_S)
         new = (setpoint - out[k]) / scales.COUNT_RATE
         before = effort
         effort = min(max(effort + kp * (new - error) + ki * new, -pwm_steps), pwm_steps)
         error = new
         efforts[k] = effort * scales.EFFORT_SCALE / pwm_steps
-    times: Array = (np.arange(count, dtype=np.float64) + 1.0) * scales.CONTROL_PERIOD_S
-    return times, out, efforts
-
-
-@dataclass(frozen=True)
-class Gains:
-    """Incremental PI: kp in PWM steps per count in 5 ms, ki in PWM steps per count."""
-
-    kp: float
-    ki: float
+    return out, efforts
 
 
 def _gains(proportional: float, integral_s: float) -> Gains:
-    return Gains(proportional, proportional * scales.CONTROL_PERIOD_S / integral_s)
+    return proportional, proportional * scales.CONTROL_PERIOD_S / integral_s
 
 
 def _cohen_coon(m: FirstOrder) -> Gains:
@@ -154,9 +129,10 @@ RULES: dict[str, Callable[[FirstOrder], Gains]] = {
 @row("E9")
 def equation_6(benches: Benches) -> Figures:
     """Difference of the two responses from rest to 600 arcsec/s, and their settled efforts."""
-    measured = benches("low").closed_loop(STEP_TO, 3.0)
-    _, rate, effort = beside(benches, measured)
-    rate, effort = rate[1::2], effort[1::2]  # the log has every second tick
+    measured, plant = benches("low").closed_loop(STEP_TO, 3.0), benches.plants["low"]
+    steps, seconds = round(plant.controller.pwm_steps.si), measured.t_s.size * scales.LOG_PERIOD_S
+    modelled = simulate_loop(linear_axis(plant), benches.gains, steps, seconds)
+    rate, effort = (x[1::2] for x in modelled)  # the log has every second tick
     late = slice(-rate.size // 3, None)
     return {
         "difference": float(np.sqrt(np.mean((measured.rate - rate) ** 2)) / STEP_TO * 100.0),
@@ -168,8 +144,7 @@ def equation_6(benches: Benches) -> Figures:
 def tuning_rules(benches: Benches) -> Figures:
     """Factors between the plant file's gains and each rule's, for a model identified on the emulator."""
     model = identify(lambda: benches("low"))
-    own = Gains(*benches.gains)
-    found = {name: factor(own, rule(model)) for name, rule in RULES.items()}
+    found = {name: factor(benches.gains, rule(model)) for name, rule in RULES.items()}
     nearest = sorted(found.values())
     return {
         "nearest": nearest[0],
@@ -182,4 +157,4 @@ def tuning_rules(benches: Benches) -> Figures:
 
 def factor(one: Gains, other: Gains) -> float:
     """Return the larger of the two factors between gains, 1 or more."""
-    return exp(max(abs(log(one.kp / other.kp)), abs(log(one.ki / other.ki))))
+    return exp(max(abs(log(a / b)) for a, b in zip(one, other, strict=True)))
