@@ -171,9 +171,11 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     names = list(dict.fromkeys(f.name for f in named))
     taken = f"{100 * (1 - left.part):.0f} % of what is above the floor"
     note = f"{', '.join(names)} would take {taken} only: {size}"
+    shapes = [f for f in findings if f.name == UNKNOWN]
+    if shapes:  # a function that stays says more than names that do not
+        return [shapes[0].noted(note), *shapes[1:]]
     theirs = left.domain if left.part * left.share > (1 - left.part) * first.share else None  # of the whole
-    most = replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)
-    return [most, *[f for f in findings if f.name == UNKNOWN]]
+    return [replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)]
 
 
 def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:

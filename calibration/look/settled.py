@@ -99,12 +99,12 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     x = np.column_stack([np.ones(len(p.y)), view.x[view.rows], view.at(view.smoothed(view.rate(view.x)))])[
         rows
     ]
-    beta = solve(x, p.y[rows])
+    constant, slope, rate = solve(x, p.y[rows])
     least = min(STILL_MISSING * floor, EXACT * float(np.std(p.y[rows])))
-    if beta[1] >= 0 or not rms(p.y[rows] - x @ beta) <= least:
+    if slope >= 0 or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
         return ""
     return (
-        f"{view.response.channel} is {beta[0]:.4g} {unit} {beta[1]:+.4g} {unit}/{view.angle_unit} x position,"
+        f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position,"
         " the law of a loop with one set point, beside which no force shows: let the set point move"
     )
 
