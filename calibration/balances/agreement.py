@@ -16,16 +16,11 @@ from calibration.statistics.regression import gls
 from calibration.statistics.tails import rms
 from calibration.statistics.thresholds import SURE_Z
 
-# of the scale: less is how either rate was smoothed. ASSUMPTION
-SCALED = 0.01
-# of the mean square of what the columns disagree by. ASSUMPTION
-MATTERS = 0.2
-# sample periods: a shorter delay is within a reading's own window. ASSUMPTION
-SMALLEST = 0.1
-# standard deviations of a Gaussian, beyond which hardly anything of it is left. arithmetic
-IMPULSE = 6
-# sample periods that are looked at. ASSUMPTION
-LONGEST = 20
+SCALED = 0.01  # of the scale: less is how either rate was smoothed. ASSUMPTION
+MATTERS = 0.2  # of the mean square of what the columns disagree by. ASSUMPTION
+SMALLEST = 0.1  # sample periods: a shorter delay is within a reading's own window. ASSUMPTION
+IMPULSE = 6  # standard deviations of a Gaussian, beyond which hardly anything of it is left. arithmetic
+LONGEST = 20  # sample periods that are looked at. ASSUMPTION
 
 
 @dataclass(frozen=True)

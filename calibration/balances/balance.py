@@ -15,21 +15,15 @@ from calibration.balances.view import View
 from calibration.inputs.declaration import JOINTS
 from calibration.inputs.run import Run
 
-# of the median divisor: below, the ratio says nothing. ASSUMPTION
-LOADED = 0.5
-# of a row's filter, that may lie where the drive stands. ASSUMPTION
-STANDS = 0.2
-# of the logged time, for the block-robust covariance. ASSUMPTION
-BLOCKS = 60
-# rows of a block at least, where no filter tells how long a row is remembered. ASSUMPTION
-BLOCK_ROWS = 20
+LOADED = 0.5  # of the median divisor: below, the ratio says nothing. ASSUMPTION
+STANDS = 0.2  # of a row's filter, that may lie where the drive stands. ASSUMPTION
+BLOCKS = 60  # of the logged time, for the block-robust covariance. ASSUMPTION
+BLOCK_ROWS = 20  # rows of a block at least, where no filter tells how long a row is remembered. ASSUMPTION
 # memories of the filter in a block: 2 sqrt(pi) standard deviations each, the sum over a Gaussian's
 # autocorrelation (arithmetic). ASSUMPTION: blocks are then all but independent
 MEMORIES = 2.0
-# term of a rig file. definition
-PER_FILE = "offset_per_file"
-# of its own quantile range that a held-out file may exceed the others. ASSUMPTION
-COVER = 0.02
+PER_FILE = "offset_per_file"  # term of a rig file. definition
+COVER = 0.02  # of its own quantile range that a held-out file may exceed the others. ASSUMPTION
 # of the others' range that the end of a file may go beyond them before another part is held out. ASSUMPTION:
 # half; loads that grow step by step are first seen at the end
 BEYOND = 0.5

@@ -22,20 +22,14 @@ from calibration.statistics.thresholds import SURE_Z
 from plant.compiled import entry
 from plant.units import ARCSEC
 
-# log likelihood that a column must explain beyond the base without it. ASSUMPTION
-MORE = 25.0
-# counts: a rate that leaps between two rows says nothing of the tick between. ASSUMPTION
-LARGEST = 300.0
-# 0.25 s: a disagreement of encoders that lasts is no tick's. ASSUMPTION
-SLOW_ROWS = 25
-# R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
-RIPPLE = (0.004, 0.03)
+MORE = 25.0  # log likelihood that a column must explain beyond the base without it. ASSUMPTION
+LARGEST = 300.0  # counts: a rate that leaps between two rows says nothing of the tick between. ASSUMPTION
+SLOW_ROWS = 25  # 0.25 s: a disagreement of encoders that lasts is no tick's. ASSUMPTION
+RIPPLE = (0.004, 0.03)  # R / (2 L f): L/R of 0.8 to 5 ms and 20 kHz (hardware.md 1.2, 2.4), a quarter of room
 # counts that a converter which rounds down reads too low, 0.5 at even spread. ASSUMPTION
 TRUNCATION = (0.25, 0.8)
-# counts: what such a converter reads too low at even spread. arithmetic
-HALF = 0.5
-# of its gain, that it may explain less where it is to stand for all of it. ASSUMPTION
-AS_GOOD = 0.1
+HALF = 0.5  # counts: what such a converter reads too low at even spread. arithmetic
+AS_GOOD = 0.1  # of its gain, that it may explain less where it is to stand for all of it. ASSUMPTION
 
 
 def counter_share(frame: Frame) -> Array:

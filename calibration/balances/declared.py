@@ -18,23 +18,15 @@ HIGHEST = np.array([3.2, np.log(1e-2), np.log(2e6)])
 SPREAD, HOLD = np.array([3.0, 3.0, 6.0]), 0.05
 # decades, natural, from the declared values, where a search begins. ASSUMPTION
 STARTS = ((0.0, 0.0, 0.0), (0.0, 0.0, -1.8), (-0.5, 0.7, 0.9))
-# factor: steps of the logs that change as much. ASSUMPTION
-SCALES = (0.3, 0.3, 0.5)
-# natural decades from the bounds. ASSUMPTION
-INSIDE = 1e-3
+SCALES = (0.3, 0.3, 0.5)  # factor: steps of the logs that change as much. ASSUMPTION
+INSIDE = 1e-3  # natural decades from the bounds. ASSUMPTION
 SEARCH = {"loss": "soft_l1", "f_scale": 0.05, "x_scale": SCALES, "diff_step": 0.02, "max_nfev": 15}
-# Gauss-Newton steps on the rows that the model already fits. ASSUMPTION
-POLISH = 6
-# times the median residual, within which it fits them. ASSUMPTION
-FITS = 6.0
-# natural decades of such a step at most. ASSUMPTION
-LONGEST = 0.3
-# likewise of one that is no step any more. ASSUMPTION
-SHORTEST = 1e-4
-# natural decades either way, for a derivative. ASSUMPTION
-APART = 0.03
-# times the median residual: more does not count. ASSUMPTION
-OUTLIER = 8.0
+POLISH = 6  # Gauss-Newton steps on the rows that the model already fits. ASSUMPTION
+FITS = 6.0  # times the median residual, within which it fits them. ASSUMPTION
+LONGEST = 0.3  # natural decades of such a step at most. ASSUMPTION
+SHORTEST = 1e-4  # likewise of one that is no step any more. ASSUMPTION
+APART = 0.03  # natural decades either way, for a derivative. ASSUMPTION
+OUTLIER = 8.0  # times the median residual: more does not count. ASSUMPTION
 
 
 def _logs(law: FrictionLaw) -> Array:

@@ -17,24 +17,15 @@ from calibration.finding import UNKNOWN, Finding
 from calibration.statistics.tails import middle, share_log10
 from plant.units import ARCSEC
 
-# arcsec/s: three units of the set point's Q16; what a position loop adds is more. ASSUMPTION
-STRAIGHT = 1e-4
-# rows over which the set point's kind is told. ASSUMPTION
-REGIME = 51
-# arcsec/s, boards/axis/config.py. definition
-CREEP_RATE = 200.0
-# steps of the effort: of a change between two efforts, each in whole steps
-ROUNDING = float(np.sqrt(2 / 12))
-# arcsec/s, a tenth apart: where a law may change (ASSUMPTION)
-LIMITS = np.geomspace(20.0, 5000.0, 57)
-# of the rows, on one side of such a limit (ASSUMPTION)
-FEW = 0.03
-# of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
-EDGE = 0.4
-# fraction of pulses that must keep the period. ASSUMPTION
-REGULAR = 0.6
-# regular spikes, more than which are pulses: a quarter of them is eight. arithmetic
-LEAST_PULSES = 32
+STRAIGHT = 1e-4  # arcsec/s: three units of the set point's Q16; what a position loop adds is more. ASSUMPTION
+REGIME = 51  # rows over which the set point's kind is told. ASSUMPTION
+CREEP_RATE = 200.0  # arcsec/s, boards/axis/config.py. definition
+ROUNDING = float(np.sqrt(2 / 12))  # steps of the effort: of a change between two efforts, each in whole steps
+LIMITS = np.geomspace(20.0, 5000.0, 57)  # arcsec/s, a tenth apart: where a law may change (ASSUMPTION)
+FEW = 0.03  # of the rows, on one side of such a limit (ASSUMPTION)
+EDGE = 0.4  # of the large spikes: smaller ones are no edges of theirs (ASSUMPTION)
+REGULAR = 0.6  # fraction of pulses that must keep the period. ASSUMPTION
+LEAST_PULSES = 32  # regular spikes, more than which are pulses: a quarter of them is eight. arithmetic
 
 
 def incremental_law(frame: Frame, held: Mask, own: bool = False) -> Law | None:

@@ -18,8 +18,7 @@ from calibration.inputs.declaredplant import Declared
 
 # counts of the tachometer per row, five times what rounding leaves after the means (0.15). ASSUMPTION
 APART = 0.75
-# counts expected: below, noise is cut off at zero and the mean is not the current. ASSUMPTION
-CLIPPED = 4.0
+CLIPPED = 4.0  # counts expected: below, noise is cut off at zero and the mean is not the current. ASSUMPTION
 
 
 def electrical_problem(

@@ -15,10 +15,8 @@ from calibration.balances.torque import Transmission
 from calibration.balances.view import View
 from plant.units import ARCSEC
 
-# rows that have a partner. ASSUMPTION
-FEWEST = 50
-# of the range, that a repeated motion may differ from the first. ASSUMPTION
-AGREE = 0.005
+FEWEST = 50  # rows that have a partner. ASSUMPTION
+AGREE = 0.005  # of the range, that a repeated motion may differ from the first. ASSUMPTION
 # of a step, where a sensor's zero may lie: distances of the two zeros of 0.2 to 0.8 (ASSUMPTION)
 ORIGINS = (0.1, 0.3, 0.6, 0.8)
 # counts per row: a tachometer that is slower keeps its rounding error from row to row. ASSUMPTION

@@ -19,14 +19,12 @@ SENSORS = ("effort", "position", "velocity", "current_a", "current_b", "motor_a"
 # "unseen" is 1 where the position is not measured but carried on from the motors; no log has it
 COLUMNS = (*SENSORS, "setpoint", "supply", "temperature", "unseen")
 
-# times the logged time: runs that far apart are not one session. ASSUMPTION
-FAR_APART = 50
+FAR_APART = 50  # times the logged time: runs that far apart are not one session. ASSUMPTION
 # share of full effort within one row: a transient that the rigid balance does not hold. ASSUMPTION
 JUMP = 0.02
 # how long such a transient lasts: a few turns of the lock-rotor mode and of the PI loop. ASSUMPTION
 SETTLE_S = 0.25
-# rows without a number that are bridged by a straight line. ASSUMPTION
-SHORT = 3
+SHORT = 3  # rows without a number that are bridged by a straight line. ASSUMPTION
 
 
 @dataclass(kw_only=True)

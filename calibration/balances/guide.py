@@ -14,20 +14,15 @@ from calibration.errors import CalibrationInputError
 from calibration.inputs.run import Run
 from calibration.statistics.tails import rms
 
-# of the longest section: shorter ones only add an offset and a drift each. ASSUMPTION
-LEAST_PART = 0.25
-# in a section. ASSUMPTION
-LEAST_FRAMES = 30
-# cells in a turn of the quickest part: its eighth harmonic is still seen. ASSUMPTION
-PER_TURN = 20.0
+LEAST_PART = 0.25  # of the longest section: shorter ones only add an offset and a drift each. ASSUMPTION
+LEAST_FRAMES = 30  # in a section. ASSUMPTION
+PER_TURN = 20.0  # cells in a turn of the quickest part: its eighth harmonic is still seen. ASSUMPTION
 # quick frames are averaged over this: the eighth harmonic of the quickest worm lasts 19 s. ASSUMPTION
 CELL_S = 3.0
 # of the slowest period: what has not come round twice is not known to be periodic. ASSUMPTION
 DRIFT_TURNS = 2.0
-# of the drift: refraction and polar alignment change its rate. ASSUMPTION
-LEAST_DEGREE = 2
-# likewise at most: eight hours of a mount's slowest worm. ASSUMPTION
-MOST_DEGREE = 43
+LEAST_DEGREE = 2  # of the drift: refraction and polar alignment change its rate. ASSUMPTION
+MOST_DEGREE = 43  # likewise at most: eight hours of a mount's slowest worm. ASSUMPTION
 # s, the worm of a 130-tooth wheel: the slowest of those in use. arithmetic, the sidereal day over its teeth
 SLOWEST_S = 663.0
 # blocks in a turn of the slowest period, 40 s of a mount's: air and guiding forget sooner. ASSUMPTION
@@ -38,8 +33,7 @@ QUARTER = 4.0
 CUT = 5.0
 # pieces of the longest section, each held out in its turn, where it has fewer turns. ASSUMPTION
 LEAST_PIECES = 3
-# groups of pieces, where there are more: every sixth piece is held out together. ASSUMPTION
-EVERY = 6
+EVERY = 6  # groups of pieces, where there are more: every sixth piece is held out together. ASSUMPTION
 
 
 def usable(runs: list[Run], hold_out: list[str]) -> tuple[list[Run], list[str]]:

@@ -22,14 +22,10 @@ from plant.units import ARCSEC, ARCSEC_PER_TURN
 STILL_S = 1.0
 # of a tachometer count: rounding where a steady speed beats with the rows (white: 0.29). ASSUMPTION
 COUNT_PART = 0.1
-# a motor this far from where wind-up puts it has left its tooth face. ASSUMPTION
-APART_ARCSEC = 8.0
-# rows of the analysis grid on either side of such a one, that are left out too. ASSUMPTION
-NEAR = 5
-# standard error of the wind-up, of itself, up to which the measured one is used. ASSUMPTION
-KNOWN = 0.05
-# factor either way beyond which it is not a train's. ASSUMPTION
-SPREAD = 5.0
+APART_ARCSEC = 8.0  # a motor this far from where wind-up puts it has left its tooth face. ASSUMPTION
+NEAR = 5  # rows of the analysis grid on either side of such a one, that are left out too. ASSUMPTION
+KNOWN = 0.05  # standard error of the wind-up, of itself, up to which the measured one is used. ASSUMPTION
+SPREAD = 5.0  # factor either way beyond which it is not a train's. ASSUMPTION
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,10 +23,8 @@ from calibration.statistics.regression import block_covariance, solve
 
 # of the command's rms: less is rounding. ASSUMPTION; EMPS, whose law is published, is left with 0.0003
 LEAST = 0.003
-# of what another explanation leaves: more decides nothing. ASSUMPTION
-CLEARLY = 0.5
-# of the limit: noise is on it. ASSUMPTION
-AT_LIMIT = 0.97
+CLEARLY = 0.5  # of what another explanation leaves: more decides nothing. ASSUMPTION
+AT_LIMIT = 0.97  # of the limit: noise is on it. ASSUMPTION
 # of the moving rows, below whose speed gains may be others (development seeds 1055, 1056 and 1062)
 PARTS = (0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.35, 0.5, 0.75)
 # rows of the lags that the reference is seen through: loops answer in three to a thousand. ASSUMPTION

@@ -23,8 +23,7 @@ from calibration.inputs.declaration import Column, Response, Rig, Stage
 from calibration.inputs.thresholds import HARMONICS
 from calibration.inputs.train import SHAFT, Train
 
-# rows after a start or a gap that are not analysed. ASSUMPTION
-START_ROWS = 10
+START_ROWS = 10  # rows after a start or a gap that are not analysed. ASSUMPTION
 # rad, 0.4 arcsec: more than the encoder's noise, less than the pre-sliding range. ASSUMPTION
 DIRECTION_TRAVEL = 2e-6
 

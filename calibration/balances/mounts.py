@@ -7,11 +7,9 @@ from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
 from calibration.inputs.train import SHAFT
 
-# its stage's kind: what the drive follows runs out of true, no gear
-ENCODER = "encoder_eccentricity"
+ENCODER = "encoder_eccentricity"  # its stage's kind: what the drive follows runs out of true, no gear
 
-# s, by definition of the sidereal day
-SIDEREAL_DAY_S = 86164.0905
+SIDEREAL_DAY_S = 86164.0905  # s, by definition of the sidereal day
 
 
 @dataclass(frozen=True)

@@ -16,18 +16,14 @@ from calibration.statistics.regression import solve
 from calibration.statistics.tails import rms
 from plant.units import ARCSEC
 
-# rms of a rounding error, of a quantum
-ROUNDING = 1.0 / np.sqrt(12.0)
-# rows: the median over blocks of a second leaves out transients and lost packets. ASSUMPTION
-BLOCK = 100
+ROUNDING = 1.0 / np.sqrt(12.0)  # rms of a rounding error, of a quantum
+BLOCK = 100  # rows: the median over blocks of a second leaves out transients and lost packets. ASSUMPTION
 # rows over which a loop answers a step of its sensor: a rate's two, and until it is sent. ASSUMPTION
 LOOP_ROWS = 5
-# blocks, before their median is told. ASSUMPTION
-LEAST_BLOCKS = 3
+LEAST_BLOCKS = 3  # blocks, before their median is told. ASSUMPTION
 # mean square of the smaller four fifths of normal values, of all: (0.8 - 2 q f(q)) / 0.8; arithmetic, a share
 QUIET_PART = 0.4377
-# counts: a smaller current is cut off at zero. ASSUMPTION
-CONDUCTING = 2.0
+CONDUCTING = 2.0  # counts: a smaller current is cut off at zero. ASSUMPTION
 
 
 def rough(x: Array, order: int, beside: Array | None = None) -> float:

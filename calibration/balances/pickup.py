@@ -9,24 +9,16 @@ from calibration.balances.filters import pieces, smooth
 from calibration.balances.view import View
 from calibration.statistics.orders import around, power_of_two
 
-# cycles per standard deviation of the filter, which passes half of such a line: arithmetic
-QUICK = 0.19
-# cycles per row: next to half a cycle a line and the rows' own alternation are one. ASSUMPTION
-TOP = 0.48
-# rows of a file before its spectrum has quiet bins beside a line. ASSUMPTION
-FEWEST = 2048
-# bins, of whose median the noise around a line is taken. ASSUMPTION
-NEAR = 64
-# that noise alone makes the highest of all bins as high. ASSUMPTION
-BY_CHANCE = 1e-6
+QUICK = 0.19  # cycles per standard deviation of the filter, which passes half of such a line: arithmetic
+TOP = 0.48  # cycles per row: next to half a cycle a line and the rows' own alternation are one. ASSUMPTION
+FEWEST = 2048  # rows of a file before its spectrum has quiet bins beside a line. ASSUMPTION
+NEAR = 64  # bins, of whose median the noise around a line is taken. ASSUMPTION
+BY_CHANCE = 1e-6  # that noise alone makes the highest of all bins as high. ASSUMPTION
 # of the column's own noise from row to row: a weaker line changes nothing that is told. ASSUMPTION
 MATTERS = 0.5
-# of the usual deviation: a sine has 1.4 of its own at most (ASSUMPTION)
-JUMP = 8.0
-# factor within which its size must be the same in slow, middling and quick rows. ASSUMPTION
-ALIKE = 2.0
-# of the quick third's speed, below which the slow third's is another speed. ASSUMPTION
-APART = 0.7
+JUMP = 8.0  # of the usual deviation: a sine has 1.4 of its own at most (ASSUMPTION)
+ALIKE = 2.0  # factor within which its size must be the same in slow, middling and quick rows. ASSUMPTION
+APART = 0.7  # of the quick third's speed, below which the slow third's is another speed. ASSUMPTION
 
 
 def pick_up(view: View) -> tuple[float, float] | None:

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from calibration.arrays import Array
 from plant.compiled import entry
 
-# s without a row: ASSUMPTION, far longer than a lost packet, shorter than a rest between runs
-PAUSE_S = 2.0
+PAUSE_S = 2.0  # s without a row: ASSUMPTION, far longer than a lost packet, shorter than a rest between runs
 
 
 @entry

@@ -11,18 +11,12 @@ from calibration.balances.view import View
 from calibration.statistics.tails import rms
 from calibration.statistics.whitening import autocovariance
 
-# of the autocorrelation of the position, at the lag of a repetition. ASSUMPTION
-ALIKE = 0.93
-# that are correlated. ASSUMPTION
-ROWS = 20_000
-# pairs of strokes, before their scatter is a floor: count. ASSUMPTION
-FEWEST_PAIRS = 4
-# of the longest stroke: a shorter one is a wobble. ASSUMPTION
-LONG = 0.3
-# of the travel, by which the ends of a stroke that is made again may differ. ASSUMPTION
-ENDS = 0.03
-# likewise of its time: friction that is quicker is other friction. ASSUMPTION
-LASTS = 0.05
+ALIKE = 0.93  # of the autocorrelation of the position, at the lag of a repetition. ASSUMPTION
+ROWS = 20_000  # that are correlated. ASSUMPTION
+FEWEST_PAIRS = 4  # pairs of strokes, before their scatter is a floor: count. ASSUMPTION
+LONG = 0.3  # of the longest stroke: a shorter one is a wobble. ASSUMPTION
+ENDS = 0.03  # of the travel, by which the ends of a stroke that is made again may differ. ASSUMPTION
+LASTS = 0.05  # likewise of its time: friction that is quicker is other friction. ASSUMPTION
 # of the travel at either end that is left out: the place says little where the motion turns. ASSUMPTION
 INNER = 0.02
 

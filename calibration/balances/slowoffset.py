@@ -16,16 +16,12 @@ from calibration.balances.view import View
 from calibration.statistics.regression import solve
 
 SLOW = "slow_offset"  # label of these columns: nuisances, in no report's table
-# half periods of a file at most: a twentieth of a walk is left. ASSUMPTION
-MOST = 12
-# moves in the shortest half period: faster, it is the motion, and the drive's. ASSUMPTION
-STROKES = 2
+MOST = 12  # half periods of a file at most: a twentieth of a walk is left. ASSUMPTION
+STROKES = 2  # moves in the shortest half period: faster, it is the motion, and the drive's. ASSUMPTION
 # of the held-out mean square, that functions of a file's time take beyond those of the motion. ASSUMPTION
 TELLING = 0.2
-# of a file, before a period can be told from a walk. ASSUMPTION
-PERIODS = 2.0
-# times what they leave: one slow line that leaves no more is no walk (ASSUMPTION)
-LINE = 2.0
+PERIODS = 2.0  # of a file, before a period can be told from a walk. ASSUMPTION
+LINE = 2.0  # times what they leave: one slow line that leaves no more is no walk (ASSUMPTION)
 
 
 def slow_columns(view: View, held: Mask, order: int) -> Array:

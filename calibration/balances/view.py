@@ -22,36 +22,24 @@ from calibration.inputs.thresholds import GAP
 from calibration.inputs.units import units_per_turn
 from calibration.statistics.thresholds import SURE_Z
 
-# of the usual top speed: slower, friction may have any size up to break-away. ASSUMPTION
-SLOWEST = 0.01
-# standard deviations of the filter: nearer to an edge or a bad row is not used. ASSUMPTION
-REACH = 3.0
+SLOWEST = 0.01  # of the usual top speed: slower, friction may have any size up to break-away. ASSUMPTION
+REACH = 3.0  # standard deviations of the filter: nearer to an edge or a bad row is not used. ASSUMPTION
 # of the usual top speed: slower is standing. How sharply friction turns is fitted, from these. ASSUMPTION
 STANDSTILLS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02)
-# rows that are fitted: more are averaged together. ASSUMPTION
-MOST_ROWS = 24_000
+MOST_ROWS = 24_000  # rows that are fitted: more are averaged together. ASSUMPTION
 # harmonics of all stages, from where on fewer rows are fitted: time grows with their square. ASSUMPTION
 MOST_WAVES = 24
-# rows per period of the quickest of them. ASSUMPTION: Nyquist's two, twice
-ROWS_PER_WAVE = 4.0
-# rows of one sensor against another, which has no accelerations to follow. ASSUMPTION
-SENSOR_ROWS = 4_000
-# standard deviations of the filter in `smooth_s`. definition
-WINDOW = 5.0
-# of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
-NOISE = 0.01
+ROWS_PER_WAVE = 4.0  # rows per period of the quickest of them. ASSUMPTION: Nyquist's two, twice
+SENSOR_ROWS = 4_000  # rows of one sensor against another, which has no accelerations to follow. ASSUMPTION
+WINDOW = 5.0  # standard deviations of the filter in `smooth_s`. definition
+NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
 # the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
 NOISE_OF_FEW = 0.03
-# rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
-FEW = 600
-# rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
-LEAST = 2.0
-# rows likewise at most. ASSUMPTION
-MOST = 40.0
-# cycles per row. by arithmetic
-NYQUIST = 0.5
-# steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
-RESOLVED = 6.0
+FEW = 600  # rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
+LEAST = 2.0  # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
+MOST = 40.0  # rows likewise at most. ASSUMPTION
+NYQUIST = 0.5  # cycles per row. by arithmetic
+RESOLVED = 6.0  # steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
 # rows per reading of a column, from where on its noise is told reading by reading. ASSUMPTION: not a few gaps
 SELDOM = 1.5
 

@@ -13,59 +13,42 @@ from calibration.statistics.tails import middle as middle_of
 from calibration.statistics.tails import rms_interval, variance_log10
 from calibration.statistics.whitening import autocovariance, white_noise
 
-# s, of a mean: far slower than the sensors' noise, faster than friction's history. ASSUMPTION
-MEAN_S = 1.0
-# share of such a mean's rows that must be usable. ASSUMPTION
-WHOLE = 0.9
-# times the sensors' noise per row that the means of white noise have, rms. arithmetic
-EVEN = 0.17
-# times that noise that the means of a wind have, rms: five times EVEN. ASSUMPTION
-WIND = 0.9
-# s over which half of the variance is looked for. ASSUMPTION: longer, it is a slow change
-LONGEST_S = 20.0
-# turns of the motion, fewest, that tell whether a torque turns over with it. ASSUMPTION
-FEWEST_TURNS = 3
+MEAN_S = 1.0  # s, of a mean: far slower than the sensors' noise, faster than friction's history. ASSUMPTION
+WHOLE = 0.9  # share of such a mean's rows that must be usable. ASSUMPTION
+EVEN = 0.17  # times the sensors' noise per row that the means of white noise have, rms. arithmetic
+WIND = 0.9  # times that noise that the means of a wind have, rms: five times EVEN. ASSUMPTION
+LONGEST_S = 20.0  # s over which half of the variance is looked for. ASSUMPTION: longer, it is a slow change
+FEWEST_TURNS = 3  # turns of the motion, fewest, that tell whether a torque turns over with it. ASSUMPTION
 # correlation, part of 1, of a second before a turn with the one after: friction has -1, wind none. ASSUMPTION
 OVER = 0.6
-# deviations of that correlation, which scatters by 1 / sqrt(turns) in a quick wind. ASSUMPTION
-LUCK = 3.0
-# part of 1, that the correlation must reach at most. ASSUMPTION
-SURELY = 0.95
+LUCK = 3.0  # deviations of that correlation, which scatters by 1 / sqrt(turns) in a quick wind. ASSUMPTION
+SURELY = 0.95  # part of 1, that the correlation must reach at most. ASSUMPTION
 # cycles of a wind at its correlation time, that its deviation is known by at least. ASSUMPTION
 FEWEST_CYCLES = 4.0
 # rad/s: quicker, the bristles are saturated, and their history cannot look like wind. ASSUMPTION
 SLIDING = 1e-4
-# means of held-out rows, fewest, that must show the same. ASSUMPTION
-FEWEST_HELD = 8
+FEWEST_HELD = 8  # means of held-out rows, fewest, that must show the same. ASSUMPTION
 # times a balance's step that a wind must have, rms. ASSUMPTION: two converters' rounding averages out slowly
 STEPS = 2.0
 # times the variance squared, a kurtosis: a few hundred gusts of Gaussian wind have 3 +- 0.3. arithmetic
 BURSTS = 5.0
-# times the quiet noise that the volts have, rms. ASSUMPTION
-VOLTS = 2.0
+VOLTS = 2.0  # times the quiet noise that the volts have, rms. ASSUMPTION
 # share: deviation of the power over a turn, of its mean; one sector of sixteen alone has 3.9. ASSUMPTION
 SECTOR = 0.6
-# bins of a motor's turn. ASSUMPTION: narrower than a brush
-BINS = 16
-# rows of a bin, fewest, for its mean. ASSUMPTION
-FEWEST_IN_BIN = 20
+BINS = 16  # bins of a motor's turn. ASSUMPTION: narrower than a brush
+FEWEST_IN_BIN = 20  # rows of a bin, fewest, for its mean. ASSUMPTION
 
 # --- a line on the currents
 
 # times the median power: noise of 60 000 rows reaches 16 by arithmetic, a motor's harmonics more. ASSUMPTION
 PEAK = 400.0
-# counts of the converter, amplitude: a smaller line is a beat of quantised columns. ASSUMPTION
-COUNTS = 0.8
-# Hz: slower, it is within the analysis band, or a motor's. ASSUMPTION
-FASTEST_BAND_HZ = 15.0
+COUNTS = 0.8  # counts of the converter, amplitude: a smaller line is a beat of quantised columns. ASSUMPTION
+FASTEST_BAND_HZ = 15.0  # Hz: slower, it is within the analysis band, or a motor's. ASSUMPTION
 # Hz within which the runs' lines are the same one. ASSUMPTION: the bins of a run of seven seconds
 SAME_HZ = 0.15
-# A per row: a current that changes faster is a transient. ASSUMPTION
-CALM_A = 0.1
-# A: a smaller current is cut off at zero. ASSUMPTION: eight counts
-FLOWS_A = 0.05
-# rows of a run, fewest, for a spectrum. ASSUMPTION
-FEWEST_ROWS = 1000
+CALM_A = 0.1  # A per row: a current that changes faster is a transient. ASSUMPTION
+FLOWS_A = 0.05  # A: a smaller current is cut off at zero. ASSUMPTION: eight counts
+FEWEST_ROWS = 1000  # rows of a run, fewest, for a spectrum. ASSUMPTION
 
 
 def rate_of(torque: Problem) -> Array:

@@ -16,8 +16,7 @@ from calibration.statistics.tails import student_reach
 TERM = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
 #: s, least and most of that term on a sound log, where it is not zero
 SOUND = {"S": (-limits.WINDOW_DELAY_S, -limits.WINDOW_DELAY_S), "E": limits.SOUND_VOLTS_LAG_S}
-# s, of the volts. arithmetic
-SOUND_MIDDLE_S = sum(limits.SOUND_VOLTS_LAG_S) / 2
+SOUND_MIDDLE_S = sum(limits.SOUND_VOLTS_LAG_S) / 2  # s, of the volts. arithmetic
 REACH = student_reach(limits.LAG_FREEDOM)
 Selections = Mapping[str, Selection]
 

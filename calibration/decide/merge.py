@@ -12,8 +12,7 @@ EXPLAINED = 0.4
 ANY_TRACE = 0.3
 # part of the strongest torque effect's share: a further one that takes less is its remainder. ASSUMPTION
 SUPERFLUOUS = 0.25
-# -log10 p below which such a small one is not worth its name. ASSUMPTION
-WEAK = 25.0
+WEAK = 25.0  # -log10 p below which such a small one is not worth its name. ASSUMPTION
 
 
 def merge(findings: list[Finding]) -> list[Finding]:

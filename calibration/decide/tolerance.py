@@ -26,8 +26,7 @@ from plant.effects import REGISTRY
 # share of a mechanical number, standard error beyond noise (opened seeds 20261129 to 20261202: 0.0025 held
 # 97.4 %). Smaller than an effect's MODEL_ERROR (decide/thresholds.py): an effect is small beside the numbers
 NUMBER_ERROR = 0.0015
-# share of an electrical number, likewise (the same seeds: 0.0025 held 99.4 %)
-ELECTRICAL_ERROR = 0.0005
+ELECTRICAL_ERROR = 0.0005  # share of an electrical number, likewise (the same seeds: 0.0025 held 99.4 %)
 # share of the inertia, likewise: gear trains and rotors beyond a rigid balance (the same seeds)
 INERTIA_ERROR = 0.006
 # times a variance by the other columns (1 / (1 - R squared)): beyond, the motion does not hold numbers apart.
@@ -39,8 +38,7 @@ LARGEST_CORRECTION = 3.0
 SURE = 5.0
 # part of 1, (speed / Stribeck speed)^exponent, between which the dip is seen. ASSUMPTION
 DIP = (0.0025, 0.64)
-# times, likewise: where the dip is over, e^-6 of it is left. arithmetic
-QUICK = 6.25
+QUICK = 6.25  # times, likewise: where the dip is over, e^-6 of it is left. arithmetic
 # times: the quick speeds over the slow ones, before Coulomb and viscous friction come apart. ASSUMPTION
 SPREAD = 3.0
 
@@ -51,8 +49,7 @@ LINEAR = {"inertia": "kg m2", "viscous": "N m s/rad", "coulomb": "N m"}
 CURVED = {"stiction": "N m", "stribeck_speed": "rad/s", "sigma_0": "N m/rad"}
 OF_COULOMB = ("stiction", "sigma_0")
 UNITS = {**LINEAR, **CURVED, "stiffness": "N m/rad"}
-#: without which no friction is known
-NEEDED = {"viscous", "coulomb", "stiction"}
+NEEDED = {"viscous", "coulomb", "stiction"}  # without which no friction is known
 CHANGES = {name: n.changed for name, n in NAMES.items() if n.changed is not None}
 
 

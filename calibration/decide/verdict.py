@@ -9,8 +9,7 @@ from calibration.finding import UNKNOWN, Finding
 from calibration.names import NAMES
 
 UNNAMED = "unknown: repeat the run: what is fixed to angle, to time or to neither tells where to look"
-# experiments of a class of names that are told: a longer sentence is not read. ASSUMPTION
-MOST = 3
+MOST = 3  # experiments of a class of names that are told: a longer sentence is not read. ASSUMPTION
 #: channel of an effect -> the row of the error table it is judged by
 ROWS = {"T": "torque", "K": "position", "E": "electrical", "S": "velocity"}
 PHASES = (

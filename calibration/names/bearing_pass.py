@@ -13,23 +13,17 @@ from calibration.names.scene import FORCE, SENSORS, SPEED, Scene
 from calibration.statistics.orders import order_spectrum, peaks
 from plant.effects import REGISTRY
 
-# of a stage's harmonic: an interval that holds a whole one by chance once in five. ASSUMPTION
-NARROW = 0.2
+NARROW = 0.2  # of a stage's harmonic: an interval that holds a whole one by chance once in five. ASSUMPTION
 # rollers that pass in a turn of a shaft: a bearing has 7 to 30, six tenths of which pass (Harris, Rolling
 # Bearing Analysis, 25). ASSUMPTION: slewing rings, which have more, sit on shafts that turn slowly
 MOST_ROLLERS = 18.0
 # turns of a bearing's cage, its slowest part, per turn of its shaft: 0.35 to 0.45 (Harris). ASSUMPTION: less
 CAGE = 0.3
-# lines that are tried of a drive with one motor. ASSUMPTION
-MOST = 6
-# harmonics of an axis' stage at least, at which no line is free. ASSUMPTION
-HARMONICS = 3
-# cycles per turn that are searched on an axis whose position is absolute. ASSUMPTION
-TOP = 3000.0
-# lines that are tried there. ASSUMPTION
-FREE = 4
-# share of 1 / travel that lies between them at least. ASSUMPTION
-APART = 1.5
+MOST = 6  # lines that are tried of a drive with one motor. ASSUMPTION
+HARMONICS = 3  # harmonics of an axis' stage at least, at which no line is free. ASSUMPTION
+TOP = 3000.0  # cycles per turn that are searched on an axis whose position is absolute. ASSUMPTION
+FREE = 4  # lines that are tried there. ASSUMPTION
+APART = 1.5  # share of 1 / travel that lies between them at least. ASSUMPTION
 # parts of such a cell, places about each line: it is refined from the best. ASSUMPTION
 SHIFTS = (-0.2, 0.0, 0.2)
 

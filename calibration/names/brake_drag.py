@@ -6,8 +6,7 @@ from calibration.finding import UNKNOWN, Parameter
 from calibration.names.name import Beside, Facts, Finding, Made, Name, Scene, as_found, value
 from calibration.names.onsets import steps
 
-# s: longer than any log. ASSUMPTION
-FOREVER_S = 1e6
+FOREVER_S = 1e6  # s: longer than any log. ASSUMPTION
 LESS = ("friction_warmup", "preload_change")  # friction that falls from some time on
 CHANGES = ("brake_drag", "preload_change")  # friction that is another from some time on
 IN_TIME = ("brake_drag", "friction_warmup")  # forces against the motion that come or go

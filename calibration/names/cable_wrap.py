@@ -11,10 +11,8 @@ from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scen
 
 # of a turn, in which the loop closes: the plant's widths are among them. ASSUMPTION
 TRAVELS = (0.002, 0.005, 0.01, 0.02, 0.04)
-# of a turn, the narrowest loop. ASSUMPTION
-NARROWEST = 1e-4
-# of a loop whose travel is not known. ASSUMPTION
-NARROW_RAD = 0.01
+NARROWEST = 1e-4  # of a turn, the narrowest loop. ASSUMPTION
+NARROW_RAD = 0.01  # of a loop whose travel is not known. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

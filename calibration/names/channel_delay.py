@@ -13,10 +13,8 @@ from calibration.names.scene import FORCE, SENSORS, Scene
 ROWS = (1.0, 2.0, 4.0, 8.0)
 # fitted rows, beyond which a column that is late is no more its rate times the delay. ASSUMPTION
 LINEAR = 2.0
-# of the log's time at most. ASSUMPTION
-PART = 0.01
-# of a fitted row, a small step of its refinement. ASSUMPTION
-STEP = 0.2
+PART = 0.01  # of the log's time at most. ASSUMPTION
+STEP = 0.2  # of a fitted row, a small step of its refinement. ASSUMPTION
 #: number of a log's column in a plant file
 COLUMNS = {"effort": 0, "position": 1, "velocity": 2, "current": 3, "adc_a": 3, "adc_b": 3}
 COLUMNS |= {"tachometers": 4, "tach_a": 4, "tach_b": 4}

@@ -9,8 +9,7 @@ from calibration.statistics.tails import variance_log10
 
 # rms of the stamps about a smooth course, s; an interrupt's own latency is a few microseconds. ASSUMPTION
 JITTER_S = 4e-5
-# rows of a run, before its course is fitted. ASSUMPTION
-FEWEST_ROWS = 50
+FEWEST_ROWS = 50  # rows of a run, before its course is fitted. ASSUMPTION
 
 
 def stamps(frame: Frame) -> Finding | None:

@@ -27,26 +27,19 @@ from calibration.statistics.regression import solve
 
 PASSED = "bearing_pass"  # at an order of no stage
 EFFORTS = ("effort", "current", "force", "voltage")  # responses behind which something may be added
-# cycles within the log before a frequency is a frequency. ASSUMPTION
-TURNS = 6.0
-# likewise within the longest file: fewer are a walk. ASSUMPTION
-IN_A_FILE = 3.0
-# harmonics of a square wave. definition
-ODD = (1, 3, 5, 7, 9)
+TURNS = 6.0  # cycles within the log before a frequency is a frequency. ASSUMPTION
+IN_A_FILE = 3.0  # likewise within the longest file: fewer are a walk. ASSUMPTION
+ODD = (1, 3, 5, 7, 9)  # harmonics of a square wave. definition
 # times that a file repeats its motion: with fewer no frequency lies between two of its multiples. ASSUMPTION
 FEWEST_REPEATS = 2.5
 # harmonics of such a motion that are left out: friction's corners fall off with the multiple. ASSUMPTION
 STRONG = 50
-# rows, half a minute, that volts are searched in. ASSUMPTION
-FEWEST_ROWS = 1000
-# share of such a line's resolution cell, for its refinement. ASSUMPTION
-STEP_CELLS = 0.05
-# likewise of a square, which rows between its edges do not tell. ASSUMPTION
-EDGE_CELLS = 0.25
+FEWEST_ROWS = 1000  # rows, half a minute, that volts are searched in. ASSUMPTION
+STEP_CELLS = 0.05  # share of such a line's resolution cell, for its refinement. ASSUMPTION
+EDGE_CELLS = 0.25  # likewise of a square, which rows between its edges do not tell. ASSUMPTION
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
 PHASES = 17
-# files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
-FEW = 4
+FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

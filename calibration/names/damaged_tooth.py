@@ -9,26 +9,17 @@ from calibration.inputs.train import MESH, SHAFT
 from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, tried, value
 from calibration.names.scene import FORCE, SPEED
 
-# turns of the part. ASSUMPTION
-ENOUGH = 0.9
-# of a turn per fitted row: quicker, a tooth is not seen. ASSUMPTION
-SWEPT = 0.12
-# pulses of a part that are tried. ASSUMPTION
-KEEP = 3
-# -log10 p: a place and a width are searched for on every part. ASSUMPTION
-LEAST = 14.0
+ENOUGH = 0.9  # turns of the part. ASSUMPTION
+SWEPT = 0.12  # of a turn per fitted row: quicker, a tooth is not seen. ASSUMPTION
+KEEP = 3  # pulses of a part that are tried. ASSUMPTION
+LEAST = 14.0  # -log10 p: a place and a width are searched for on every part. ASSUMPTION
 # parts of a turn, full width of a raised cosine. ASSUMPTION
 WIDTHS = (0.006, 0.0085, 0.012, 0.018, 0.027, 0.04, 0.06, 0.085)
-# bins of a turn, in which the residual is folded. ASSUMPTION
-BINS = 240
-# of a turn, step of a pulse's place in its refinement. ASSUMPTION
-STEP_TURN = 0.003
-# part of its width, likewise. ASSUMPTION
-STEP_WIDTH = 0.1
-# rows, as a pulse weighs them: fewer are a spike. ASSUMPTION
-LEAST_WEIGHT = 3
-# that are slow enough: fewer have no tooth's shape. ASSUMPTION
-FEWEST_ROWS = 50
+BINS = 240  # bins of a turn, in which the residual is folded. ASSUMPTION
+STEP_TURN = 0.003  # of a turn, step of a pulse's place in its refinement. ASSUMPTION
+STEP_WIDTH = 0.1  # part of its width, likewise. ASSUMPTION
+LEAST_WEIGHT = 3  # rows, as a pulse weighs them: fewer are a spike. ASSUMPTION
+FEWEST_ROWS = 50  # that are slow enough: fewer have no tooth's shape. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

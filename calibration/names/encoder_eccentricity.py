@@ -9,8 +9,7 @@ from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
 from calibration.names.lines import SAME, line, over_place, stage_lines
 from calibration.names.name import RATES, SENSORS, Beside, Candidate, Finding, Name, Scene, candidate
 
-# of a turn of the position, before a line of its own turn is looked for. ASSUMPTION
-LEAST_TURN = 0.4
+LEAST_TURN = 0.4  # of a turn of the position, before a line of its own turn is looked for. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

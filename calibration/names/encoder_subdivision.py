@@ -9,10 +9,8 @@ from calibration.names.inplant import OF_ABSOLUTE, Facts, Made, value
 from calibration.names.lines import stage_lines
 from calibration.names.name import FULL_RATES, RATES, SENSORS, Candidate, Finding, Name, Scene, candidate
 
-# periods per row: where hardly a row is slower, the log cannot show the error. ASSUMPTION
-RESOLVED = 0.3
-# of the rows, that are as slow at least. ASSUMPTION
-SLOW_ROWS = 0.02
+RESOLVED = 0.3  # periods per row: where hardly a row is slower, the log cannot show the error. ASSUMPTION
+SLOW_ROWS = 0.02  # of the rows, that are as slow at least. ASSUMPTION
 # signal periods per turn of an RCN 700 or 800 (hardware.md 1.3), where a finding does not say
 LINES = 32768.0
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from calibration.names.name import Beside, Candidate, Name, Scene, both_ways, candidate
 
-# part of 1, standard deviation of |direction|: below, nothing stands still. ASSUMPTION
-STANDS = 0.02
+STANDS = 0.02  # part of 1, standard deviation of |direction|: below, nothing stands still. ASSUMPTION
 COULOMB, VISCOUS = "coulomb_asymmetry", "viscous_asymmetry"
 
 

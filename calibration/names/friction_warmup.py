@@ -10,8 +10,7 @@ from calibration.names.scene import since_first
 
 # part of the time from the first row to the last: time constants that are tried. ASSUMPTION
 PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)
-# times that time, for a time constant: a slower one is a slope. ASSUMPTION
-LONGEST = 1.0
+LONGEST = 1.0  # times that time, for a time constant: a slower one is a slope. ASSUMPTION
 OF_COULOMB = "of_coulomb"
 
 

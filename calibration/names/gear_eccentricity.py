@@ -7,8 +7,7 @@ from calibration.names.lines import stage_lines
 from calibration.names.name import FORCE, SENSORS, SPEED, Facts, Finding, Made, Name, value
 from plant.gears import ORDERS
 
-# rad, from a cosine to the sine of a plant file
-TURN = pi / 2
+TURN = pi / 2  # rad, from a cosine to the sine of a plant file
 #: mesh -> shaft that carries one of its wheels
 SHAFT_OF_MESH = {"mesh1": "motor", "mesh2": "shaft1", "mesh3": "shaft2"}
 

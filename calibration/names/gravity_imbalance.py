@@ -14,10 +14,8 @@ from plant.effects import REGISTRY
 from plant.effects.signals import ANGLE
 from plant.evaluate import evaluate, signals
 
-# of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
-LEAST_TURN = 1 / 12
-# turns: what carries a weight is hardly swung round more often. ASSUMPTION
-SWUNG = 2.0
+LEAST_TURN = 1 / 12  # of a turn that is travelled: on less, a sine is a slope and an offset. ASSUMPTION
+SWUNG = 2.0  # turns: what carries a weight is hardly swung round more often. ASSUMPTION
 # likewise, on less than which it is not even a slope of its own beside an offset. ASSUMPTION
 SLOPE_TURN = 1 / 72
 

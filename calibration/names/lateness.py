@@ -15,38 +15,26 @@ from calibration.names.unknown import any_friction_curve, plain
 from calibration.statistics.regression import block_covariance
 from calibration.statistics.tails import rms
 
-# standard errors. ASSUMPTION
-SIGNIFICANT = 5.0
-# of the mean square on held-out rows, beside the flexible fit. ASSUMPTION
-MATTERS = 0.02
+SIGNIFICANT = 5.0  # standard errors. ASSUMPTION
+MATTERS = 0.02  # of the mean square on held-out rows, beside the flexible fit. ASSUMPTION
 # of the same, from where on a delay is noted: 16 logs without one had 0.3 % at most (development seeds 1031
 # to 1038, 1062, 1063)
 TOLD = 0.005
-# sample periods: a shorter one is within the hold of the output. ASSUMPTION
-SMALLEST = 0.2
-# sample periods that are looked at: a clock is late by rows. ASSUMPTION
-LONGEST = 25.0
+SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output. ASSUMPTION
+LONGEST = 25.0  # sample periods that are looked at: a clock is late by rows. ASSUMPTION
 # likewise: a transport is late by its own time (serial and USB adapters 1 to 50 ms; ASSUMPTION: twice that)
 LONGEST_S = 0.1
-# rounds of the refinement at most. ASSUMPTION
-ROUNDS = 5
-# of a sample period: steps of the refinement that end it. ASSUMPTION
-SMALL_STEP = 0.01
-# values of the delay that are tried before it is refined; zero is one of them. ASSUMPTION
-STARTS = 41
+ROUNDS = 5  # rounds of the refinement at most. ASSUMPTION
+SMALL_STEP = 0.01  # of a sample period: steps of the refinement that end it. ASSUMPTION
+STARTS = 41  # values of the delay that are tried before it is refined; zero is one of them. ASSUMPTION
 # periods: half a period, and what friction's memory adds to it (0.56 at an error of 0.001 in the opened seed
 # 20261210); EMPS' delay is 0.72 periods
 HOLD = 0.6
-# standard errors beyond it. ASSUMPTION
-SLACK = 3.0
-# of the usual top speed, share: slower rows say nothing of a clock. ASSUMPTION
-QUICK = 0.2
-# pieces of the log, in each of which the delay must be seen. ASSUMPTION
-PARTS = 5
-# rows that are held out, before they are looked at. ASSUMPTION
-FEWEST_HELD = 20
-# of the delay: standard deviation over those pieces. ASSUMPTION
-ALIKE = 0.35
+SLACK = 3.0  # standard errors beyond it. ASSUMPTION
+QUICK = 0.2  # of the usual top speed, share: slower rows say nothing of a clock. ASSUMPTION
+PARTS = 5  # pieces of the log, in each of which the delay must be seen. ASSUMPTION
+FEWEST_HELD = 20  # rows that are held out, before they are looked at. ASSUMPTION
+ALIKE = 0.35  # of the delay: standard deviation over those pieces. ASSUMPTION
 
 
 def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:

@@ -15,49 +15,35 @@ from calibration.names.name import Size, candidate
 from calibration.names.scene import MOTOR, Scene
 from calibration.statistics.orders import PER_ROW, Wanted, standing_out
 
-# turns of a line needed before its two coefficients mean anything. ASSUMPTION
-ENOUGH = 1.2
-# turns likewise, on an axis whose position is absolute. ASSUMPTION
-AXIS_ENOUGH = 0.8
-# turns likewise, of a stage with many harmonics, whose others turn more often. ASSUMPTION
-MANY_ENOUGH = 0.5
+ENOUGH = 1.2  # turns of a line needed before its two coefficients mean anything. ASSUMPTION
+AXIS_ENOUGH = 0.8  # turns likewise, on an axis whose position is absolute. ASSUMPTION
+MANY_ENOUGH = 0.5  # turns likewise, of a stage with many harmonics, whose others turn more often. ASSUMPTION
 # cycles likewise, of a stage that does not come round: fewer are any function of the place. ASSUMPTION
 NOT_ROUND = 2.0
-# of a turn: orders that are one. arithmetic
-SAME = 1e-6
-# part of a resolution cell (1 / travel) about a stage's harmonic that is its own. ASSUMPTION
-OWN = 0.35
-# part of such a cell, from where on a line may be none of the stage's. ASSUMPTION
-OFF = 0.05
-# lines of no stage that are tried beside a stage's. ASSUMPTION
-AROUND = 4
-# share of the fitted rows that must see a line. ASSUMPTION
-SEEN = 0.3
+SAME = 1e-6  # of a turn: orders that are one. arithmetic
+OWN = 0.35  # part of a resolution cell (1 / travel) about a stage's harmonic that is its own. ASSUMPTION
+OFF = 0.05  # part of such a cell, from where on a line may be none of the stage's. ASSUMPTION
+AROUND = 4  # lines of no stage that are tried beside a stage's. ASSUMPTION
+SEEN = 0.3  # share of the fitted rows that must see a line. ASSUMPTION
 # cycles, rms, by which the turn and the clock run apart before a log tells a line over one from a line over
 # the other: a quarter of a sine's mean square (2 pi 0.1)^2 / 2 is left. arithmetic
 SLIP = 0.1
-# strongest lines on the clock that are tried of an axis with two motors. ASSUMPTION
-ON_CLOCK = 3
-# Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
-SLOWEST_HZ = 0.05
-#: what a line over the place is called when the clock drives it
-CLOCKED = "command_disturbance"
+ON_CLOCK = 3  # strongest lines on the clock that are tried of an axis with two motors. ASSUMPTION
+SLOWEST_HZ = 0.05  # Hz of such a line, at least. ASSUMPTION: slower, it is a smooth function of time
+CLOCKED = "command_disturbance"  # what a line over the place is called when the clock drives it
 # cycles within the travel before a line that no stage has is a line and not a bend. ASSUMPTION
 FREE_TURNS = 5.0
 # harmonics of a stage that are also looked for as one: slots show up to their fourth multiple. ASSUMPTION
 TOGETHER = 24
-# part of a line's resolution cell, for its refinement. ASSUMPTION
-STEP_OF_CELL = 0.1
+STEP_OF_CELL = 0.1  # part of a line's resolution cell, for its refinement. ASSUMPTION
 # highest order per motor turn that is tried; poles times slots of torque motors, ASSUMPTION
 MOTOR_ORDERS = 72
 # part of critical, of a rotor on its train. ASSUMPTION, as the plant files' (docs of their gear damping)
 DAMPING = 0.1
-# orders of a kind that become candidates. ASSUMPTION
-KEEP = 6
+KEEP = 6  # orders of a kind that become candidates. ASSUMPTION
 # share that the filter leaves of a column's mean square: less, and the drive is too quick. ASSUMPTION
 LEAST = 0.02
-# share of the residual's mean square that a column takes by chance. ASSUMPTION
-BY_CHANCE = 0.5
+BY_CHANCE = 0.5  # share of the residual's mean square that a column takes by chance. ASSUMPTION
 
 
 def line(s: Scene, name: str, rate: float, size: Size = "", **more: Any) -> Candidate:

@@ -17,20 +17,13 @@ from plant.units import ARCSEC
 OF_SENSORS = ("encoder_eccentricity", "roller_ratio", "roller_slip", "channel_delay", "sample_loss")
 OF_FORCES = ("adc_gain", "magnet_weakening", "supply_sag", "command_disturbance", "friction_asymmetry")
 OF_SHAPES = ("structural_mode", "damaged_tooth", UNKNOWN)
-# off a whole number of bits, share of one, from where on it is said. ASSUMPTION
-WHOLE_BITS = 1e-6
-# part of a bit, for a column of whole counts: rounding. arithmetic
-EXACT_BITS = 1e-9
-# part of a wrap's size, that a jump may be off it: the motion of a row. ASSUMPTION
-OFF_POWER = 0.05
-# rows from which a motion is told. ASSUMPTION
-FEWEST_STEPS = 10
-# rows of a column, before its folds and ends are looked at. ASSUMPTION
-FEWEST_ROWS = 100
-# counts beyond which a column's scale is told. ASSUMPTION
-CLEAR_COUNTS = 10
-# counts at which the currents' converter ends. definition: 10 bits (log-format.md)
-ADC_END = 1023
+WHOLE_BITS = 1e-6  # off a whole number of bits, share of one, from where on it is said. ASSUMPTION
+EXACT_BITS = 1e-9  # part of a bit, for a column of whole counts: rounding. arithmetic
+OFF_POWER = 0.05  # part of a wrap's size, that a jump may be off it: the motion of a row. ASSUMPTION
+FEWEST_STEPS = 10  # rows from which a motion is told. ASSUMPTION
+FEWEST_ROWS = 100  # rows of a column, before its folds and ends are looked at. ASSUMPTION
+CLEAR_COUNTS = 10  # counts beyond which a column's scale is told. ASSUMPTION
+ADC_END = 1023  # counts at which the currents' converter ends. definition: 10 bits (log-format.md)
 # -log10 p of one jump that is a power of two within a tenth (a fold) or a twentieth either way. arithmetic
 WHOLE = 1.0
 

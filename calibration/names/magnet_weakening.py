@@ -12,8 +12,7 @@ from calibration.names.scene import FORCE, VOLTS
 LENGTHS = (0.02, 0.2, 0.5, 1.0)
 # part of the time likewise, where volts show it: from a shorter one the search ends at a step. ASSUMPTION
 VOLTS_LENGTHS = (0.05, 0.4)
-# part of the time: volts show an onset and a length no better. ASSUMPTION
-STEP = 0.02
+STEP = 0.02  # part of the time: volts show an onset and a length no better. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -21,17 +21,13 @@ from plant.effects import REGISTRY
 __all__ = ["FORCE", "FULL_RATES", "MOTOR", "RATES", "SENSORS", "SPEED", "VOLTS", "Array", "Candidate"]
 __all__ += ["Facts", "Finding", "Made", "Scene", "as_found", "value"]
 
-# share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
-WORTH = 0.01
+WORTH = 0.01  # share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
 # the same share of one whose frequency or order was looked for among hundreds. ASSUMPTION
 SEARCHED_WORTH = 0.04
 
-# times, either way: clear of 20 % (hardware.md 2.3) and of the scatter of an estimate
-TOLERANCE = 1.29
-#: what rows at a wrong time look like: steps and spikes
-OF_CLOCKS = ("roller_slip", "damaged_tooth", UNKNOWN)
-# of a value that is tried, a small change for its refinement. ASSUMPTION
-STEP = 0.1
+TOLERANCE = 1.29  # times, either way: clear of 20 % (hardware.md 2.3) and of the scatter of an estimate
+OF_CLOCKS = ("roller_slip", "damaged_tooth", UNKNOWN)  # what rows at a wrong time look like: steps and spikes
+STEP = 0.1  # of a value that is tried, a small change for its refinement. ASSUMPTION
 Size = str | tuple[str, str]
 """A parameter of the effect; with a unit of its own where the balance's is another than the plant's."""
 

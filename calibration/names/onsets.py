@@ -10,16 +10,11 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, ramp
 from calibration.names.name import Scene, tried
 
-# share of the time, at either end: a step there is how a run begins or ends. ASSUMPTION
-EDGE = 0.04
-# places of an onset that are tried. ASSUMPTION: time against steps missed
-TRIALS = 24
-# part of the time, between which they lie: clear of EDGE. ASSUMPTION
-PLACES = (0.06, 0.94)
-# part of the time before it, from where a slow change may have begun. ASSUMPTION
-BEFORE = 0.4
-# part of the time, that a slow change's length moves by at first. ASSUMPTION
-LENGTH_STEP = 0.008
+EDGE = 0.04  # share of the time, at either end: a step there is how a run begins or ends. ASSUMPTION
+TRIALS = 24  # places of an onset that are tried. ASSUMPTION: time against steps missed
+PLACES = (0.06, 0.94)  # part of the time, between which they lie: clear of EDGE. ASSUMPTION
+BEFORE = 0.4  # part of the time before it, from where a slow change may have begun. ASSUMPTION
+LENGTH_STEP = 0.008  # part of the time, that a slow change's length moves by at first. ASSUMPTION
 
 
 def steps(

@@ -18,20 +18,14 @@ PARTS = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1)
 # -log10 p between two sensors of a rig: a dozen gaps are tried, not a thousand orders (decide/accept.py);
 # set on the geared servo's output encoder. ASSUMPTION beyond it
 LEAST = 6.0
-# share of the usual acceleration: below, the driven side is between the flanks. ASSUMPTION
-SIDES = 0.1
-# times, from one gap that is tried between two sensors to the next. ASSUMPTION
-GROWS = 1.5
-# of the travel, that a gap between them is below. ASSUMPTION
-WIDEST = 0.2
+SIDES = 0.1  # share of the usual acceleration: below, the driven side is between the flanks. ASSUMPTION
+GROWS = 1.5  # times, from one gap that is tried between two sensors to the next. ASSUMPTION
+WIDEST = 0.2  # of the travel, that a gap between them is below. ASSUMPTION
 # gaps that are tried of an axis' encoder. ASSUMPTION
 GAPS_ARCSEC = (0.6, 1.2, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0)
-# the smallest of them. ASSUMPTION
-SMALLEST_ARCSEC = 0.1
-# of the travel, that an axis' gap is below. ASSUMPTION
-REACH = 0.5
-# of a gap, for its refinement. ASSUMPTION
-STEP = 0.15
+SMALLEST_ARCSEC = 0.1  # the smallest of them. ASSUMPTION
+REACH = 0.5  # of the travel, that an axis' gap is below. ASSUMPTION
+STEP = 0.15  # of a gap, for its refinement. ASSUMPTION
 TRAVEL = "travel"  # how far one side moves before the other follows: the gap once more, by its place
 
 

@@ -12,15 +12,11 @@ from calibration.names.lines import STEP_OF_CELL, as_one, line, of_stage
 from calibration.names.name import Array, Candidate, Finding, Name, Scene, both_ways, tried
 from plant.gears import ORDERS
 
-# harmonics of the travelled range. ASSUMPTION
-HARMONICS = 3
-# harmonics of every stage. ASSUMPTION
-OF_STAGE = 12
-# turns of a stage, before friction over it differs from friction over the range. ASSUMPTION
-ENOUGH = 1.5
+HARMONICS = 3  # harmonics of the travelled range. ASSUMPTION
+OF_STAGE = 12  # harmonics of every stage. ASSUMPTION
+ENOUGH = 1.5  # turns of a stage, before friction over it differs from friction over the range. ASSUMPTION
 WAVES = np.arange(0.75, 12.1, 0.5)  # over the travelled range, of a friction that follows no stage
-# part of the friction that is fitted without the effect: what it may be beside it. ASSUMPTION
-BESIDE = 2.0
+BESIDE = 2.0  # part of the friction that is fitted without the effect: what it may be beside it. ASSUMPTION
 # rad by which a line of the nearest possible order may walk off within half the travel. ASSUMPTION
 MISPLACED = 0.1
 

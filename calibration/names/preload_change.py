@@ -9,8 +9,7 @@ from calibration.names.magnet_weakening import LENGTHS
 from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, as_found
 from calibration.names.onsets import steps
 
-# s, of a change that is sudden: the plant's shortest (docs/reference/effects.md)
-SHORTEST_S = 0.01
+SHORTEST_S = 0.01  # s, of a change that is sudden: the plant's shortest (docs/reference/effects.md)
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -12,8 +12,7 @@ from calibration.names.scene import FEWEST
 RADII = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.14, 0.2, 0.28, 0.36)
 # times: sigma_0 is not published, only one beyond 1.7 with an estimate's scatter is a change. ASSUMPTION
 UNPUBLISHED = 2.2
-# standard error, of the number. ASSUMPTION
-PRECISE = {"sigma_0": 0.2}
+PRECISE = {"sigma_0": 0.2}  # standard error, of the number. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -8,20 +8,14 @@ import numpy as np
 from calibration.finding import UNKNOWN
 from calibration.names.name import VOLTS, Array, Candidate, Finding, Name, Scene, candidate, grid, value
 
-# of the supply. ASSUMPTION: a bridge that loses more is broken
-MOST = 0.2
+MOST = 0.2  # of the supply. ASSUMPTION: a bridge that loses more is broken
 # duties where the search for a dead band begins; 0.3 to 5 % of a period is what bridges lose. ASSUMPTION
 KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)
-# quantile of the duties that drive, above which no dead band's knee lies. ASSUMPTION
-ABOVE = 0.5
-# of the rows, that may have pulses shorter than a dead band taken for a constant. ASSUMPTION
-SHORTEST = 0.01
-# part of a period: a knee is no smaller. arithmetic
-SMALLEST = 1e-4
-# times the dead band, that a knee may be at. ASSUMPTION: switches' resistances bend its corner
-REACH = 2.0
-# part of a period beside that. ASSUMPTION
-SHARP = 0.005
+ABOVE = 0.5  # quantile of the duties that drive, above which no dead band's knee lies. ASSUMPTION
+SHORTEST = 0.01  # of the rows, that may have pulses shorter than a dead band taken for a constant. ASSUMPTION
+SMALLEST = 1e-4  # part of a period: a knee is no smaller. arithmetic
+REACH = 2.0  # times the dead band, that a knee may be at. ASSUMPTION: switches' resistances bend its corner
+SHARP = 0.005  # part of a period beside that. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

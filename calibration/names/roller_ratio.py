@@ -3,8 +3,7 @@
 from calibration.names.name import RATES, SENSORS, Candidate, Name, Scene, candidate
 from plant.units import ARCSEC
 
-# share. definition
-PPM = 1e-6
+PPM = 1e-6  # share. definition
 
 
 def columns(s: Scene) -> list[Candidate]:

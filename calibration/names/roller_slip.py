@@ -13,17 +13,13 @@ from plant.units import ARCSEC
 
 # rad/s2, limits that are tried: the axis is asked for 2 deg/s2 (paper)
 LIMITS = (0.0005, 0.001, 0.002, 0.0035, 0.005, 0.008, 0.012, 0.02)
-# of the rows, that are beyond a limit which is tried: least and most. ASSUMPTION
-BEYOND = (0.002, 0.6)
-# of the limit, rms of the acceleration within a row. ASSUMPTION
-CHATTER = 0.1
+BEYOND = (0.002, 0.6)  # of the rows, that are beyond a limit which is tried: least and most. ASSUMPTION
+CHATTER = 0.1  # of the limit, rms of the acceleration within a row. ASSUMPTION
 # likewise of the limit at most: with more the roller slips in steady motion, too, which is its ratio and no
 # slip. ASSUMPTION
 MOST_CHATTER = 0.5
-# of the limit and of the chatter, for their refinement: steps. ASSUMPTION
-STEPS = (0.1, 0.2)
-# rad/s2: three times what the axis is asked for. ASSUMPTION
-MOST_LIMIT = 0.1
+STEPS = (0.1, 0.2)  # of the limit and of the chatter, for their refinement: steps. ASSUMPTION
+MOST_LIMIT = 0.1  # rad/s2: three times what the axis is asked for. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -8,20 +8,13 @@ from calibration.finding import NORMAL, Parameter, of_columns
 from calibration.names.name import Array, Beside, Finding, Name
 from calibration.statistics.tails import share_log10
 
-# rad per row, 0.8 arcsec/s. ASSUMPTION
-MOVING = 4e-8
-# rad per row: fast enough that a single row without motion is no chance. ASSUMPTION
-QUICK = 4e-7
-# fraction of the rows missing, or repeated, that is worth a word. ASSUMPTION
-LOST = 0.003
-# rows on either side that are looked at for a motion. ASSUMPTION
-AROUND = 30
-# rows of them that move. ASSUMPTION
-MOVING_ROWS = 20
-# rows without motion, from which on they are no chance of a slow motion. ASSUMPTION
-STANDS = 5
-# rows per RS232 packet (log-format.md)
-PACKET = 25
+MOVING = 4e-8  # rad per row, 0.8 arcsec/s. ASSUMPTION
+QUICK = 4e-7  # rad per row: fast enough that a single row without motion is no chance. ASSUMPTION
+LOST = 0.003  # fraction of the rows missing, or repeated, that is worth a word. ASSUMPTION
+AROUND = 30  # rows on either side that are looked at for a motion. ASSUMPTION
+MOVING_ROWS = 20  # rows of them that move. ASSUMPTION
+STANDS = 5  # rows without motion, from which on they are no chance of a slow motion. ASSUMPTION
+PACKET = 25  # rows per RS232 packet (log-format.md)
 
 
 def stamps(frame: Frame) -> Finding | None:

@@ -17,25 +17,21 @@ from calibration.balances.volts import Windings
 from calibration.names.pair import Pair
 from calibration.statistics.regression import solve
 
-# share of the rows that must lie within a gap, a loop or a dip. ASSUMPTION
-FEWEST = 0.005
+FEWEST = 0.005  # share of the rows that must lie within a gap, a loop or a dip. ASSUMPTION
 # of the mean speed, its standard deviation: below, what grows with the speed is the constant one. ASSUMPTION
 VARIES = 0.1
-# of temperature, before a coefficient of it means anything. ASSUMPTION
-LEAST_K = 0.5
+LEAST_K = 0.5  # of temperature, before a coefficient of it means anything. ASSUMPTION
 # share of the rows in either direction: fewer say nothing of a difference between the two. ASSUMPTION
 BOTH = 0.05
 
-# part of 1, from where on a direction is one. definition
-HALF = 0.5
+HALF = 0.5  # part of 1, from where on a direction is one. definition
 
 #: kinds of balance that a name can be seen in: forces, two sensors, volts; of an axis with two motors also
 #: the roller's rate against the axis', on the analysis grid and at the log's full rate; a speed by itself
 FORCE, SENSORS, VOLTS, RATES, FULL_RATES = "force", "sensors", "volts", "rates", "full_rates"
 SPEED = "speed"
 KINDS = {"T": FORCE, "K": SENSORS, "E": VOLTS, "S": RATES}
-#: a parameter that says which motor it is
-MOTOR = "1 A, 2 B"
+MOTOR = "1 A, 2 B"  # a parameter that says which motor it is
 
 
 def since_first(t: Array, label: NDArray[Any]) -> Array:

@@ -2,8 +2,7 @@
 
 from calibration.names.name import SENSORS, Candidate, Changed, Name, Scene, candidate
 
-# standard error of a stiffness, of itself. ASSUMPTION
-PRECISE = 0.05
+PRECISE = 0.05  # standard error of a stiffness, of itself. ASSUMPTION
 WINDS = ("force", "effort", "current")  # columns of what winds it up, the first there is
 
 

@@ -9,16 +9,12 @@ from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
 
-# ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
-DAMPING = 0.05
+DAMPING = 0.05  # ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
 # part of critical, of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)
 LEAST_DAMPED = 0.001
-# part of critical, of the most damped structures (Altintas 2012)
-STRUCTURES_DAMPED = 0.1
-# part of critical, at most: twice that, where it is not well told. ASSUMPTION
-MOST_DAMPED = 0.2
-# part of the filter's corner: above it nothing remains to be seen. ASSUMPTION
-BELOW = 0.5
+STRUCTURES_DAMPED = 0.1  # part of critical, of the most damped structures (Altintas 2012)
+MOST_DAMPED = 0.2  # part of critical, at most: twice that, where it is not well told. ASSUMPTION
+BELOW = 0.5  # part of the filter's corner: above it nothing remains to be seen. ASSUMPTION
 # periods within the log: one frequency that fits less often is a slow change. ASSUMPTION
 FEWEST_PERIODS = 8.0
 # share of the moving time in moves that are shorter than one in which a mode rings: a sweep begins with long
@@ -30,8 +26,7 @@ SLOWEST_HZ = 0.5
 AXIS_HZ = np.geomspace(1.8, 14.2, 48)
 # part of critical, tried there: either side of what structures have (Altintas 2012)
 AXIS_DAMPINGS = (0.008, 0.03)
-# part of the rate of the analysed rows, for a frequency: quicker is not seen. ASSUMPTION
-SEEN = 0.4
+SEEN = 0.4  # part of the rate of the analysed rows, for a frequency: quicker is not seen. ASSUMPTION
 # part of the rate of the rows, for a frequency: where the bilinear transform still holds. arithmetic
 QUICKEST = 0.45
 

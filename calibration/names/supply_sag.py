@@ -4,10 +4,8 @@ import numpy as np
 
 from calibration.names.name import FORCE, VOLTS, Array, Candidate, Name, Scene, candidate
 
-# part of the mean supply: standard deviation below which it is steady. ASSUMPTION
-LEAST = 0.01
-# times the supply's deviation, that an effort may follow it by. ASSUMPTION
-MOST = 3.0
+LEAST = 0.01  # part of the mean supply: standard deviation below which it is steady. ASSUMPTION
+MOST = 3.0  # times the supply's deviation, that an effort may follow it by. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

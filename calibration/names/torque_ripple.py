@@ -7,10 +7,8 @@ import numpy as np
 from calibration.names.lines import beside_stage, line, motor_lines, of_stage, over_motor
 from calibration.names.name import FORCE, VOLTS, Candidate, Name, Scene
 
-# part of the force: motors' data sheets have 0.01 to 0.1; ASSUMPTION: more is something else
-MOST = 0.5
-# harmonics of a motor's stage. ASSUMPTION
-HARMONICS = 12
+MOST = 0.5  # part of the force: motors' data sheets have 0.01 to 0.1; ASSUMPTION: more is something else
+HARMONICS = 12  # harmonics of a motor's stage. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

@@ -18,22 +18,15 @@ from calibration.names.unnamed import LOOPS, to_plant
 from calibration.statistics.orders import PER_ROW, order_spectrum, peaks
 from calibration.statistics.tails import middle
 
-# knots of a smooth function. ASSUMPTION: names against what only looks smooth
-KNOTS = 8
-# part of the usual stroke, of the loops in a flexible fit. ASSUMPTION
-RADII = (0.002, 0.01, 0.05, 0.2)
+KNOTS = 8  # knots of a smooth function. ASSUMPTION: names against what only looks smooth
+RADII = (0.002, 0.01, 0.05, 0.2)  # part of the usual stroke, of the loops in a flexible fit. ASSUMPTION
 # rad/s, of an axis with two motors, 10 arcsec/s: quicker, the logarithm of the speed counts. ASSUMPTION
 SLOW_RATE = 5e-5
-# knots over that logarithm. ASSUMPTION
-SPEED_KNOTS = 9
-# times 1 / time that lies between them. ASSUMPTION
-APART = 3.0
-# cycles of such a line within the log, at least. ASSUMPTION
-FEWEST_CYCLES = 4
-# cycles likewise, at most, for its memory. ASSUMPTION
-MOST_CYCLES = 2e5
-# harmonics of such a line. ASSUMPTION
-HARMONICS = 5
+SPEED_KNOTS = 9  # knots over that logarithm. ASSUMPTION
+APART = 3.0  # times 1 / time that lies between them. ASSUMPTION
+FEWEST_CYCLES = 4  # cycles of such a line within the log, at least. ASSUMPTION
+MOST_CYCLES = 2e5  # cycles likewise, at most, for its memory. ASSUMPTION
+HARMONICS = 5  # harmonics of such a line. ASSUMPTION
 
 
 def domains(s: Scene) -> list[tuple[str, Array]]:

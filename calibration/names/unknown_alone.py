@@ -10,22 +10,16 @@ from calibration.names.name import Candidate, Scene, tried
 from calibration.names.scene import FEWEST
 from calibration.names.unknown_shapes import over
 
-# fits of the declared terms beside a force's own square, until both hold still. ASSUMPTION
-SETTLED = 5
+SETTLED = 5  # fits of the declared terms beside a force's own square, until both hold still. ASSUMPTION
 # part of the range, where an end stop may begin, from the other end. ASSUMPTION: a margin of a stroke
 BEGINS = (0.5, 0.6, 0.7, 0.8, 0.9)
-# part of the range, a small change of that place. ASSUMPTION
-PLACE_STEP = 0.01
+PLACE_STEP = 0.01  # part of the range, a small change of that place. ASSUMPTION
 # places of a dent that are tried, of the range: two of the least widths apart. ASSUMPTION
 PLACES = tuple((k + 0.5) / 25 for k in range(25))
-# of the range: widths of a dent that are tried, standard deviations. ASSUMPTION
-WIDTHS = (0.02, 0.05)
-# widths from its place at which a dent is no more than rounding. arithmetic
-REACH = 8.0
-# of the range, that a dent is at least wide. ASSUMPTION
-NARROWEST = 1e-3
-# of a dent's width, a small change of it. ASSUMPTION
-WIDTH_STEP = 0.1
+WIDTHS = (0.02, 0.05)  # of the range: widths of a dent that are tried, standard deviations. ASSUMPTION
+REACH = 8.0  # widths from its place at which a dent is no more than rounding. arithmetic
+NARROWEST = 1e-3  # of the range, that a dent is at least wide. ASSUMPTION
+WIDTH_STEP = 0.1  # of a dent's width, a small change of it. ASSUMPTION
 
 
 def alone(s: Scene) -> list[Candidate]:

@@ -14,12 +14,9 @@ from calibration.names.lines import line, of_stage
 from calibration.names.name import Array, Candidate, Scene, candidate
 from calibration.names.unnamed import HARMONICS
 
-# knots over time of a scale that moves. ASSUMPTION
-SLOW = 4
-# share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
-FOLLOWS = 2.0
-# part of the usual stroke, of the widest of several loops. ASSUMPTION
-WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)
+SLOW = 4  # knots over time of a scale that moves. ASSUMPTION
+FOLLOWS = 2.0  # share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
+WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)  # part of the usual stroke, of the widest of several loops. ASSUMPTION
 
 
 def spline_columns(x: Array, knots: int) -> Array:

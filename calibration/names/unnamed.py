@@ -11,8 +11,7 @@ from plant.effects.unknown import KNOTS
 
 #: rad, radii of the sum of loops of an axis, in the order of its parameters. ASSUMPTION: 1 arcmin to 1 deg
 LOOPS = (3e-4, 1e-3, 3e-3, 8e-3, 0.02)
-# harmonics of the motor's turn: brushes and commutator segments. ASSUMPTION
-HARMONICS = 6
+HARMONICS = 6  # harmonics of the motor's turn: brushes and commutator segments. ASSUMPTION
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

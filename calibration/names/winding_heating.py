@@ -9,10 +9,8 @@ from plant.effects.winding_heating import COPPER
 
 # s: small motors' windings have 5 to 400 s by their datasheets, the telescope's are heavier
 TAUS_S = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
-# part of a time constant, for its refinement. ASSUMPTION
-STEP = 0.05
-# s, between two files that each begin cold: many times the longest of TAUS_S. ASSUMPTION
-COOLED_S = 1e5
+STEP = 0.05  # part of a time constant, for its refinement. ASSUMPTION
+COOLED_S = 1e5  # s, between two files that each begin cold: many times the longest of TAUS_S. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:

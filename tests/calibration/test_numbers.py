@@ -59,7 +59,7 @@ def numeric(node: ast.expr) -> bool:
 
 
 def constants(path: Path) -> list[tuple[str, int, str]]:
-    """Every constant of a module that is a number: name, line, and the words above it or below it."""
+    """Every constant of a module that is a number: name, line, and the words above, beside or below it."""
     text = path.read_text(encoding="utf-8")
     lines, body = text.splitlines(), ast.parse(text).body
     out = []
@@ -85,6 +85,7 @@ def constants(path: Path) -> list[tuple[str, int, str]]:
         while at >= 0 and lines[at].startswith("#"):
             words.insert(0, lines[at].lstrip("#: "))
             at -= 1
+        words += [x.partition("  # ")[2] for x in lines[node.lineno - 1 : node.end_lineno]]
         after = body[k + 1] if k + 1 < len(body) else None
         if (
             isinstance(after, ast.Expr)
