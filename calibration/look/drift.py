@@ -22,7 +22,16 @@ from calibration.inputs.run import Run
 from calibration.look import looked
 from calibration.look.jumps import with_jumps
 from calibration.look.looked import Balance, Looked, Options, Spectrum
-from calibration.look.worm import LEAST_TURNS, Mount, findings, harmonics, longest_span, sections_of, worms
+from calibration.look.worm import (
+    LEAST_TURNS,
+    Mount,
+    findings,
+    harmonics,
+    is_seen,
+    longest_span,
+    sections_of,
+    worms,
+)
 
 LEAST_ROWS = 100  # frames to fit. ASSUMPTION
 # of a turn, over the whole log, by which a worm with a tooth more runs away from this one (ASSUMPTION)
@@ -58,7 +67,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         held_out = [f"pieces of {piece_s(p):.0f} s, in turn"]
         notes.append(OF_ALL_FRAMES)
     few = f"fewer than {LEAST_TURNS:.0f} turns in one section"
-    slow = [f"{part.name} ({few})" for part in mount.parts if span * part.rate < LEAST_TURNS]
+    slow = [f"{part.name} ({few})" for part in mount.parts if not is_seen(problem, part.rate)]
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known
         slow = [f"{len(slow)} of the usual worms ({few})"]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)

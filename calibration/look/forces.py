@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.balance import problem_of
 from calibration.balances.floors import floor_of, resolved_rows
 from calibration.balances.problem import Problem
@@ -31,6 +32,7 @@ from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, law_of_its_loop, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
+WANDERS = 2.0  # times the rms between files, that a zero may wander within one. ASSUMPTION
 #: of a finding
 OWN = (
     "every file has a constant of its own, as another weight, pressure or zero: declare offset_per_file, or"
@@ -98,6 +100,16 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
     return (_apart(when, view, made, wander) if view.slow_offset == 0 else when), remarks
 
 
+def _of_the_zero(f: Finding, effect: Array, offsets: Finding | None) -> Finding:
+    """A force that comes or goes with time (n,) and is no larger than what every file's own constants differ
+    by may be that zero, which wanders within a file, too."""
+    if offsets is None or f.domain != "time" or np.std(effect) > WANDERS * offsets.parameters["rms"].value:
+        return f
+    alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
+    one = replace(f, name=UNKNOWN, equivalent=alike, parameters={})
+    return one.noted("no larger than what the zero differs by from file to file")
+
+
 def _apart(when: Timed, view: View, made: Make, size: float) -> Timed:
     """With the files' own constants, `size` rms, as a finding: the declared model has one for all of them."""
     view.slow_offset = None
@@ -149,7 +161,11 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
     s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
-    named = [replace(f, share=x) for k, x in enumerate(s.worth) for f in findings_of(s, k)]
+    named = [
+        _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets)
+        for k, x in enumerate(s.worth)
+        for f in findings_of(s, k)
+    ]
     findings = as_told(named, scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)

@@ -30,6 +30,7 @@ PART_GAIN = 0.15
 FREE_GAIN = 0.35  # share likewise, of one of eleven usual wheels or any free period, on the same seeds
 NEXT = 0.9  # of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
 LEAST_TURNS = 2.0  # worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
+IN_ALL = 3.0  # worm turns likewise, of all sections whose own phase shows: drifts differ. ASSUMPTION
 HARMONICS = 8  # harmonics of a worm that are looked at. ASSUMPTION
 
 
@@ -60,6 +61,13 @@ def harmonics(problem: Problem, rate: float, waves: Sequence[int]) -> Array:
             phases = [2 * np.pi * h * rate * at for h in waves]
             parts += [np.where(m, g(x), 0.0) for x in phases for g in (np.cos, np.sin)]
     return np.column_stack(parts) if parts else np.zeros((len(problem.t), 0))
+
+
+def is_seen(problem: Problem, rate: float) -> bool:
+    """Whether one section holds turns enough of a part, or all sections together that show its phase."""
+    t, run = problem.t[problem.train], problem.run[problem.train]
+    turns = [float(np.ptp(t[run == k])) * rate for k in np.unique(run)]
+    return max(turns, default=0.0) >= LEAST_TURNS or sum(x for x in turns if x >= LEAST_IN_SECTION) >= IN_ALL
 
 
 def longest_span(problem: Problem) -> float:
@@ -111,7 +119,7 @@ def worms(problem: Problem, drifting: Callable[[float], Problem], mount: Mount) 
     slowest that was found.
     """
     slowest, span = mount.periods_s[-1], longest_span(problem)
-    seen = [part for part in mount.parts if span * part.rate >= LEAST_TURNS]
+    seen = [part for part in mount.parts if is_seen(problem, part.rate)]
     s = _search(problem, mount, seen, span)
     while s.chosen:
         found = max(1.0 / (c.candidate.frequency or 1.0) for c in s.chosen)
@@ -138,7 +146,8 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
             kept = {x.candidate.key for x in s.chosen if x is not chosen}
             candidates = [x for x in candidates if x.key in kept]
             candidates += best_count(problem, s, mount, by_name[stage])
-            s = settle(problem, candidates, mount.named)
+            again = settle(problem, candidates, mount.named)
+            s = again if again.held.after <= s.held.after else s
     return s
 
 

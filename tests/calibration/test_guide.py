@@ -197,3 +197,19 @@ def test_the_floor_holds_the_colour_of_the_air(worm: float, dithered_every_s: in
 def test_a_jump_is_no_air() -> None:
     y = air() + 20.0 * (np.arange(3000) > 1400)
     assert _air(y, np.zeros(3000, dtype=np.int64), 20) == pytest.approx(0.5, rel=0.2)
+
+
+@pytest.mark.parametrize(("turns", "found"), [((1.8, 1.6), True), ((1.8, 1.0), False)])
+def test_sections_tell_a_worm_together_where_one_is_too_short(
+    tmp_path: Path, turns: tuple[float, float], found: bool
+) -> None:
+    rng, text = np.random.default_rng(8), TOP
+    for k, count in enumerate(turns):
+        t = np.arange(0.0, count * SIDEREAL_DAY_S / 180, 2.0)
+        e = 12.0 * np.sin(2 * np.pi * 180 / SIDEREAL_DAY_S * t + 2.0 * k) + 0.002 * t
+        text += section(f"2026-01-01 2{k}:00:00", t, e + rng.normal(0, 0.3, len(t)))
+    effects = report(tmp_path, text)["effects"]
+    worms = [each for each in effects if each["stage"] and "180" in each["stage"]]
+    assert bool(worms) is found
+    if found:
+        assert worms[0]["parameters"]["amplitude"]["value"] == pytest.approx(12.0, rel=0.05)

@@ -69,3 +69,15 @@ def test_a_constant_of_every_files_own_is_real_and_has_no_name(tmp_path: Path) -
     error = data["error"]["torque"]
     assert error["after"] < 0.1 and error["before"] == pytest.approx(20.0, rel=0.1)
     assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.03)
+
+
+@pytest.mark.parametrize(("drag", "named"), [(0.3, False), (2.5, True)])
+def test_what_comes_within_a_file_is_more_than_files_differ_by(
+    tmp_path: Path, drag: float, named: bool
+) -> None:
+    """Zeros of three files lie 0.4 N apart, rms: a drag of less may be a zero that moved."""
+    tables = files(6, 0.0, drag)
+    zeros = [(t, x, u + zero) for (t, x, u), zero in zip(tables, (0.5, -0.5, 0.1), strict=True)]
+    data = answer(tmp_path, FORCE, *zeros)
+    own = {"brake_drag", "friction_warmup", "preload_change"}
+    assert bool(own & {e["name"] for e in data["effects"]}) is named
