@@ -169,8 +169,10 @@ def _unit_of(view: View, channel: str) -> str:
 
 
 def _held(view: View, records: list[Run], names: list[str], valid: Mask, shown: list[Array]) -> Mask:
-    """Named files; of three and more one that the others cover; else the end of the `valid` rows of every
-    run, or their middle or beginning where the end goes far beyond the others in a column of `shown`."""
+    """Named files; of three and more one that the others cover; else the end of the `valid` rows of every run.
+
+    Its middle or beginning, where the end goes far beyond the others in a column of `shown`.
+    """
     session = view.file[view.rows]
     if names:
         return np.isin(session, [k for k, r in enumerate(records) if r.among(names)])

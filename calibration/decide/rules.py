@@ -56,7 +56,7 @@ def each(why: Callable[[Selection, int], str]) -> Rule:
 
 def superfluous(s: Selection) -> tuple[int, str] | None:
     """The first pick that later ones made superfluous. A steady one may be in the noise's filter, which is
-    made of what it leaves: then it takes much of the held-out square all the same."""
+    made of what it leaves. Then it takes much of the held-out square all the same."""
     for k, c in enumerate(s.candidates[:-1]):
         others = s.without(k)
         again = fit_with(s.problem, others.columns, c)

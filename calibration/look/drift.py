@@ -53,13 +53,15 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if all(r.among(options.hold_out) for r in sections):
         return Looked.nothing(title, "no section is long enough to say anything", NEED)
     mount = Mount(parts=parts(sections, rig), named=rig is not None or bool(known_mount(sections)))
+    two_s = LEAST_TURNS * mount.periods_s[-1]
+    need = NEED if rig is None else f"log two turns of the slowest part, {two_s:.3g} s, without a gap"
 
     made = partial(guide_problem, sections, options.hold_out, quickest_s=mount.periods_s[0])
     problem, held_out = made(mount.periods_s[-1])
     frames = int(problem.train.sum())
     if frames < LEAST_ROWS:
         few = f"{frames} frames to fit are too few to say anything (at least {LEAST_ROWS})"
-        return Looked.nothing(title, few, NEED)
+        return Looked.nothing(title, few, need)
     s = worms(problem, lambda slowest_s: made(slowest_s)[0], mount)
     span, p, jumped = longest_span(problem), s.problem, list[Finding]()
     if not options.hold_out:

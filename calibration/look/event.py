@@ -48,8 +48,10 @@ def leave_out_event(view: View, made: Make) -> Finding | None:
 
 
 def _stretch(p: Problem, x: Array, least: float) -> Mask | None:
-    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave, if it is short and
-    its rms is more than the least."""
+    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave.
+
+    None where it is not short, or its rms is no more than the least.
+    """
     e = _robust(x[p.train], p.y[p.train])
     square, far = np.zeros(len(p.y)), np.zeros(len(p.y), dtype=bool)
     square[p.train] = e**2

@@ -104,8 +104,8 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     if slope >= 0 or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
         return ""
     return (
-        f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position,"
-        " the law of a loop with one set point, beside which no force shows: let the set point move"
+        f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position."
+        " That is the law of a loop with one set point, beside which no force shows: let it move"
     )
 
 

@@ -124,8 +124,10 @@ def _step(view: View, row: int) -> Array:
 
 
 def _sure(s: Selection, everywhere: Problem, steps: dict[int, Array], view: View) -> dict[int, Array]:
-    """Those that are more than their own errors, and than half a count, which is the error of a reading: a
-    drift through one looks like a slip."""
+    """Those that are more than their own errors, and than half a count, the error of a reading.
+
+    A drift through a count looks like a slip.
+    """
     r, step = view.response, view.quanta
     half = 0.5 * max(step.get(r.channel, 0.0) * abs(r.gain), step.get("position", 0.0) * abs(r.ratio or 1.0))
     fit = everywhere.fit(np.column_stack([s.columns, *steps.values()])) if steps else s.after

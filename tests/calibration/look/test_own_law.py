@@ -22,7 +22,7 @@ def looped(disturbed: float = 0.0, gain: float = GAIN) -> tuple[np.ndarray, np.n
 def test_the_law_is_told_in_place_of_a_force(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, looped())
     assert data["verdict"] == "cannot tell" and not data["effects"]
-    told = re.search(r"effort is (\S+) N (\S+) N/m x position, the law of a loop", str(data))
+    told = re.search(r"effort is (\S+) N (\S+) N/m x position\. That is the law of a loop", str(data))
     assert told is not None
     assert float(told[1]) == pytest.approx(GAIN * SET_POINT, rel=0.01)
     assert float(told[2]) == pytest.approx(-GAIN, rel=0.01)
