@@ -101,8 +101,10 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
 
 
 def _of_the_zero(f: Finding, effect: Array, offsets: Finding | None) -> Finding:
-    """`f`, or an unknown where its effect (n,) over time is no larger than what the files' own constants
-    differ by: that zero may wander within a file, too."""
+    """`f`, or an unknown where its effect (n,) over time is no larger than the files' own constants differ.
+
+    That zero may wander within a file, too.
+    """
     if offsets is None or f.domain != "time" or np.std(effect) > WANDERS * offsets.parameters["rms"].value:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
