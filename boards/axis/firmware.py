@@ -82,7 +82,7 @@ class AxisBoard(PeriodicBoard):
         self.output.changed = self._output_changed
         self.set_parameters(
             [
-                *axis_parameters(self.motion, self.limits, self.counter),
+                *axis_parameters(self.motion, self.counter),
                 *fine_parameters(self.output, self.motion),
                 *observer_parameters(self.observer, self.output),
             ]
@@ -210,8 +210,7 @@ class AxisBoard(PeriodicBoard):
     def trip(self) -> None:
         """Latch a fault and take the power off the motors; POWER clears it."""
         self.fault = True
-        self.motion.off()
-        self.command_effort(0)
+        self.switch(False)
 
     def stop(self) -> None:
         """Brake to rest and stay there, in the velocity loop."""
@@ -228,7 +227,6 @@ class AxisBoard(PeriodicBoard):
         elif not self.powered():
             self.fault = False
             self.command_effort(None)
-            self.motion.setpoint_q16 = 0
             self.motion.run(AxisMode.STOP, 0)
 
     def state(self) -> State:
