@@ -16,7 +16,7 @@ from boards.core import PacketLine, PeriodicBoard, Place
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.can import FULL_MASK
 from boards.silicon.pwm import MotorPwm
-from boards.silicon.qei import Qei
+from boards.silicon.qei import Qei, difference
 from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
@@ -115,8 +115,8 @@ class AxisBoard(PeriodicBoard):
         end = self.enter(t_ns)
         if not end:
             return
-        poscnt = self.qei.pin(t_ns) & 0xFFFF
-        self.velocity = velocity = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
+        poscnt = self.qei.poscnt(t_ns)
+        self.velocity = velocity = difference(poscnt, self.poscnt)
         self.poscnt = poscnt
         self.watch.counts += velocity
         motion = self.motion

@@ -14,11 +14,7 @@ class Stepping:
 
     def __init__(self, config: FocusConfig) -> None:
         self._intervals = config.intervals_ns
-        self._ramp = 0
-        self.direction = 0
-        self.moving = False
-        self.position = 0
-        self.target = 0
+        self.rebase(0)
 
     def rebase(self, position: int) -> None:
         """The place where the motor stands is called `position` from now on; it stops there."""
@@ -63,7 +59,6 @@ class Reference:
     def __init__(self, config: FocusConfig) -> None:
         self._config = config
         self._index = False
-        self._start = 0
         self.active = False
         self.failed = False
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.core import PeriodicBoard, Place, Source
-from boards.silicon.qei import Qei
+from boards.silicon.qei import Qei, difference
 from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, pack_tach
 
@@ -49,8 +49,8 @@ class MotorVelocityBoard(PeriodicBoard):
         end = self.enter(t_ns)
         if not end:
             return
-        poscnt = self.qei.pin(t_ns) & 0xFFFF
-        delta = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
+        poscnt = self.qei.poscnt(t_ns)
+        delta = difference(poscnt, self.poscnt)
         self.poscnt = poscnt
         self.count = count = (self.count + delta) & 0xFFFF_FFFF
         if not self.send(Frame(self._identifier, pack_tach(self.device_type, 0, count, delta)), end):
