@@ -252,7 +252,7 @@ def test_B5_what_is_refused_and_what_is_no_motion() -> None:
 
 def test_H3_periods_of_the_frames_and_what_the_sensors_say() -> None:
     """FOCUS every 50 ms with index and LVDT, HEARTBEAT every second, 25 samples of 10 ms in a packet."""
-    bench = Bench(198.0)
+    bench = Bench(192.0)
     packets: list[tuple[int, bytes]] = []
     bench.board.uart.sink = lambda t_ns, data: packets.append((t_ns, data))
     bench.run(3.0)
@@ -264,15 +264,15 @@ def test_H3_periods_of_the_frames_and_what_the_sensors_say() -> None:
     states = [unpack_heartbeat(frame.data).state for _, frame in bench.heard if frame.identifier == 0x741]
     assert set(states) == {State.ACTIVE}
     focus = unpack_focus(bench.last)
-    lvdt = round(512 * (1 + 198 / 800))
+    lvdt = round(512 * (1 + 192 / 800))
     assert abs(focus.lvdt - lvdt) < 30 and not focus.flags & FocusFlag.INDEX_SEEN
     rows = [row for _, data in packets for packet in PacketDecoder().feed(data) for row in packet.rows]
     assert len(rows) in (275, 300) and set(rows) == {(0, 0, focus.lvdt)}
-    bench.command(Opcode.FOCUS_STEP, 2)
+    bench.command(Opcode.FOCUS_STEP, 8)
     bench.run(0.2)
     assert bench.flags & FocusFlag.INDEX_SEEN
     focus = unpack_focus(bench.last)
-    assert (focus.position, focus.encoder) == (2, 8)
+    assert (focus.position, focus.encoder) == (8, 32)
     bench.command(Opcode.FOCUS_FREE)
     bench.run(1.0)
     states = [unpack_heartbeat(frame.data).state for _, frame in bench.heard if frame.identifier == 0x741]
