@@ -35,7 +35,7 @@ class Compensator:
         self.cosines_q8 = [0] * HARMONICS
         self.sines_q8 = [0] * HARMONICS
         self._lines: list[tuple[int, int, int]] = []
-        self._level_q16 = 0
+        self.level_q8 = 0
         self.travel = 1
         self.start()
 

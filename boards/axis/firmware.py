@@ -59,11 +59,6 @@ class AxisBoard(PeriodicBoard):
         self.tach_a = RemoteTachometer(config.frame_ns)
         self.tach_b = RemoteTachometer(config.frame_ns)
         self.counter = CounterTorque(config.counter_split, config.split_fade_counts)
-        self.velocity = 0
-        self.poscnt = 0
-        self.effort = 0
-        self.effort_command: int | None = 0
-        self.fault = False
         self.watch = EncoderWatch()
         self._identifier = MEASUREMENT_BASE + self.device_type
         self.auxiliary = RemoteAuxiliary(config.frame_ns)
@@ -87,6 +82,7 @@ class AxisBoard(PeriodicBoard):
                 *observer_parameters(self.observer, self.output),
             ]
         )
+        self.reset()
 
     def reset(self) -> None:
         """After power-up: off."""
@@ -99,7 +95,7 @@ class AxisBoard(PeriodicBoard):
         self.counter.start()
         self.observer.start()
         self.effort = 0
-        self.effort_command = 0
+        self.effort_command: int | None = 0
         self.velocity = 0
         self.fault = False
         self.poscnt = self.qei.poscnt(self.queue.now_ns)

@@ -49,8 +49,7 @@ class Blend:
 
     def __init__(self, shift: int) -> None:
         self.shift = shift
-        self._begun = False
-        self._position_q18 = 0
+        self.start()
 
     def start(self) -> None:
         """The next position is the absolute encoder's: counts of the time between were not taken along."""

@@ -53,9 +53,7 @@ class FocusBoard(PeriodicBoard):
         self.free = False
         self.driver.rest(self.queue.now_ns)
         self.poscnt = self._origin = self.qei.poscnt(self.queue.now_ns)
-        self.lvdt = 0
         self.packets.clear()
-        self._index = False
         self._last_move_ns = 0
         self._timer_ns = 0
 
@@ -70,16 +68,14 @@ class FocusBoard(PeriodicBoard):
         if not end:
             return
         self.poscnt = self.qei.poscnt(t_ns)
-        self.lvdt = self.adc.read(t_ns)
+        lvdt = self.adc.read(t_ns)
         stepping = self.stepping
         if self.driver.energised and self._rests(t_ns):
             self.driver.rest(end)
-        self.packets.take(t_ns, end, (stepping.position, self._counts(), self.lvdt))
+        self.packets.take(t_ns, end, (stepping.position, self._counts(), lvdt))
         if not self.ticks % _FRAME_TICKS:
-            self._index = self.index_pin(t_ns)
-            data = pack_focus(
-                self.device_type, self._flags(), stepping.position, self._counts(), self.lvdt, self.clip
-            )
+            flags = self._flags(self.index_pin(t_ns))
+            data = pack_focus(self.device_type, flags, stepping.position, self._counts(), lvdt, self.clip)
             self.transmit(self._identifier, data, end)
         elif self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)
@@ -92,11 +88,11 @@ class FocusBoard(PeriodicBoard):
         """Encoder counts from the origin, as the 16 bits of the frame."""
         return difference(self.poscnt, self._origin)
 
-    def _flags(self) -> int:
+    def _flags(self, index: bool) -> int:
         flags = FocusFlag.MOVING if self.stepping.moving else FocusFlag.FREE if self.free else FocusFlag.HOLD
         if self.referenced:
             flags |= FocusFlag.REFERENCED
-        if self._index:
+        if index:
             flags |= FocusFlag.INDEX_SEEN
         return int(flags)
 
@@ -169,7 +165,6 @@ class FocusBoard(PeriodicBoard):
 
     def _command_free(self, t_ns: int) -> Answer:
         """Control power off: nothing holds the shaft, so the origin cannot be trusted any more."""
-        self.reference.active = False
         self.stepping.rebase(self.stepping.position)
         self.free = True
         self.referenced = False

@@ -35,9 +35,8 @@ class MotorVelocityBoard(PeriodicBoard):
     def __init__(self, place: Place, encoder: Callable[[int], int]) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.qei = Qei(encoder)
-        self.poscnt = 0
-        self.count = 0
         self._identifier = MEASUREMENT_BASE + self.device_type
+        self.reset()
 
     def reset(self) -> None:
         """The count starts at zero, wherever the motor stands."""

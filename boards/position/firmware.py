@@ -55,7 +55,6 @@ class PositionBoard(PeriodicBoard):
         self.uart = self.packets.uart
         self.low = low
         self.high = high
-        self.flags = 0
         self.position = 0
         # The first instruction of the routine starts the clock, and the first edge latches the position.
         self._age = min(255, self.cost_ns // AGE_UNIT_NS)
@@ -66,6 +65,7 @@ class PositionBoard(PeriodicBoard):
                 kept(5, "soft_limit_high_steps", (0, _LAST_STEP), self, "high"),
             )
         )
+        self.reset()
 
     def reset(self) -> None:
         """After power-up."""

@@ -36,6 +36,11 @@ def lab() -> Lab:
     return lab
 
 
+def test_B1_what_the_papers_firmware_lacks_is_off_at_first() -> None:
+    table = Lab().axis.parameters
+    assert [table.get(number).value for number in range(12, 69)] == [0, 0, 0, 1] + [0] * 53
+
+
 def test_B1_a_parameter_takes_its_bounds_and_nothing_beyond() -> None:
     table = Lab().axis.parameters
     assert {row.number for row in table.rows()} == {*BOUNDS, AxisParameter.OBSERVER}
@@ -104,7 +109,9 @@ def test_B3_a_target_may_be_a_limit_itself(number: int) -> None:
 def selected(lab: Lab) -> int:
     """The class that TARGET tells."""
     lab.run(0.3)
-    return unpack_target([frame for _, frame in lab.frames if frame.identifier == 0x300 + RA][-1].data).speed_class
+    return unpack_target(
+        [frame for _, frame in lab.frames if frame.identifier == 0x300 + RA][-1].data
+    ).speed_class
 
 
 def test_H4_the_class_in_force_is_told(lab: Lab) -> None:
@@ -122,7 +129,9 @@ def test_H4_the_class_in_force_is_told(lab: Lab) -> None:
     (Opcode.SET_RATE, (0,)), (Opcode.SET_CLASS, (1, 0)), (Opcode.MOVE_TO, (CENTRE, 1)),
     (Opcode.TRACK_RATE, (0,)), (Opcode.STOP, ()),
 ])  # fmt: skip
-def test_B1_behind_open_loop_the_loop_decides_again(lab: Lab, opcode: Opcode, arguments: tuple[int, ...]) -> None:
+def test_B1_behind_open_loop_the_loop_decides_again(
+    lab: Lab, opcode: Opcode, arguments: tuple[int, ...]
+) -> None:
     lab.command(Opcode.OPEN_LOOP, 700)
     lab.run(0.5)
     assert lab.axis.velocity > 20 and lab.axis.effort == 700

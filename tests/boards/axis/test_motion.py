@@ -65,26 +65,26 @@ def test_B3_a_position_has_29_bits_and_the_limits_flags() -> None:
 
 
 @pytest.mark.parametrize("rate", [0, rate_q16(0.1)])
-@pytest.mark.parametrize(("off_arcsec", "settles"), [(4.99, True), (-4.99, True), (5.01, False), (-5.01, False)])
-def test_B2_settled_is_half_a_second_within_5_arcsec(off_arcsec: float, settles: bool, rate: int) -> None:
-    """100 ticks; a move that has a rate is TRACK from the first of them, one without holds as MOVE."""
+@pytest.mark.parametrize(("off", "settles"), [(2070, True), (-2070, True), (2071, False), (-2071, False)])
+def test_B2_settled_is_half_a_second_within_5_arcsec(off: int, settles: bool, rate: int) -> None:
+    """They are 2071 steps of 2^29 a turn. 100 ticks; a move that has a rate is TRACK from the first of them, one without holds as MOVE."""
     axis = Axis()
     axis.motion.move(0, 0, PLACE, rate_q16(7200.0))
-    axis.at(PLACE - steps(off_arcsec))
+    axis.at(PLACE - off)
     axis.run(99)
     assert not axis.motion.settled and axis.motion.mode is AxisMode.MOVE
     axis.run(1)
     assert axis.motion.settled is settles
-    assert axis.motion.distance_steps(0, 0) == steps(off_arcsec)
+    assert axis.motion.distance_steps(0, 0) == off
     if rate:
-        axis.motion.track(0, 0, rate)
+        axis.motion.track(0, 0, rate if off > 0 else -rate)
         axis.run(1)
         assert axis.motion.mode is (AxisMode.TRACK if settles else AxisMode.MOVE)
     axis.at(PLACE - steps(6.0))
     axis.run(1)
     assert not axis.motion.settled
-    axis.at(PLACE)
-    axis.run(1)
+    axis.at(axis.motion.target_steps)
+    axis.run(99)
     assert not axis.motion.settled  # all over again
 
 
@@ -129,6 +129,10 @@ def test_B2_a_rate_of_before_does_not_move_the_next_target(leave: str) -> None:
     axis.motion.move(0, 0, PLACE, rate_q16(600.0))
     axis.run(100)
     assert axis.motion.target_steps == PLACE
+    assert axis.motion.steady[0] == 0
+    axis.motion.track(0, 0, rate_q16(15.0))
+    axis.run(200)
+    assert axis.motion.target_steps == pytest.approx(PLACE + steps(15.0), abs=1)  # a second later
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -144,8 +148,12 @@ def test_B1_the_set_point_of_a_rate_is_a_ramp_to_it(sign: int) -> None:
     assert axis.motion.steady == (0, 0)  # nothing is to be held while it brakes
 
 
-@pytest.mark.parametrize(("moved_arcsec_s", "relative_arcsec_s"), [(15.0, 100.0), (600.0, 600.0), (None, 600.0)])
-def test_B2_a_nudge_goes_at_guiding_speed_or_faster(moved_arcsec_s: float | None, relative_arcsec_s: float) -> None:
+@pytest.mark.parametrize(
+    ("moved_arcsec_s", "relative_arcsec_s"), [(15.0, 100.0), (600.0, 600.0), (None, 600.0)]
+)
+def test_B2_a_nudge_goes_at_guiding_speed_or_faster(
+    moved_arcsec_s: float | None, relative_arcsec_s: float
+) -> None:
     """At the speed of the move before; of a track from rest: that of the class "set", 600 arcsec/s."""
     axis = Axis()
     if moved_arcsec_s:
@@ -189,6 +197,37 @@ def test_B1_gains_by_mode() -> None:
         axis.motion.track(0, 0, rate)
         axis.run(20)
         assert axis.gains == gains
+
+
+@pytest.mark.parametrize(("arcsec_s", "moves", "noticed"), [
+    (0.0, False, True), (100.0, False, True), (250.0, False, False), (100.0, True, False),
+])  # fmt: skip
+def test_B1_wind_is_sought_where_the_axis_creeps_and_has_arrived(
+    arcsec_s: float, moves: bool, noticed: bool
+) -> None:
+    """3 Hz of 3 counts a tick either way, with the absolute encoder right on the reference."""
+    axis = Axis()
+    axis.motion.set_lock(1)
+    if moves:
+        axis.motion.move(0, 0, PLACE + steps(36_000.0), rate_q16(arcsec_s))
+    else:
+        axis.motion.track(0, 0, rate_q16(arcsec_s))
+    for k in range(2200):
+        profile = axis.motion.profile
+        axis.at((profile.target - profile.remaining) // UNITS_PER_STEP)
+        axis.run(1, velocity=round(arcsec_s * 0.43556) + (3 if k // 33 % 2 else -3))
+    assert axis.motion.gusts is not None and axis.motion.gusts.blowing is noticed
+
+
+@pytest.mark.parametrize("arcsec_s", [0.0, 100.0])
+@pytest.mark.parametrize("mode", [AxisMode.RATE, AxisMode.CLASS])
+def test_B1_wind_is_noticed_at_a_locked_rate(mode: AxisMode, arcsec_s: float) -> None:
+    axis = Axis()
+    axis.motion.set_lock(1)
+    axis.motion.run(mode, rate_q16(arcsec_s))
+    for k in range(2200):
+        axis.run(1, velocity=round(arcsec_s * 0.43556) + (3 if k // 33 % 2 else -3))
+    assert axis.gains == WINDY
 
 
 @pytest.mark.parametrize("mode", [AxisMode.RATE, AxisMode.CLASS, AxisMode.MOVE])

@@ -48,6 +48,13 @@ def test_B1_braking_takes_the_time_physics_says() -> None:
     assert abs(ticks - 2 * (distance / A) ** 0.5) <= 2
 
 
+def test_a_profile_begins_at_rest_at_nothing() -> None:
+    profile = Profile(A)
+    assert profile.step() == 0
+    profile.aim(1000)
+    assert (profile.target, profile.remaining) == (1000, 1000)
+
+
 def test_taking_over_is_continuous() -> None:
     profile = Profile(A)
     profile.top = TOP

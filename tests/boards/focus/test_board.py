@@ -2,6 +2,7 @@ from itertools import pairwise
 
 import pytest
 
+from boards.core.board import BOOT_NS
 from boards.focus.config import FocusConfig, FocusPins
 from boards.focus.firmware import FocusBoard
 from bus.can import Frame, Wire
@@ -161,10 +162,14 @@ def test_B5_after_power_up_the_motor_is_held_as_the_board_says() -> None:
     bench.board.power_off(bench.queue.now_ns)
     assert bench.coils[-1][2:] == (False, False)
     cut = len(bench.coils)
+    packets: list[int] = []
+    bench.board.uart.sink = lambda t_ns, _data: packets.append(t_ns)
     bench.run(0.1)
     assert len(bench.coils) == cut  # the steps that were to come do not
     bench.board.power_on(bench.queue.now_ns)
+    on_ns = bench.queue.now_ns + BOOT_NS
     bench.run(1.0)
+    assert 250_000_000 < packets[0] - on_ns < 300_000_000  # 25 samples of now
     assert [pins[2:] for pins in bench.coils[cut:]] == [(False, True)]
     assert bench.flags == FocusFlag.HOLD
     focus = unpack_focus(bench.last)
@@ -225,6 +230,26 @@ def test_P11_more_than_two_half_steps_are_lost_steps(counts: int, wrong: bool, s
     assert bool(bench.command(Opcode.PING).value & Health.SENSOR) is wrong
     bench.command(Opcode.FOCUS_MOVE_TO, 0)
     assert bench.command(Opcode.PING).value == 0  # while it moves the rotor lags anyway
+
+
+def test_B5_freed_while_it_searches_it_does_not_go_on_when_held() -> None:
+    bench = Bench(30.0)
+    bench.run(0.1)
+    for opcode in (Opcode.FOCUS_REFERENCE, Opcode.FOCUS_FREE, Opcode.FOCUS_HOLD):
+        assert bench.command(opcode).result == Result.OK
+    assert bench.command(Opcode.FOCUS_MOVE_TO, 0).result == Result.OK
+    bench.run(1.0)
+    assert bench.flags & FocusFlag.HOLD and not bench.flags & FocusFlag.REFERENCED
+    assert not bench.command(Opcode.PING).value & Health.SENSOR
+
+
+def test_B5_a_board_without_supply_may_be_asked() -> None:
+    bench = Bench(0.0)
+    pins = FocusPins(
+        coils=bench.drive, encoder=bench.port.encoder, index=bench.port.index, lvdt=bench.port.lvdt
+    )
+    board = FocusBoard(place(Device.FOCUS, Wire(bench.queue), Oscillator(0.0, 0)), pins, FocusConfig())
+    assert board.state() == State.ACTIVE and not board.health() & Health.SENSOR
 
 
 def test_B5_what_is_refused_and_what_is_no_motion() -> None:

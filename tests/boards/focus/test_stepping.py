@@ -73,7 +73,9 @@ def test_P12_the_lvdt_tells_the_place_in_half_steps(counts: int, half_steps: int
     assert Reference(FocusConfig()).estimate(counts) == half_steps
 
 
-@pytest.mark.parametrize(("lvdt", "to"), [(513, 100 - 440), (512, 100 + 440), (0, 100 + 440), (1023, 100 - 440)])
+@pytest.mark.parametrize(
+    ("lvdt", "to"), [(513, 100 - 440), (512, 100 + 440), (0, 100 + 440), (1023, 100 - 440)]
+)
 def test_P12_a_turn_and_a_tenth_are_searched_towards_the_middle(lvdt: int, to: int) -> None:
     reference = Reference(FocusConfig())
     reference.give_up()

@@ -1,3 +1,7 @@
+from itertools import pairwise
+
+import pytest
+
 from bus.can import Frame
 from bus.protocol import (
     AGE_UNIT_NS,
@@ -57,6 +61,63 @@ def test_B3_alarm_and_soft_limits_are_flags() -> None:
     assert unpack_summary(frames(lab, 0x321)[-1][1].data).flags == flags
     assert lab.command(Opcode.SET_PARAMETER, 5, 1 << 29, device=BOARD).result == Result.OUT_OF_RANGE
     assert lab.command(Opcode.POWER, 1, device=BOARD).result == Result.UNKNOWN_OPCODE
+
+
+@pytest.mark.parametrize(("low", "high", "flags"), [
+    (CENTRE, CENTRE, 0), (CENTRE + 1, CENTRE + 2, PositionFlag.LIMIT_LOW),
+    (CENTRE - 2, CENTRE - 1, PositionFlag.LIMIT_HIGH),
+])  # fmt: skip
+def test_B3_a_limit_itself_is_within(low: int, high: int, flags: int) -> None:
+    """The age, too: 1200 cycles at 10 MHz until the frame is loaded, in units of 4 us."""
+    lab = Lab()
+    assert (lab.position.low, lab.position.high) == (0, (1 << 29) - 1)
+    lab.position.low, lab.position.high = low, high
+    lab.run(0.1)
+    reading = unpack_position(frames(lab, 0x221)[-1][1].data)
+    assert (reading.flags, reading.age) == (flags, 30)
+
+
+def test_B3_its_limits_are_parameters_of_29_bits() -> None:
+    table = Lab().position.parameters
+    for number in (4, 5):
+        for value, beyond in ((0, -1), ((1 << 29) - 1, 1)):
+            assert table.set(number, value) == (Result.OK, number, value)
+            assert table.set(number, value + beyond) == (Result.OUT_OF_RANGE, number, value)
+    assert [row.number for row in table.rows()] == [4, 5]
+
+
+def test_B3_a_first_reading_that_is_bad_is_no_position_and_power_up_forgets_it() -> None:
+    lab = Lab()
+    lab.position.endat.line = lambda frame: frame ^ 1 << 12
+    lab.run(0.1)
+    reading = unpack_position(frames(lab, 0x221)[-1][1].data)
+    assert (reading.position, reading.flags) == (0, PositionFlag.CRC_ERROR)
+    lab.position.power_off(lab.queue.now_ns)
+    lab.run(0.1)
+    lab.frames.clear()
+    lab.position.endat.line = None
+    lab.position.power_on(lab.queue.now_ns)
+    while not lab.position.on:
+        lab.run(0.001)
+    assert not lab.position.health() & Health.SENSOR  # before it has read anything
+    lab.run(0.1)
+    assert unpack_position(frames(lab, 0x221)[0][1].data).position == CENTRE
+
+
+def test_B3_periods_of_its_frames_and_a_sequence_of_eight_bits() -> None:
+    """POSITION every 5 ms, SUMMARY every 250 ms, HEARTBEAT every second, never two of them at once."""
+    lab = Lab()
+    lab.run(4.0)
+    for identifier, period_ns in ((0x221, 5_000_000), (0x321, 250_000_000), (0x721, 1_000_000_000)):
+        times = [t_ns for t_ns, _ in frames(lab, identifier)]
+        assert abs(len(times) - 4_000_000_000 // period_ns) <= 1
+        assert all(abs(after - before - period_ns) < 400_000 for before, after in pairwise(times))
+    sequence = [unpack_position(frame.data).sequence for _, frame in frames(lab, 0x221)]
+    assert sequence == [(k + 1) % 256 for k in range(len(sequence))]
+    slow = [t_ns for identifier in (0x321, 0x721) for t_ns, _ in frames(lab, identifier)]
+    assert all(after - before > 4_000_000 for before, after in pairwise(sorted(slow)))
+    summary = unpack_summary(frames(lab, 0x321)[-1][1].data)
+    assert (summary.flags, summary.position) == (0, CENTRE)
 
 
 def test_L3_packets() -> None:
