@@ -17,7 +17,6 @@ from boards.silicon.adc import CurrentAdc
 from boards.silicon.can import FULL_MASK
 from boards.silicon.pwm import MotorPwm
 from boards.silicon.qei import Qei, difference
-from bus.can import Frame
 from bus.protocol import (
     COMMAND_BASE,
     MEASUREMENT_BASE,
@@ -177,8 +176,7 @@ class AxisBoard(PeriodicBoard):
         adc_a = self.adc.read(t_ns, 0)
         adc_b = self.adc.read(t_ns, 1)
         data = pack_motion(self.device_type, status, velocity, effort, (adc_a, adc_b), self.clip)
-        if not self.send(Frame(self._identifier, data), end_ns):
-            self.drop()
+        self.transmit(self._identifier, data, end_ns)
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT
         position = motion.measured(now, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF

@@ -9,7 +9,6 @@ from typing import Final
 
 from boards.core import PeriodicBoard, Place, Source
 from boards.silicon.qei import Qei, difference
-from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, pack_tach
 
 FCY_HZ: Final = 10_000_000
@@ -52,7 +51,6 @@ class MotorVelocityBoard(PeriodicBoard):
         delta = difference(poscnt, self.poscnt)
         self.poscnt = poscnt
         self.count = count = (self.count + delta) & 0xFFFF_FFFF
-        if not self.send(Frame(self._identifier, pack_tach(self.device_type, 0, count, delta)), end):
-            self.drop()
+        self.transmit(self._identifier, pack_tach(self.device_type, 0, count, delta), end)
         if self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

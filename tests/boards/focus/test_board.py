@@ -3,7 +3,7 @@ from itertools import pairwise
 import pytest
 
 from boards.core.board import BOOT_NS
-from boards.focus.config import FocusConfig, FocusPins
+from boards.focus.config import FCY_HZ, TABLE, FocusConfig, FocusPins
 from boards.focus.firmware import FocusBoard
 from bus.can import Frame, Wire
 from bus.protocol import (
@@ -24,6 +24,7 @@ from bus.time import EventQueue, Oscillator
 from plant.focus import FocusPort
 from plant.model import load
 from tests.boards.places import place
+from tests.boards.tables import times_ns
 
 
 class Bench:
@@ -302,3 +303,12 @@ def test_H3_periods_of_the_frames_and_what_the_sensors_say() -> None:
     bench.run(1.0)
     states = [unpack_heartbeat(frame.data).state for _, frame in bench.heard if frame.identifier == 0x741]
     assert states[-1] == State.READY
+
+
+def test_B5_routines_take_the_times_that_are_published() -> None:
+    assert times_ns(TABLE, FCY_HZ) == {
+        "sample": (1200, 50_000),
+        "step": (1200, 15_000),
+        "can": (1200, 60_000),
+    }
+    assert [line.level for line in TABLE] == [line.name == "can" for line in TABLE]

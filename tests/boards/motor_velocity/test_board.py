@@ -3,11 +3,12 @@ from itertools import pairwise
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boards.motor_velocity.firmware import MotorVelocityBoard
+from boards.motor_velocity.firmware import FCY_HZ, TABLE, MotorVelocityBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, unpack_tach
 from bus.time import EventQueue, Oscillator
 from tests.boards.places import place
+from tests.boards.tables import times_ns
 
 
 @settings(deadline=None, max_examples=25)
@@ -67,3 +68,8 @@ def test_B4_a_frame_that_finds_no_room_is_counted() -> None:
     board.begin()
     queue.run_until(101_000_000)
     assert board.dropped == 10 + 1 - 3
+
+
+def test_B4_routines_take_the_times_that_are_published() -> None:
+    assert times_ns(TABLE, FCY_HZ) == {"sample": (1200, 40_000), "can": (1200, 60_000)}
+    assert [line.level for line in TABLE] == [line.name == "can" for line in TABLE]

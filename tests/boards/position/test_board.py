@@ -2,7 +2,8 @@ from itertools import pairwise
 
 import pytest
 
-from bus.can import Frame
+from boards.position.firmware import FCY_HZ, TABLE, PositionBoard
+from bus.can import Frame, Wire
 from bus.protocol import (
     AGE_UNIT_NS,
     Device,
@@ -14,7 +15,10 @@ from bus.protocol import (
     unpack_summary,
 )
 from bus.protocol.serial import PacketDecoder
+from bus.time import Oscillator
 from tests.boards.lab import CENTRE, Lab
+from tests.boards.places import place
+from tests.boards.tables import times_ns
 
 BOARD = Device.POSITION_RA
 
@@ -96,12 +100,18 @@ def test_B3_a_first_reading_that_is_bad_is_no_position_and_power_up_forgets_it()
     lab.run(0.1)
     lab.frames.clear()
     lab.position.endat.line = None
+    packets: list[int] = []
+    lab.position.uart.sink = lambda t_ns, _data: packets.append(t_ns)
     lab.position.power_on(lab.queue.now_ns)
     while not lab.position.on:
         lab.run(0.001)
     assert not lab.position.health() & Health.SENSOR  # before it has read anything
-    lab.run(0.1)
+    on_ns = lab.queue.now_ns
+    lab.run(0.3)
     assert unpack_position(frames(lab, 0x221)[0][1].data).position == CENTRE
+    assert packets and packets[0] > on_ns + 240_000_000  # 25 samples of now
+    never = PositionBoard(place(BOARD, Wire(lab.queue), Oscillator(0.0, 0)), lambda _t: 0)
+    assert not never.health() & Health.SENSOR
 
 
 def test_B3_periods_of_its_frames_and_a_sequence_of_eight_bits() -> None:
@@ -128,3 +138,8 @@ def test_L3_packets() -> None:
     decoded = PacketDecoder().feed(b"".join(packets))
     assert len(decoded) == 4
     assert all(row == (CENTRE,) for packet in decoded for row in packet.rows)
+
+
+def test_B3_routines_take_the_times_that_are_published() -> None:
+    assert times_ns(TABLE, FCY_HZ) == {"sample": (1200, 120_000), "can": (1200, 40_000)}
+    assert [line.level for line in TABLE] == [line.name == "can" for line in TABLE]
