@@ -1,4 +1,4 @@
-"""What each mode leaves to the next, when an axis has settled, and which gains are in force, on frames by hand."""
+"""What a mode leaves to the next, when an axis has settled, which gains are in force: frames by hand."""
 
 import pytest
 
@@ -67,7 +67,8 @@ def test_B3_a_position_has_29_bits_and_the_limits_flags() -> None:
 @pytest.mark.parametrize("rate", [0, rate_q16(0.1)])
 @pytest.mark.parametrize(("off", "settles"), [(2070, True), (-2070, True), (2071, False), (-2071, False)])
 def test_B2_settled_is_half_a_second_within_5_arcsec(off: int, settles: bool, rate: int) -> None:
-    """They are 2071 steps of 2^29 a turn. 100 ticks; a move that has a rate is TRACK from the first of them, one without holds as MOVE."""
+    """They are 2071 steps of 2^29 a turn, it is 100 ticks. With a rate the mode is TRACK from the first of
+    them, without it stays MOVE."""
     axis = Axis()
     axis.motion.move(0, 0, PLACE, rate_q16(7200.0))
     axis.at(PLACE - off)
@@ -273,7 +274,7 @@ def test_B1_wind_is_sought_anew_in_another_mode_and_at_creeping_speed_only(again
 
 
 def test_B1_a_lock_that_is_switched_on_or_started_anew_owes_nothing() -> None:
-    """At rest three ticks of a count are owed; the position loop's 6/s of them come on top of the set point."""
+    """At rest three ticks of a count are owed; 6/s of them, as in the position loop, come on top."""
     axis = Axis()
     axis.motion.set_lock(1)
     gain = round(6.0 / 200 * 65536)

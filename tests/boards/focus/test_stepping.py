@@ -1,4 +1,4 @@
-"""The ramp by its law, v² = v0² + 2 a n, whatever target comes while the motor runs; where the index is sought."""
+"""The ramp by its law, v² = v0² + 2 a n, whatever target comes meanwhile; where the index is sought."""
 
 from math import sqrt
 

@@ -89,7 +89,8 @@ def test_foreign_frames_are_counted_and_ignored() -> None:
     """Also a measurement of device type 0, whose slot would be an empty one, or beyond seven bits."""
     bench = Bench()
     foreign = [
-        Frame(0x2AA, b"\x01\x02"), Frame(0x2AA, bytes(8)), Frame(0x200, bytes(8)), Frame(0x280, b"\x80" + bytes(7)),
+        Frame(0x2AA, b"\x01\x02"), Frame(0x2AA, bytes(8)), Frame(0x200, bytes(8)),
+        Frame(0x280, b"\x80" + bytes(7)),
     ]  # fmt: skip
     for frame in foreign:
         bench.node.send(frame, bench.queue.now_ns)
