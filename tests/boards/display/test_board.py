@@ -73,9 +73,9 @@ def test_B6_what_is_shown_is_as_old_as_the_last_refresh_and_gone_after_power_up(
     pc = wire.attach("pc")
     beats: list[int] = []
     pc.on_receive = lambda t_ns, frame: beats.append(t_ns) if frame.identifier == 0x751 else None
-    board.begin()
     assert board.brightness == 100
     dashes = board.lines
+    board.begin()
     queue.run_until(260_000_000)
     pc.send(Frame(0x321, pack_summary(0x21, 0, 1 << 28)), queue.now_ns)
     queue.run_until(499_000_000)

@@ -1,4 +1,6 @@
-from boards.gateway.firmware import FCY_HZ, RING_SLOTS, TABLE, GatewayBoard
+import pytest
+
+from boards.gateway.firmware import FCY_HZ, TABLE, GatewayBoard
 from bus.can import Frame, Wire
 from bus.protocol import Device, Opcode, pack_command, pack_reply, pack_tach
 from bus.protocol.report import PLACES, pack_report, unpack_report
@@ -79,10 +81,10 @@ def test_B7_commands_go_to_the_bus_in_order_and_the_gateway_answers_its_own() ->
 def test_B7_a_pc_that_does_not_listen_costs_frames_not_the_gateway() -> None:
     bench = Bench()
     bench.board.hold_ns = 10**9
-    for _ in range(RING_SLOTS + 5):
+    for _ in range(512 // 8 + 5):  # a quarter of the PIC's memory
         bench.board._put(0, bytes(8))
-    assert len(bench.board.ring) == RING_SLOTS
-    assert bench.board.lost == 5
+    assert len(bench.board.ring) == 64
+    assert bench.board.lost == bench.board.dropped == 5
 
 
 def test_foreign_frames_are_counted_and_ignored() -> None:
@@ -118,13 +120,15 @@ def test_B7_a_frame_waits_four_usb_frames_for_others() -> None:
     assert len(bench.frames) == 2
 
 
-def test_B7_a_ring_that_is_full_is_emptied_a_report_each_usb_frame() -> None:
-    """Twenty slots: two full reports a millisecond apart, and four that wait for others behind them."""
+@pytest.mark.parametrize(("slots", "at"), [(7, [5]), (8, [1]), (15, [1, 5]), (16, [1, 2]), (20, [1, 2, 6])])
+def test_B7_full_reports_leave_a_usb_frame_apart_and_the_rest_waits_for_others(
+    slots: int, at: list[int]
+) -> None:
     bench = Bench()
-    for _ in range(20):
+    for _ in range(slots):
         bench.board._put(0, tach(0x31).data)
     bench.queue.run_until(20 * MS)
-    assert [t_ns for t_ns, _ in bench.reports] == [MS, 2 * MS, 6 * MS]
+    assert [t_ns for t_ns, _ in bench.reports] == [each * MS for each in at]
     assert bench.board.lost == 0 and not bench.board.ring
 
 
@@ -139,13 +143,13 @@ def test_B7_the_endpoint_is_busy_beyond_eight_reports_or_sixty_four_commands() -
         bench.board.hid.write(MS, report)
     assert bench.board.dropped == 1
     bench.queue.run_until(3 * MS)
-    assert bench.board._ready()  # 64 less three in the controller: one report more is taken
-    bench.board.hid.write(bench.queue.now_ns, report)
-    bench.queue.run_until(4 * MS)
-    assert not bench.board._ready()
+    for commands, ready in ((2, True), (1, False)):  # 64 less three in the controller: three more may wait
+        bench.board.hid.write(bench.queue.now_ns, pack_report([pack_command(0x11, Opcode.PING)] * commands))
+        bench.queue.run_until(bench.queue.now_ns + MS)
+        assert bench.board._ready() is ready
     bench.node.online = True
     bench.queue.run_until(100 * MS)
-    assert sum(frame.identifier == 0x091 for frame in bench.heard) == 72
+    assert sum(frame.identifier == 0x091 for frame in bench.heard) == 67
     assert bench.board._ready()
 
 
@@ -157,11 +161,16 @@ def test_B7_the_gateway_is_heard_on_both_sides_and_forgets_all_at_power_up() -> 
         assert sum(frame.identifier == identifier for frame in bench.heard) == count
         assert sum(frame.identifier == identifier for frame in bench.frames) == count
     bench.node.send(tach(0x31), bench.queue.now_ns)
-    bench.board.hid.write(bench.queue.now_ns, pack_report([pack_command(0x11, Opcode.PING)]))
-    bench.queue.run_until(bench.queue.now_ns + MS // 4)
+    bench.queue.run_until(bench.queue.now_ns + MS // 2)
+    report = pack_report([pack_command(0x11, Opcode.PING)] * 8)
+    bench.node.online = False
+    bench.board.hid.write(bench.queue.now_ns, report)
+    bench.queue.run_until(bench.queue.now_ns + MS // 2)  # three commands in the controller, five wait
+    bench.board.hid.write(bench.queue.now_ns, report)
     bench.board.power_off(bench.queue.now_ns)
-    bench.board.hid.write(bench.queue.now_ns, pack_report([pack_command(0x11, Opcode.PING)]))
+    bench.board.hid.write(bench.queue.now_ns, report)
     bench.queue.run_until(bench.queue.now_ns + 100 * MS)
+    bench.node.online = True
     bench.reports.clear()
     bench.heard.clear()
     bench.board.begin(bench.queue.now_ns)
