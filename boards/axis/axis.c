@@ -964,11 +964,11 @@ void board_reset(struct board *b) {
     motion_off(b);
     b->good_ns = b->latch_ns = -STALE_NS;
     for (uint8_t k = 0; k < 2; k++) {
-        b->tach[k].latch_ns = -MISSING_NS;
+        b->tach[k].latch_ns = -2 * MISSING_NS;
         b->tach[k].known = 0;
         b->tach[k].rate_q8 = 0;
     }
-    b->auxiliary_latch_ns = -MISSING_NS;
+    b->auxiliary_latch_ns = -2 * MISSING_NS;
     b->auxiliary_rate_q8 = 0;
     pi_start(b, 0, 0, 0);
     b->counter = 0;

@@ -136,6 +136,7 @@ def test_B1_behind_open_loop_the_loop_decides_again(
     lab.command(Opcode.OPEN_LOOP, 700)
     lab.run(0.5)
     assert lab.axis.velocity > 20 and lab.axis.effort == 700
+    assert lab.axis.motion.mode is AxisMode.OPEN_LOOP
     lab.command(opcode, *arguments)
     lab.run(0.5)
     assert lab.axis.effort < 650
