@@ -175,8 +175,10 @@ def test_B7_the_gateway_is_heard_on_both_sides_and_forgets_all_at_power_up() -> 
     bench.heard.clear()
     bench.board.begin(bench.queue.now_ns)
     bench.node.send(tach(0x32), bench.queue.now_ns)
+    fresh = pack_command(0x12, Opcode.PING)
+    bench.board.hid.write(bench.queue.now_ns, pack_report([fresh]))
     bench.queue.run_until(bench.queue.now_ns + 100 * MS)
-    assert bench.frames == [tach(0x32)] and not bench.heard
+    assert bench.frames == [tach(0x32)] and [frame.data for frame in bench.heard] == [fresh]
 
 
 def test_B7_routines_take_the_times_that_are_published() -> None:
