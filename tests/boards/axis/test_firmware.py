@@ -5,11 +5,21 @@ import pytest
 from boards.axis.config import AxisConfig, AxisPeers, AxisPins
 from boards.axis.firmware import AxisBoard
 from bus.can import Frame
-from bus.protocol import AxisMode, AxisParameter, Device, Health, Opcode, Result, State, unpack_motion
+from bus.protocol import (
+    AxisMode,
+    AxisParameter,
+    Device,
+    Health,
+    MotionFlag,
+    Opcode,
+    Result,
+    State,
+    unpack_motion,
+)
 from bus.protocol.scales import rate_q16
 from bus.protocol.serial import AxisSample, PacketDecoder
 from bus.time import Oscillator
-from tests.boards.lab import RA, Lab
+from tests.boards.lab import CENTRE, RA, Lab
 from tests.boards.places import place
 
 
@@ -118,3 +128,24 @@ def test_B1_the_observer_gets_the_effort_of_open_loop_and_drives_a_rate() -> Non
     lab.command(Opcode.SET_RATE, rate_q16(15.0))
     lab.run(0.05)
     assert lab.axis.observer.driving and lab.axis.effort == 60
+
+
+def test_H4_the_motion_frame_tells_mode_power_motion_and_limit() -> None:
+    lab = Lab()
+
+    def told() -> tuple[int, int]:
+        motion = unpack_motion([f for _, f in lab.frames if f.identifier == 0x200 + RA][-1].data)
+        return motion.mode, motion.flags
+
+    lab.run(0.1)
+    assert told() == (AxisMode.OFF, 0)
+    lab.command(Opcode.POWER, 1)
+    lab.run(0.02)
+    assert told() == (AxisMode.STOP, MotionFlag.POWERED)
+    lab.command(Opcode.SET_RATE, rate_q16(600.0))
+    lab.run(3.0)
+    assert told() == (AxisMode.RATE, MotionFlag.POWERED | MotionFlag.MOVING)
+    lab.command(Opcode.SET_PARAMETER, 5, CENTRE)  # the upper limit, behind it now
+    lab.run(0.02)
+    assert told() == (AxisMode.STOP, MotionFlag.POWERED | MotionFlag.MOVING | MotionFlag.SOFT_LIMIT)
+    assert lab.command(Opcode.PING).value == int(Health.LIMIT)
