@@ -73,7 +73,7 @@ struct board {
     int64_t foreign_ns, clipped_ns, dropped_ns;             /* when it last happened */
     int64_t good_ns, latch_ns;                              /* of the absolute position */
     int64_t target, remaining, speed, profile_rate, top;    /* profile, Q18 counts (a tick) */
-    int64_t blend_q18, watch_q18, near_low, near_high, reciprocal_q32;
+    int64_t blend_q18, watch_q18, reciprocal_q32;
     int64_t auxiliary_latch_ns;
     struct tachometer tach[2];
     int32_t settings[SETTINGS];
@@ -557,21 +557,9 @@ static int64_t braking_steps(const struct board *b, int32_t velocity) {
     return q16 * 4 / UNITS_PER_STEP;
 }
 
-static void refresh_limits(struct board *b) {
-    int32_t top = 0;
-    int64_t distance;
-    for (uint8_t k = 0; k < 5; k++)
-        if (b->p[CLASSES + k] > top) top = b->p[CLASSES + k];
-    distance = braking_steps(b, top >> 16) * 3;
-    b->near_low = b->p[LOW] + distance;
-    b->near_high = b->p[HIGH] - distance;
-}
-
 static uint8_t limit_hit(struct board *b) {
     int64_t braking;
     uint8_t outward;
-    b->reached = 0;
-    if (b->near_low < b->position && b->position < b->near_high && !b->ends) return 0;
     braking = pointing(b) ? 0 : braking_steps(b, b->velocity);
     outward = (b->velocity > 0 && b->position + braking >= b->p[HIGH])
               || (b->velocity < 0 && b->position - braking <= b->p[LOW])
@@ -611,7 +599,6 @@ static void switch_motors(struct board *b, uint8_t on) {
     } else if (b->mode == OFF) {
         b->fault = 0;
         close_loop(b);
-        b->setpoint_q16 = 0;
         motion_run(b, STOP, 0);
     }
 }
@@ -653,9 +640,7 @@ static void book(struct board *b) {
 }
 
 static void changed(struct board *b, uint8_t number) {
-    if (number >= LOW && number < SPREAD) {
-        refresh_limits(b);
-    } else if (number == COMPENSATION) {
+    if (number == COMPENSATION) {
         b->friction_q16 = 0;
     } else if (number == TRAVEL) {
         b->reciprocal_q32 = (INT64_C(1) << 32) / b->p[TRAVEL];
@@ -967,7 +952,6 @@ void board_init(struct board *b, uint8_t device, const int32_t *settings) {
     b->p[TRAVEL] = 1;
     b->kp = b->p[KP];
     b->ki = b->p[KI];
-    refresh_limits(b);
     can_filter(0, 0x7FF, (uint16_t)(COMMAND + device));
     for (uint8_t k = 0; k < 4; k++)
         if (settings[PEERS + k])
@@ -980,11 +964,11 @@ void board_reset(struct board *b) {
     motion_off(b);
     b->good_ns = b->latch_ns = -STALE_NS;
     for (uint8_t k = 0; k < 2; k++) {
-        b->tach[k].latch_ns = -MISSING_NS;
+        b->tach[k].latch_ns = -2 * MISSING_NS;
         b->tach[k].known = 0;
         b->tach[k].rate_q8 = 0;
     }
-    b->auxiliary_latch_ns = -MISSING_NS;
+    b->auxiliary_latch_ns = -2 * MISSING_NS;
     b->auxiliary_rate_q8 = 0;
     pi_start(b, 0, 0, 0);
     b->counter = 0;

@@ -152,8 +152,8 @@ def axis_commands(board: Commanded) -> dict[int, Handler]:
     )
 
 
-def axis_parameters(motion: Motion, limits: SoftLimits, counter: CounterTorque) -> list[Parameter]:
-    """Parameters 1..11; what depends on one is worked out again when it changes."""
+def axis_parameters(motion: Motion, counter: CounterTorque) -> list[Parameter]:
+    """Parameters 1..11."""
 
     def set_kp(value: int) -> None:
         motion.set_gains(value, motion.ki_q12)
@@ -161,14 +161,9 @@ def axis_parameters(motion: Motion, limits: SoftLimits, counter: CounterTorque) 
     def set_ki(value: int) -> None:
         motion.set_gains(motion.kp_q12, value)
 
-    def set_acceleration(value: int) -> None:
-        motion.set_acceleration(value)
-        limits.refresh()
-
     def class_row(index: int) -> Parameter:
         def write(value: int) -> None:
             motion.classes[index] = value
-            limits.refresh()
 
         return Parameter(
             7 + index, f"{_CLASS_NAMES[index]}_rate_q16", 1, RATE_LIMIT, lambda: motion.classes[index], write
@@ -178,10 +173,11 @@ def axis_parameters(motion: Motion, limits: SoftLimits, counter: CounterTorque) 
         kept(1, "counter_split_percent", _SPLIT_BOUNDS, counter, "split"),
         Parameter(2, "kp_q12", 0, _GAIN_BOUND, lambda: motion.kp_q12, set_kp),
         Parameter(3, "ki_q12", 0, _GAIN_BOUND, lambda: motion.ki_q12, set_ki),
-        kept(4, "soft_limit_low_steps", (0, STEPS_PER_TURN - 1), motion, "low", limits.refresh),
-        kept(5, "soft_limit_high_steps", (0, STEPS_PER_TURN - 1), motion, "high", limits.refresh),
+        kept(4, "soft_limit_low_steps", (0, STEPS_PER_TURN - 1), motion, "low"),
+        kept(5, "soft_limit_high_steps", (0, STEPS_PER_TURN - 1), motion, "high"),
         Parameter(
-            6, "acceleration_q16", 1, rate_q16(7200.0) // 20, lambda: motion.acceleration, set_acceleration
+            6, "acceleration_q16", 1, rate_q16(7200.0) // 20, lambda: motion.acceleration,
+            motion.set_acceleration,
         ),
         *(class_row(index) for index in range(len(_CLASS_NAMES))),
-    ]
+    ]  # fmt: skip

@@ -35,10 +35,9 @@ class Compensator:
         self.cosines_q8 = [0] * HARMONICS
         self.sines_q8 = [0] * HARMONICS
         self._lines: list[tuple[int, int, int]] = []
-        self._level_q16 = 0
-        self._travel = 1
-        self._reciprocal_q32 = 0
-        self._friction_q16 = 0
+        self.level_q8 = 0
+        self.travel = 1
+        self.start()
 
     def start(self) -> None:
         """The friction model begins unloaded."""
@@ -91,10 +90,7 @@ class Compensator:
         """Dahl's model, driven by the reference: the force turns within `travel`, as the bristles do."""
         if not self._level_q16:
             return 0
-        forward = setpoint_q16 >= 0
-        share_q16 = (setpoint_q16 if forward else -setpoint_q16) * self._reciprocal_q32 >> 32
-        if share_q16 > 65536:
-            share_q16 = 65536
-        goal = self._level_q16 if forward else -self._level_q16
+        share_q16 = min(abs(setpoint_q16) * self._reciprocal_q32 >> 32, 65536)
+        goal = self._level_q16 if setpoint_q16 >= 0 else -self._level_q16
         self._friction_q16 += (goal - self._friction_q16) * share_q16 >> 16
         return self._friction_q16

@@ -16,8 +16,7 @@ from boards.core import PacketLine, PeriodicBoard, Place
 from boards.silicon.adc import CurrentAdc
 from boards.silicon.can import FULL_MASK
 from boards.silicon.pwm import MotorPwm
-from boards.silicon.qei import Qei
-from bus.can import Frame
+from boards.silicon.qei import Qei, difference
 from bus.protocol import (
     COMMAND_BASE,
     MEASUREMENT_BASE,
@@ -59,11 +58,6 @@ class AxisBoard(PeriodicBoard):
         self.tach_a = RemoteTachometer(config.frame_ns)
         self.tach_b = RemoteTachometer(config.frame_ns)
         self.counter = CounterTorque(config.counter_split, config.split_fade_counts)
-        self.velocity = 0
-        self.poscnt = 0
-        self.effort = 0
-        self.effort_command: int | None = 0
-        self.fault = False
         self.watch = EncoderWatch()
         self._identifier = MEASUREMENT_BASE + self.device_type
         self.auxiliary = RemoteAuxiliary(config.frame_ns)
@@ -82,11 +76,12 @@ class AxisBoard(PeriodicBoard):
         self.output.changed = self._output_changed
         self.set_parameters(
             [
-                *axis_parameters(self.motion, self.limits, self.counter),
+                *axis_parameters(self.motion, self.counter),
                 *fine_parameters(self.output, self.motion),
                 *observer_parameters(self.observer, self.output),
             ]
         )
+        self.reset()
 
     def reset(self) -> None:
         """After power-up: off."""
@@ -99,7 +94,7 @@ class AxisBoard(PeriodicBoard):
         self.counter.start()
         self.observer.start()
         self.effort = 0
-        self.effort_command = 0
+        self.effort_command: int | None = 0
         self.velocity = 0
         self.fault = False
         self.poscnt = self.qei.poscnt(self.queue.now_ns)
@@ -115,8 +110,8 @@ class AxisBoard(PeriodicBoard):
         end = self.enter(t_ns)
         if not end:
             return
-        poscnt = self.qei.pin(t_ns) & 0xFFFF
-        self.velocity = velocity = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
+        poscnt = self.qei.poscnt(t_ns)
+        self.velocity = velocity = difference(poscnt, self.poscnt)
         self.poscnt = poscnt
         self.watch.counts += velocity
         motion = self.motion
@@ -181,8 +176,7 @@ class AxisBoard(PeriodicBoard):
         adc_a = self.adc.read(t_ns, 0)
         adc_b = self.adc.read(t_ns, 1)
         data = pack_motion(self.device_type, status, velocity, effort, (adc_a, adc_b), self.clip)
-        if not self.send(Frame(self._identifier, data), end_ns):
-            self.drop()
+        self.transmit(self._identifier, data, end_ns)
         if mode == AxisMode.OPEN_LOOP:
             setpoint = NO_SETPOINT
         position = motion.measured(now, velocity) // UNITS_PER_STEP & 0x1FFF_FFFF
@@ -210,8 +204,7 @@ class AxisBoard(PeriodicBoard):
     def trip(self) -> None:
         """Latch a fault and take the power off the motors; POWER clears it."""
         self.fault = True
-        self.motion.off()
-        self.command_effort(0)
+        self.switch(False)
 
     def stop(self) -> None:
         """Brake to rest and stay there, in the velocity loop."""
@@ -228,7 +221,6 @@ class AxisBoard(PeriodicBoard):
         elif not self.powered():
             self.fault = False
             self.command_effort(None)
-            self.motion.setpoint_q16 = 0
             self.motion.run(AxisMode.STOP, 0)
 
     def state(self) -> State:

@@ -14,6 +14,7 @@ with the gain and the blend's position are 64 bits.
 from typing import Final
 
 from boards.axis.profile import UNIT_SHIFT
+from boards.core.widths import saturate
 from bus.protocol.scales import COUNTS_PER_TURN
 from bus.units import ARCSEC_PER_TURN
 
@@ -27,7 +28,7 @@ class RateLock:
 
     def __init__(self, gain_q16: int) -> None:
         self._gain_q16 = gain_q16
-        self._error_q16 = 0
+        self.start()
 
     def start(self) -> None:
         """Nothing is owed."""
@@ -35,10 +36,8 @@ class RateLock:
 
     def step(self, setpoint_q16: int, velocity: int) -> int:
         """The correction, Q16 counts/tick; velocity: the counts of the last tick."""
-        error = self._error_q16 + setpoint_q16 - (velocity << 16)
-        error = max(-LOCK_LIMIT_Q16, min(LOCK_LIMIT_Q16, error))
-        self._error_q16 = error
-        return error * self._gain_q16 >> 16
+        self._error_q16 = saturate(self._error_q16 + setpoint_q16 - (velocity << 16), LOCK_LIMIT_Q16)
+        return self._error_q16 * self._gain_q16 >> 16
 
 
 class Blend:
@@ -50,8 +49,7 @@ class Blend:
 
     def __init__(self, shift: int) -> None:
         self.shift = shift
-        self._begun = False
-        self._position_q18 = 0
+        self.start()
 
     def start(self) -> None:
         """The next position is the absolute encoder's: counts of the time between were not taken along."""
@@ -102,8 +100,7 @@ class Gusts:
 
     def step(self, error_q16: int) -> None:
         """Velocity error of a tick in which the axis creeps, Q16 counts."""
-        error = max(-_TOP_Q16, min(_TOP_Q16, error_q16))
-        self._fast_q16 += (error - self._fast_q16) >> _FAST_SHIFT
+        self._fast_q16 += (saturate(error_q16, _TOP_Q16) - self._fast_q16) >> _FAST_SHIFT
         self._slow_q16 += (self._fast_q16 - self._slow_q16) >> _SLOW_SHIFT
         self._sum += abs(self._fast_q16 - self._slow_q16)
         self._ticks += 1

@@ -13,6 +13,7 @@ time."""
 _COUNTS_TOP: Final = INT64_TOP >> (UNIT_SHIFT - 16)
 """Q16 counts whose Q18 still fits 64 bits; only the slightest acceleration with the greatest speed gets
 there."""
+_LOW, _HIGH = int(PositionFlag.LIMIT_LOW), int(PositionFlag.LIMIT_HIGH)
 
 
 class SoftLimits:
@@ -21,16 +22,6 @@ class SoftLimits:
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
         self.reached = False
-        self._near_low = self._near_high = 0
-        self.refresh()
-
-    def refresh(self) -> None:
-        """Work out the guards again after a limit, a rate or the acceleration has changed."""
-        motion = self._motion
-        top = max(motion.classes)
-        distance = self._braking_steps(top >> 16) * 3  # 3: rates of up to sqrt(3) times slew are accepted
-        self._near_low = motion.low + distance
-        self._near_high = motion.high - distance
 
     def _braking_steps(self, velocity: int) -> int:
         """Steps the axis needs to stop from `velocity` counts/5 ms."""
@@ -42,20 +33,16 @@ class SoftLimits:
         """True when the axis has to stop now."""
         motion = self._motion
         position = motion.position
-        if self._near_low < position < self._near_high and not motion.ends:
-            self.reached = False
-            return False
+        ends = motion.ends  # the encoder board has limits of its own, and is beyond one
+        setpoint = motion.setpoint_q16  # with it, as at rest a count of either sign comes now and then
         braking = 0 if motion.mode in POINTING else self._braking_steps(velocity)
-        outward_high = velocity > 0 and position + braking >= motion.high
-        outward_low = velocity < 0 and position - braking <= motion.low
-        outside = position > motion.high or position < motion.low
-        if motion.ends:  # the encoder board has limits of its own, and is beyond one
-            setpoint = motion.setpoint_q16  # with it, as at rest a count of either sign comes now and then
-            outward_high |= velocity > 0 <= setpoint and bool(motion.ends & PositionFlag.LIMIT_HIGH)
-            outward_low |= velocity < 0 >= setpoint and bool(motion.ends & PositionFlag.LIMIT_LOW)
-            outside = True
-        self.reached = outward_high or outward_low or outside
-        return (outward_high or outward_low) and motion.mode not in (AxisMode.OFF, AxisMode.STOP)
+        outward = False
+        if velocity > 0:
+            outward = position + braking >= motion.high or (setpoint >= 0 and ends & _HIGH != 0)
+        elif velocity < 0:
+            outward = position - braking <= motion.low or (setpoint <= 0 and ends & _LOW != 0)
+        self.reached = outward or ends != 0 or not self.inside(position)
+        return outward and motion.mode not in (AxisMode.OFF, AxisMode.STOP)
 
     def inside(self, steps: int) -> bool:
         """Whether a target may be gone to."""

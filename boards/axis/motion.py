@@ -7,11 +7,12 @@ from boards.axis.config import TICK_NS, AxisConfig
 from boards.axis.hold import Blend, Gusts, RateLock
 from boards.axis.pi import GAIN_SHIFT, IncrementalPi
 from boards.axis.profile import UNIT_SHIFT, UNITS_PER_STEP, Profile
+from boards.core.widths import saturate
 from bus.protocol import AGE_UNIT_NS, AxisMode, PositionFlag
+from bus.protocol.scales import TICKS_PER_S
 
 _RATE_TO_UNIT: Final = 2
 """Q16 rate to Q18 unit, as a shift."""
-_TICKS_PER_S: Final = 1_000_000_000 // TICK_NS
 _NS_TO_UNIT: Final = round((1 << UNIT_SHIFT) / TICK_NS * (1 << 20))
 """counts per tick x ns, Q20 -> Q18 counts."""
 _POSITION_MASK: Final = 0x1FFFFFFF
@@ -37,7 +38,7 @@ class Motion:
 
     def __init__(self, config: AxisConfig, pi: IncrementalPi) -> None:
         self._pi = pi
-        self._creep_rate = config.creep_rate << _RATE_TO_UNIT
+        self._creep_rate = config.creep_rate
         gains = (config.kp_pointing, config.ki_pointing, config.ki_creep, config.kp_gust, config.ki_gust)
         self._kp_pointing, self._ki_pointing, self._ki_creep, self._kp_gust, self._ki_gust = (
             round(gain * (1 << GAIN_SHIFT)) for gain in gains
@@ -50,7 +51,7 @@ class Motion:
         self.high = config.high
         self.profile = Profile(config.acceleration << _RATE_TO_UNIT)
         # Q18 counts of error to Q16 counts/tick, gain in Q16
-        self._gain = round(config.position_gain / _TICKS_PER_S * 65536)
+        self._gain = round(config.position_gain / TICKS_PER_S * 65536)
         self._correction = config.correction
         self._lag = config.lag_steps * UNITS_PER_STEP
         self._settle = config.settle_steps * UNITS_PER_STEP
@@ -58,20 +59,13 @@ class Motion:
         self.position = 0
         self.ends = 0
         """Limit bits of the last POSITION."""
-        self.latch_ns = -STALE_NS
-        self.good_ns = -STALE_NS
-        self.rate = 0
-        self.selected = 0
-        self.mode = AxisMode.OFF
-        self.setpoint: Callable[[int, int], int] = self._idle
-        self.setpoint_q16 = 0
-        self.steady = (0, 0)
-        """The rate that is to be held, 0: none, and the position loop's correction of it."""
-        self.wanted_q16 = 0
         self.near_ticks = 0
-        self.lock: RateLock | None = None
+        self._lock = RateLock(self._gain)
         self.gusts: Gusts | None = None
+        """While the rate is locked."""
         self.blend: Blend | None = None
+        self.forget()
+        self.off()
 
     # --- measurements -----------------------------------------------------------------------------
     def take_position(self, now_ns: int, data: bytes) -> None:
@@ -89,9 +83,7 @@ class Motion:
 
     def measured(self, now_ns: int, velocity: int) -> int:
         """Position now, Q18 counts: the last reading carried on at the current velocity."""
-        age = now_ns - self.latch_ns
-        if age > _OLDEST_NS:
-            age = _OLDEST_NS
+        age = min(now_ns - self.latch_ns, _OLDEST_NS)
         return self.position * UNITS_PER_STEP + (velocity * age * _NS_TO_UNIT >> 20)
 
     def forget(self) -> None:
@@ -112,9 +104,10 @@ class Motion:
     def off(self) -> None:
         """No set point."""
         self.mode = AxisMode.OFF
-        self.setpoint = self._idle
+        self.setpoint: Callable[[int, int], int] = self._idle
         self.setpoint_q16 = self.wanted_q16 = self.rate = 0
         self.steady = (0, 0)
+        """The rate that is to be held, 0: none, and the position loop's correction of it."""
         self.selected = 0
 
     def open_loop(self) -> None:
@@ -131,8 +124,8 @@ class Motion:
         if mode is AxisMode.STOP:
             self._pi.kp_q12, self._pi.ki_q12 = self._kp_pointing, self._ki_pointing
         else:
-            if self.lock is not None and self.gusts is not None:
-                self.lock.start()
+            self._lock.start()
+            if self.gusts is not None:
                 self.gusts.start()
             self._velocity_gains()
         self.wanted_q16 = rate_q16
@@ -156,8 +149,7 @@ class Motion:
         else:
             self.rate = rate_q16
             self._enter_pointing(now_ns, velocity)
-        if self.profile.top <= 0:
-            self.profile.top = self.classes[1] << _RATE_TO_UNIT
+        self.profile.top = self.profile.top or self.classes[1] << _RATE_TO_UNIT
         self.mode = AxisMode.MOVE
 
     def nudge(self, offset_steps: int) -> None:
@@ -190,7 +182,7 @@ class Motion:
     def set_lock(self, on: int) -> None:
         """RATE and CLASS hold the sum of the set point, with the gains of the pointing loop; they and TRACK
         notice gusts."""
-        self.lock = RateLock(self._gain) if on else None
+        self._lock.start()
         self.gusts = Gusts() if on else None
         if self.mode in (AxisMode.RATE, AxisMode.CLASS):
             self._velocity_gains()
@@ -220,17 +212,10 @@ class Motion:
         setpoint = self.setpoint_q16
         wanted = self.wanted_q16
         if setpoint != wanted:
-            a = self.acceleration
-            if wanted > setpoint + a:
-                setpoint += a
-            elif wanted < setpoint - a:
-                setpoint -= a
-            else:
-                setpoint = wanted
-            self.setpoint_q16 = setpoint
-        elif self.lock is not None and self.gusts is not None and self.mode is not AxisMode.STOP:
-            setpoint += self.lock.step(setpoint, velocity)
-            if -self._creep_rate < wanted << _RATE_TO_UNIT < self._creep_rate:
+            self.setpoint_q16 = setpoint = setpoint + saturate(wanted - setpoint, self.acceleration)
+        elif self.gusts is not None and self.mode is not AxisMode.STOP:
+            setpoint += self._lock.step(setpoint, velocity)
+            if abs(wanted) < self._creep_rate:
                 self.gusts.step(setpoint - (velocity << 16))
                 self._velocity_gains()
         self.steady = (0 if self.mode is AxisMode.STOP else self.setpoint_q16, 0)
@@ -239,35 +224,23 @@ class Motion:
     def _point(self, now_ns: int, velocity: int) -> int:
         profile = self.profile
         feed = profile.step()
-        # measured(), written out: this runs 200 times a second
-        age = now_ns - self.latch_ns
-        if age > _OLDEST_NS:
-            age = _OLDEST_NS
-        measured = self.position * 55_125 + (velocity * age * _NS_TO_UNIT >> 20)
-        creeping = -self._creep_rate < feed < self._creep_rate
+        measured = self.measured(now_ns, velocity)
+        creeping = abs(feed) >> _RATE_TO_UNIT < self._creep_rate
         if self.blend is not None:
             measured = self.blend.step(measured, velocity, creeping)
-        error = profile.target - profile.remaining - measured
-        lag = self._lag
-        if not -lag < error < lag:  # the axis cannot follow: the reference waits for it
-            held = lag if error > 0 else -lag
-            profile.remaining += error - held
-            error = held
-        correction = error * self._gain >> 18
-        limit = self._correction
-        if correction > limit:
-            correction = limit
-        elif correction < -limit:
-            correction = -limit
-        if -self._settle < error < self._settle and not profile.remaining:
+        ahead = profile.target - profile.remaining - measured
+        error = saturate(ahead, self._lag)
+        profile.remaining += ahead - error  # the axis cannot follow: the reference waits for it
+        correction = saturate(error * self._gain >> UNIT_SHIFT, self._correction)
+        if abs(error) < self._settle and not profile.remaining:
             if self.near_ticks < _SETTLE_TICKS:  # 16 bits: held for six minutes it would wrap
                 self.near_ticks += 1
             if self.rate:
                 self.mode = AxisMode.TRACK
         else:
             self.near_ticks = 0
-        self.setpoint_q16 = setpoint = (feed >> 2) + correction
-        self.steady = (feed >> 2, correction)
+        self.steady = (feed >> _RATE_TO_UNIT, correction)
+        self.setpoint_q16 = setpoint = sum(self.steady)
         self._pi.ki_q12 = self._ki_creep if creeping else self._ki_pointing
         gusts = self.gusts
         if gusts is not None:

@@ -69,7 +69,7 @@ class Observer:
         gain = 0
         for at in range(0, SECTIONS * PER_SECTION, PER_SECTION):
             trace, determinant, first, second = self.coefficients[at : at + 4]
-            if not (-_ONE < determinant < _ONE and abs(trace) < _ONE + determinant):
+            if not (determinant < _ONE and abs(trace) < _ONE + determinant):
                 return False
             gain += (first + second << _GAIN_SHIFT) // (_ONE - trace + determinant)
         return abs(gain - (1 << _GAIN_SHIFT)) <= _GAIN_ERROR

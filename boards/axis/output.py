@@ -23,6 +23,7 @@ from boards.axis.observer import Observer
 from boards.axis.pi import CounterTorque, IncrementalPi
 from boards.core import InterruptController, Parameter
 from boards.core.commands import kept
+from boards.core.widths import saturate
 from boards.silicon.pwm import MotorPwm
 from bus.protocol import HARMONICS, OBSERVER_CELLS, AxisParameter
 from bus.protocol.scales import COUNTS_PER_TURN
@@ -90,7 +91,7 @@ class FineOutput:
         cpu, motion = self._cpu, self._motion
         extra = SHARE_CYCLES if self.spread else 0
         extra += BIAS_CYCLES if self.bias_q8 else 0
-        extra += LOCK_CYCLES if motion.lock else 0
+        extra += LOCK_CYCLES if motion.gusts else 0
         extra += BLEND_CYCLES if motion.blend else 0
         extra += OBSERVER_CYCLES if self.observed else 0
         if self.compensator.on:
@@ -110,11 +111,10 @@ class FineOutput:
             effort_q16 = self._pi.effort_q16
             if self.compensator.on and motion.fresh(now_ns):
                 effort_q16 += self.compensator.effort_q16(motion.position, velocity, setpoint_q16)
-                limit = pwm.steps << 16
-                effort_q16 = max(-limit, min(limit, effort_q16))
+                effort_q16 = saturate(effort_q16, pwm.steps << 16)
         else:
             effort_q16 = command << 16
-        size = effort_q16 if effort_q16 >= 0 else -effort_q16
+        size = abs(effort_q16)
         if self.spread:
             lag = counter.share_q16(size, velocity)
         else:
@@ -186,7 +186,7 @@ def fine_parameters(output: FineOutput, motion: Motion) -> list[Parameter]:
         ),
         Parameter(
             AxisParameter.RATE_LOCK, "rate_lock", 0, 1,
-            lambda: int(motion.lock is not None), output.set_lock,
+            lambda: int(motion.gusts is not None), output.set_lock,
         ),
         Parameter(
             AxisParameter.POSITION_BLEND, "position_blend", 0, 15,

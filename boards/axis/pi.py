@@ -25,31 +25,20 @@ class IncrementalPi:
         self.kp_q12 = kp_q12
         self.ki_q12 = ki_q12
         self._limit = min(limit << RATE_SHIFT, INT32_TOP)
-        self._error = 0
-        self.effort_q16 = 0
+        self.start(0, 0, 0)
 
     def start(self, effort: int, setpoint_q16: int, velocity: int) -> None:
         """Take over at `effort` (PWM steps) without a bump."""
-        self.effort_q16 = saturate(effort << RATE_SHIFT, self._limit)
+        self.replace(effort << RATE_SHIFT)
         self._error = saturate(setpoint_q16 - (velocity << RATE_SHIFT), INT32_TOP)
 
     def step(self, setpoint_q16: int, velocity: int) -> int:
         """Effort in PWM steps for a set point (Q16 counts/5 ms) and the counts of the last 5 ms."""
-        error = setpoint_q16 - (velocity << 16)
-        if not -INT32_TOP <= error <= INT32_TOP:
-            error = saturate(error, INT32_TOP)
-        change = error - self._error
-        if not -INT32_TOP <= change <= INT32_TOP:
-            change = saturate(change, INT32_TOP)
-        effort = self.effort_q16 + ((self.kp_q12 * change + self.ki_q12 * error) >> 12)
-        limit = self._limit
-        if effort > limit:
-            effort = limit
-        elif effort < -limit:
-            effort = -limit
+        error = saturate(setpoint_q16 - (velocity << RATE_SHIFT), INT32_TOP)
+        change = saturate(error - self._error, INT32_TOP)
+        self.replace(self.effort_q16 + ((self.kp_q12 * change + self.ki_q12 * error) >> GAIN_SHIFT))
         self._error = error
-        self.effort_q16 = effort
-        return (effort + _HALF) >> 16
+        return self.steps
 
     def replace(self, effort_q16: int) -> None:
         """Another effort instead, from which the next tick goes on."""
@@ -58,7 +47,7 @@ class IncrementalPi:
     @property
     def steps(self) -> int:
         """The effort in whole PWM steps."""
-        return (self.effort_q16 + _HALF) >> 16
+        return (self.effort_q16 + _HALF) >> RATE_SHIFT
 
 
 _PERCENT: Final = 100
@@ -92,20 +81,17 @@ class CounterTorque:
 
     def follow(self, effort: int, velocity: int) -> None:
         """Move the register for an effort (PWM steps)."""
-        size = effort if effort >= 0 else -effort
-        share = size * self.split
-        fade = self.fade
-        if fade:
-            share = share * max(0, fade - abs(velocity)) // fade
+        share = self._faded(abs(effort) * self.split, velocity)
         if not -_PERCENT < share - self.register * _PERCENT < _PERCENT:
             self.register = (share + _PERCENT // 2) // _PERCENT
 
     def share_q16(self, effort_q16: int, velocity: int) -> int:
         """The same share without whole steps, of a size in Q16, smoothed over `SHARE_SHIFT`. In one tick more
         effort is never less torque."""
-        share = effort_q16 * self.split // _PERCENT
-        fade = self.fade
-        if fade:
-            share = share * max(0, fade - abs(velocity)) // fade
+        share = self._faded(effort_q16 * self.split // _PERCENT, velocity)
         self._share_q16 += (share - self._share_q16) >> SHARE_SHIFT
         return self._share_q16
+
+    def _faded(self, share: int, velocity: int) -> int:
+        fade = self.fade
+        return share * max(0, fade - abs(velocity)) // fade if fade else share

@@ -55,25 +55,11 @@ class Profile:
         Braking law: v(v + a) / 2a <= distance, the sum of the ticks until rest, solved for v.
         """
         self.target += self.rate
-        distance = self.remaining
-        speed = self.speed
-        if distance or speed:
-            gap = distance if distance >= 0 else -distance
-            a = self.acceleration
-            top = self.top
-            wanted = top
-            if gap <= top * (top + a) // (2 * a):
-                wanted = isqrt((a * a >> 2) + 2 * a * gap) - (a >> 1)
-            if wanted > gap:
-                wanted = gap
-            if distance < 0:
-                wanted = -wanted
-            if wanted > speed + a:
-                speed += a
-            elif wanted < speed - a:
-                speed -= a
-            else:
-                speed = wanted
-            self.speed = speed
-            self.remaining = distance - speed
-        return self.rate + speed
+        gap, a, top = abs(self.remaining), self.acceleration, self.top
+        wanted = top
+        if gap <= top * (top + a) // (2 * a):
+            wanted = isqrt((a * a >> 2) + 2 * a * gap) - (a >> 1)
+        wanted = saturate(self.remaining, wanted)
+        self.speed += saturate(wanted - self.speed, a)
+        self.remaining -= self.speed
+        return self.rate + self.speed

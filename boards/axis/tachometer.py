@@ -34,7 +34,7 @@ class RemoteTachometer:
 
     def forget(self) -> None:
         """After power-up: nothing is known."""
-        self._latch_ns = -MISSING_NS
+        self._latch_ns = -2 * MISSING_NS
         self._rate_q8 = 0
         self._last: int | None = None
 
@@ -69,7 +69,7 @@ class RemoteAuxiliary:
 
     def forget(self) -> None:
         """After power-up: nothing is known."""
-        self._latch_ns = -MISSING_NS
+        self._latch_ns = -2 * MISSING_NS  # the first frame may be older than this board
         self._rate_q8 = 0
 
     def take(self, now_ns: int, data: bytes) -> None:

@@ -16,9 +16,3 @@ INT64_TOP: Final = (1 << 63) - 1
 def saturate(value: int, top: int) -> int:
     """`value` within -top..top; symmetric, so that a sign can always be turned."""
     return top if value > top else -top if value < -top else value
-
-
-def wrap(value: int, bits: int) -> int:
-    """The lowest `bits` of `value` as a signed number: what an addition leaves in a register."""
-    half = 1 << (bits - 1)
-    return ((value + half) & ((1 << bits) - 1)) - half

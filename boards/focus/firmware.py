@@ -4,7 +4,6 @@ from typing import Final
 
 from boards.core import NOT_ALLOWED, OK, OUT_OF_RANGE, Answer, PacketLine, PeriodicBoard, Place
 from boards.core.commands import commands
-from boards.core.widths import wrap
 from boards.focus.config import FCY_HZ, TABLE, FocusConfig, FocusPins
 from boards.focus.stepping import Reference, Stepping
 from boards.silicon.adc import VoltageAdc
@@ -52,12 +51,9 @@ class FocusBoard(PeriodicBoard):
         self.reference = Reference(self.config)
         self.referenced = False
         self.free = False
-        self.encoder = 0
-        self.poscnt = self.qei.poscnt(self.queue.now_ns)
-        self.lvdt = 0
+        self.driver.rest(self.queue.now_ns)
+        self.poscnt = self._origin = self.qei.poscnt(self.queue.now_ns)
         self.packets.clear()
-        self._encoder_zero = 0
-        self._index = False
         self._last_move_ns = 0
         self._timer_ns = 0
 
@@ -71,40 +67,32 @@ class FocusBoard(PeriodicBoard):
         end = self.enter(t_ns)
         if not end:
             return
-        poscnt = self.qei.poscnt(t_ns)
-        self.encoder = wrap(self.encoder + difference(poscnt, self.poscnt), 32)
-        self.poscnt = poscnt
-        self.lvdt = self.adc.read(t_ns)
+        self.poscnt = self.qei.poscnt(t_ns)
+        lvdt = self.adc.read(t_ns)
         stepping = self.stepping
-        if (
-            self.driver.energised
-            and not stepping.moving
-            and self.clock_ns(t_ns) - self._last_move_ns > _REST_NS
-        ):
+        if self.driver.energised and self._rests(t_ns):
             self.driver.rest(end)
-        self.packets.take(t_ns, end, (stepping.position, self._counts(), self.lvdt))
+        self.packets.take(t_ns, end, (stepping.position, self._counts(), lvdt))
         if not self.ticks % _FRAME_TICKS:
-            self._index = self.index_pin(t_ns)
-            data = pack_focus(
-                self.device_type, self._flags(), stepping.position, self._counts(), self.lvdt, self.clip
-            )
+            flags = self._flags(self.index_pin(t_ns))
+            data = pack_focus(self.device_type, flags, stepping.position, self._counts(), lvdt, self.clip)
             self.transmit(self._identifier, data, end)
         elif self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)
 
+    def _rests(self, t_ns: int) -> bool:
+        """Whether the rotor is surely at rest."""
+        return not self.stepping.moving and self.clock_ns(t_ns) - self._last_move_ns > _REST_NS
+
     def _counts(self) -> int:
         """Encoder counts from the origin, as the 16 bits of the frame."""
-        return ((self.encoder - self._encoder_zero + 0x8000) & 0xFFFF) - 0x8000
+        return difference(self.poscnt, self._origin)
 
-    def _flags(self) -> int:
-        flags = FocusFlag.FREE if self.free else FocusFlag(0)
-        if self.stepping.moving:
-            flags |= FocusFlag.MOVING
-        elif not self.free:
-            flags |= FocusFlag.HOLD
+    def _flags(self, index: bool) -> int:
+        flags = FocusFlag.MOVING if self.stepping.moving else FocusFlag.FREE if self.free else FocusFlag.HOLD
         if self.referenced:
             flags |= FocusFlag.REFERENCED
-        if self._index:
+        if index:
             flags |= FocusFlag.INDEX_SEEN
         return int(flags)
 
@@ -120,7 +108,7 @@ class FocusBoard(PeriodicBoard):
         self.queue.at(t_ns, self._timer)
 
     def _timer(self, t_ns: int) -> None:
-        if t_ns == self._timer_ns and self.on and self.stepping.moving:
+        if t_ns == self._timer_ns:
             self.cpu.lines["step"].request(t_ns)
 
     def _step(self, t_ns: int) -> None:
@@ -145,10 +133,8 @@ class FocusBoard(PeriodicBoard):
     def _set_origin(self, t_ns: int, position: int) -> None:
         """The motor stands at `position`, beyond doubt."""
         self.stepping.rebase(position)
-        poscnt = self.qei.poscnt(t_ns)
-        self.encoder = wrap(self.encoder + difference(poscnt, self.poscnt), 32)
-        self.poscnt = poscnt
-        self._encoder_zero = wrap(self.encoder - self._expected(position), 32)
+        self.poscnt = self.qei.poscnt(t_ns)
+        self._origin = self.poscnt - self._expected(position)
         self.referenced = True
 
     def _expected(self, position: int) -> int:
@@ -179,7 +165,6 @@ class FocusBoard(PeriodicBoard):
 
     def _command_free(self, t_ns: int) -> Answer:
         """Control power off: nothing holds the shaft, so the origin cannot be trusted any more."""
-        self.reference.active = False
         self.stepping.rebase(self.stepping.position)
         self.free = True
         self.referenced = False
@@ -202,11 +187,8 @@ class FocusBoard(PeriodicBoard):
     def health(self) -> Health:
         """Adds lost steps and a failed search for the index to the common bits."""
         bits = super().health()
-        settled = (
-            not self.stepping.moving and self.clock_ns(self.queue.now_ns) - self._last_move_ns > _REST_NS
-        )
         wrong = abs(self._counts() - self._expected(self.stepping.position))
-        lost = wrong > self._expected(_LOST)
-        if self.reference.failed or (self.referenced and settled and lost):
+        lost = self.referenced and self._rests(self.queue.now_ns) and wrong > self._expected(_LOST)
+        if self.reference.failed or lost:
             bits |= Health.SENSOR
         return bits

@@ -14,11 +14,7 @@ class Stepping:
 
     def __init__(self, config: FocusConfig) -> None:
         self._intervals = config.intervals_ns
-        self._ramp = 0
-        self.direction = 0
-        self.moving = False
-        self.position = 0
-        self.target = 0
+        self.rebase(0)
 
     def rebase(self, position: int) -> None:
         """The place where the motor stands is called `position` from now on; it stops there."""
@@ -37,13 +33,13 @@ class Stepping:
 
     def next(self) -> tuple[int, int]:
         """One half step: (direction, time to the next one in ns); direction 0: at rest, at the target."""
-        ahead = (self.target - self.position) * self.direction
-        if not self._ramp and ahead <= 0:  # slow enough to stop or turn
-            if self.target == self.position:
+        away = self.target - self.position
+        if not self._ramp:  # slow enough to stop or turn
+            if not away:
                 self.halt()
                 return 0, 0
-            self.direction = 1 if self.target > self.position else -1
-            ahead = abs(self.target - self.position)
+            self.direction = away // abs(away)
+        ahead = away * self.direction
         if ahead <= self._ramp + 1:
             self._ramp = max(0, self._ramp - 1)
         elif self._ramp < len(self._intervals) - 1:
@@ -62,8 +58,6 @@ class Reference:
 
     def __init__(self, config: FocusConfig) -> None:
         self._config = config
-        self._index = False
-        self._start = 0
         self.active = False
         self.failed = False
 

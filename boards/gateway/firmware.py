@@ -40,8 +40,6 @@ REPORTS_MOST: Final = 8
 COMMANDS_MOST: Final = 64
 """Commands that wait for the bus; the endpoint NAKs beyond. ASSUMPTION: 512 bytes of the PIC's 2 KB."""
 _BASE_MASK: Final = 0x700
-_END: Final = MEASUREMENT_BASE + 0x80
-"""Beyond the last measurement: a device type has seven bits."""
 _NEVER: Final = 1 << 61
 
 
@@ -82,11 +80,8 @@ class GatewayBoard(PeriodicBoard):
     def _receive(self, t_ns: int, frame: Frame) -> None:
         if frame.extended or frame.remote or not self.on:
             return
-        identifier, data = frame.identifier, frame.data
-        if len(data) == 8 and identifier - data[0] == MEASUREMENT_BASE and identifier < _END:
-            self._put(t_ns, data)
-        elif identifier == self._own_command:
-            self._take_command(t_ns, data)
+        if frame.identifier == self._own_command:
+            self._take_command(t_ns, frame.data)
         else:
             try:
                 self._put(t_ns, slot(frame))

@@ -8,8 +8,7 @@ from collections.abc import Callable
 from typing import Final
 
 from boards.core import PeriodicBoard, Place, Source
-from boards.silicon.qei import Qei
-from bus.can import Frame
+from boards.silicon.qei import Qei, difference
 from bus.protocol import MEASUREMENT_BASE, pack_tach
 
 FCY_HZ: Final = 10_000_000
@@ -35,9 +34,8 @@ class MotorVelocityBoard(PeriodicBoard):
     def __init__(self, place: Place, encoder: Callable[[int], int]) -> None:
         super().__init__(place, FCY_HZ, TABLE, TICK_NS)
         self.qei = Qei(encoder)
-        self.poscnt = 0
-        self.count = 0
         self._identifier = MEASUREMENT_BASE + self.device_type
+        self.reset()
 
     def reset(self) -> None:
         """The count starts at zero, wherever the motor stands."""
@@ -49,11 +47,10 @@ class MotorVelocityBoard(PeriodicBoard):
         end = self.enter(t_ns)
         if not end:
             return
-        poscnt = self.qei.pin(t_ns) & 0xFFFF
-        delta = ((poscnt - self.poscnt + 0x8000) & 0xFFFF) - 0x8000
+        poscnt = self.qei.poscnt(t_ns)
+        delta = difference(poscnt, self.poscnt)
         self.poscnt = poscnt
         self.count = count = (self.count + delta) & 0xFFFF_FFFF
-        if not self.send(Frame(self._identifier, pack_tach(self.device_type, 0, count, delta)), end):
-            self.drop()
+        self.transmit(self._identifier, pack_tach(self.device_type, 0, count, delta), end)
         if self.ticks % _HEARTBEAT_TICKS == 1:
             self.heartbeat(end)

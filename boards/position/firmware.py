@@ -10,7 +10,6 @@ from typing import Final
 from boards.core import PacketLine, PeriodicBoard, Place, Source
 from boards.core.commands import kept
 from boards.silicon.endat import POSITION_BITS, EndatEncoder, EndatMaster
-from bus.can import Frame
 from bus.protocol import (
     AGE_UNIT_NS,
     MEASUREMENT_BASE,
@@ -55,10 +54,9 @@ class PositionBoard(PeriodicBoard):
         self.uart = self.packets.uart
         self.low = low
         self.high = high
-        self.flags = 0
         self.position = 0
         # The first instruction of the routine starts the clock, and the first edge latches the position.
-        self._age = min(255, self.cost_ns // AGE_UNIT_NS)
+        self._age = self.cost_ns // AGE_UNIT_NS
         self._identifier = MEASUREMENT_BASE + self.device_type
         self.set_parameters(
             (
@@ -66,6 +64,7 @@ class PositionBoard(PeriodicBoard):
                 kept(5, "soft_limit_high_steps", (0, _LAST_STEP), self, "high"),
             )
         )
+        self.reset()
 
     def reset(self) -> None:
         """After power-up."""
@@ -91,8 +90,7 @@ class PositionBoard(PeriodicBoard):
         self.flags = flags
         ticks = self.ticks
         data = pack_position(self.device_type, flags, position, self._age, ticks & 0xFF)
-        if not self.send(Frame(self._identifier, data), end):
-            self.drop()
+        self.transmit(self._identifier, data, end)
         if ticks & 1:
             self._slow(ticks, end)
             return

@@ -79,3 +79,20 @@ def test_B2_the_share_falls_with_speed_when_told_to() -> None:
     assert counter.register == 100
     counter.follow(1000, -1000)
     assert counter.register == 0
+    counter.follow(3000, 1500)
+    assert counter.register == 0
+
+
+@pytest.mark.parametrize(("effort", "velocity"), [(1000, 0), (2000, 500), (2000, -500)])
+def test_B2_the_finer_share_falls_alike(effort: int, velocity: int) -> None:
+    """10 % of 1000, or of half of 2000 at half the speed; smoothed, a step moves it 1/32 of the way."""
+    counter = CounterTorque(10, 1000)
+    assert counter.share_q16(effort << 16, velocity) == (100 << 16) // 32
+    assert counter.share_q16(effort << 16, 1000) == ((100 << 16) // 32) * 31 // 32
+
+
+def test_B2_without_effort_before_there_is_no_share() -> None:
+    counter = CounterTorque(10, 0)
+    counter.follow(5, 0)  # half a step
+    assert counter.register == 0
+    assert counter.share_q16(330, 0) == 1  # 33 / 32

@@ -127,6 +127,34 @@ def test_B1_a_line_of_the_table_is_a_wave_over_the_position(
     assert abs(got - wanted) <= 6e-5 * size + 2 * 0.00196 + 1e-4
 
 
+def test_B1_a_wave_is_met_one_and_a_half_ticks_ahead_and_to_its_last_value() -> None:
+    """2^29 / 112 896 000 = 4.7555 steps a count; behind the last of 1024 values comes the first."""
+    compensator = Compensator()
+    compensator.orders_q16[0], compensator.sines_q8[0] = 1000 << 16, 2000 << 8
+    compensator.refresh()
+    for velocity in (1000, -1000):
+        ahead = compensator.effort_q16(100_000, velocity, 0)
+        assert ahead == pytest.approx(
+            compensator.effort_q16(100_000 + round(velocity * 7.1332), 0, 0), abs=6000
+        )
+    compensator.orders_q16[0] = 1 << 16
+    for cosine, sine, wanted in ((0, 256, 0), (256, 0, ONE)):
+        compensator.cosines_q8[0], compensator.sines_q8[0] = cosine, sine
+        compensator.refresh()
+        assert compensator.effort_q16((1 << 29) - 1, 0, 0) == pytest.approx(wanted, abs=4)
+
+
+def test_B1_without_table_and_friction_nothing_is_added() -> None:
+    compensator = Compensator()
+    compensator.refresh()
+    assert compensator.effort_q16(1 << 28, 1000, 1000 * ONE) == 0
+    compensator.level_q8 = 100 * 256
+    assert compensator.effort_q16(0, 0, 0) == 0
+    compensator.effort_q16(0, 0, ONE)
+    compensator.start()
+    assert compensator.effort_q16(0, 0, 0) == 0
+
+
 def test_B1_friction_turns_within_its_travel() -> None:
     compensator = Compensator()
     compensator.level_q8, compensator.travel = 100 * 256, 1500
@@ -150,13 +178,14 @@ def test_B1_open_loop_is_not_compensated(lab: Lab) -> None:
 
 
 def test_B1_the_lock_pays_back_and_forgets_beyond_two_arcsec() -> None:
+    assert RateLock(ONE).step(0, 0) == 0
     lock = RateLock(ONE // 32)
     for _ in range(8):
         lock.step(4 * ONE, 3)  # eight counts behind
     assert lock.step(4 * ONE, 4) == 8 * ONE // 32
     for _ in range(10_000):
         lock.step(4 * ONE, 0)
-    assert lock.step(4 * ONE, 4) == LOCK_LIMIT_Q16 // 32
+    assert lock.step(4 * ONE, 4) == 174 * ONE // 32 == LOCK_LIMIT_Q16 // 32  # 2 x 87.111, whole counts
 
 
 def test_B1_a_locked_rate_holds_the_sum_of_the_set_point(lab: Lab) -> None:

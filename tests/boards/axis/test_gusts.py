@@ -41,8 +41,33 @@ def test_B1_two_windows_tell_and_two_end_it(hertz: float) -> None:
     gusts = Gusts()
     assert shake(gusts, 1.05 * edge, hertz, 3) == [False, True, True]
     lower = QUIET / passed(hertz)
+    once = Gusts()
+    assert shake(once, 1.05 * edge, hertz, 2) + shake(once, 0.0, hertz, 2) == [False, True, True, False]
     assert all(shake(gusts, 1.05 * lower, hertz, 4))  # between both levels nothing turns
     assert shake(gusts, 0.9 * lower, hertz, 3)[1:] == [False, False]
+
+
+def test_B1_each_window_is_5_12_seconds() -> None:
+    gusts, heard = Gusts(), []
+    for k in range(2 * WINDOW):
+        gusts.step(round(4 * ONE * math.sin(2 * math.pi * 3.0 * k / TICKS_PER_S)))
+        heard.append(gusts.blowing)
+    assert heard.index(True) == 2 * WINDOW - 1
+
+
+@pytest.mark.parametrize(("counts", "noticed"), [(8.0, False), (8.9, False), (1000.0, False)])
+def test_B1_a_blow_counts_8_counts_at_most(counts: float, noticed: bool) -> None:
+    """Ticks apart from each other, so many that at 8 counts they are 0.95 of the level, and 1.07 at 9."""
+    each, fast, slow = 0.0, 0.0, 0.0
+    for k in range(64):
+        fast += ((8.0 if k == 0 else 0.0) - fast) / 4
+        slow += (fast - slow) / 16
+        each += abs(fast - slow)
+    every = round(64 * each / (0.95 * LOUD * 64))
+    gusts = Gusts()
+    for k in range(3 * WINDOW):
+        gusts.step(round(counts * ONE) if k % every == 0 else 0)
+    assert gusts.blowing is noticed
 
 
 def test_B1_what_gears_leave_and_a_start_are_no_wind() -> None:

@@ -7,6 +7,7 @@ from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from bus.protocol import AxisMode, PositionFlag
+from bus.protocol.scales import rate_q16
 
 LOW, HIGH = steps(36_000.0), steps(360_000.0)
 SLEW_COUNTS = 3136  # 7200"/s at 87.1 counts/" (hardware.md 2.1) in 5 ms
@@ -14,11 +15,14 @@ NEEDED_ARCSEC = 7200.0**2 / (2 * 7200.0) + 0.15 * 7200.0
 AT_PARK = steps(180_000.0)
 
 
-def limits(mode: AxisMode, position: int, setpoint_counts: int = 0, ends: int = 0) -> SoftLimits:
+def limits(
+    mode: AxisMode, position: int, setpoint_q16: int = 0, ends: int = 0, slew_arcsec_s: float = 7200.0
+) -> SoftLimits:
     """The limits of an axis in a mode, somewhere."""
-    motion = Motion(AxisConfig(low=LOW, high=HIGH), IncrementalPi(0, 0, 3000))
+    config = AxisConfig(low=LOW, high=HIGH, classes=(rate_q16(slew_arcsec_s),) * 5)
+    motion = Motion(config, IncrementalPi(0, 0, 3000))
     motion.mode, motion.position, motion.ends = mode, position, ends
-    motion.setpoint_q16 = setpoint_counts << 16
+    motion.setpoint_q16 = setpoint_q16
     return SoftLimits(motion)
 
 
@@ -50,7 +54,7 @@ def test_B3_who_brakes_already_is_told_and_not_stopped_again(mode: AxisMode) -> 
 
 
 @pytest.mark.parametrize(
-    ("velocity", "setpoint", "stops"), [(1, 1, True), (1, 0, True), (1, -5, False), (-1, -5, False)]
+    ("velocity", "setpoint", "stops"), [(1, 1, True), (1, 0, True), (1, -1, False), (-1, -1, False)]
 )
 @pytest.mark.parametrize("mirror", [1, -1])
 def test_B3_beyond_the_encoder_boards_limit_a_count_of_rest_is_no_motion(
@@ -60,3 +64,24 @@ def test_B3_beyond_the_encoder_boards_limit_a_count_of_rest_is_no_motion(
     found = limits(AxisMode.TRACK, AT_PARK, mirror * setpoint, int(end))
     assert found.hit(mirror * velocity) == stops
     assert found.reached
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_B3_a_rate_is_braked_in_time_whatever_the_classes_are(sign: int) -> None:
+    """SET_RATE takes 3°/s with a slew class of 600″/s, too: they need 2.25° and 0.15 s of way."""
+    counts = round(10_800 * 87.11111 * 0.005)
+    way = steps(10_800.0**2 / (2 * 7200.0) + 0.15 * 10_800.0)
+    for short, stops in ((20.0, False), (-20.0, True)):
+        away = way + steps(short)
+        found = limits(AxisMode.RATE, HIGH - away if sign > 0 else LOW + away, slew_arcsec_s=600.0)
+        assert found.hit(sign * counts) == stops
+
+
+@pytest.mark.parametrize(("position", "outside"), [
+    (LOW - 1, True), (LOW, False), (AT_PARK, False), (HIGH, False), (HIGH + 1, True),
+])  # fmt: skip
+def test_B3_at_rest_beyond_a_limit_is_told_and_stops_nothing(position: int, outside: bool) -> None:
+    found = limits(AxisMode.RATE, position)
+    assert not found.reached  # nobody has looked yet
+    assert not found.hit(0)
+    assert found.reached is outside is not found.inside(position)

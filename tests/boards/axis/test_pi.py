@@ -60,3 +60,9 @@ def test_B1_errors_beyond_32_bits_stay_at_the_top() -> None:
     assert pi.step(0x7FFF_FFFF, -30_000) == 2048
     pi = IncrementalPi(0, 256, 3000)
     assert pi.step(-0x7FFF_FFFF, 30_000) == -2048
+
+
+def test_B1_no_error_is_no_effort_to_the_last_bit() -> None:
+    pi = IncrementalPi(1 << 20, 1 << 20, 3000)  # the largest gains: a bit of either error would be 256 bits
+    pi.step(0, 0)
+    assert pi.effort_q16 == 0

@@ -1,5 +1,6 @@
 from itertools import pairwise
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -46,6 +47,32 @@ def test_B1_braking_takes_the_time_physics_says() -> None:
     ticks = len(run(profile)) - 1
     # up and down without reaching the top: 2 sqrt(d / a)
     assert abs(ticks - 2 * (distance / A) ** 0.5) <= 2
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_B1_from_top_speed_it_brakes_in_time_and_no_sooner(sign: int) -> None:
+    """d / top + top / a ticks, 3136 counts in 16 a tick are 196 of them.
+
+    The law holds for speeds of whole a; between them it is up to a / 8 short: 2 counts, 0.023 arcsec.
+    """
+    for more in range(0, 3136, 151):
+        profile = Profile(A)
+        profile.top = TOP
+        profile.aim(sign * (700_000 + more) << UNIT_SHIFT)
+        ticks = 0
+        while profile.remaining or profile.speed:
+            before = profile.speed
+            profile.step()
+            ticks += 1
+            assert abs(profile.speed - before) <= A and sign * profile.remaining >= -A // 8
+        assert ticks == pytest.approx((700_000 + more) / 3136 + 196, abs=2)
+
+
+def test_a_profile_begins_at_rest_at_nothing() -> None:
+    profile = Profile(A)
+    assert profile.step() == 0
+    profile.aim(1000)
+    assert (profile.target, profile.remaining) == (1000, 1000)
 
 
 def test_taking_over_is_continuous() -> None:

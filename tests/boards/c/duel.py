@@ -38,8 +38,7 @@ _USUAL = {
 }  # fmt: skip
 """Values of parameters with which the axis can be moved."""
 _SAME = {
-    "near_low": "limits._near_low", "near_high": "limits._near_high", "position": "motion.position",
-    "target": "motion.profile.target", "remaining": "motion.profile.remaining",
+    "position": "motion.position", "target": "motion.profile.target", "remaining": "motion.profile.remaining",
     "speed": "motion.profile.speed", "rate": "motion.rate", "setpoint_q16": "motion.setpoint_q16",
     "wanted_q16": "motion.wanted_q16", "near_ticks": "motion.near_ticks", "velocity": "velocity",
     "effort": "effort", "poscnt": "poscnt", "effort_q16": "pi.effort_q16", "waiting": "inbox",

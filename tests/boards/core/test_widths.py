@@ -2,15 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.core.widths import INT32_TOP, saturate, wrap
+from boards.core.widths import INT32_TOP, saturate
 from tests.boards.checked import Checked
-
-
-@given(st.integers(), st.integers(2, 64))
-def test_wrapping_is_what_an_addition_leaves_in_the_register(value: int, bits: int) -> None:
-    wrapped = wrap(value, bits)
-    assert -(1 << bits - 1) <= wrapped < 1 << bits - 1
-    assert (wrapped - value) % (1 << bits) == 0
 
 
 @given(st.integers())

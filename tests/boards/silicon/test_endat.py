@@ -45,6 +45,17 @@ def test_B3_a_frame_arrives_as_it_was_sent(position: int) -> None:
     assert master.poll(0) == (position, False, True)
     encoder.alarm = True
     assert master.poll(0) == (position, True, True)
+    master.line = lambda frame: frame  # a cable that is there and disturbs nothing
+    assert master.poll(0) == (position, True, True)
+    encoder.alarm = False
+    assert master.poll(0) == (position, False, True)
+
+
+@pytest.mark.parametrize(("flags", "alarm"), [(0b10, False), (0b01, True), (0b00, True), (0b11, True)])
+def test_B3_error_bits_that_agree_are_an_alarm_too(flags: int, alarm: bool) -> None:
+    """F1 is active high, F2 active low (hardware.md 3.1); the CRC is right."""
+    data = 12345 << 2 | flags
+    assert check(data | crc5(data, 31) << 31) == (12345, alarm, True)
 
 
 @given(positions, st.integers(0, 35))
@@ -68,5 +79,7 @@ def test_negative_positions_wrap_to_29_bits() -> None:
 
 
 def test_the_transfer_takes_less_than_the_poll() -> None:
-    # 2.2 poll about 47 clocks and t_cal: some 55 us at 1 MHz (hardware.md 3.1)
-    assert 45_000 < EndatMaster(EndatEncoder(lambda _t: 0)).latch_to_data_ns < 75_000
+    # 47 clocks (2 + 6 + 2, a start bit, 31 and 5 bits) and t_cal of 5 us (hardware.md 3.1)
+    encoder = EndatEncoder(lambda _t: 0)
+    assert EndatMaster(encoder).latch_to_data_ns == 52_000
+    assert EndatMaster(encoder, 2_000_000).latch_to_data_ns == 28_500
