@@ -7,6 +7,7 @@ from bus.protocol.database import database
 from bus.protocol.nodes import DOME
 from bus.protocol.position import AGE_UNIT_NS
 from bus.protocol.saturate import bounds
+from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 from bus.protocol.serial import (
     NO_SETPOINT,
     PACKET_NS,
@@ -192,3 +193,9 @@ def test_noise_without_a_sync_is_counted_at_once_and_not_kept() -> None:
     assert decoder.feed(bytes(1000)) == [] and decoder.skipped_bytes == 1000
     assert decoder.feed(b"\x01\xaa") == [] and decoder.skipped_bytes == 1001  # half a sync may go on
     assert len(decoder.feed(GOOD[1:])) == 1 and decoder.skipped_bytes == 1001
+
+
+def test_an_axis_scales_are_the_papers() -> None:
+    """Encoder 4.608e6 on a roller 735:30; RCN 829 of 29 bits; 200 ticks a second: 15 arcsec/s are 6.5333 counts."""
+    assert COUNTS_PER_TURN == 4_608_000 * 735 // 30 and STEPS_PER_TURN == 2**29
+    assert rate_q16(15.0) == round(15 / 1_296_000 * 4_608_000 * 24.5 / 200 * 2**16) == 428_169

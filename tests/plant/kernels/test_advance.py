@@ -68,3 +68,9 @@ def test_P4_an_axis_sags_by_what_the_others_drew_in_the_step_before() -> None:
     advance(world, 1)
     assert world[:, at.OTHERS_SAG] == pytest.approx(0.5 * drawn[::-1])
     assert world[:, at.STEP].tolist() == [2.0, 2.0]
+
+
+def test_readings_of_every_axis_are_filled() -> None:
+    world = np.stack([coasting(), coasting()])
+    advance(world, 3)
+    assert world[:, at.OUT + at.OUT_ANGLE] == pytest.approx([angle_after(3)] * 2, abs=1e-9)

@@ -55,7 +55,7 @@ def test_a_row_of_truth_is_of_the_grid_point() -> None:
 @pytest.mark.parametrize(("size", "split", "register", "expected"), [
     (1000, 10, 0, 100), (1005, 10, 0, 101), (1004, 10, 0, 100),  # to the nearest step
     (1009, 10, 100, 100), (1010, 10, 100, 101), (991, 10, 100, 100), (990, 10, 100, 99),  # a whole step off
-    (0, 10, 1, 0), (0, 10, 0, 0),
+    (107, 7, 0, 7), (0, 10, 1, 0), (0, 10, 0, 0),
 ])  # fmt: skip
 def test_the_counter_torque_stays_until_it_is_a_whole_step_off(
     size: int, split: int, register: int, expected: int
@@ -170,3 +170,11 @@ def test_no_reading_is_late_unless_told() -> None:
     log, _, _ = run([nan] * 4, [0.0] * 4, w, LATE_POSITION=7 * H)
     assert log["velocity"].tolist() == [0, 10] and log["tach_a"].tolist() == [0, 30]
     assert log["adc_b"].tolist() == [1023, 19]  # 200 A / 1024
+
+
+@pytest.mark.parametrize(("q16", "steps"), [(32767, 0), (32768, 1)])
+def test_half_a_step_is_one_and_less_is_none(q16: int, steps: int) -> None:
+    """A gain of one: the effort is the error. Half of one step is no counter torque yet."""
+    log, _, w = run([q16 / 65536.0, nan], [0.0, 1.0], KP=4096, KI=0)
+    assert log["effort"].tolist() == [30.0 * steps]
+    assert w[at.DUTY : at.DUTY + 2].tolist() == [0.01, 0.0]

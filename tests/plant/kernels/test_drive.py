@@ -21,7 +21,7 @@ def test_P4_a_winding_tends_to_its_target_and_the_diode_stops_it_at_nothing() ->
 
 
 @pytest.mark.parametrize(("speed", "applied", "leads", "diode", "expected"), [
-    (10.0, 6.0, True, 0.0, 4.0), (10.0, 6.0, False, 1.0, 4.0),  # turned its own way
+    (10.0, 6.0, True, 0.0, 4.0), (10.0, 6.0, False, 1.0, 4.0), (1.0, 6.0, False, 1.0, 0.4),  # turned its own way
     (-10.0, 6.0, True, 0.0, -4.0), (-10.0, 3.0, True, 0.0, -3.0), (-10.0, 6.0, False, 0.0, 0.0),
     (-10.0, 6.0, False, 1.0, -3.3), (-10.0, 3.0, True, 0.5, -3.15), (-1.0, 6.0, False, 1.0, 0.0),
 ])  # fmt: skip
@@ -34,6 +34,8 @@ def test_P4_back_emf_of_either_way(
 def test_P3_teeth_push_beyond_the_play_and_never_pull() -> None:
     assert push_of(0.3, 2.0, 100.0, 5.0, 0.1) == pytest.approx(100.0 * 0.2 + 10.0)
     assert push_of(-0.3, 2.0, 100.0, 5.0, 0.1) == pytest.approx(-100.0 * 0.2 + 10.0)
+    assert push_of(0.1005, 0.1, 100.0, 5.0, 0.1) == pytest.approx(0.55)
+    assert push_of(-0.1005, -0.1, 100.0, 5.0, 0.1) == pytest.approx(-0.55)
     assert push_of(0.3, -5.0, 100.0, 5.0, 0.1) == push_of(-0.3, 5.0, 100.0, 5.0, 0.1) == 0.0
     assert push_of(0.1, 9.0, 100.0, 5.0, 0.1) == push_of(-0.1, -9.0, 100.0, 5.0, 0.1) == 0.0
 

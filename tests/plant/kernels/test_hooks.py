@@ -140,6 +140,7 @@ def test_P7_an_incremental_counter_wakes_up_wherever_its_error_is() -> None:
     wrong[at.ANGLE] = 0.5
     zero = wrong[at.INCREMENTAL_ZERO]
     for _ in range(2):
-        axis_step(wrong, 0.0, H)
+        axis_step(wrong, T, H)
+        assert wrong[at.SIGNALS + sig.TIME] == pytest.approx(T + H / 2.0, rel=1e-12)  # the step's middle
         assert wrong[at.AWAKE] == 1.0
         assert wrong[at.INCREMENTAL_ZERO] - zero == pytest.approx(0.5e-3, rel=1e-3)

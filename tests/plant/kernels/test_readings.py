@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from plant.compiled import Floats
+from plant.effects.signals import Hook
 from plant.kernels import layout as at
-from plant.kernels import readings
 from plant.kernels.readings import keep, read, record
 from plant.plant import Plant
 from tests.plant.bench import bare
 
 SCALES = {at.INCREMENTAL_SCALE: 10.0, at.ABSOLUTE_SCALE: 1000.0, at.AUXILIARY_SCALE: 4000.0, at.TACH_SCALE: 100.0}
 ERRORS = {
-    readings.INCREMENTAL: 0.25, readings.ABSOLUTE: -0.5, readings.AUXILIARY: 1.0,
-    readings.CURRENT_A: 0.125, readings.CURRENT_B: 0.0625,
+    at.SUMS + Hook.INCREMENTAL: 0.25, at.SUMS + Hook.ABSOLUTE: -0.5, at.SUMS + Hook.AUXILIARY: 1.0,
+    at.SUMS + Hook.CURRENT: 0.125, at.SUMS_OF_B + Hook.CURRENT: 0.0625,
 }  # fmt: skip
-MOTORS = ((20.0, 3.0, 1.5, 0.25, 2.0, 11.0), (30.0, -4.0, 2.5, 0.5, 0.0, -12.0))
+MOTORS = ((20.0, 3.0, 1.5, 0.25, 0.5, 11.0), (30.0, -4.0, 2.5, 0.5, 0.0, -12.0))
 """Angle, rate, zero of the tachometer, duty, current, torque of the train."""
 
 
@@ -41,7 +41,7 @@ def test_P7_readings_are_of_the_grid_point_and_currents_of_the_ripples_peak(row:
     assert value[3:] == pytest.approx([(19.997 - 1.5) * 100.0, (30.004 - 2.5) * 100.0, 6.9995])
     assert slope == pytest.approx([5.0, 500.0, 2000.0, 300.0, -400.0, 0.5])
     currents = row[at.OUT + at.OUT_CURRENT_A : at.OUT + at.OUT_SIZE]
-    assert currents == pytest.approx([2.0 + 0.8 * 0.25 * 0.75 + 0.125, 0.0625])  # none flows, none ripples
+    assert currents == pytest.approx([0.5 + 0.8 * 0.25 * 0.75 + 0.125, 0.0625])  # none flows, none ripples
 
 
 def test_P7_a_power_stages_current_is_that_of_the_switchs_opening(row: Floats) -> None:
@@ -72,7 +72,7 @@ def test_a_row_of_truth_is_of_the_grid_point(row: Floats) -> None:
     told = dict(zip(at.TRUTH_COLUMNS, ring[2], strict=True))
     assert told == pytest.approx(
         {
-            "t": 9.0, "angle": 6.9995, "rate": 0.5, "current_a": 2.0, "current_b": 1.25, "motor_angle_a": 19.997,
+            "t": 9.0, "angle": 6.9995, "rate": 0.5, "current_a": 0.5, "current_b": 1.25, "motor_angle_a": 19.997,
             "motor_angle_b": 30.004, "gear_torque_a": 11.0, "gear_torque_b": -12.0, "friction": 40.0,
             "bristle": 5e-5,
         }

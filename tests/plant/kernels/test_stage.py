@@ -151,22 +151,24 @@ def test_P4_the_rail_sags_by_what_both_axes_drew() -> None:
     assert rail(w) == 22.75
 
 
-def test_P4_a_current_that_never_ends_by_hand() -> None:
-    """Half closed, 3 V of EMF, 0.5 ohm of heat, a valley of 1 A: it climbs by (24 - 3 - 3) * 0.5 * 0.01 A.
+@pytest.mark.parametrize(("valley", "duty", "heated"), [(1.0, 0.5, 0.5), (0.0, 0.2, 0.0)])
+def test_P4_a_current_that_never_ends_by_hand(valley: float, duty: float, heated: float) -> None:
+    """3 V of EMF: with the switch closed it climbs by what 24 V leave over, all period long it tends to its goal.
 
-    Mean volts of a period: 0.5 * 24.7 - 0.7 - 3 over 2.5 + 0.25 ohm; L di = the volts that R leaves over.
+    Mean volts of a period less those of the resistance are L di.
     """
-    volts, ohm, h = 8.65, 2.75, 1e-3
-    goal = volts / ohm - 0.045
-    end, mean, drawn = stage(by_hand(), 1.0, 0.5, 24.0, 3.0, 0.5, h)
-    assert end == pytest.approx(goal + (1.0 - goal) * np.exp(-ohm * h / 5e-3))
-    assert (end - 1.0) * 5e-3 == pytest.approx(h * (volts - ohm * mean))
-    assert drawn == pytest.approx(0.5 * mean)
+    h, volts, ohm = 1e-3, duty * 24.7 - 3.7, 2.0 + heated + duty * 0.5
+    goal = volts / ohm - 0.5 * (21.0 - (2.5 + heated) * valley) * duty * 0.01
+    end, mean, drawn = stage(by_hand(), valley, duty, 24.0, 3.0, heated, h)
+    assert end == pytest.approx(goal + (valley - goal) * np.exp(-ohm * h / 5e-3))
+    assert (end - valley) * 5e-3 == pytest.approx(h * (volts - ohm * mean))
+    assert drawn == pytest.approx(duty * mean)
 
 
 @pytest.mark.parametrize(("duty", "emf", "mean", "drawn"), [
     (0.05, 10.0, 0.0035 * (0.05 + 0.007 / (0.01 * 10.707)), 0.0035 * 0.05),  # 14 V for 2.5 us: 7 mA, and down
     (0.5, 11.6, 0.5 * 0.062, 0.5 * 0.062 * 0.5),  # just about the whole period
+    (0.5, 23.5, 0.00125 * (0.5 + 0.0025 / 0.242025), 0.00125 * 0.5),  # half a volt drives it
     (0.5, 30.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0),  # nothing drives it
 ])  # fmt: skip
 def test_P4_a_current_that_ends_in_every_period_by_hand(

@@ -10,7 +10,7 @@ from plant.effects.signals import Hook
 from plant.kernels import layout as at
 from plant.kernels.motor import motor_step
 from plant.kernels.stage import stage
-from plant.kernels.step import AXIS_TORQUE, axis_step, gears
+from plant.kernels.step import axis_step, gears
 
 H = 1e-3
 A, B = at.MOTORS, at.MOTORS + at.MOTOR_SIZE
@@ -117,7 +117,7 @@ def test_P1_newton_over_one_step_on_a_sagging_supply(row: Floats) -> None:
     """Trains 4.8, an effect 0.45, friction 1 + 4 * 0.25, a stop 10 * 0.2 + 0.25 N m; 2 kg m2: 0.5 rad/s2."""
     row[at.VOLTAGE], row[at.SUPPLY_RESISTANCE], row[at.SUPPLY_CURRENT], row[at.OTHERS_SAG] = 26.0, 0.5, 2.0, 1.0
     row[at.STOP_MIDDLE], row[at.STOP_REACH], row[at.STOP_STIFFNESS], row[at.STOP_DAMPING] = 0.5, 0.3, 10.0, 1.0
-    row[AXIS_TORQUE] = 0.45
+    row[at.SUMS + Hook.AXIS_TORQUE] = 0.45
     axis_step(row, 7 * H, H)
     assert row[at.ACCELERATION] == pytest.approx(0.5) and row[at.FRICTION] == pytest.approx(2.0)
     assert (row[at.RATE], row[at.RATE_BEFORE], row[at.ANGLE]) == pytest.approx((0.2005, 0.2, 1.0002005))
