@@ -37,6 +37,7 @@ def test_P3_teeth_push_beyond_the_play_and_never_pull() -> None:
     assert push_of(0.1005, 0.1, 100.0, 5.0, 0.1) == pytest.approx(0.55)
     assert push_of(-0.1005, -0.1, 100.0, 5.0, 0.1) == pytest.approx(-0.55)
     assert push_of(0.3, -5.0, 100.0, 5.0, 0.1) == push_of(-0.3, 5.0, 100.0, 5.0, 0.1) == 0.0
+    assert push_of(-0.1005, 0.1, 100.0, 5.0, 0.1) == push_of(0.1005, -0.1, 100.0, 5.0, 0.1) == 0.0
     assert push_of(0.1, 9.0, 100.0, 5.0, 0.1) == push_of(-0.1, -9.0, 100.0, 5.0, 0.1) == 0.0
 
 

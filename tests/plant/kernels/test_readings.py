@@ -15,7 +15,7 @@ ERRORS = {
     at.SUMS + Hook.INCREMENTAL: 0.25, at.SUMS + Hook.ABSOLUTE: -0.5, at.SUMS + Hook.AUXILIARY: 1.0,
     at.SUMS + Hook.CURRENT: 0.125, at.SUMS_OF_B + Hook.CURRENT: 0.0625,
 }  # fmt: skip
-MOTORS = ((20.0, 3.0, 1.5, 0.25, 0.5, 11.0), (30.0, -4.0, 2.5, 0.5, 0.0, -12.0))
+MOTORS = ((20.0, 3.0, 1.5, 0.25, 0.5, 11.0), (30.0, -4.0, 2.5, 0.5, 2.0, -12.0))
 """Angle, rate, zero of the tachometer, duty, current, torque of the train."""
 
 
@@ -41,7 +41,11 @@ def test_P7_readings_are_of_the_grid_point_and_currents_of_the_ripples_peak(row:
     assert value[3:] == pytest.approx([(19.997 - 1.5) * 100.0, (30.004 - 2.5) * 100.0, 6.9995])
     assert slope == pytest.approx([5.0, 500.0, 2000.0, 300.0, -400.0, 0.5])
     currents = row[at.OUT + at.OUT_CURRENT_A : at.OUT + at.OUT_SIZE]
-    assert currents == pytest.approx([0.5 + 0.8 * 0.25 * 0.75 + 0.125, 0.0625])  # none flows, none ripples
+    assert currents == pytest.approx([0.5 + 0.8 * 0.25 * 0.75 + 0.125, 2.0 + 0.8 * 0.25 + 0.0625])
+    for m in range(2):
+        row[at.MOTORS + m * at.MOTOR_SIZE + at.M_CURRENT] = 0.0
+    read(row)
+    assert currents == pytest.approx([0.125, 0.0625])  # none flows, none ripples
 
 
 def test_P7_a_power_stages_current_is_that_of_the_switchs_opening(row: Floats) -> None:
