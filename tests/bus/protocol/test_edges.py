@@ -196,6 +196,6 @@ def test_noise_without_a_sync_is_counted_at_once_and_not_kept() -> None:
 
 
 def test_an_axis_scales_are_the_papers() -> None:
-    """Encoder 4.608e6 on a roller 735:30; RCN 829 of 29 bits; 200 ticks a second: 15 arcsec/s are 6.5333 counts."""
+    """Encoder 4.608e6 on a roller 735:30; RCN 829 of 29 bits; 200 ticks a second: 15 arcsec/s are 6.533."""
     assert COUNTS_PER_TURN == 4_608_000 * 735 // 30 and STEPS_PER_TURN == 2**29
     assert rate_q16(15.0) == round(15 / 1_296_000 * 4_608_000 * 24.5 / 200 * 2**16) == 428_169

@@ -100,6 +100,8 @@ def test_written_and_declared_ones_go_through_a_pipe(each: Device | Opcode) -> N
         ("lower", {"lower": 0x7A}, "capitals"),
         ("OTHER", {"DOME_2": 0x7A}, "are called OTHER"),
         ("OTHER", {"OTHER": 0x80}, "not within"),
+        ("OTHER", {"OTHER": 0}, "not within"),
+        ("FOCUS", {"FOCUS": 0x7A}, "is taken"),
         ("OTHER_X", {"OTHER_X": 0x7A}, "without an underscore"),
         ("OTHER", {"OTHER": 0x71}, "is taken"),
         ("OTHER", {"OTHER": 0x11}, "is taken"),
@@ -110,6 +112,11 @@ def test_a_declaration_that_cannot_be_is_one_line(name: str, nodes: dict[str, in
     with pytest.raises(KindError, match=text) as error:
         check_kind(Kind(name, nodes, Path("none.dbc")), KINDS)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("number", [0x01, 0x7F])
+def test_a_declaration_may_have_any_free_type(number: int) -> None:
+    check_kind(Kind("OTHER", {"OTHER": number}, Path("none.dbc")), KINDS)
 
 
 GOOD = 'BO_ 512 X: 8 NODE\n SG_ A : 8|8@1+ (1,0) [0|1] "" GATEWAY\n'
@@ -155,6 +162,15 @@ def test_an_offset_missing_values_and_fields_without_limits() -> None:
     assert codec.pack({"T": 1e3, "S": 200}, lambda: told.append(1)) == bytes([0, 255, 127, 0, 0, 0, 0, 0])
     assert codec.pack({"T": -41, "S": -200}, lambda: told.append(1)) == bytes([0, 0, 128, 0, 0, 0, 0, 0])
     assert len(told) == 4
+
+
+def test_limits_are_in_the_fields_unit() -> None:
+    """By hand: T = 0.5 raw - 40 from -30 to 10 is raw 20 to 100."""
+    codec = FrameCodec(
+        load_string(HAND.format(' SG_ T : 16|8@1+ (0.5,-40) [-30|10] "" B\n'), "dbc").messages[0]
+    )
+    sent = [codec.pack({"T": value})[2] for value in (-31.0, -30.0, 10.0, 10.5)]
+    assert sent == [20, 20, 100, 100]
 
 
 HAND = (

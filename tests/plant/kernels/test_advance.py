@@ -47,7 +47,7 @@ def test_the_mean_duty_of_a_step_begun_is_the_one_in_force() -> None:
 
 @pytest.mark.parametrize("kept", [0.0, 1.0])
 @pytest.mark.parametrize("steps", [0, 3])
-def test_readings_are_there_after_any_number_of_steps_and_kept_when_asked_for(steps: int, kept: float) -> None:
+def test_readings_are_there_after_any_steps_and_kept_when_asked_for(steps: int, kept: float) -> None:
     w = coasting(kept=kept)
     advance_axis(w, steps)
     assert w[at.OUT + at.OUT_ANGLE] == pytest.approx(angle_after(steps), abs=1e-9)

@@ -21,7 +21,7 @@ def test_P4_a_winding_tends_to_its_target_and_the_diode_stops_it_at_nothing() ->
 
 
 @pytest.mark.parametrize(("speed", "applied", "leads", "diode", "expected"), [
-    (10.0, 6.0, True, 0.0, 4.0), (10.0, 6.0, False, 1.0, 4.0), (1.0, 6.0, False, 1.0, 0.4),  # turned its own way
+    (10.0, 6.0, True, 0.0, 4.0), (10.0, 6.0, False, 1.0, 4.0), (1.0, 6.0, False, 1.0, 0.4),  # its own way
     (-10.0, 6.0, True, 0.0, -4.0), (-10.0, 3.0, True, 0.0, -3.0), (-10.0, 6.0, False, 0.0, 0.0),
     (-10.0, 6.0, False, 1.0, -3.3), (-10.0, 3.0, True, 0.5, -3.15), (-1.0, 6.0, False, 1.0, 0.0),
 ])  # fmt: skip
@@ -60,7 +60,7 @@ def test_noise_is_standard_normal_and_every_number_by_itself() -> None:
 
 
 def test_uniform_numbers_are_those_of_the_published_generator() -> None:
-    """The first numbers of SplitMix64 from seed 1234567, as its authors' C code prints them; 53 bits of each."""
+    """The first of SplitMix64 from seed 1234567, as its authors' C code prints them; 53 bits of each."""
     known = (6457827717110365317, 3203168211198807973, 9817491932198370423, 4593380528125082431)
     with np.errstate(over="ignore"):
         made = [uniform_of(np.uint64(1234567), np.uint64(k)) for k in range(4)]

@@ -149,7 +149,8 @@ def test_P5_torque_by_hand_with_a_decaying_bristle_damping(rate: float, decay: f
 @pytest.mark.parametrize(("exponent", "power"), [(2.0, 9.0), (1.0, 3.0), (0.5, 3.0**0.5), (3.0, 27.0)])
 def test_P5_deflection_of_steady_sliding_by_hand(exponent: float, power: float) -> None:
     for before in (1.0, 2.0):  # other numbers of the array
-        w = np.concatenate([np.full(at.FRICTION_SIZE, before), lugre(10.0, 3.0, 4.0, 1.0, 2.0, 0.5, exponent)])
+        own = lugre(10.0, 3.0, 4.0, 1.0, 2.0, 0.5, exponent)
+        w = np.concatenate([np.full(at.FRICTION_SIZE, before), own])
         for rate in (1.5, -1.5):
             assert g_of(rate, w, at.FRICTION_SIZE) == pytest.approx((1.0 + exp(-power)) / 10.0)
 

@@ -13,9 +13,9 @@ from plant.kernels import layout as at
 from plant.kernels.dispatch import KINDS, TERMS, value
 from plant.kernels.hooks import evaluate
 from plant.kernels.step import axis_step
-from plant.rows import write
 from plant.parts import EffectModel, Number
 from plant.plant import Plant
+from plant.rows import write
 from tests.plant.bench import bare, with_effect
 
 T, H = 20.0, 5e-4
@@ -23,8 +23,9 @@ T, H = 20.0, 5e-4
 
 def effect(name: str, **numbers: float) -> EffectModel:
     """An effect with these numbers, each in its own unit."""
-    units = {each.name: each.unit for each in REGISTRY[name].parameters}
-    return EffectModel(name, parameters={word: Number(x, units[word], "a test") for word, x in numbers.items()})
+    unit = REGISTRY[name].parameter
+    given = {word: Number(value, unit(word).unit, "a test") for word, value in numbers.items()}
+    return EffectModel(name, parameters=given)
 
 
 @pytest.fixture
@@ -54,7 +55,10 @@ def test_every_signal_is_that_of_the_step_and_of_its_motor(row: Floats) -> None:
     assert not row[at.SUMS : at.SUMS + HOOK_COUNT + MOTOR_HOOKS].any(), "no effect, no sum"
 
 
-@pytest.mark.parametrize(("duties", "lost"), [((0.5, 0.25), (0, 1)), ((0.25, 0.5), (1, 0)), ((0.5, 0.5), (0, 0))])
+PAIRS = [((0.5, 0.25), (0, 1)), ((0.25, 0.5), (1, 0)), ((0.5, 0.5), (0, 0))]
+
+
+@pytest.mark.parametrize(("duties", "lost"), PAIRS)
 def test_the_motor_with_the_lower_duty_lags(
     row: Floats, duties: tuple[float, float], lost: tuple[int, int]
 ) -> None:

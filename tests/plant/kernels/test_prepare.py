@@ -12,9 +12,9 @@ from plant.kernels.prepare import Numbers, prepare
 RATIO = 113 / 27 * 123 / 21 * 250 / 17
 NUMBERS = Numbers(
     grid=5e-4, voltage=24.0, temperature=12.0, warming=1e-3, pwm_frequency=20e3, inertia=1700.0,
-    stiffness=3e6, damping=400.0, backlash=0.002, bristle_stiffness=6e6, bristle_damping=3000.0, viscous=6700.0,
-    coulomb=229.0, stiction=621.0, stribeck_rate=4e-4, stribeck_exponent=2.0, bristle_decay=1e-3,
-    torque_constant=0.4, resistance=2.2, inductance=2.7e-3, rotor_inertia=3e-3, drag=1e-4,
+    stiffness=3e6, damping=400.0, backlash=0.002, bristle_stiffness=6e6, bristle_damping=3000.0,
+    viscous=6700.0, coulomb=229.0, stiction=621.0, stribeck_rate=4e-4, stribeck_exponent=2.0,
+    bristle_decay=1e-3, torque_constant=0.4, resistance=2.2, inductance=2.7e-3, rotor_inertia=3e-3, drag=1e-4,
     switch_resistance=0.085, sense_resistance=0.1, incremental=4.6e6, roller_ratio=24.5, absolute=29.0,
     auxiliary=17.0, auxiliary_ratio=10.8, tachometer=4096.0, diode=0.25, diode_drop=0.9, stage_drop=0.0,
     compliance=1e-7, swinging=40.0, angle=0.3, incremental_phase=0.25, phase_a=0.125, phase_b=0.75,

@@ -10,8 +10,8 @@ from plant.kernels.readings import keep, read, record
 from plant.plant import Plant
 from tests.plant.bench import bare
 
-SCALES = {at.INCREMENTAL_SCALE: 10.0, at.ABSOLUTE_SCALE: 1000.0, at.AUXILIARY_SCALE: 4000.0, at.TACH_SCALE: 100.0}
-ERRORS = {
+GIVEN = {
+    at.INCREMENTAL_SCALE: 10.0, at.ABSOLUTE_SCALE: 1000.0, at.AUXILIARY_SCALE: 4000.0, at.TACH_SCALE: 100.0,
     at.SUMS + Hook.INCREMENTAL: 0.25, at.SUMS + Hook.ABSOLUTE: -0.5, at.SUMS + Hook.AUXILIARY: 1.0,
     at.SUMS + Hook.CURRENT: 0.125, at.SUMS_OF_B + Hook.CURRENT: 0.0625,
 }  # fmt: skip
@@ -24,11 +24,11 @@ def row() -> Floats:
     w = np.zeros(at.WIDTH)
     w[at.GRID], w[at.RATE], w[at.ANGLE], w[at.INCREMENTAL_ZERO], w[at.RIPPLE] = 2e-3, 0.5, 7.0, 2.0, 0.8
     w[at.FRICTION], w[at.BRISTLE] = 40.0, 5e-5
-    for place, value in (SCALES | ERRORS).items():
+    for place, value in GIVEN.items():
         w[place] = value
     for m, (angle, rate, zero, duty, current, gear) in enumerate(MOTORS):
         o = at.MOTORS + m * at.MOTOR_SIZE
-        w[o + at.M_ANGLE], w[o + at.M_RATE], w[o + at.M_CURRENT], w[o + at.M_GEAR] = angle, rate, current, gear
+        w[o : o + at.MOTOR_SIZE] = rate, angle, 0.0, current, gear
         w[at.TACH_ZERO + m], w[at.DUTY + m] = zero, duty
     return w
 
@@ -49,7 +49,7 @@ def test_P7_readings_are_of_the_grid_point_and_currents_of_the_ripples_peak(row:
 
 
 def test_P7_a_power_stages_current_is_that_of_the_switchs_opening(row: Floats) -> None:
-    """i + (V - K w - R i) times the closed time over the inductance: 24 V, 0.5 V s, 2 ohm, 0.01 A/V a period."""
+    """i + (V - K w - R i) times the closed time over the inductance: 24 V, 0.5 V s, 2 ohm, 0.01 A/V."""
     row[at.VOLTAGE], row[at.TORQUE_CONSTANT], row[at.RESISTANCE] = 24.0, 0.5, 2.0
     row[at.PULSE], row[at.INDUCTANCE], row[at.VALLEY], row[at.VALLEY + 1] = 0.01, 1e-3, 0.5, 1.0
     read(row)
@@ -76,9 +76,9 @@ def test_a_row_of_truth_is_of_the_grid_point(row: Floats) -> None:
     told = dict(zip(at.TRUTH_COLUMNS, ring[2], strict=True))
     assert told == pytest.approx(
         {
-            "t": 9.0, "angle": 6.9995, "rate": 0.5, "current_a": 0.5, "current_b": 1.25, "motor_angle_a": 19.997,
-            "motor_angle_b": 30.004, "gear_torque_a": 11.0, "gear_torque_b": -12.0, "friction": 40.0,
-            "bristle": 5e-5,
+            "t": 9.0, "angle": 6.9995, "rate": 0.5, "current_a": 0.5, "current_b": 1.25,
+            "motor_angle_a": 19.997, "motor_angle_b": 30.004, "gear_torque_a": 11.0, "gear_torque_b": -12.0,
+            "friction": 40.0, "bristle": 5e-5,
         }
     )  # fmt: skip
     assert row[at.RECORDED] == at.TRUTH_ROWS + 3 and np.count_nonzero(ring) == at.TRUTH_SIZE

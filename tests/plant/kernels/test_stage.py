@@ -153,7 +153,7 @@ def test_P4_the_rail_sags_by_what_both_axes_drew() -> None:
 
 @pytest.mark.parametrize(("valley", "duty", "heated"), [(1.0, 0.5, 0.5), (0.0, 0.2, 0.0)])
 def test_P4_a_current_that_never_ends_by_hand(valley: float, duty: float, heated: float) -> None:
-    """3 V of EMF: with the switch closed it climbs by what 24 V leave over, all period long it tends to its goal.
+    """3 V of EMF: with the switch closed it climbs by what 24 V leave over.
 
     Mean volts of a period less those of the resistance are L di.
     """

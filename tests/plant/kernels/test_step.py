@@ -25,7 +25,8 @@ A: 100 * (1.3 - 1 - 0.1) + 2 * 0.35; B: 100 * (0.75 - 1 + 0.1) - 2 * 0.45."""
 def row() -> Floats:
     """An axis amid a motion, another number in every place."""
     w = np.zeros(at.WIDTH)
-    w[at.GRID], w[at.RATE], w[at.RATE_BEFORE], w[at.ANGLE], w[at.INERTIA], w[at.STEP] = H, 0.2, 0.1, 1.0, 2.0, 7.0
+    w[at.GRID], w[at.RATE], w[at.RATE_BEFORE], w[at.ANGLE] = H, 0.2, 0.1, 1.0
+    w[at.INERTIA], w[at.STEP] = 2.0, 7.0
     w[at.RATIO], w[at.GEAR_STIFFNESS], w[at.GEAR_DAMPING], w[at.HALF_PLAY] = 10.0, 100.0, 2.0, 0.1
     for o, numbers in ((A, (5.0, 13.0, 3.0, 2.0, PUSHES[0])), (B, (-1.0, 7.5, 1.0, 1.0, PUSHES[1]))):
         w[o : o + at.MOTOR_SIZE] = numbers
@@ -41,7 +42,7 @@ def row() -> Floats:
 @pytest.mark.parametrize(
     ("error", "pushes"), [(0.0, PUSHES), (0.05, (25.7, -10.9)), (-0.25, (0.0, -40.9)), (0.2, (40.7, 0.0))]
 )
-def test_P3_trains_push_by_twist_play_and_rate(row: Floats, error: float, pushes: tuple[float, float]) -> None:
+def test_P3_trains_push_by_twist_and_rate(row: Floats, error: float, pushes: tuple[float, float]) -> None:
     assert gears(row, 0.25, error) == pytest.approx(sum(pushes))
     assert (row[A + at.M_GEAR], row[B + at.M_GEAR]) == pytest.approx(pushes)
 
@@ -115,8 +116,10 @@ def test_P4_a_power_stage_is_fed_with_duty_voltage_and_back_emf(row: Floats, m: 
 
 def test_P1_newton_over_one_step_on_a_sagging_supply(row: Floats) -> None:
     """Trains 4.8, an effect 0.45, friction 1 + 4 * 0.25, a stop 10 * 0.2 + 0.25 N m; 2 kg m2: 0.5 rad/s2."""
-    row[at.VOLTAGE], row[at.SUPPLY_RESISTANCE], row[at.SUPPLY_CURRENT], row[at.OTHERS_SAG] = 26.0, 0.5, 2.0, 1.0
-    row[at.STOP_MIDDLE], row[at.STOP_REACH], row[at.STOP_STIFFNESS], row[at.STOP_DAMPING] = 0.5, 0.3, 10.0, 1.0
+    row[at.VOLTAGE], row[at.SUPPLY_RESISTANCE] = 26.0, 0.5
+    row[at.SUPPLY_CURRENT], row[at.OTHERS_SAG] = 2.0, 1.0
+    row[at.STOP_MIDDLE], row[at.STOP_REACH] = 0.5, 0.3
+    row[at.STOP_STIFFNESS], row[at.STOP_DAMPING] = 10.0, 1.0
     row[at.SUMS + Hook.AXIS_TORQUE] = 0.45
     axis_step(row, 7 * H, H)
     assert row[at.ACCELERATION] == pytest.approx(0.5) and row[at.FRICTION] == pytest.approx(2.0)
@@ -136,7 +139,8 @@ def test_a_reversal_is_where_the_rate_changes_its_sign(
 ) -> None:
     w = np.zeros(at.WIDTH)
     w[at.GRID], w[at.ANGLE], w[at.REVERSED_AT], w[at.DIRECTION], w[at.INERTIA] = H, 1.0, 0.5, before, 1e9
-    w[at.RATE], w[at.RATE_BEFORE], w[at.RATIO], w[at.RESISTANCE], w[at.ROTOR_INERTIA] = rate, rate, 1.0, 1.0, 1.0
+    w[at.RATE] = w[at.RATE_BEFORE] = rate
+    w[at.RATIO] = w[at.RESISTANCE] = w[at.ROTOR_INERTIA] = 1.0
     f = at.DECLARED_FRICTION
     w[f + at.F_SIGMA0 : f + at.FRICTION_SIZE] = 1.0
     w[at.STRIBECK] = 1.0
