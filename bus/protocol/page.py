@@ -3,6 +3,7 @@ compares."""
 
 import sys
 from collections.abc import Iterator
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -98,8 +99,8 @@ def _parameters() -> Iterator[str]:
     yield "\n## Parameters of declared boards\n"
     yield "| board | number | parameter | range | after power-up |\n|---|---|---|---|---|"
     for kind in KINDS:
-        for row in kind.parameters:
-            yield f"| {kind.name} | {row.number} | {row.name.upper()} | {row.low}..{row.high} | {row.default} |"
+        for number, name, low, high, default in map(astuple, kind.parameters):
+            yield f"| {kind.name} | {number} | {name.upper()} | {low}..{high} | {default} |"
 
 
 def _row(signal: Any) -> str:
