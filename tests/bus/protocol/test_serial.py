@@ -124,3 +124,8 @@ def test_a_packets_times_are_the_papers() -> None:
 def test_all_but_the_last_sample_and_the_crc_leave_ahead(device: int, size: int) -> None:
     """Sync 2, head 6, then 24 samples; with the last one and the CRC the packet is whole."""
     assert ahead_bytes(device) == 2 + 6 + 24 * size == packet_bytes(device) - size - 2
+
+
+def test_every_field_has_a_meaning_and_no_meaning_is_without_one() -> None:
+    devices = (Device.AXIS_RA, Device.POSITION_RA, Device.FOCUS, 0x7F)
+    assert set(MEANINGS) == {name for device in devices for name, _, _ in fields(device)}
